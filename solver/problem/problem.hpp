@@ -1,0 +1,89 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "system/lagrangian.hpp"
+
+/// \file A problem: a Lagrangian, what its ends satisfy, its duration and a guess. Checked once, when it
+/// is made; everything after may rely on it.
+
+namespace extremal {
+
+/// B0 q(0) + B1 q(T) = c, given row by row. An end coordinate is numbered e = a for q_a(0) and
+/// e = n + a for q_a(T).
+struct BoundaryRelation {
+  int coordinates = 0;
+  int rows = 0;
+  std::vector<Triplet> matrix;  ///< (row, e, coefficient)
+  std::vector<double> value;    ///< c
+
+  /// Adds q_a(0) = x (at_end = false) or q_a(T) = x.
+  void fix(int coordinate, bool at_end, double x);
+  /// Adds a row; returns its number.
+  int add_row(double c);
+  void add(int row, int e, double coefficient) { matrix.push_back({row, e, coefficient}); }
+};
+
+/// The relation solved for as many ends as it fixes: x_e = offset_e + Σ_f Z(e, f) y_f, y free.
+struct EndMap {
+  int free = 0;
+  std::vector<double> offset;   ///< 2n
+  std::vector<Triplet> z;       ///< (e, f, coefficient); identity for an end coordinate that is free
+  std::vector<char> fixed;      ///< 2n: the coordinate does not depend on y
+};
+
+/// Throws RelationError if the rows contradict each other or one follows from the others.
+EndMap solve_relation(const BoundaryRelation& relation);
+
+struct RelationError : std::exception {
+  int row;            ///< the row that is redundant or contradicts the earlier ones
+  bool contradiction;
+  RelationError(int row, bool contradiction) : row(row), contradiction(contradiction) {}
+  const char* what() const noexcept override {
+    return contradiction ? "boundary conditions contradict each other" : "boundary conditions are redundant";
+  }
+};
+
+/// A scalar function g of the ends; writes ∂g/∂(q(0), q(T)), 2n entries, and returns g.
+using EndFunction = std::function<double(std::span<const double> start, std::span<const double> end,
+                                         std::span<double> gradient)>;
+
+/// Fixed: value. Free: value is the guess, and exactly one of energy, where closes it.
+struct Duration {
+  double value = 0;
+  bool free = false;
+  std::optional<double> energy;
+  EndFunction where;
+};
+
+/// q at ascending times tau in [0, 1] (t/T), row by row: q[k*n + a]. Empty: the default guess.
+struct Guess {
+  std::vector<double> tau;
+  std::vector<double> q;
+  bool given() const { return !tau.empty(); }
+  /// Local cubic interpolation.
+  void at(double tau, std::span<double> q) const;
+};
+
+/// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
+struct Problem {
+  std::shared_ptr<const Lagrangian> lagrangian;
+  std::vector<std::string> names;    ///< of the coordinates: "x", "q[1]"
+  BoundaryRelation boundary;
+  EndMap ends;                       ///< of `boundary`
+  bool periodic = false;             ///< closed, perhaps up to a symmetry
+  Duration duration;
+  Guess guess;
+
+  int coordinates() const { return boundary.coordinates; }
+};
+
+/// Checks dimensions, durations and relations, and fills `ends`. Throws std::invalid_argument or RelationError.
+Problem make_problem(Problem problem);
+
+}  // namespace extremal

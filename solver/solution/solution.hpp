@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "action/scheme.hpp"
+#include "problem/problem.hpp"
+
+/// \file What a solve returns.
+
+namespace extremal {
+
+enum class Status {
+  converged,
+  not_converged,
+  collision,
+  lost_convexity,
+  no_solution_near,
+  conjugate_ends,
+  iteration_limit,
+};
+
+/// As written in a result: "converged", "not-converged", …
+const char* name(Status status);
+
+/// Piecewise polynomial q(t) on [0, T].
+struct Trajectory {
+  int coordinates = 0;
+  int degree = 0;               ///< s of every element
+  std::vector<double> times;    ///< N + 1 ends of elements, 0 … T
+  std::vector<double> nodes;    ///< (s + 1) values an element at its Lobatto points: [(k*(s+1) + j)*n + a]
+
+  int elements() const { return static_cast<int>(times.size()) - 1; }
+  double duration() const { return times.empty() ? 0 : times.back(); }
+  /// q and q' at t in [0, T], n entries each.
+  void at(double t, std::span<double> q, std::span<double> v) const;
+};
+
+/// One step of the iteration, for the history.
+struct Iteration {
+  int elements = 0, degree = 0;
+  double residual = 0;          ///< largest component of δS divided by the largest momentum
+  double step = 0;              ///< largest change of q
+  double damping = 1;
+};
+
+/// Pessimistic until proved otherwise.
+struct Solution {
+  Status status = Status::not_converged;
+  std::string message = "nothing has been solved";
+  std::string strategy;
+  Trajectory trajectory;
+
+  double action = 0;
+  std::optional<double> energy, energy_drift;  ///< absent where L depends on t
+  double error_estimate = 0;    ///< supremum over [0, T] of the error of q, in units of q
+  double residual = 0;
+  std::optional<int> morse_index, nullity;
+  bool minimizing = false;
+  std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
+
+  int unknowns = 0, iterations = 0;
+  std::vector<Iteration> history;
+  double seconds_solve = 0, seconds_analyse = 0;
+
+  bool converged() const { return status == Status::converged; }
+  double duration() const { return trajectory.duration(); }
+};
+
+}  // namespace extremal

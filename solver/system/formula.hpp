@@ -1,0 +1,91 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "system/lagrangian.hpp"
+
+/// \file Systems and conditions written as formulas.
+
+namespace extremal {
+
+/// A formula that does not parse or names what does not exist. `where` says which text (see
+/// SystemText), `offset` is the position in it, in bytes.
+struct FormulaError : std::runtime_error {
+  std::string where;
+  std::size_t offset;
+  FormulaError(std::string message, std::string where, std::size_t offset)
+      : std::runtime_error(std::move(message)), where(std::move(where)), offset(offset) {}
+};
+
+/// A parameter: a number, or a list of them read as m[1], m[2], …
+using Parameter = std::vector<double>;
+struct ParameterText {
+  Parameter value;
+  bool list = false;
+};
+
+/// A system as text. Where a FormulaError comes from is named "coordinates[0]", "definitions.r",
+/// "lagrangian".
+struct SystemText {
+  std::vector<std::string> coordinates;             ///< "x", "x[32]", "x[n]"
+  std::map<std::string, ParameterText> parameters;
+  std::map<std::string, std::string> definitions;
+  std::string lagrangian;
+  std::vector<std::string> active;                  ///< scalar parameters that derivatives are asked for
+};
+
+/// A declared coordinate and where its elements stand in q.
+struct Coordinate {
+  std::string name;
+  int first = 0;
+  int count = 1;
+  bool array = false;
+};
+
+struct System {
+  std::vector<Coordinate> coordinates;
+  std::vector<std::string> names;                   ///< one an element: "x", "q[1]"
+  std::map<std::string, ParameterText> parameters;
+  std::shared_ptr<const Lagrangian> lagrangian;
+};
+
+/// Parses, differentiates and compiles. Throws FormulaError.
+System compile(const SystemText& text);
+
+/// A number written as a formula of parameters ("2*pi/omega"). `where` names the text in errors.
+double number(const std::string& formula, const std::map<std::string, ParameterText>& parameters,
+              const std::string& where);
+
+/// A guess x(t) as formulas of t, T, parameters and, for an array, the index i.
+/// Returns the values at each of `times`.
+std::vector<double> tabulate(const std::string& formula, const std::map<std::string, ParameterText>& parameters,
+                             double duration, std::span<const double> times, int index, const std::string& where);
+
+/// An equation "left = right" between end values x(0), x[2](T), velocities excluded, and parameters:
+/// g = left − right as a function of the 2n end coordinates (start, then end).
+struct EndEquation {
+  bool affine = false;
+  std::vector<Triplet> coefficients;  ///< (0, e, value), where affine
+  double constant = 0;                ///< g = Σ coefficient·x_e + constant, where affine
+  std::function<double(std::span<const double> start, std::span<const double> end, std::span<double> gradient)> function;
+};
+EndEquation end_equation(const std::string& text, const System& system, const std::string& where);
+
+/// A `map` entry: the coordinate's value at T as an affine formula of the coordinates at 0.
+/// Coefficients over the n coordinates, and the constant.
+struct AffineForm {
+  std::vector<Triplet> coefficients;  ///< (0, a, value)
+  double constant = 0;
+};
+AffineForm affine_form(const std::string& formula, const System& system, const std::string& where);
+
+/// The nearest of `known` to a misspelt name, or empty if none is near.
+std::string nearest_name(const std::string& name, std::span<const std::string> known);
+
+}  // namespace extremal
