@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/problem.hpp"
+#include "solution/solution.hpp"
+#include "solve/solve.hpp"
+#include "system/formula.hpp"
+
+/// \file From a scene to a solution.
+
+namespace extremal {
+
+/// A scene made ready: tape, boundary relation and sampled guess stand.
+struct Study {
+  std::string scene;  ///< its path, as given
+  std::string title;  ///< may be empty
+  System system;
+  Problem problem;
+  SolveOptions options;
+  std::optional<double> curvature;  ///< a bound of M⁻¹V'' known to hold everywhere
+  double seconds_read = 0;          ///< from opening the file until this was ready
+};
+
+/// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column.
+Study load(const std::string& path, const std::vector<std::string>& sets = {});
+
+/// Solves `repeat` times from the same guess with one Solver. The solution is the last one's; its seconds
+/// are the medians. Throws std::invalid_argument if repeat < 1.
+Solution run(const Study& study, int repeat = 1);
+
+}  // namespace extremal
