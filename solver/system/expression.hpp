@@ -1,8 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 /// \file The expression graph: a directed acyclic graph of hash-consed nodes, so that equal
@@ -33,7 +33,9 @@ struct Node {
 
 /// Nodes in an order in which arguments precede their users. Building folds constants, drops neutral
 /// elements and orders the arguments of commutative operations; it never changes a value where the
-/// operands are finite by more than roundoff.
+/// operands are finite by more than roundoff, nor removes a division (a/a stays, 0/a becomes 0).
+/// Constants merge across an operation, as in 2*(3*a), only where that is exact, so that derivatives hold
+/// in extended precision too. An operation on constants whose value is not finite stays as it is written.
 class Graph {
  public:
   NodeId constant(double value);
@@ -57,20 +59,37 @@ class Graph {
 
  private:
   NodeId intern(const Node& node);
+  /// The node equal to this one, or absent.
+  NodeId find(const Node& node) const;
+  std::size_t slot_of(const Node& node) const;
+  void grow();
+  NodeId sum(NodeId a, NodeId b);
+  NodeId difference(NodeId a, NodeId b);
+  NodeId product(NodeId a, NodeId b);
+  NodeId quotient(NodeId a, NodeId b);
+  NodeId power(NodeId a, NodeId b);
+  NodeId integer_power(NodeId a, int exponent);
+  NodeId negative(NodeId a);
+  NodeId scaled(double factor, NodeId a);
+
   std::vector<Node> nodes_;
-  std::unordered_multimap<std::uint64_t, NodeId> index_;
+  std::vector<NodeId> slots_;  ///< open addressing, a power of two long; `absent` where free
 };
+
+/// The nodes that f is made of, f included, ascending: arguments precede their users.
+std::vector<NodeId> nodes_of(const Graph& graph, NodeId f);
 
 /// d f / d input(k) for each k of `inputs`, by reverse accumulation on the graph.
 std::vector<NodeId> gradient(Graph& graph, NodeId f, std::span<const std::uint32_t> inputs);
 
-/// f with each input k replaced by replacement[k].
+/// f with each input k replaced by replacement[k]. Throws std::invalid_argument where there is none.
 NodeId substitute(Graph& graph, NodeId f, std::span<const NodeId> replacement);
 
 /// The inputs that f depends on, ascending.
 std::vector<std::uint32_t> inputs_of(const Graph& graph, NodeId f);
 
-/// The value of f in any scalar type: double, long double, complex, multiprecision.
+/// The value of f in any scalar type: double, long double, complex (min, max, abs and step compare real
+/// parts), multiprecision. Defined in system/expression_evaluate.hpp; compiled for double.
 template <class Scalar>
 Scalar evaluate(const Graph& graph, NodeId f, std::span<const Scalar> inputs);
 
