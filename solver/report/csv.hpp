@@ -1,0 +1,22 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "report/result.hpp"
+
+/// \file Samples as comma-separated values.
+
+namespace extremal {
+
+/// A header and one row a time: t, coordinates, velocities, momenta, keyed as in JSON; numbers read back as
+/// the same double. Throws std::invalid_argument if the columns do not fit the names, std::logic_error with
+/// column and row if a number is not finite.
+void write_csv(std::ostream& out, const Samples& samples, const std::vector<std::string>& names);
+
+/// The same into a file. Throws std::runtime_error with the path if it cannot be written; what was written
+/// in part is removed.
+void write_csv(const std::string& path, const Samples& samples, const std::vector<std::string>& names);
+
+}  // namespace extremal

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/result.hpp"
+
+/// \file Samples as a picture.
+
+namespace extremal {
+
+/// What a plot shows. Velocities and momenta of the samples may be empty: only a lone coordinate's velocity
+/// is drawn. Some 800 times make smooth curves.
+struct Picture {
+  std::string title;               ///< may be empty; any text
+  std::vector<std::string> names;  ///< of the coordinates: "x", "x[1]"
+  Samples samples;
+};
+
+/// Refuses a path that does not end in .svg or .png with std::invalid_argument. To be called before work is
+/// begun whose result would be plotted.
+void check_plot_path(const std::string& path);
+
+/// Draws with gnuplot, SVG or PNG by the suffix of the path. What is drawn follows from the names:
+///  - one coordinate: it and its velocity against time;
+///  - two: the path in the plane, equal scales, beside both against time;
+///  - three: the path in space and its projections;
+///  - two or three arrays of one length, x[n], y[n] (and z[n]): the paths of n bodies;
+///  - one long array: a map, time across and index upwards;
+///  - all else: each coordinate or array against time.
+/// Throws std::invalid_argument for columns that do not fit the names, std::runtime_error if gnuplot is
+/// missing or fails or the path cannot be written.
+void write_plot(const std::string& path, const Picture& picture);
+
+}  // namespace extremal

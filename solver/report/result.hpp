@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solution/solution.hpp"
+
+/// \file What is reported: a solution with the names of its coordinates and, on request, samples.
+
+namespace extremal {
+
+/// One value a time.
+using Column = std::vector<double>;
+
+/// A trajectory at given times: a column for each coordinate, in the order of the names.
+struct Samples {
+  Column t;               ///< in increasing order
+  std::vector<Column> q;  ///< coordinates
+  std::vector<Column> v;  ///< velocities dq/dt
+  std::vector<Column> p;  ///< canonical momenta ∂L/∂q'
+
+  std::size_t count() const { return t.size(); }
+  std::size_t coordinates() const { return q.size(); }
+};
+
+struct Result {
+  std::string title;               ///< may be empty
+  std::vector<std::string> names;  ///< of the coordinates: "x", "x[1]"
+  Solution solution;
+  double seconds_read = 0;         ///< from opening the scene until the problem was ready
+  std::optional<Samples> samples;  ///< never written where the solution has not converged
+};
+
+/// Keys in JSON and CSV: "x[1]'" and "p_x[1]".
+std::string velocity_key(const std::string& coordinate);
+std::string momentum_key(const std::string& coordinate);
+
+/// Throws std::invalid_argument, with the numbers, unless there is one q, v and p column a name and each has
+/// one value a time.
+void check_shape(const Samples& samples, const std::vector<std::string>& names);
+
+}  // namespace extremal

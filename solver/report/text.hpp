@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/result.hpp"
+
+/// \file Text for people.
+
+namespace extremal {
+
+/// A result in some ten aligned lines, each ended by a newline.
+std::string summary(const Result& result);
+
+/// "850 ns", "12.3 µs", "4.56 ms", "1.23 s": three digits.
+std::string duration_text(double seconds);
+
+/// Columns of text. Every row has as many cells as the head.
+struct Table {
+  enum class Align { left, right };
+  struct Heading {
+    std::string text;
+    Align align = Align::right;
+  };
+  std::vector<Heading> head;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// Columns aligned, two spaces between them. Both throw std::invalid_argument for a row of another length.
+std::string plain_text(const Table& table);
+/// The same as a Markdown table that is also aligned to be read as it stands.
+std::string markdown(const Table& table);
+
+}  // namespace extremal
