@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/document.hpp"
+#include "scene/schema.hpp"
+
+namespace extremal {
+namespace {
+
+const char* type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "a boolean";
+    default:
+      return "a date or time";
+  }
+}
+
+/// The kind of the elements of a list of this kind, where a list is allowed.
+bool list_elements(Kind kind, Kind& element) {
+  switch (kind) {
+    case Kind::texts:
+    case Kind::note:
+      element = Kind::text;
+      return true;
+    case Kind::numbers:
+      element = Kind::number;
+      return true;
+    case Kind::quantities:
+      element = Kind::quantity;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool single(Kind kind, const toml::node& node) {
+  switch (kind) {
+    case Kind::text:
+    case Kind::note:
+      return node.is_string();
+    case Kind::number:
+    case Kind::numbers:
+      return node.is_number();
+    case Kind::integer:
+      return node.is_integer();
+    case Kind::boolean:
+      return node.is_boolean();
+    case Kind::quantity:
+    case Kind::quantities:
+      return node.is_number() || node.is_string();
+    case Kind::texts:
+      return false;
+    case Kind::table:
+      return node.is_table();
+  }
+  return false;
+}
+
+struct Checker {
+  const Document& document;
+
+  [[noreturn]] void refuse(const toml::node& node, const std::string& message) const {
+    throw SceneError(document.at(node), message);
+  }
+
+  void check_finite(const toml::node& node, const std::string& label) const {
+    const auto number = node.value<double>();
+    if (node.is_floating_point() && !std::isfinite(*number))
+      refuse(node, fmt::format("{} must be finite, found {}", label, *number));
+  }
+
+  void check_value(const toml::node& node, Kind kind, const std::string& label) const {
+    Kind element;
+    if (node.is_array() && list_elements(kind, element)) {
+      int k = 0;
+      for (const toml::node& item : *node.as_array()) {
+        ++k;
+        if (!single(element, item))
+          refuse(item, fmt::format("element {} of {} must be {}, found {}", k, label, description(element),
+                                   type_name(item)));
+        check_finite(item, fmt::format("element {} of {}", k, label));
+      }
+      return;
+    }
+    if (!single(kind, node))
+      refuse(node, fmt::format("{} must be {}, found {}", label, description(kind), type_name(node)));
+    check_finite(node, label);
+  }
+
+  void check_table(const toml::table& table, std::string_view name) const {
+    const bool top = name.empty() || name == "system file";
+    const std::string within = top ? "" : fmt::format(" in [{}]", name);
+    for (const auto& [key, value] : document.entries(table)) {
+      const KeyRecord* record = find_key(name, key->str());
+      if (!record)
+        throw UnknownName(document.at(key->source()), fmt::format("unknown key '{}'{}", key->str(), within),
+                          std::string(key->str()), keys_of(name));
+      const std::string label = top && record->kind == Kind::table
+                                    ? fmt::format("[{}]", key->str())
+                                    : fmt::format("'{}'{}", key->str(), within);
+      if (!record->available) throw SceneError(document.at(key->source()), label + " is not available yet");
+      const bool has_keys = record->by_name || record->kind == Kind::table;
+      if (has_keys && !value->is_table())
+        refuse(*value, fmt::format("{} must be a table, found {}", label, type_name(*value)));
+      if (record->kind == Kind::table)
+        check_table(*value->as_table(), key->str());
+      else if (record->by_name)
+        check_named(*value->as_table(), record->kind,
+                    top ? std::string(key->str()) : fmt::format("{}.{}", name, key->str()));
+      else
+        check_value(*value, record->kind, label);
+    }
+  }
+
+  void check_named(const toml::table& table, Kind kind, const std::string& name) const {
+    for (const auto& [key, value] : document.entries(table))
+      check_value(*value, kind, fmt::format("'{}' in [{}]", key->str(), name));
+  }
+};
+
+/// The key "table.key" where it is set ("guess.*": the first of the user's names); null where it is not, and
+/// for a boolean that is false.
+const toml::key* find_set(const Document& document, std::string_view path) {
+  const auto dot = path.find('.');
+  const std::string_view name = path.substr(0, dot), wanted = path.substr(dot + 1);
+  const toml::table* table = document.root[name].as_table();
+  if (!table) return nullptr;
+  for (const auto& [key, value] : document.entries(*table)) {
+    const bool named = wanted == "*" ? find_key(name, key->str())->key == "*" : key->str() == wanted;
+    if (named && value->value_exact<bool>() != false) return key;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void check_keys(const Document& document, const toml::table& table, std::string_view name) {
+  Checker{document}.check_table(table, name);
+}
+
+void check_relations(const Document& document) {
+  for (const Exclusion& e : exclusions()) {
+    const toml::key *a = find_set(document, e.a), *b = find_set(document, e.b);
+    if (!a || !b) continue;
+    if (precedes(document.at(a->source()), document.at(b->source()))) std::swap(a, b);
+    throw SceneError(document.at(a->source()),
+                     fmt::format("'{}' and '{}' exclude each other: {}", a->str(), b->str(), e.why));
+  }
+  for (const Requirement& r : requirements()) {
+    const toml::key* key = find_set(document, r.key);
+    if (key && !find_set(document, r.needed))
+      throw SceneError(
+          document.at(key->source()),
+          fmt::format("'{}' needs '{}': {}", key->str(), r.needed.substr(r.needed.find('.') + 1), r.why));
+  }
+}
+
+}  // namespace extremal

@@ -1,0 +1,126 @@
+#include "scene/read.hpp"
+
+#include <algorithm>
+
+#include "scene/schema.hpp"
+
+namespace extremal {
+namespace {
+
+Text text(const Document& document, const toml::node& node) {
+  return {*node.value<std::string>(), document.at(node)};
+}
+
+std::optional<Text> text(const Document& document, const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  return node ? std::optional(text(document, *node)) : std::nullopt;
+}
+
+std::vector<Text> texts(const Document& document, const toml::table& table, std::string_view key) {
+  std::vector<Text> list;
+  if (const toml::array* array = table[key].as_array())
+    for (const toml::node& node : *array) list.push_back(text(document, node));
+  return list;
+}
+
+std::optional<Number> number(const Document& document, const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  return node ? std::optional(Number{*node->value<double>(), document.at(*node)}) : std::nullopt;
+}
+
+Quantity quantity(const Document& document, const toml::node& node) {
+  if (node.is_string()) return {*node.value<std::string>(), document.at(node)};
+  return {*node.value<double>(), document.at(node)};
+}
+
+std::optional<Quantity> quantity(const Document& document, const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  return node ? std::optional(quantity(document, *node)) : std::nullopt;
+}
+
+Assignment assignment(const Document& document, const Entry& entry) {
+  Assignment a{std::string(entry.key->str()),
+               document.at(entry.key->source()),
+               {},
+               entry.value->is_array(),
+               document.at(*entry.value)};
+  if (a.list)
+    for (const toml::node& node : *entry.value->as_array()) a.values.push_back(quantity(document, node));
+  else
+    a.values.push_back(quantity(document, *entry.value));
+  return a;
+}
+
+std::vector<Assignment> assignments(const Document& document, const toml::table* table) {
+  std::vector<Assignment> list;
+  if (table)
+    for (const Entry& entry : document.entries(*table)) list.push_back(assignment(document, entry));
+  return list;
+}
+
+}  // namespace
+
+SystemTable read_system_table(const Document& document, const toml::table& table) {
+  SystemTable system;
+  system.at = document.at(table);
+  system.use = text(document, table, "use");
+  system.coordinates = texts(document, table, "coordinates");
+  system.parameters = assignments(document, table["parameters"].as_table());
+  if (const toml::table* definitions = table["definitions"].as_table())
+    for (const auto& [key, value] : document.entries(*definitions))
+      system.definitions.push_back(
+          {std::string(key->str()), document.at(key->source()), text(document, *value)});
+  system.lagrangian = text(document, table, "lagrangian");
+  system.curvature = number(document, table, "curvature");
+  return system;
+}
+
+BoundaryTable read_boundary_table(const Document& document, const toml::table& table) {
+  BoundaryTable boundary;
+  boundary.at = document.at(table);
+  boundary.start = assignments(document, table["start"].as_table());
+  boundary.end = assignments(document, table["end"].as_table());
+  boundary.map = assignments(document, table["map"].as_table());
+  boundary.periodic = table["periodic"].value_or(false);
+  boundary.conditions = texts(document, table, "conditions");
+  const auto duration = quantity(document, table, "duration");
+  if (!duration)
+    throw SceneError(boundary.at, "[boundary] has no duration; give a number, a formula or \"free\"");
+  boundary.duration = *duration;
+  boundary.free = duration->formula() && std::get<std::string>(duration->value) == "free";
+  boundary.energy = quantity(document, table, "energy");
+  boundary.where = text(document, table, "where");
+  return boundary;
+}
+
+GuessTable read_guess_table(const Document& document, const toml::table& table) {
+  GuessTable guess;
+  guess.at = document.at(table);
+  for (const Entry& entry : document.entries(table))
+    if (find_key("guess", entry.key->str())->key == "*")
+      guess.formulas.push_back(assignment(document, entry));
+  guess.file = text(document, table, "file");
+  if (const toml::table* state = table["state"].as_table()) guess.state = assignments(document, state);
+  guess.duration = quantity(document, table, "duration");
+  return guess;
+}
+
+SolveTable read_solve_table(const Document& document, const toml::table& table) {
+  SolveTable solve;
+  solve.tolerance = number(document, table, "tolerance");
+  solve.scheme = text(document, table, "scheme");
+  solve.elements = number(document, table, "elements");
+  if (const auto method = text(document, table, "method")) {
+    std::vector<std::string> names;
+    for (const MethodRecord& m : method_records()) {
+      if (m.name == method->value && !m.available)
+        throw SceneError(position(*method, 0), "method '" + method->value + "' is not available yet");
+      names.emplace_back(m.name);
+    }
+    if (std::find(names.begin(), names.end(), method->value) == names.end())
+      throw UnknownName(position(*method, 0), "unknown method '" + method->value + "'", method->value, names);
+  }
+  return solve;
+}
+
+}  // namespace extremal

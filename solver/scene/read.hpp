@@ -1,0 +1,16 @@
+#pragma once
+
+#include "scene/document.hpp"
+#include "scene/scene.hpp"
+
+/// \file From checked tables to the data of a scene.
+
+namespace extremal {
+
+/// [system] as it is written, not merged with what it uses.
+SystemTable read_system_table(const Document& document, const toml::table& table);
+BoundaryTable read_boundary_table(const Document& document, const toml::table& table);
+GuessTable read_guess_table(const Document& document, const toml::table& table);
+SolveTable read_solve_table(const Document& document, const toml::table& table);
+
+}  // namespace extremal

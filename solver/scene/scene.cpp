@@ -1,0 +1,111 @@
+#include "scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/read.hpp"
+#include "scene/systems.hpp"
+
+namespace extremal {
+namespace {
+
+/// What the scene writes is added to the file's and replaces entries of the same name.
+template <class Entry>
+void overlay(std::vector<Entry>& entries, const std::vector<Entry>& changes) {
+  for (const Entry& change : changes) {
+    const auto old =
+        std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == change.name; });
+    if (old == entries.end())
+      entries.push_back(change);
+    else
+      *old = change;
+  }
+}
+
+SystemTable merge(SystemTable file, const SystemTable& scene) {
+  file.at = scene.at;
+  file.use = scene.use;
+  overlay(file.parameters, scene.parameters);
+  overlay(file.definitions, scene.definitions);
+  if (scene.lagrangian) file.lagrangian = scene.lagrangian;
+  if (scene.curvature) file.curvature = scene.curvature;
+  return file;
+}
+
+void check_system(const SystemTable& system) {
+  if (system.coordinates.empty()) throw SceneError(system.at, "[system] has no coordinates");
+  if (!system.lagrangian) throw SceneError(system.at, "[system] has no lagrangian");
+  if (system.curvature && system.curvature->value < 0)
+    throw SceneError(system.curvature->at, "curvature is a bound and cannot be negative");
+}
+
+/// What the duration allows and asks for.
+void check_duration(const Scene& scene) {
+  const BoundaryTable& boundary = scene.boundary;
+  const Location* closing = boundary.energy  ? &boundary.energy->at
+                            : boundary.where ? &boundary.where->at
+                                             : nullptr;
+  const char* name = boundary.energy ? "energy" : "where";
+  if (!boundary.free && closing)
+    throw SceneError(*closing, std::string("'") + name +
+                                   "' closes a free duration, but duration is fixed; write "
+                                   "duration = \"free\" or leave '" +
+                                   name + "' out");
+  if (!boundary.free && scene.guess.duration)
+    throw SceneError(scene.guess.duration->at,
+                     "a guessed duration is for duration = \"free\", but duration is fixed");
+  if (boundary.free && !closing)
+    throw SceneError(boundary.duration.at, "a free duration needs 'energy' or 'where' to close it");
+  if (boundary.free && !scene.guess.duration && !scene.guess.file)
+    throw SceneError(boundary.duration.at, "a free duration needs 'duration' in [guess], or a guess file");
+}
+
+void check_guess(const Scene& scene) {
+  const GuessTable& guess = scene.guess;
+  if (scene.boundary.periodic && guess.formulas.empty() && !guess.file && !guess.state)
+    throw SceneError(scene.boundary.at,
+                     "a periodic orbit needs a guess: formulas, a file or a state in [guess]");
+}
+
+void check_solve(const SolveTable& solve) {
+  if (solve.tolerance && !(solve.tolerance->value > 0 && solve.tolerance->value < 1))
+    throw SceneError(solve.tolerance->at,
+                     fmt::format("tolerance = {}; need more than 0 and less than 1", solve.tolerance->value));
+  if (solve.elements && !(solve.elements->value >= 1 && solve.elements->value <= 1e9))
+    throw SceneError(solve.elements->at,
+                     fmt::format("elements = {}; need 1 to 1000000000", solve.elements->value));
+}
+
+const toml::table* table(const Document& document, std::string_view name, bool needed) {
+  const toml::table* found = document.root[name].as_table();
+  if (!found && needed)
+    throw SceneError({document.at(document.root).source, 0, 0},
+                     "the table [" + std::string(name) + "] is missing");
+  return found;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& sets) {
+  Document document = parse_document(read_source(path));
+  for (const std::string& argument : sets) set_value(document, argument);
+  check_keys(document, document.root, "");
+  check_relations(document);
+
+  Scene scene;
+  scene.path = path;
+  scene.title = document.root["title"].value_or(std::string());
+  scene.system = read_system_table(document, *table(document, "system", true));
+  if (scene.system.use) scene.system = merge(read_system(*scene.system.use, path), scene.system);
+  scene.boundary = read_boundary_table(document, *table(document, "boundary", true));
+  if (const auto* guess = table(document, "guess", false)) scene.guess = read_guess_table(document, *guess);
+  if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);
+  check_system(scene.system);
+  check_duration(scene);
+  check_guess(scene);
+  check_solve(scene.solve);
+  return scene;
+}
+
+}  // namespace extremal

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scene/source.hpp"
+
+/// \file A scene as data: what is written, with its places, and nothing computed from it.
+
+namespace extremal {
+
+struct Number {
+  double value = 0;
+  Location at;
+};
+
+/// A number, or a formula for one.
+struct Quantity {
+  std::variant<double, std::string> value;
+  Location at;
+  bool formula() const { return std::holds_alternative<std::string>(value); }
+};
+
+/// name = value, or name = [values].
+struct Assignment {
+  std::string name;
+  Location name_at;
+  std::vector<Quantity> values;
+  bool list = false;
+  Location at;  ///< of the value
+};
+
+struct Definition {
+  std::string name;
+  Location name_at;
+  Text formula;
+};
+
+/// [system], merged with the system file that it uses.
+struct SystemTable {
+  Location at;
+  std::optional<Text> use;
+  std::vector<Text> coordinates;
+  std::vector<Assignment> parameters;  ///< numbers only
+  std::vector<Definition> definitions;
+  std::optional<Text> lagrangian;
+  std::optional<Number> curvature;
+};
+
+struct BoundaryTable {
+  Location at;
+  std::vector<Assignment> start, end, map;
+  bool periodic = false;
+  std::vector<Text> conditions;
+  Quantity duration;
+  bool free = false;  ///< duration = "free"
+  std::optional<Quantity> energy;
+  std::optional<Text> where;
+};
+
+/// [guess]: formulas, a file or a state; empty for the default guess.
+struct GuessTable {
+  Location at;
+  std::vector<Assignment> formulas;
+  std::optional<Text> file;
+  std::optional<std::vector<Assignment>> state;
+  std::optional<Quantity> duration;
+};
+
+struct SolveTable {
+  std::optional<Number> tolerance;
+  std::optional<Text> scheme;
+  std::optional<Number> elements;
+};
+
+struct Scene {
+  std::string path;
+  std::string title;
+  SystemTable system;
+  BoundaryTable boundary;
+  GuessTable guess;
+  SolveTable solve;
+};
+
+/// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).
+Scene read_scene(const std::string& path, const std::vector<std::string>& sets = {});
+
+}  // namespace extremal

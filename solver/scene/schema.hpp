@@ -1,0 +1,65 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// \file The keys of scenes and system files, as records: reading, checking and suggestions go by them.
+
+namespace extremal {
+
+/// What a value may be.
+enum class Kind {
+  text,    ///< a string
+  number,  ///< finite
+  integer,
+  boolean,
+  quantity,    ///< a number or a formula
+  texts,       ///< a list of strings
+  numbers,     ///< a number or a list of them
+  quantities,  ///< a quantity or a list of them
+  note,        ///< a string or a list of strings
+  table,       ///< with keys of its own in the schema
+};
+
+/// "a number or a formula", as a message says what was expected.
+const char* description(Kind kind);
+
+/// One key. `table` is "" for the top of a scene, "system file" for that of a system file; the key "*" stands
+/// for any name (a coordinate).
+struct KeyRecord {
+  std::string_view table, key;
+  Kind kind;
+  bool by_name = false;   ///< a table of such values, under names of the user's
+  bool available = true;  ///< in this version
+};
+
+/// The record of a key, or of "*", or null.
+const KeyRecord* find_key(std::string_view table, std::string_view key);
+
+/// The keys of a table, for suggestions.
+std::vector<std::string> keys_of(std::string_view table);
+
+/// Two keys that exclude each other, as "table.key", and why.
+struct Exclusion {
+  std::string_view a, b;
+  std::string_view why;
+};
+std::span<const Exclusion> exclusions();
+
+/// A key that makes no sense without another.
+struct Requirement {
+  std::string_view key, needed;
+  std::string_view why;
+};
+std::span<const Requirement> requirements();
+
+/// A way of solving, for solve.method.
+struct MethodRecord {
+  std::string_view name, help;
+  bool available = true;
+};
+std::span<const MethodRecord> method_records();
+
+}  // namespace extremal
