@@ -16,7 +16,7 @@ using Column = std::vector<double>;
 
 /// A trajectory at given times: a column for each coordinate, in the order of the names.
 struct Samples {
-  Column t;               ///< in increasing order
+  Column t;               ///< times in [0, T]
   std::vector<Column> q;  ///< coordinates
   std::vector<Column> v;  ///< velocities dq/dt
   std::vector<Column> p;  ///< canonical momenta ∂L/∂q'

@@ -1,0 +1,56 @@
+#include "report/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <ostream>
+#include <stdexcept>
+
+#include "report/file.hpp"
+
+namespace extremal {
+
+namespace {
+
+struct Keyed {
+  std::string key;
+  const Column* values;
+};
+
+std::vector<Keyed> keyed_columns(const Samples& samples, const std::vector<std::string>& names) {
+  std::vector<Keyed> columns{{"t", &samples.t}};
+  for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({names[a], &samples.q[a]});
+  for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({velocity_key(names[a]), &samples.v[a]});
+  for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({momentum_key(names[a]), &samples.p[a]});
+  return columns;
+}
+
+}  // namespace
+
+void write_csv(std::ostream& out, const Samples& samples, const std::vector<std::string>& names) {
+  check_shape(samples, names);
+  const std::vector<Keyed> columns = keyed_columns(samples, names);
+
+  fmt::memory_buffer line;
+  for (const Keyed& column : columns) fmt::format_to(std::back_inserter(line), "{},", column.key);
+  for (std::size_t row = 0;; ++row) {
+    line[line.size() - 1] = '\n';
+    out.write(line.data(), static_cast<std::streamsize>(line.size()));
+    if (row == samples.count()) return;
+    line.clear();
+    for (const Keyed& column : columns) {
+      const double value = (*column.values)[row];
+      if (!std::isfinite(value)) {
+        throw std::logic_error(fmt::format("column {} is {} in row {}", column.key, value, row + 1));
+      }
+      fmt::format_to(std::back_inserter(line), "{},", value);
+    }
+  }
+}
+
+void write_csv(const std::string& path, const Samples& samples, const std::vector<std::string>& names) {
+  write_file(path, [&](std::ostream& out) { write_csv(out, samples, names); });
+}
+
+}  // namespace extremal

@@ -1,0 +1,159 @@
+#include "report/json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+
+#include "report/file.hpp"
+
+namespace extremal {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Texts may hold any bytes; what is not UTF-8 is replaced.
+std::string dumped(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// An ordered object looks for the key at each insertion; with the keys known to differ this would only
+/// make large systems quadratic.
+void append(Json& object, std::string key, Json value) {
+  object.get_ref<Json::object_t&>().emplace_back(std::move(key), std::move(value));
+}
+
+[[noreturn]] void refuse(const std::string& field, double value) {
+  throw std::logic_error(fmt::format("the result has converged, but its {} is {}", field, value));
+}
+
+/// The fields of one result but for the samples.
+class Fields {
+ public:
+  explicit Fields(const Result& result) : result_(result), converged_(result.solution.converged()) {
+    texts();
+    numbers();
+    stability();
+    append(object_, "momentum_start", momentum("momentum_start", result.solution.momentum_start));
+    append(object_, "momentum_end", momentum("momentum_end", result.solution.momentum_end));
+    counts();
+  }
+
+  const Json& object() const { return object_; }
+
+ private:
+  void texts() {
+    append(object_, "status", name(result_.solution.status));
+    append(object_, "message", result_.solution.message);
+    append(object_, "strategy", result_.solution.strategy);
+    append(object_, "title", result_.title);
+  }
+
+  /// Without a trajectory there is nothing that these could belong to, and without convergence no extremal
+  /// whose error could be estimated.
+  void numbers() {
+    const Solution& solution = result_.solution;
+    const bool any = converged_ || solution.trajectory.elements() > 0;
+    const auto known = [](bool condition, double value) {
+      return condition ? std::optional<double>(value) : std::nullopt;
+    };
+    append_number("duration", known(any, solution.duration()));
+    append_number("action", known(any, solution.action));
+    append_number("energy", solution.energy);
+    append_number("energy_drift", solution.energy_drift);
+    append_number("error_estimate", known(converged_, solution.error_estimate));
+    append_number("residual", known(any, solution.residual));
+  }
+
+  void stability() {
+    const auto count = [](const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); };
+    append(object_, "morse_index", count(result_.solution.morse_index));
+    append(object_, "nullity", count(result_.solution.nullity));
+    append(object_, "minimizing", result_.solution.minimizing);
+  }
+
+  void counts() {
+    const Solution& solution = result_.solution;
+    append(object_, "elements", std::max(0, solution.trajectory.elements()));
+    append(object_, "degree", solution.trajectory.degree);
+    append(object_, "unknowns", solution.unknowns);
+    append(object_, "iterations", solution.iterations);
+    Json seconds = Json::object();
+    append(seconds, "read", number("seconds.read", result_.seconds_read));
+    append(seconds, "solve", number("seconds.solve", solution.seconds_solve));
+    append(seconds, "analyse", number("seconds.analyse", solution.seconds_analyse));
+    append(object_, "seconds", std::move(seconds));
+  }
+
+  Json momentum(const std::string& field, const std::vector<double>& values) const {
+    if (values.size() != result_.names.size()) {
+      if (!converged_) return nullptr;
+      throw std::invalid_argument(
+          fmt::format("{} has {} entries for {} coordinates", field, values.size(), result_.names.size()));
+    }
+    Json object = Json::object();
+    for (std::size_t a = 0; a < values.size(); ++a) {
+      append(object, result_.names[a], number(field + "." + result_.names[a], values[a]));
+    }
+    return object;
+  }
+
+  void append_number(const char* field, const std::optional<double>& value) {
+    append(object_, field, value ? number(field, *value) : Json(nullptr));
+  }
+
+  Json number(const std::string& field, double value) const {
+    if (std::isfinite(value)) return value;
+    if (converged_) refuse(field, value);
+    return nullptr;
+  }
+
+  const Result& result_;
+  bool converged_;
+  Json object_ = Json::object();
+};
+
+void write_column(std::ostream& out, const std::string& key, const Column& column) {
+  const auto bad = std::find_if_not(column.begin(), column.end(), [](double x) { return std::isfinite(x); });
+  if (bad != column.end()) refuse(fmt::format("samples.{}[{}]", key, bad - column.begin()), *bad);
+  out << "    " << dumped(key) << ": " << dumped(column);
+}
+
+/// Column by column: a tree of all the samples would cost several times their memory.
+void write_samples(std::ostream& out, const Samples& samples, const std::vector<std::string>& names) {
+  check_shape(samples, names);
+  out << ",\n  \"samples\": {\n";
+  write_column(out, "t", samples.t);
+  const auto write_columns = [&](const std::vector<Column>& columns, auto key) {
+    for (std::size_t a = 0; a < names.size(); ++a) {
+      out << ",\n";
+      write_column(out, key(names[a]), columns[a]);
+    }
+  };
+  write_columns(samples.q, [](const std::string& coordinate) { return coordinate; });
+  write_columns(samples.v, velocity_key);
+  write_columns(samples.p, momentum_key);
+  out << "\n  }";
+}
+
+}  // namespace
+
+void write_json(std::ostream& out, const Result& result) {
+  const Fields fields(result);
+  const char* separator = "{\n";
+  for (const auto& [key, value] : fields.object().items()) {
+    out << separator << "  " << dumped(key) << ": " << dumped(value);
+    separator = ",\n";
+  }
+  if (result.samples && result.solution.converged()) write_samples(out, *result.samples, result.names);
+  out << "\n}\n";
+}
+
+void write_json(const std::string& path, const Result& result) {
+  write_file(path, [&](std::ostream& out) { write_json(out, result); });
+}
+
+}  // namespace extremal
