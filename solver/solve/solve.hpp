@@ -13,10 +13,10 @@
 namespace extremal {
 
 struct SolveOptions {
-  double tolerance = 1e-9;        ///< of q(t), relative to the largest range of a coordinate
-  std::optional<Scheme> scheme;   ///< this scheme, N adapted; absent: chosen
-  int elements = 0;               ///< with scheme: exactly so many equal elements; excludes tolerance
-  int max_iterations = 200;       ///< Newton steps in all
+  double tolerance = 1e-9;       ///< of q(t), relative to the largest range of a coordinate
+  std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
+  int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
+  int max_iterations = 200;      ///< Newton steps in all
   std::function<void(const Iteration&)> progress;
 };
 

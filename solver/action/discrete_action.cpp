@@ -1,0 +1,255 @@
+#include "action/discrete_action.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "machine/simd.hpp"
+
+namespace extremal {
+
+void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements,
+                           bool border) {
+  lagrangian_ = &lagrangian;
+  tables_ = &tables;
+  kernels_ = &element_kernels();
+  border_ = border;
+  n_ = tables.coordinates();
+  elements_ = elements;
+  batches_ = (elements + lanes - 1) / lanes;
+  inner_ = tables.inner();
+  unknowns_ = tables.unknowns();
+  const std::size_t m = unknowns_;
+  sizes_ = {m * (m + 2) * lanes, m * lanes, static_cast<std::size_t>(tables.shape().points) * lanes};
+  q_.resize(n_ * sizes_.points);
+  v_.resize(tables.shape().velocity_free ? 0 : n_ * sizes_.points);
+  t_.resize(sizes_.points);
+  rows_.resize(lagrangian.rows(Order::hessian) * sizes_.points);
+  matrices_.resize(batches_ * sizes_.matrix);
+  inverses_.resize(batches_ * sizes_.vector);
+  gradients_.resize(batches_ * 3 * lanes);
+  work_.resize(2 * sizes_.vector + 4 * lanes);
+  nodes.chain.resize(std::max(elements - 1, 0), n_);
+  nodes.gradient.resize(static_cast<std::size_t>(elements + 1) * n_);
+  nodes.border.resize(border ? nodes.gradient.size() : 0);
+  for (auto* block : {&nodes.first, &nodes.last, &nodes.first_lower, &nodes.last_lower})
+    block->resize(static_cast<std::size_t>(n_) * n_);
+  raw_nodes_.resize(nodes.gradient.size());
+  start_gradient_.resize(n_);
+  end_gradient_.resize(n_);
+}
+
+ElementBatch DiscreteAction::batch(const Path& path, int b) {
+  return {.h = path.h(b),
+          .start = path.start(b),
+          .x = path.x(b),
+          .q = q_.data(),
+          .v = v_.data(),
+          .t = lagrangian_->structure().autonomous ? nullptr : t_.data(),
+          .rows = rows_.data()};
+}
+
+void DiscreteAction::play(const ElementBatch& batch, Order order) {
+  kernels_->expand(tables_->shape(), batch);
+  const int count = static_cast<int>(sizes_.points);
+  lagrangian_->evaluate({count, count, batch.q, batch.v, batch.t}, order, rows_.data(), scratch_);
+}
+
+const double* DiscreteAction::rows(const Path& path, int b, Order order) {
+  play(batch(path, b), order);
+  return rows_.data();
+}
+
+void DiscreteAction::clear_sums() {
+  action_ = slope_duration_ = residual_ = momentum_scale_ = 0;
+  std::fill(nodes.gradient.begin(), nodes.gradient.end(), 0.0);
+  std::fill(raw_nodes_.begin(), raw_nodes_.end(), 0.0);
+  nodes.border_gradient = 0;
+}
+
+/// Sums the values and the gradient of a batch as they are, before condensation.
+void DiscreteAction::gather(const Path& path, int b, const double* gradient, double) {
+  const double *action = gradients_.data() + b * 3 * lanes, *slope = action + lanes;
+  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  for (int u = 0; u < inner_; ++u)
+    for (int lane = 0; lane < lanes; ++lane)
+      residual_ = std::max(residual_, std::abs(gradient[u * lanes + lane]));
+  for (int k = first; k < last; ++k) {
+    const int lane = k - first;
+    action_ += action[lane];
+    if (border_) slope_duration_ += slope[lane] * (path.mesh()[k + 1] - path.mesh()[k]);
+    double* node = raw_nodes_.data() + static_cast<std::size_t>(k) * n_;
+    for (int a = 0; a < 2 * n_; ++a) {
+      const double g = gradient[(inner_ + a) * lanes + lane];
+      node[a] += g;
+      momentum_scale_ = std::max(momentum_scale_, std::abs(g));
+    }
+  }
+}
+
+void DiscreteAction::gather_gradient(int b) {
+  const double* gradient = matrix(b) + unknowns_ * sizes_.vector;
+  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  for (int k = first; k < last; ++k) {
+    double* node = nodes.gradient.data() + static_cast<std::size_t>(k) * n_;
+    for (int a = 0; a < 2 * n_; ++a) node[a] += gradient[(inner_ + a) * lanes + k - first];
+  }
+  if (!border_) return;
+  const double *row = gradient + sizes_.vector, *inverse = inverses_.data() + b * sizes_.vector;
+  for (int u = 0; u < inner_; ++u)
+    for (int k = first; k < last; ++k) {
+      const int at = u * lanes + k - first;
+      nodes.border_gradient -= gradient[at] * row[at] * inverse[at];
+    }
+}
+
+/// The Schur complements of a batch, to the blocks of the nodes they couple.
+void DiscreteAction::gather_schur(int b) {
+  const double* schur = matrix(b);
+  const int first = b * lanes, last = std::min(elements_, first + lanes), n = n_;
+  const auto entry = [&](int i, int j, int lane) {
+    return schur[(static_cast<std::size_t>(inner_ + i) * unknowns_ + inner_ + j) * lanes + lane];
+  };
+  const auto add_symmetric = [&](double* block, int offset, int lane) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j <= i; ++j) {
+        const double value = entry(offset + i, offset + j, lane);
+        block[i * n + j] += value;
+        if (i != j) block[j * n + i] += value;
+      }
+  };
+  for (int k = first; k < last; ++k) {
+    const int lane = k - first;
+    add_symmetric(k == 0 ? nodes.first.data() : nodes.chain.diagonal(k - 1), 0, lane);
+    add_symmetric(k == elements_ - 1 ? nodes.last.data() : nodes.chain.diagonal(k), n, lane);
+    double* lower = k == 0              ? nodes.first_lower.data()
+                    : k < elements_ - 1 ? nodes.chain.lower(k - 1)
+                                        : nodes.last_lower.data();
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) lower[i * n + j] = entry(n + i, j, lane);
+  }
+  if (!border_) return;
+  const double *row = schur + (unknowns_ + 1) * sizes_.vector,
+               *inverse = inverses_.data() + b * sizes_.vector;
+  const double* corner = gradients_.data() + (b * 3 + 2) * lanes;
+  for (int k = first; k < last; ++k) {
+    const int lane = k - first;
+    double* node = nodes.border.data() + static_cast<std::size_t>(k) * n;
+    for (int a = 0; a < 2 * n; ++a) node[a] += row[(inner_ + a) * lanes + lane];
+    nodes.corner += corner[lane];
+    for (int u = 0; u < inner_; ++u) {
+      const double y = row[u * lanes + lane];
+      nodes.corner -= y * y * inverse[u * lanes + lane];
+    }
+  }
+}
+
+void DiscreteAction::finish_sums(const Path&) {
+  for (int a = 0; a < n_; ++a) {
+    start_gradient_[a] = raw_nodes_[a];
+    end_gradient_[a] = raw_nodes_[static_cast<std::size_t>(elements_) * n_ + a];
+  }
+  for (std::size_t k = n_; k < static_cast<std::size_t>(elements_) * n_; ++k)
+    residual_ = std::max(residual_, std::abs(raw_nodes_[k]));
+  double sum = action_;
+  for (double g : raw_nodes_) sum += g;
+  finite_ = std::isfinite(sum) && std::isfinite(residual_) && std::isfinite(slope_duration_);
+  nodes.border_gradient += slope_duration_;
+}
+
+void DiscreteAction::evaluate_plain(const Path& path) {
+  clear_sums();
+  for (int b = 0; b < batches_; ++b) {
+    const ElementBatch elements = batch(path, b);
+    play(elements, Order::gradient);
+    double *sums = gradients_.data() + b * 3 * lanes, *gradient = work_.data();
+    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    gather(path, b, gradient, 0);
+  }
+  finish_sums(path);
+}
+
+void DiscreteAction::evaluate_gradient(const Path& path) {
+  clear_sums();
+  for (int b = 0; b < batches_; ++b) {
+    const ElementBatch elements = batch(path, b);
+    play(elements, Order::gradient);
+    double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
+    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    gather(path, b, gradient, 0);
+    kernels_->reduce(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient);
+    gather_gradient(b);
+  }
+  finish_sums(path);
+}
+
+void DiscreteAction::evaluate(const Path& path) {
+  clear_sums();
+  std::fill_n(nodes.chain.diagonal(0), static_cast<std::size_t>(nodes.chain.blocks()) * n_ * n_, 0.0);
+  for (auto* block : {&nodes.first, &nodes.last, &nodes.border}) std::fill(block->begin(), block->end(), 0.0);
+  nodes.corner = 0;
+  nodes.negative = 0;
+  nodes.pivot_ratio = 1;
+  for (int b = 0; b < batches_; ++b) {
+    const ElementBatch elements = batch(path, b);
+    play(elements, Order::hessian);
+    double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
+    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    gather(path, b, gradient, 0);
+    kernels_->hessian(tables_->shape(), elements, matrix(b));
+    if (border_) {
+      double *row = gradient + sizes_.vector, *corner = sums + 2 * lanes;
+      kernels_->border(tables_->shape(), elements, gradient, row, corner);
+      // d/dT = Σ (h_k/T) ∂/∂h.
+      for (int lane = 0; lane < lanes; ++lane) {
+        const double share = elements.h[lane] / path.duration();
+        corner[lane] *= share * share;
+        for (int u = 0; u < unknowns_; ++u) row[u * lanes + lane] *= share;
+      }
+    }
+    double *negative = work_.data() + 2 * sizes_.vector, *ratio = negative + lanes;
+    kernels_->condense(inner_, unknowns_, unknowns_ + 1 + border_, matrix(b),
+                       inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
+    for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {
+      nodes.negative += static_cast<int>(negative[lane]);
+      if (!(ratio[lane] >= nodes.pivot_ratio)) nodes.pivot_ratio = ratio[lane];
+    }
+    gather_gradient(b);
+    gather_schur(b);
+  }
+  finish_sums(path);
+}
+
+void DiscreteAction::expand_step(std::span<const double> node_step, double duration_step,
+                                 AlignedDoubles& step) const {
+  step.resize(batches_ * sizes_.vector);
+  alignas(64) double step_h[lanes];
+  std::fill_n(step_h, lanes, duration_step);
+  for (int b = 0; b < batches_; ++b) {
+    double *x = step.data() + b * sizes_.vector, *ends = x + static_cast<std::size_t>(inner_) * lanes;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const std::size_t k = std::min(b * lanes + lane, elements_ - 1);
+      for (int a = 0; a < 2 * n_; ++a) ends[a * lanes + lane] = node_step[k * n_ + a];
+    }
+    const double* gradient = matrix(b) + unknowns_ * sizes_.vector;
+    kernels_->expand_step(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient,
+                          border_ ? gradient + sizes_.vector : nullptr, step_h, x);
+  }
+}
+
+void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> hessian,
+                                     std::span<double> gradient) {
+  const int b = k / lanes, lane = k % lanes;
+  const ElementBatch elements = batch(path, b);
+  play(elements, Order::hessian);
+  AlignedDoubles matrix(sizes_.matrix), sums(3 * lanes);
+  kernels_->gradient(tables_->shape(), elements, sums.data(), matrix.data() + unknowns_ * sizes_.vector,
+                     nullptr);
+  kernels_->hessian(tables_->shape(), elements, matrix.data());
+  for (int i = 0; i < unknowns_; ++i) {
+    gradient[i] = matrix[(static_cast<std::size_t>(unknowns_) * unknowns_ + i) * lanes + lane];
+    for (int j = 0; j <= i; ++j)
+      hessian[i * unknowns_ + j] = matrix[(static_cast<std::size_t>(i) * unknowns_ + j) * lanes + lane];
+  }
+}
+
+}  // namespace extremal

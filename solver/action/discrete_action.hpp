@@ -1,0 +1,92 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "action/path.hpp"
+#include "linear/chain.hpp"
+#include "system/lagrangian.hpp"
+
+/// \file The discrete action S_h = Σ L_d of a path, its derivatives, and the equations that remain at the
+/// nodes between elements once the inner unknowns are eliminated.
+
+namespace extremal {
+
+/// What the ends of the elements see after condensation: with x the mesh nodes and T,
+///   δ²S = Σ_k (x_k, x_{k+1}) S_k (x_k, x_{k+1})ᵀ + 2 δT tᵀx + τ δT².
+struct NodeEquations {
+  Chain chain;                      ///< nodes 1 … N − 1
+  std::vector<double> first, last;  ///< n × n: second derivative in q(0), in q(T)
+  std::vector<double> first_lower;  ///< couples node 1 (row) with q(0) (column); for N = 1 q(T) with q(0)
+  std::vector<double> last_lower;   ///< couples q(T) (row) with node N − 1 (column); unused for N = 1
+  std::vector<double> gradient;     ///< (N + 1) × n, condensed
+  std::vector<double> border;       ///< (N + 1) × n: t
+  double border_gradient = 0;       ///< ∂S/∂T, condensed
+  double corner = 0;                ///< τ
+  int negative = 0;                 ///< negative pivots among the inner unknowns
+  double pivot_ratio = 1;           ///< least pivot against the entry it came from
+};
+
+/// Evaluates a path, batch by batch in one pass: points, tape, gradient, Hessian, condensation.
+/// Keeps factors of the last factored path, so that a gradient elsewhere can be reduced with them.
+class DiscreteAction {
+ public:
+  /// Binds to tables (which must outlive it) and N elements. `border`: T is an unknown.
+  void reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements, bool border);
+
+  /// S_h and its gradient; condensed with the factors there are into `nodes`.
+  void evaluate_gradient(const Path& path);
+  /// S_h, gradient, Hessian, condensed afresh.
+  void evaluate(const Path& path);
+  /// Value and gradient only, nothing condensed.
+  void evaluate_plain(const Path& path);
+
+  NodeEquations nodes;
+
+  double action() const { return action_; }
+  double slope_duration() const { return slope_duration_; }  ///< ∂S_h/∂T, not condensed
+  double residual() const { return residual_; }              ///< largest inner or nodal gradient component
+  double momentum_scale() const { return momentum_scale_; }  ///< largest end gradient of an element
+  bool finite() const { return finite_; }
+  std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
+  std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n
+
+  /// Inner steps from the steps of the nodes and of T, into `step` (laid out as Path::x).
+  void expand_step(std::span<const double> node_step, double duration_step, AlignedDoubles& step) const;
+
+  /// The Hessian of element k, m × m lower triangle row-major, and its gradient (m), local numbering of
+  /// element.hpp: for tests, large sparse systems and the spectrum.
+  void element_hessian(const Path& path, int k, std::span<double> hessian, std::span<double> gradient);
+
+  /// Rows of the remainder at the quadrature points of a batch, as Lagrangian::evaluate returns them.
+  const double* rows(const Path& path, int batch, Order order);
+
+ private:
+  struct Sizes {
+    std::size_t matrix, vector, points;
+  };
+  ElementBatch batch(const Path& path, int b);
+  void play(const ElementBatch& batch, Order order);
+  void gather(const Path& path, int b, const double* gradient, double slope_sum);
+  void gather_schur(int b);
+  void gather_gradient(int b);
+  void clear_sums();
+  void finish_sums(const Path& path);
+  double* matrix(int b) { return matrices_.data() + b * sizes_.matrix; }
+  const double* matrix(int b) const { return matrices_.data() + b * sizes_.matrix; }
+
+  const Lagrangian* lagrangian_ = nullptr;
+  const ElementTables* tables_ = nullptr;
+  const ElementKernels* kernels_ = nullptr;
+  int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
+  bool border_ = false, finite_ = false;
+  double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
+  Sizes sizes_{};
+  Scratch scratch_;
+  AlignedDoubles q_, v_, t_, rows_;                 // of one batch
+  AlignedDoubles matrices_, inverses_, gradients_;  // of every batch
+  AlignedDoubles work_, raw_;
+  std::vector<double> raw_nodes_, start_gradient_, end_gradient_;
+};
+
+}  // namespace extremal

@@ -1,0 +1,143 @@
+#include "action/path.hpp"
+
+#include <algorithm>
+
+#include "machine/simd.hpp"
+
+namespace extremal {
+
+void Path::reset(const ElementTables& tables, std::span<const double> mesh, double duration) {
+  n_ = tables.coordinates();
+  degree_ = tables.scheme().degree;
+  unknowns_ = tables.unknowns();
+  elements_ = static_cast<int>(mesh.size()) - 1;
+  batches_ = (elements_ + lanes - 1) / lanes;
+  mesh_.assign(mesh.begin(), mesh.end());
+  lobatto_.assign(tables.scheme().lobatto.begin(), tables.scheme().lobatto.end());
+  high_.assign(static_cast<std::size_t>(elements_ + 1) * n_, 0);
+  low_.assign(high_.size(), 0);
+  x_.assign(static_cast<std::size_t>(batches_) * unknowns_ * lanes, 0);
+  h_.resize(static_cast<std::size_t>(batches_) * lanes);
+  start_.resize(h_.size());
+  set_duration(duration);
+}
+
+void Path::set_duration(double duration) {
+  duration_ = duration;
+  for (int k = 0; k < batches_ * lanes; ++k) {
+    const int e = std::min(k, elements_ - 1);
+    h_[k] = (mesh_[e + 1] - mesh_[e]) * duration;
+    start_[k] = mesh_[e] * duration;
+  }
+}
+
+void Path::set_element(int k, const double* q) {
+  const double *first = q, *last = q + static_cast<std::size_t>(degree_) * n_;
+  for (int a = 0; a < n_; ++a) {
+    set_node(k, a, first[a]);
+    set_node(k + 1, a, last[a]);
+  }
+  double* x = this->x(k / lanes) + k % lanes;
+  for (int j = 1; j < degree_; ++j)
+    for (int a = 0; a < n_; ++a)
+      x[((j - 1) * n_ + a) * lanes] = q[j * n_ + a] - (first[a] + lobatto_[j] * (last[a] - first[a]));
+}
+
+void Path::set_node(int k, int a, double value) {
+  high_[static_cast<std::size_t>(k) * n_ + a] = value;
+  low_[static_cast<std::size_t>(k) * n_ + a] = 0;
+}
+
+void Path::add(std::span<const double> node_step, const AlignedDoubles& inner_step, double factor) {
+  for (std::size_t k = 0; k < high_.size(); ++k) {
+    // Two-sum of high and the correction: what rounding drops goes to low.
+    const double correction = low_[k] + factor * node_step[k];
+    const double sum = high_[k] + correction;
+    const double part = sum - high_[k];
+    low_[k] = (high_[k] - (sum - part)) + (correction - part);
+    high_[k] = sum;
+  }
+  const std::size_t inner = static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes;
+  for (int b = 0; b < batches_; ++b) {
+    double* to = x(b);
+    const double* from = inner_step.data() + static_cast<std::size_t>(b) * unknowns_ * lanes;
+    for (std::size_t k = 0; k < inner; ++k) to[k] += factor * from[k];
+  }
+}
+
+void Path::load_ends() {
+  for (int k = 0; k < batches_ * lanes; ++k) {
+    const std::size_t e = static_cast<std::size_t>(std::min(k, elements_ - 1)) * n_;
+    double* to = x(k / lanes) + static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes + k % lanes;
+    for (int a = 0; a < n_; ++a) {
+      to[a * lanes] = high_[e + a];
+      to[(n_ + a) * lanes] = (high_[e + n_ + a] - high_[e + a]) + (low_[e + n_ + a] - low_[e + a]);
+    }
+  }
+  // Idle lanes repeat the last element, so that nothing they compute is exceptional.
+  for (int k = elements_; k < batches_ * lanes; ++k) {
+    double* last = x(batches_ - 1);
+    const int from = (elements_ - 1) % lanes, to = k % lanes;
+    for (int u = 0; u < unknowns_; ++u) last[u * lanes + to] = last[u * lanes + from];
+  }
+}
+
+void Path::interpolate_from(const Path& other, const ElementTables& tables, std::span<const double> matrix) {
+  reset(tables, other.mesh(), other.duration());
+  high_ = other.high_;
+  low_ = other.low_;
+  const int old_inner = other.degree_ - 1, old_count = other.degree_ + 1;
+  for (int b = 0; b < batches_; ++b)
+    for (int j = 1; j < degree_; ++j) {
+      const double* row = matrix.data() + static_cast<std::size_t>(j) * old_count;
+      for (int a = 0; a < n_; ++a) {
+        double* to = x(b) + static_cast<std::size_t>((j - 1) * n_ + a) * lanes;
+        for (int i = 0; i < old_inner; ++i) {
+          const double* from = other.x(b) + static_cast<std::size_t>(i * n_ + a) * lanes;
+          for (int lane = 0; lane < lanes; ++lane) to[lane] += row[i + 1] * from[lane];
+        }
+      }
+    }
+  load_ends();
+}
+
+void Path::split_from(const Path& other, const ElementTables& tables, std::span<const double> halves) {
+  std::vector<double> mesh;
+  for (int k = 0; k < other.elements_; ++k) {
+    mesh.push_back(other.mesh_[k]);
+    mesh.push_back(0.5 * (other.mesh_[k] + other.mesh_[k + 1]));
+  }
+  mesh.push_back(1);
+  reset(tables, mesh, other.duration_);
+  const int count = degree_ + 1;
+  std::vector<double> whole(static_cast<std::size_t>(count) * n_), part(whole.size());
+  for (int k = 0; k < elements_; ++k) {
+    other.element(k / 2, whole.data());
+    std::fill(part.begin(), part.end(), 0.0);
+    for (int j = 0; j < count; ++j)
+      for (int i = 0; i < count; ++i)
+        for (int a = 0; a < n_; ++a)
+          part[j * n_ + a] += halves[((k % 2) * degree_ + j) * count + i] * whole[i * n_ + a];
+    set_element(k, part.data());
+  }
+  for (int k = 0; k <= other.elements_; ++k)
+    for (int a = 0; a < n_; ++a) {
+      high_[2 * k * n_ + a] = other.high_[k * n_ + a];
+      low_[2 * k * n_ + a] = other.low_[k * n_ + a];
+    }
+  load_ends();
+}
+
+void Path::element(int k, double* q) const {
+  const double* x = this->x(k / lanes) + k % lanes;
+  const double *first = node(k), *last = node(k + 1);
+  const std::size_t delta = static_cast<std::size_t>(unknowns_ - n_) * lanes;
+  for (int a = 0; a < n_; ++a) {
+    q[a] = first[a];
+    q[degree_ * n_ + a] = last[a];
+    for (int j = 1; j < degree_; ++j)
+      q[j * n_ + a] = first[a] + (lobatto_[j] * x[delta + a * lanes] + x[((j - 1) * n_ + a) * lanes]);
+  }
+}
+
+}  // namespace extremal

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "action/tables.hpp"
+#include "machine/aligned.hpp"
+
+/// \file The unknown: a piecewise polynomial path on a mesh, laid out for the kernels.
+
+namespace extremal {
+
+/// Values at the nodes between elements are kept as unevaluated sums high + low, so that the difference of
+/// neighbours, and with it the momentum, is exact to roundoff of the difference. Inner unknowns are the
+/// deviations from the chord, eight elements side by side; idle lanes of the last batch copy the last
+/// element.
+class Path {
+ public:
+  /// N = mesh.size() − 1 elements over `mesh` (t/T, 0 to 1), all zero. Keeps memory.
+  void reset(const ElementTables& tables, std::span<const double> mesh, double duration);
+
+  int coordinates() const { return n_; }
+  int degree() const { return degree_; }
+  int elements() const { return elements_; }
+  int batches() const { return batches_; }
+  double duration() const { return duration_; }
+  std::span<const double> mesh() const { return mesh_; }
+
+  /// Sets the values at the s + 1 Lobatto nodes of element k from q[(j)*n + a].
+  void set_element(int k, const double* q);
+  void set_duration(double duration);
+
+  /// q at mesh node k (n entries), rounded to double.
+  const double* node(int k) const { return high_.data() + static_cast<std::size_t>(k) * n_; }
+  void set_node(int k, int a, double value);
+
+  /// x += factor·step, with nodes' steps (N + 1) × n and inner steps in lanes as x() is laid out.
+  void add(std::span<const double> node_step, const AlignedDoubles& inner_step, double factor);
+
+  /// Copies the nodes into the lanes (q_a and Δ); after any change of them.
+  void load_ends();
+
+  /// Lanes: x(batch)[(J*n + a)*lanes + lane], J inner, then q_a, then Δ.
+  const double* x(int batch) const {
+    return x_.data() + static_cast<std::size_t>(batch) * unknowns_ * lanes_of;
+  }
+  double* x(int batch) { return x_.data() + static_cast<std::size_t>(batch) * unknowns_ * lanes_of; }
+  const double* h(int batch) const { return h_.data() + static_cast<std::size_t>(batch) * lanes_of; }
+  const double* start(int batch) const { return start_.data() + static_cast<std::size_t>(batch) * lanes_of; }
+
+  /// The same path in elements of another degree (exact where it is raised), same mesh.
+  /// `matrix` is interpolation_matrix(degree(), Lobatto nodes of the new degree).
+  void interpolate_from(const Path& other, const ElementTables& tables, std::span<const double> matrix);
+
+  /// The same path on a mesh with every element halved. `halves` takes Lobatto(s) nodal values to the 2s + 1
+  /// Lobatto nodes of the two halves.
+  void split_from(const Path& other, const ElementTables& tables, std::span<const double> halves);
+
+  /// q at the s + 1 Lobatto nodes of element k.
+  void element(int k, double* q) const;
+
+ private:
+  static constexpr int lanes_of = 8;
+  int n_ = 0, degree_ = 0, elements_ = 0, batches_ = 0, unknowns_ = 0;
+  double duration_ = 0;
+  std::vector<double> mesh_, high_, low_, lobatto_;
+  AlignedDoubles x_, h_, start_;
+};
+
+}  // namespace extremal

@@ -1,0 +1,152 @@
+#include "action/tables.hpp"
+
+#include <cmath>
+
+namespace extremal {
+
+namespace {
+
+/// Basis (φ_1 … φ_{s−1}, 1 − τ, τ) or its derivative, points × (s + 1), from the Lagrange basis at all nodes.
+std::vector<double> element_basis(const std::vector<double>& lagrange, const std::vector<double>& points,
+                                  int degree, bool derivative) {
+  const int count = degree + 1;
+  std::vector<double> basis(points.size() * count);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double* row = basis.data() + i * count;
+    for (int j = 1; j < degree; ++j) row[j - 1] = lagrange[i * count + j];
+    row[degree - 1] = derivative ? -1 : 1 - points[i];
+    row[degree] = derivative ? 1 : points[i];
+  }
+  return basis;
+}
+
+/// Σ b_i f_J(c_i) g_K(c_i) for the pairs (J, K): all, or K <= J.
+PointTable products(const std::vector<double>& f, const std::vector<double>& g,
+                    const std::vector<double>& weight, int count, bool all) {
+  PointTable table;
+  for (int j = 0; j < count; ++j)
+    for (int k = 0; k < (all ? count : j + 1); ++k) {
+      for (std::size_t i = 0; i < weight.size(); ++i)
+        table.add(static_cast<int>(i), weight[i] * f[i * count + j] * g[i * count + k]);
+      table.close();
+    }
+  return table;
+}
+
+PointTable singles(const std::vector<double>& f, const std::vector<double>& weight, int count) {
+  PointTable table;
+  for (int j = 0; j < count; ++j) {
+    for (std::size_t i = 0; i < weight.size(); ++i)
+      table.add(static_cast<int>(i), weight[i] * f[i * count + j]);
+    table.close();
+  }
+  return table;
+}
+
+/// Σ b_i f_J g_K, full; `exact_zero` where ∫ φ_j' = 0 makes the entry vanish.
+std::vector<double> dense(const std::vector<double>& f, const std::vector<double>& g,
+                          const std::vector<double>& weight, int count) {
+  std::vector<double> matrix(static_cast<std::size_t>(count) * count);
+  for (int j = 0; j < count; ++j)
+    for (int k = 0; k < count; ++k) {
+      long double sum = 0;
+      for (std::size_t i = 0; i < weight.size(); ++i)
+        sum += static_cast<long double>(weight[i]) * f[i * count + j] * g[i * count + k];
+      matrix[j * count + k] = static_cast<double>(sum);
+    }
+  return matrix;
+}
+
+/// Stiffness by a rule that is exact for it, so that it is that of every scheme but those that
+/// integrate the kinetic energy themselves (all do, to roundoff): inner and end functions decouple.
+std::vector<double> stiffness_of(int degree) {
+  const Rule rule = gauss_rule(degree);
+  const Basis basis = lobatto_basis(degree, rule.nodes);
+  const int count = degree + 1;
+  const std::vector<double> slope = element_basis(basis.derivative, rule.nodes, degree, true);
+  std::vector<double> k = dense(slope, slope, rule.weights, count);
+  for (int j = 0; j < degree - 1; ++j)
+    for (int e : {degree - 1, degree}) k[j * count + e] = k[e * count + j] = 0;
+  k[(degree - 1) * count + degree - 1] = k[degree * count + degree] = 1;
+  k[(degree - 1) * count + degree] = k[degree * count + degree - 1] = -1;
+  return k;
+}
+
+}  // namespace
+
+void PointTable::add(int at_point, double value) {
+  if (value == 0) return;
+  point.push_back(at_point);
+  coefficient.push_back(value);
+}
+
+SchemeTables::SchemeTables(const Scheme& given, int exact_points) : scheme(given), degree(given.degree) {
+  const Rule rule = rule_of(scheme, exact_points);
+  functions = degree + 1;
+  points = static_cast<int>(rule.nodes.size());
+  node = rule.nodes;
+  weight = rule.weights;
+  lobatto = lobatto_barycentric(degree).nodes;
+  nodal = node == lobatto;
+  const Basis basis = lobatto_basis(degree, node);
+  value = element_basis(basis.value, node, degree, false);
+  slope = element_basis(basis.derivative, node, degree, true);
+  stiffness = stiffness_of(degree);
+  gyration = dense(slope, value, weight, functions);
+  value_sum = singles(value, weight, functions);
+  slope_sum = singles(slope, weight, functions);
+  value_value = products(value, value, weight, functions, false);
+  slope_value = products(slope, value, weight, functions, true);
+  slope_slope = products(slope, slope, weight, functions, false);
+
+  // Nodal values of the basis are (0, …, 1, …, 0) for φ_j, and the chord's for 1 − τ and τ.
+  const std::vector<double> nodal_legendre = legendre_matrix(degree);
+  legendre.assign(static_cast<std::size_t>(functions) * functions, 0);
+  for (int k = 0; k < functions; ++k) {
+    for (int j = 1; j < degree; ++j) legendre[k * functions + j - 1] = nodal_legendre[k * functions + j];
+    if (k < 2) {
+      legendre[k * functions + degree - 1] = k == 0 ? 0.5 : -0.5;
+      legendre[k * functions + degree] = 0.5;
+    }
+  }
+}
+
+void ElementTables::bind(const SchemeTables& scheme, const Lagrangian& lagrangian) {
+  const Structure& s = lagrangian.structure();
+  scheme_ = &scheme;
+  mass_.clear();
+  gyroscopic_.clear();
+  hessian_.clear();
+  for (const Triplet& e : s.mass) mass_.push_back({e.row, e.column, e.value});
+  for (const Triplet& e : s.gyroscopic) gyroscopic_.push_back({e.row, e.column, e.value});
+  for (const HessianEntry& e : s.hessian) hessian_.push_back({e.row, e.column, 0});
+  linear_ = s.linear;
+  shape_ = {.n = s.coordinates,
+            .functions = scheme.functions,
+            .points = scheme.points,
+            .node = scheme.node.data(),
+            .weight = scheme.weight.data(),
+            .value = scheme.value.data(),
+            .slope = scheme.slope.data(),
+            .stiffness = scheme.stiffness.data(),
+            .gyration = scheme.gyration.data(),
+            .value_sum = scheme.value_sum.view(),
+            .slope_sum = scheme.slope_sum.view(),
+            .value_value = scheme.value_value.view(),
+            .slope_value = scheme.slope_value.view(),
+            .slope_slope = scheme.slope_slope.view(),
+            .nodal = scheme.nodal,
+            .mass_count = static_cast<int>(mass_.size()),
+            .gyroscopic_count = static_cast<int>(gyroscopic_.size()),
+            .linear_count = static_cast<int>(linear_.size()),
+            .mass = mass_.data(),
+            .gyroscopic = gyroscopic_.data(),
+            .linear = linear_.data(),
+            .velocity_free = s.velocity_free,
+            .gradient_count = static_cast<int>(s.gradient.size()),
+            .hessian_count = static_cast<int>(s.hessian.size()),
+            .gradient = s.gradient.data(),
+            .hessian = hessian_.data()};
+}
+
+}  // namespace extremal

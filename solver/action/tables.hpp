@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "action/element.hpp"
+#include "action/rule.hpp"
+#include "action/scheme.hpp"
+#include "system/lagrangian.hpp"
+
+/// \file A scheme as numbers: basis functions at the quadrature points, their products summed with
+/// the weights, and the matrices that read a polynomial's size from its nodes.
+
+namespace extremal {
+
+/// Owner of a PointSums table.
+struct PointTable {
+  std::vector<int> start{0}, point;
+  std::vector<double> coefficient;
+  void add(int at_point, double value);
+  void close() { start.push_back(static_cast<int>(point.size())); }
+  PointSums view() const { return {start.data(), point.data(), coefficient.data()}; }
+};
+
+/// Of one scheme with `points` quadrature points; independent of the system.
+struct SchemeTables {
+  Scheme scheme;
+  int degree = 0, functions = 0, points = 0;
+  bool nodal = false;
+  std::vector<double> node, weight;  ///< of the quadrature
+  std::vector<double> lobatto;       ///< s + 1 nodes of the element
+  std::vector<double> value, slope;  ///< points × functions, basis as in element.hpp
+  std::vector<double> stiffness, gyration;
+  PointTable value_sum, slope_sum, value_value, slope_value, slope_slope;
+  std::vector<double> legendre;  ///< functions × functions: Legendre coefficients from (d, 1 − τ, τ)
+
+  /// `exact_points` counts only where scheme.quadrature is `exact`.
+  explicit SchemeTables(const Scheme& scheme, int exact_points = 0);
+};
+
+/// Tables bound to a Lagrangian: what the kernels take.
+class ElementTables {
+ public:
+  ElementTables() = default;
+  /// Both must outlive the tables. Keeps memory.
+  void bind(const SchemeTables& scheme, const Lagrangian& lagrangian);
+  const ElementShape& shape() const { return shape_; }
+  const SchemeTables& scheme() const { return *scheme_; }
+  int coordinates() const { return shape_.n; }
+  int inner() const { return (shape_.functions - 2) * shape_.n; }
+  int unknowns() const { return shape_.functions * shape_.n; }
+
+ private:
+  const SchemeTables* scheme_ = nullptr;
+  std::vector<EntryView> mass_, gyroscopic_, hessian_;
+  std::vector<double> linear_;
+  ElementShape shape_{};
+};
+
+}  // namespace extremal

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "solve/iteration.hpp"
+#include "solve/levels.hpp"
+#include "solve/resolution.hpp"
+#include "solve/solve.hpp"
+
+/// \file Mesh and degree chosen for a tolerance, while Newton converges.
+
+namespace extremal {
+
+/// Memory that solves share.
+struct Workspace {
+  Levels levels;
+  NewtonIteration iteration;
+  Path path, other;
+  Resolution resolution;
+};
+
+/// Where a solve has got to: the path and tables in the workspace, and what is known of its error.
+struct Outcome {
+  Status status = Status::not_converged;
+  std::string message;
+  std::string strategy;
+  double error = 0;      ///< of q, absolute
+  double tolerance = 0;  ///< absolute
+  int iterations = 0;
+  const ElementTables* tables = nullptr;
+};
+
+/// Coarse elements first: Newton on them until the path is known to a few digits, which tells the degree
+/// that the tolerance needs; then elements of that degree, started a few digits off. Where no degree
+/// suffices, or Newton fails, elements are halved.
+class AdaptiveSolve {
+ public:
+  AdaptiveSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace);
+  Outcome run();
+
+ private:
+  enum class Attempt { converged, refine, failed };
+  int first_elements();
+  bool start(int elements, int degree);
+  Attempt attempt();
+  bool approach(double goal);
+  Attempt finish();
+  int needed_degree() const;
+  bool meets(const Resolution::Error& error, double safety) const;
+  void raise(int degree);
+  void halve();
+  void report_step();
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  Workspace& w_;
+  Outcome outcome_;
+  std::vector<double> ends_;
+  Scales scales_;
+  const ElementTables* tables_ = nullptr;
+};
+
+}  // namespace extremal

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "action/discrete_action.hpp"
+#include "action/path.hpp"
+#include "problem/problem.hpp"
+#include "solution/solution.hpp"
+#include "solve/node_system.hpp"
+
+/// \file Newton's method for δS_h = 0 on one discretisation: full steps damped by natural monotonicity,
+/// and chord steps that reuse a factorisation.
+
+namespace extremal {
+
+/// What ended a run of steps.
+enum class StepResult {
+  ok,
+  singular,    ///< the second variation is singular to working precision
+  not_finite,  ///< the action, or a step, is not finite
+  stalled,     ///< damping became too strong
+};
+
+/// Works on a path in place. Norms of steps are relative: largest change of q by `scale`, or of T by T.
+class NewtonIteration {
+ public:
+  /// Binds to a problem and one discretisation; memory is kept.
+  void reset(const Problem& problem, const ElementTables& tables, int elements);
+  void set_scale(double scale) { scale_ = scale; }
+
+  /// Assembles at `path`, factors and takes a damped step; then, where the simplified step that tested it
+  /// is much smaller, takes that as well. `norm` becomes the size of the last correction, `contraction` its
+  /// ratio to the one before.
+  StepResult full_step(Path& path);
+
+  /// One more correction with the factors there are.
+  StepResult chord_step(Path& path);
+
+  double norm() const { return norm_; }
+  double contraction() const { return contraction_; }
+  double damping() const { return damping_; }
+  int count() const { return count_; }
+
+  DiscreteAction& action() { return action_; }
+  NodeSystem& system() { return system_; }
+  /// The equation that closes the duration, at the path's ends; null where it is fixed.
+  const ClosingEquation* closing(const Path& path);
+  /// The last correction of the mesh nodes, (N + 1) × n.
+  std::span<const double> node_step() const { return system_.step(); }
+
+ private:
+  double solve_for_step(const Path& path);
+  void apply(Path& path, double factor, bool keep);
+
+  const Problem* problem_ = nullptr;
+  DiscreteAction action_;
+  NodeSystem system_;
+  ClosingEquation closing_;
+  AlignedDoubles inner_step_;
+  Path saved_;
+  double scale_ = 1, norm_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
+  int count_ = 0;
+};
+
+}  // namespace extremal

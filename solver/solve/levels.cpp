@@ -1,0 +1,38 @@
+#include "solve/levels.hpp"
+
+namespace extremal {
+
+void Levels::bind(const Lagrangian& lagrangian) {
+  lagrangian_ = &lagrangian;
+  for (auto& level : levels_)
+    if (level) level->tables.bind(level->scheme, lagrangian);
+}
+
+const ElementTables& Levels::at(int degree) {
+  auto& level = levels_[degree];
+  if (!level) {
+    level = std::make_unique<Level>(degree);
+    level->tables.bind(level->scheme, *lagrangian_);
+  }
+  return level->tables;
+}
+
+const std::vector<double>& Levels::raise(int from, int to) {
+  std::vector<double>& matrix = raise_[from * (max_degree + 1) + to];
+  if (matrix.empty()) matrix = interpolation_matrix(from, lobatto_barycentric(to).nodes);
+  return matrix;
+}
+
+const std::vector<double>& Levels::halve(int degree) {
+  std::vector<double>& matrix = halve_[degree];
+  if (matrix.empty()) {
+    const std::vector<double>& nodes = lobatto_barycentric(degree).nodes;
+    std::vector<double> points;
+    for (int j = 0; j < degree; ++j) points.push_back(0.5 * nodes[j]);
+    for (int j = 0; j <= degree; ++j) points.push_back(0.5 + 0.5 * nodes[j]);
+    matrix = interpolation_matrix(degree, points);
+  }
+  return matrix;
+}
+
+}  // namespace extremal

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "action/tables.hpp"
+
+/// \file Elements of rising degree for one Lagrangian, and the matrices between them; kept between solves.
+
+namespace extremal {
+
+class Levels {
+ public:
+  /// Binds every degree to another Lagrangian.
+  void bind(const Lagrangian& lagrangian);
+
+  /// lobatto(degree), made when first asked for.
+  const ElementTables& at(int degree);
+
+  /// From Lobatto(from) nodal values to the Lobatto(to) nodes.
+  const std::vector<double>& raise(int from, int to);
+
+  /// From Lobatto(degree) nodal values to the 2·degree + 1 nodes of the two halves.
+  const std::vector<double>& halve(int degree);
+
+ private:
+  struct Level {
+    SchemeTables scheme;
+    ElementTables tables;
+    explicit Level(int degree) : scheme(lobatto(degree)) {}
+  };
+  const Lagrangian* lagrangian_ = nullptr;
+  std::array<std::unique_ptr<Level>, max_degree + 1> levels_;
+  std::array<std::vector<double>, (max_degree + 1) * (max_degree + 1)> raise_;
+  std::array<std::vector<double>, max_degree + 1> halve_;
+};
+
+}  // namespace extremal

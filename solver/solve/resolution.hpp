@@ -1,0 +1,36 @@
+#pragma once
+
+#include "action/path.hpp"
+
+/// \file How well a path's elements resolve it, read off their Legendre coefficients.
+
+namespace extremal {
+
+/// Sizes of a path: largest range of a coordinate and of a velocity.
+struct Scales {
+  double q = 0, v = 0;
+};
+Scales scales(const Path& path, const ElementTables& tables);
+
+/// Coefficients of P_k fall like ρ^−k where q is analytic about an element. The sizes of the last two and of
+/// the two before give each element's rate; the error of q is the first coefficient left out, that
+/// of q' its derivative at the end of the element, k(k + 1)/h.
+class Resolution {
+ public:
+  void measure(const Path& path, const ElementTables& tables);
+
+  struct Error {
+    double q = 0, v = 0;
+  };
+  /// Expected truncation error with elements of `degree`, worst over elements and coordinates.
+  Error at(int degree) const;
+
+ private:
+  struct Tail {
+    double size, rate, h;  ///< of the last two coefficients; fall over two degrees; element length
+  };
+  int degree_ = 0;
+  std::vector<Tail> tails_;
+};
+
+}  // namespace extremal
