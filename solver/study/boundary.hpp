@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "problem/problem.hpp"
+#include "scene/scene.hpp"
+#include "system/formula.hpp"
+
+/// \file [boundary] as a relation between the ends and a duration.
+
+namespace extremal {
+
+/// The relation, and where in the scene each of its rows is written.
+struct PlacedRelation {
+  BoundaryRelation relation;
+  std::vector<Location> rows;
+};
+
+/// q(T) = R q(0) + c: one affine form of q(0) for each coordinate.
+using Closure = std::vector<AffineForm>;
+
+/// The map of a periodic orbit; what it leaves out is unchanged.
+Closure read_closure(const BoundaryTable& boundary, const System& system);
+
+/// Fixed ends, conditions, or the closure of a periodic orbit. Throws SceneError.
+PlacedRelation read_relation(const BoundaryTable& boundary, const System& system);
+
+/// Without the guess of a free duration: its value is then 0.
+Duration read_duration(const BoundaryTable& boundary, const System& system);
+
+}  // namespace extremal

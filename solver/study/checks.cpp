@@ -1,0 +1,187 @@
+#include "study/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "machine/simd.hpp"
+#include "study/nearby.hpp"
+
+namespace extremal {
+namespace {
+
+constexpr int tries = 64;
+
+/// The smallest eigenvalue over the largest, in modulus, of the mass matrix brought to unit rows; `weak` is
+/// the coordinate that its eigenvector has most of.
+double regularity(Eigen::MatrixXd mass, int& weak) {
+  for (int pass = 0; pass < 4; ++pass) {
+    Eigen::VectorXd row = mass.cwiseAbs().rowwise().maxCoeff();
+    for (double& r : row) r = r > 0 ? 1 / std::sqrt(r) : 1;
+    mass = row.asDiagonal() * mass * row.asDiagonal();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(mass);
+  const Eigen::VectorXd size = eigen.eigenvalues().cwiseAbs();
+  Eigen::Index smallest;
+  const double least = size.minCoeff(&smallest);
+  eigen.eigenvectors().col(smallest).cwiseAbs().maxCoeff(&weak);
+  return size.maxCoeff() > 0 ? least / size.maxCoeff() : 0;
+}
+
+/// A coordinate without any second derivative by its velocity, or -1.
+int massless(const Structure& structure) {
+  const int n = structure.coordinates;
+  std::vector<char> has(n, 0);
+  for (const Triplet& m : structure.mass)
+    if (m.value != 0) has[m.row] = has[m.column] = 1;
+  for (const HessianEntry& h : structure.hessian)
+    if (h.row >= n && h.column >= n) has[h.row - n] = has[h.column - n] = 1;
+  const auto found = std::find(has.begin(), has.end(), 0);
+  return found == has.end() ? -1 : static_cast<int>(found - has.begin());
+}
+
+[[noreturn]] void refuse_irregular(const Problem& problem, int coordinate, const Location& at) {
+  throw SceneError(
+      at, fmt::format("the Lagrangian is not regular: its second derivative by the velocities is singular, "
+                      "so {}' does not follow from the momenta",
+                      problem.names[coordinate]));
+}
+
+std::string point_text(const Problem& problem, const double* q) {
+  std::string text;
+  const int shown = std::min(problem.coordinates(), 6);
+  for (int a = 0; a < shown; ++a) text += fmt::format("{}{} = {:.6g}", a ? ", " : "", problem.names[a], q[a]);
+  return text + (shown < problem.coordinates() ? ", …" : "");
+}
+
+bool wholly_fixed(const EndMap& ends, bool at_end) {
+  const std::size_t n = ends.fixed.size() / 2;
+  const auto begin = ends.fixed.begin() + (at_end ? n : 0);
+  return std::all_of(begin, begin + n, [](char fixed) { return fixed; });
+}
+
+/// Samples of the guess in batches, as structure of arrays, and the value of L's remainder there.
+class GuessValues {
+ public:
+  explicit GuessValues(const Problem& problem) : problem_(problem), n_(problem.coordinates()) {
+    stride_ = 8 * lanes;
+    rows_ = inputs_.reserve(std::size_t(2 * n_ + 2) * stride_);
+  }
+
+  /// The first sample from `first` on where L is not finite, or -1.
+  int first_not_finite(int first, int count) {
+    for (int begin = first; begin < first + count; begin += stride_) {
+      const int used = std::min<int>(stride_, first + count - begin);
+      for (int i = 0; i < stride_; ++i) load(begin + std::min(i, used - 1), i);
+      double* value = rows_ + (2 * n_ + 1) * stride_;
+      const Points points{static_cast<int>(stride_), stride_, rows_, rows_ + n_ * stride_,
+                          rows_ + 2 * n_ * stride_};
+      problem_.lagrangian->evaluate(points, Order::value, value, scratch_);
+      for (int i = 0; i < used; ++i)
+        if (!std::isfinite(value[i])) return begin + i;
+    }
+    return -1;
+  }
+
+ private:
+  /// Sample k into lane i, with the velocity of the chord through its neighbours.
+  void load(int k, int i) {
+    const Guess& guess = problem_.guess;
+    const int last = static_cast<int>(guess.tau.size()) - 1;
+    const int before = std::max(k - 1, 0), after = std::min(k + 1, last);
+    const double span = (guess.tau[after] - guess.tau[before]) * problem_.duration.value;
+    for (int a = 0; a < n_; ++a) {
+      rows_[a * stride_ + i] = guess.q[std::size_t(k) * n_ + a];
+      rows_[(n_ + a) * stride_ + i] =
+          (guess.q[std::size_t(after) * n_ + a] - guess.q[std::size_t(before) * n_ + a]) / span;
+    }
+    rows_[2 * n_ * stride_ + i] = guess.tau[k] * problem_.duration.value;
+  }
+
+  const Problem& problem_;
+  int n_;
+  std::ptrdiff_t stride_;
+  Scratch inputs_, scratch_;
+  double* rows_;
+};
+
+/// R x + shift·c.
+std::vector<double> image(const Closure& closure, const std::vector<double>& x, double shift) {
+  std::vector<double> y;
+  for (const AffineForm& form : closure) {
+    y.push_back(shift * form.constant);
+    for (const Triplet& r : form.coefficients) y.back() += r.value * x[r.column];
+  }
+  return y;
+}
+
+}  // namespace
+
+void check_guess_finite(const Problem& problem, const Location& at) {
+  const Guess& guess = problem.guess;
+  if (!guess.given()) return;
+  const int first = wholly_fixed(problem.ends, false),
+            after = static_cast<int>(guess.tau.size()) - wholly_fixed(problem.ends, true);
+  const int k = GuessValues(problem).first_not_finite(first, after - first);
+  if (k >= 0)
+    throw SceneError(
+        at,
+        fmt::format("L is not finite on the guess at t = {:.6g}: {}", guess.tau[k] * problem.duration.value,
+                    point_text(problem, guess.q.data() + std::size_t(k) * problem.coordinates())));
+}
+
+void check_regular(const Problem& problem, const Location& at) {
+  constexpr int largest_dense = 200, needed = 3;
+  constexpr double singular = 1e-12;
+  const int n = problem.coordinates(), without = massless(problem.lagrangian->structure());
+  if (without >= 0) refuse_irregular(problem, without, at);
+  if (n > largest_dense) return;
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, v;
+  int found = 0, weak = 0;
+  for (int k = 0; k < tries && found < needed; ++k) {
+    const double t = points.next(q, v);
+    const PointValues values = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
+    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
+    if (!mass.allFinite()) continue;
+    if (regularity(mass, weak) > singular) return;
+    ++found;
+  }
+  if (found > 0) refuse_irregular(problem, weak, at);
+}
+
+void check_symmetry(const Closure& closure, const Problem& problem, const Location& at) {
+  constexpr int needed = 16;
+  constexpr double tolerance = 1e-10;
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, v;
+  const auto value = [&](const std::vector<double>& x, const std::vector<double>& w, double time) {
+    return evaluate_at(*problem.lagrangian, x, w, time, Order::value, scratch).value;
+  };
+  const double shifts[2] = {0, problem.duration.value};
+  double first[2] = {0, 0}, worst[2] = {0, 0}, scale = 0;
+  for (int k = 0, found = 0; k < tries && found < needed; ++k) {
+    const double t = points.next(q, v), here = value(q, v, t);
+    if (!std::isfinite(here)) continue;
+    const std::vector<double> image_q = image(closure, q, 1), image_v = image(closure, v, 0);
+    for (int way = 0; way < 2; ++way) {
+      const double change = value(image_q, image_v, t + shifts[way]) - here;
+      if (found == 0) first[way] = change;
+      worst[way] = std::isfinite(change) ? std::max(worst[way], std::abs(change - first[way])) : INFINITY;
+    }
+    scale = std::max(scale, std::abs(here));
+    ++found;
+  }
+  const double change = std::min(worst[0], worst[1]);
+  if (change > tolerance * scale)
+    throw SceneError(
+        at, fmt::format("the map does not leave the Lagrangian unchanged: beyond a constant it changes by "
+                        "{:.3g} where its values are up to {:.3g}",
+                        change, scale));
+}
+
+}  // namespace extremal

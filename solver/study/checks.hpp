@@ -1,0 +1,23 @@
+#pragma once
+
+#include "problem/problem.hpp"
+#include "scene/source.hpp"
+#include "study/boundary.hpp"
+
+/// \file What can be told of a problem before it is solved.
+
+namespace extremal {
+
+/// Throws SceneError at `at` if the Lagrangian is not finite somewhere on the guess, with the values there.
+/// An end that the boundary relation fixes wholly is not the guess's.
+void check_guess_finite(const Problem& problem, const Location& at);
+
+/// Throws SceneError if ∂²L/∂q'∂q' is singular at every point tried near the guess: the velocities do not
+/// follow from the momenta.
+void check_regular(const Problem& problem, const Location& at);
+
+/// Throws SceneError unless q → Rq + c leaves L unchanged up to a constant, at equal times or from t to t +
+/// T, to 1e-10 at points about the guess.
+void check_symmetry(const Closure& closure, const Problem& problem, const Location& at);
+
+}  // namespace extremal

@@ -1,0 +1,109 @@
+#include "study/guess.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "study/naming.hpp"
+
+namespace extremal {
+namespace {
+
+/// Enough equal steps for cubic interpolation to be as good as the formula; fewer where there are many
+/// coordinates.
+int steps_for(int coordinates) { return std::clamp((1 << 16) / coordinates, 256, 1024); }
+
+std::vector<double> equal_steps(int steps) {
+  std::vector<double> tau(steps + 1);
+  for (int k = 0; k <= steps; ++k) tau[k] = double(k) / steps;
+  return tau;
+}
+
+/// The line between the fixed ends of each coordinate.
+void fill_default(const EndMap& ends, Guess& guess) {
+  const std::size_t n = ends.offset.size() / 2;
+  for (std::size_t a = 0; a < n; ++a) {
+    const double start = ends.fixed[a] ? ends.offset[a] : ends.fixed[n + a] ? ends.offset[n + a] : 0;
+    const double end = ends.fixed[n + a] ? ends.offset[n + a] : start;
+    for (std::size_t k = 0; k < guess.tau.size(); ++k)
+      guess.q[k * n + a] = start + guess.tau[k] * (end - start);
+  }
+}
+
+/// Coordinate a from a formula; `index` is the i of an array.
+void fill_formula(const Quantity& quantity, int a, int index, const System& system, double duration,
+                  Guess& guess) {
+  const std::size_t n = system.names.size();
+  if (!quantity.formula()) {
+    for (std::size_t k = 0; k < guess.tau.size(); ++k) guess.q[k * n + a] = std::get<double>(quantity.value);
+    return;
+  }
+  std::vector<double> times = guess.tau;
+  for (double& t : times) t *= duration;
+  const Text text{std::get<std::string>(quantity.value), quantity.at};
+  const std::vector<double> values = placed(text, [&](const std::string& formula) {
+    return tabulate(formula, system.parameters, duration, times, index, "guess");
+  });
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (!std::isfinite(values[k]))
+      throw SceneError(position(text, 0),
+                       fmt::format("the guess of '{}' is not finite at t = {}", system.names[a], times[k]));
+    guess.q[k * n + a] = values[k];
+  }
+}
+
+void tabulate_formulas(const GuessTable& table, const System& system, Problem& problem) {
+  const int n = problem.coordinates();
+  Guess& guess = problem.guess;
+  guess.tau = equal_steps(steps_for(n));
+  guess.q.resize(guess.tau.size() * n);
+  fill_default(problem.ends, guess);
+  for (const Assignment& a : table.formulas) {
+    const Range range = range_of(a.name, a.name_at, system);
+    const auto fill = [&](int coordinate, const Quantity& q) {
+      fill_formula(q, coordinate, coordinate - range.first + 1, system, problem.duration.value, guess);
+    };
+    if (range.array && !a.list)
+      for (int k = 0; k < range.count; ++k) fill(range.first + k, a.values.front());
+    else
+      for_each_value(a, range, fill);
+  }
+}
+
+std::string beside(const std::string& scene, const std::string& file) {
+  return (std::filesystem::path(scene).parent_path() / file).string();
+}
+
+/// Times scaled linearly onto [0, 1].
+void use_samples(SampledFile&& samples, Guess& guess) {
+  const double first = samples.t.front(), length = samples.t.back() - first;
+  for (const double t : samples.t) guess.tau.push_back((t - first) / length);
+  guess.q = std::move(samples.q);
+}
+
+double guessed_duration(const GuessTable& table, const System& system, double of_file) {
+  if (!table.duration) return of_file;
+  const double value = evaluate(*table.duration, system.parameters);
+  if (!(value > 0))
+    throw SceneError(table.duration->at, fmt::format("duration = {}; it must be positive", value));
+  return value;
+}
+
+}  // namespace
+
+void read_guess(const Scene& scene, const System& system, Problem& problem) {
+  const GuessTable& table = scene.guess;
+  if (table.file) {
+    SampledFile samples = read_samples(beside(scene.path, table.file->value), system.names);
+    if (problem.duration.free)
+      problem.duration.value = guessed_duration(table, system, samples.t.back() - samples.t.front());
+    use_samples(std::move(samples), problem.guess);
+    return;
+  }
+  if (problem.duration.free) problem.duration.value = guessed_duration(table, system, 0);
+  if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
+}
+
+}  // namespace extremal

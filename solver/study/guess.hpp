@@ -1,0 +1,27 @@
+#pragma once
+
+#include "problem/problem.hpp"
+#include "scene/scene.hpp"
+#include "system/formula.hpp"
+
+/// \file [guess] as samples of a path.
+
+namespace extremal {
+
+/// The guess that a scene gives: formulas tabulated, a file, or a state integrated; nothing where it gives
+/// none. `problem` has its relation, its ends and, unless free, its duration; a free one is set. A coordinate
+/// without a formula takes the line between its fixed ends, a constant with one of them, zero with none.
+/// Throws SceneError.
+void read_guess(const Scene& scene, const System& system, Problem& problem);
+
+/// q(t) as a file gives it, row by row: q[k*n + a].
+struct SampledFile {
+  std::vector<double> t;
+  std::vector<double> q;
+};
+
+/// A result in JSON with samples, or CSV with a column t and one for each coordinate. Throws SceneError, with
+/// line and column in a CSV.
+SampledFile read_samples(const std::string& path, const std::vector<std::string>& names);
+
+}  // namespace extremal

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "scene/scene.hpp"
+#include "system/formula.hpp"
+
+/// \file [system] as a compiled system.
+
+namespace extremal {
+
+/// Throws SceneError at the place in the scene or system file where a formula is wrong.
+System make_system(const SystemTable& table);
+
+}  // namespace extremal

@@ -1,0 +1,68 @@
+#include "study/naming.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace extremal {
+namespace {
+
+/// The index in "x[2]", written without blanks; 0 if there is none.
+int index_of(const std::string& name, std::size_t bracket) {
+  int index = 0;
+  const char *begin = name.data() + bracket + 1, *end = name.data() + name.size() - 1;
+  if (name.back() != ']') return 0;
+  const auto [stop, error] = std::from_chars(begin, end, index);
+  return error == std::errc() && stop == end ? index : 0;
+}
+
+}  // namespace
+
+double evaluate(const Quantity& quantity, const Parameters& parameters) {
+  if (!quantity.formula()) return std::get<double>(quantity.value);
+  const Text text{std::get<std::string>(quantity.value), quantity.at};
+  const double value =
+      placed(text, [&](const std::string& formula) { return number(formula, parameters, ""); });
+  if (!std::isfinite(value))
+    throw SceneError(position(text, 0), fmt::format("'{}' is not finite", text.value));
+  return value;
+}
+
+Range range_of(const std::string& name, const Location& at, const System& system) {
+  const std::size_t bracket = name.find('[');
+  const std::string stem = name.substr(0, bracket);
+  for (const Coordinate& c : system.coordinates) {
+    if (c.name != stem) continue;
+    if (bracket == std::string::npos) return {c.first, c.count, c.array};
+    if (!c.array)
+      throw SceneError(at, fmt::format("'{}' is not an array, so '{}' names nothing", stem, name));
+    const int index = index_of(name, bracket);
+    if (index < 1 || index > c.count)
+      throw SceneError(at,
+                       fmt::format("'{}' is out of range: '{}' has elements 1 to {}", name, stem, c.count));
+    return {c.first + index - 1, 1, false};
+  }
+  std::vector<std::string> known;
+  for (const Coordinate& c : system.coordinates) known.push_back(c.name);
+  throw UnknownName(at, fmt::format("unknown coordinate '{}'", name), stem, known);
+}
+
+void for_each_value(const Assignment& assignment, const Range& range,
+                    const std::function<void(int, const Quantity&)>& f) {
+  const int given = static_cast<int>(assignment.values.size());
+  if (range.array && !assignment.list)
+    throw SceneError(assignment.at,
+                     fmt::format("'{0}' has {1} elements; give a list of {1} values, or \"{0}[1]\" = … "
+                                 "for one element",
+                                 assignment.name, range.count));
+  if (!range.array && assignment.list)
+    throw SceneError(assignment.at,
+                     fmt::format("'{}' is one number; found a list of {}", assignment.name, given));
+  if (given != range.count)
+    throw SceneError(assignment.at, fmt::format("'{}' has {} elements; found {} values", assignment.name,
+                                                range.count, given));
+  for (int k = 0; k < given; ++k) f(range.first + k, assignment.values[k]);
+}
+
+}  // namespace extremal

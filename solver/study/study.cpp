@@ -1,0 +1,129 @@
+#include "study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "scene/scene.hpp"
+#include "study/boundary.hpp"
+#include "study/checks.hpp"
+#include "study/guess.hpp"
+#include "study/memory.hpp"
+#include "study/modelling.hpp"
+
+namespace extremal {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+SolveOptions read_options(const SolveTable& table) {
+  SolveOptions options;
+  if (table.tolerance) options.tolerance = table.tolerance->value;
+  if (table.elements) options.elements = static_cast<int>(table.elements->value);
+  if (!table.scheme) return options;
+  try {
+    options.scheme = scheme(table.scheme->value);
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(position(*table.scheme, 0), e.what());
+  }
+  return options;
+}
+
+/// Refuses what would not fit into memory. Without a scheme the least that a solve begins with.
+void check_memory(const Scene& scene, const System& system, const SolveOptions& options) {
+  const int n = static_cast<int>(system.names.size()), elements = std::max(options.elements, 1);
+  const int degree = options.scheme ? options.scheme->degree : 2;
+  const double needed = solve_bytes(n, elements, degree), available = available_bytes();
+  if (needed > available)
+    throw SceneError(
+        scene.solve.elements ? scene.solve.elements->at : scene.system.at,
+        fmt::format("{} coordinates and {} elements of degree {} need {} of memory; there are {}", n,
+                    elements, degree, byte_text(needed), byte_text(available)));
+}
+
+Problem solved_relation(const BoundaryTable& boundary, Problem problem, const PlacedRelation& placed) {
+  try {
+    problem.boundary = placed.relation;
+    problem.ends = solve_relation(placed.relation);
+    return problem;
+  } catch (const RelationError& e) {
+    throw SceneError(placed.rows[e.row],
+                     e.contradiction ? "this condition contradicts the ones before it"
+                                     : "this condition follows from the ones before it; leave it out");
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(boundary.at, e.what());
+  }
+}
+
+Problem read_problem(const Scene& scene, const System& system) {
+  Problem problem;
+  problem.lagrangian = system.lagrangian;
+  problem.names = system.names;
+  problem.periodic = scene.boundary.periodic;
+  problem = solved_relation(scene.boundary, std::move(problem), read_relation(scene.boundary, system));
+  problem.duration = read_duration(scene.boundary, system);
+  read_guess(scene, system, problem);
+  try {
+    problem = make_problem(std::move(problem));
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(scene.boundary.at, e.what());
+  }
+  check_regular(problem, scene.system.lagrangian->at);
+  check_guess_finite(problem, scene.guess.at);
+  if (!scene.boundary.map.empty())
+    check_symmetry(read_closure(scene.boundary, system), problem, scene.boundary.map.front().name_at);
+  return problem;
+}
+
+Study load_checked(const std::string& path, const std::vector<std::string>& sets) {
+  const Scene scene = read_scene(path, sets);
+  Study study;
+  study.scene = path;
+  study.title = scene.title;
+  study.system = make_system(scene.system);
+  study.options = read_options(scene.solve);
+  if (scene.system.curvature) study.curvature = scene.system.curvature->value;
+  check_memory(scene, study.system, study.options);
+  study.problem = read_problem(scene, study.system);
+  return study;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
+
+}  // namespace
+
+Study load(const std::string& path, const std::vector<std::string>& sets) {
+  const auto begin = Clock::now();
+  try {
+    Study study = load_checked(path, sets);
+    study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
+    return study;
+  } catch (const UnknownName& e) {
+    const std::string nearest = nearest_name(e.name, e.known);
+    if (nearest.empty()) throw SceneError(e.at, e.message);
+    throw SceneError(e.at, fmt::format("{}; did you mean '{}'?", e.message, nearest));
+  }
+}
+
+Solution run(const Study& study, int repeat) {
+  if (repeat < 1) throw std::invalid_argument(fmt::format("repeat = {}; need at least 1", repeat));
+  Solver solver;
+  Solution solution;
+  std::vector<double> solve, analyse;
+  for (int k = 0; k < repeat; ++k) {
+    solution = solver.solve(study.problem, study.options);
+    solve.push_back(solution.seconds_solve);
+    analyse.push_back(solution.seconds_analyse);
+  }
+  solution.seconds_solve = median(std::move(solve));
+  solution.seconds_analyse = median(std::move(analyse));
+  return solution;
+}
+
+}  // namespace extremal
