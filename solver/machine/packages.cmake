@@ -1,1 +1,1 @@
-target_link_libraries(${target} PUBLIC ${SLEEF_LIBRARY} Threads::Threads)
+target_link_libraries(${target} PUBLIC sleef::sleef Threads::Threads)

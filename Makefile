@@ -1,0 +1,39 @@
+# `make demo` and `make test` work on a fresh clone: what is missing is installed, then built.
+SCENE = problems/scenes/figure-eight.toml
+
+.PHONY: build demo test bench debug asan ubsan sanitize format install packages clean
+
+build: packages
+	@cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
+	@cmake --build --preset release
+
+demo: build
+	@mkdir -p out
+	build/release/extremal solve $(SCENE) --output out/demo.json --plot out/demo.svg
+	@echo "The plot is out/demo.svg, the numbers are out/demo.json"
+
+test: build
+	@ctest --preset release
+
+# Each is a build of its own with all tests.
+debug asan ubsan sanitize: packages
+	@cmake --preset $@
+	@cmake --build --preset $@
+	@ctest --preset $@
+
+bench: build
+	@for program in build/release/bench/bench_*; do OPENBLAS_NUM_THREADS=1 $$program || exit 1; done
+
+format:
+	@git ls-files -co --exclude-standard '*.hpp' '*.cpp' | xargs clang-format -i
+
+# PREFIX=/usr/local by default
+install: build
+	@cmake --install build/release $(if $(PREFIX),--prefix $(PREFIX))
+
+packages:
+	@mkdir -p build
+	@.ci/packages
+
+clean:
+	@rm -rf build out
