@@ -1,0 +1,79 @@
+#include "problem/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace extremal {
+
+namespace {
+
+template <class... Arguments>
+void require(bool holds, fmt::format_string<Arguments...> message, Arguments&&... arguments) {
+  if (!holds) throw std::invalid_argument(fmt::format(message, std::forward<Arguments>(arguments)...));
+}
+
+void check_dimensions(const Problem& problem) {
+  require(problem.lagrangian != nullptr, "the problem has no Lagrangian");
+  const int n = problem.lagrangian->structure().coordinates;
+  require(n >= 1, "coordinates = {}; need at least 1", n);
+  require(problem.coordinates() == n, "the boundary relation has {} coordinates, the Lagrangian {}",
+          problem.coordinates(), n);
+  require(problem.names.empty() || static_cast<int>(problem.names.size()) == n, "{} names for {} coordinates",
+          problem.names.size(), n);
+  require(problem.boundary.rows <= 2 * n, "{} boundary conditions for {} coordinates; at most {} can hold",
+          problem.boundary.rows, n, 2 * n);
+  require(!problem.periodic || problem.boundary.rows == n,
+          "a periodic problem of {} coordinates has {} boundary conditions; need one for each coordinate", n,
+          problem.boundary.rows);
+}
+
+void check_duration(const Duration& duration, bool autonomous) {
+  require(std::isfinite(duration.value) && duration.value > 0, "duration = {}; need a positive number",
+          duration.value);
+  const int closures = (duration.energy ? 1 : 0) + (duration.where ? 1 : 0);
+  if (!duration.free) {
+    require(closures == 0, "the duration is fixed at {}; energy or where need a free duration",
+            duration.value);
+    return;
+  }
+  require(closures == 1, "a free duration needs exactly one of energy, where; {} given", closures);
+  require(!duration.energy || std::isfinite(*duration.energy), "energy = {}; need a finite number",
+          duration.energy.value_or(0));
+  require(autonomous, "a free duration needs a Lagrangian that does not depend on t");
+}
+
+void check_guess(const Guess& guess, int coordinates) {
+  if (!guess.given()) {
+    require(guess.q.empty(), "the guess has {} values and no times", guess.q.size());
+    return;
+  }
+  const std::size_t samples = guess.tau.size(), n = coordinates;
+  require(guess.q.size() == samples * n, "the guess has {} values for {} times of {} coordinates",
+          guess.q.size(), samples, n);
+  require(samples >= 2, "the guess has {} samples; need at least 2", samples);
+  require(guess.tau.front() == 0 && guess.tau.back() == 1, "the guess runs from {} to {} of T; need 0 to 1",
+          guess.tau.front(), guess.tau.back());
+  for (std::size_t k = 0; k < samples; ++k) {
+    require(k == 0 || guess.tau[k] > guess.tau[k - 1],
+            "times {} and {} of the guess, {} and {}, do not ascend", k, k + 1, k == 0 ? 0 : guess.tau[k - 1],
+            guess.tau[k]);
+    for (std::size_t a = 0; a < n; ++a)
+      require(std::isfinite(guess.q[k * n + a]), "the guess is {} in coordinate {} at t/T = {}",
+              guess.q[k * n + a], a + 1, guess.tau[k]);
+  }
+}
+
+}  // namespace
+
+Problem make_problem(Problem problem) {
+  check_dimensions(problem);
+  check_duration(problem.duration, problem.lagrangian->structure().autonomous);
+  check_guess(problem.guess, problem.coordinates());
+  problem.ends = solve_relation(problem.boundary);
+  return problem;
+}
+
+}  // namespace extremal
