@@ -1,0 +1,223 @@
+#include "system/formula_binder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace extremal::formula {
+
+namespace {
+
+constexpr std::size_t most_unrolled = 500'000;
+constexpr std::size_t most_entries = 50'000'000;  ///< of one table, 200 MB
+
+bool is_constant(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [&](double value) { return value == values[0]; });
+}
+
+}  // namespace
+
+Binder::Binder(const Names& names, LagrangianGraph& target)
+    : names_(names), target_(target), evaluator_(names) {
+  target.coordinates = names.elements;
+  target.uniforms = names.active;
+  target.parameters = static_cast<int>(names.active.size());
+}
+
+NodeId Binder::bind(TermBuilder& builder, const Formula& formula, std::uint32_t id, const Scope& scope) {
+  const Syntax& node = formula.nodes[id];
+  const auto links = formula.children(node);
+  Graph& graph = target_.graph;
+  if (unrolling_ > 0 && ++unrolled_ > most_unrolled)
+    fail(
+        formula, node.offset,
+        fmt::format("a sum inside a function or a product of sums is written out term by term, and here that "
+                    "takes more than {} operations",
+                    most_unrolled));
+  if (builder.rows() > 1 && (builder.columns() + 1) * builder.rows() > most_entries)
+    fail(formula, node.offset,
+         fmt::format(
+             "a sum of {} terms that read more than {} numbers each is too large: {} entries are the most",
+             builder.rows(), builder.columns(), most_entries));
+  if (node.numeric) {
+    const Factor number{&formula, id, false, scope};
+    return product(builder, {&number, 1}, graph.constant(1));
+  }
+  const auto part = [&](std::size_t k) { return bind(builder, formula, links[k].node, scope); };
+  switch (node.form) {
+    case Form::number:
+      return graph.constant(node.value);
+    case Form::reference:
+      return reference(builder, formula, node, scope);
+    case Form::negative:
+      return graph.unary(Op::neg, part(0));
+    case Form::total:
+      return total(builder, formula, links, scope);
+    case Form::product: {
+      std::vector<Factor> factors;
+      for (const Link link : links) factors.push_back({&formula, link.node, link.inverse, scope});
+      return product(builder, factors, graph.constant(1));
+    }
+    case Form::power: {
+      const NodeId base = part(0);
+      return graph.pow(base, part(1));
+    }
+    case Form::series:
+      return series(builder, formula, node, scope);
+    case Form::call: {
+      if (node.meaning != Meaning::none) return coordinate(builder, formula, node, scope);
+      const NodeId first = part(0);
+      return links.size() > 1 ? graph.binary(node.op, first, part(1)) : graph.unary(node.op, first);
+    }
+  }
+  return 0;
+}
+
+NodeId Binder::total(TermBuilder& builder, const Formula& formula, std::span<const Link> links,
+                     const Scope& scope) {
+  Graph& graph = target_.graph;
+  NodeId sum = graph.constant(0);
+  std::vector<Link> numeric;
+  for (const Link link : links) {
+    if (formula.nodes[link.node].numeric) {
+      numeric.push_back(link);
+    } else {
+      const NodeId part = bind(builder, formula, link.node, scope);
+      sum = link.inverse ? graph.sub(sum, part) : graph.add(sum, part);
+    }
+  }
+  if (numeric.empty()) return sum;
+  const std::vector<double> values =
+      numbers(builder, formula, formula.nodes[numeric[0].node], [&](std::size_t row) {
+        double value = 0;
+        builder.read(scope, row, indices_);
+        for (const Link link : numeric) {
+          const double part = evaluator_.finite(formula, link.node, indices_);
+          value += link.inverse ? -part : part;
+        }
+        return value;
+      });
+  return graph.add(sum, uniform(builder, values));
+}
+
+NodeId Binder::product(TermBuilder& builder, std::span<const Factor> factors, NodeId seed) {
+  Graph& graph = target_.graph;
+  NodeId divisor = graph.constant(1);
+  std::vector<const Factor*> numeric;
+  for (const Factor& factor : factors) {
+    if (factor.formula->nodes[factor.node].numeric) {
+      numeric.push_back(&factor);
+    } else {
+      NodeId& side = factor.inverse ? divisor : seed;
+      side = graph.mul(side, bind(builder, *factor.formula, factor.node, factor.scope));
+    }
+  }
+  if (numeric.empty()) return graph.div(seed, divisor);
+  const auto gathered = [&](bool inverse) {
+    const Factor& first = *numeric[0];
+    return numbers(builder, *first.formula, first.formula->nodes[first.node], [&](std::size_t row) {
+      double value = 1;
+      for (const Factor* factor : numeric) {
+        if (factor->inverse != inverse) continue;
+        builder.read(factor->scope, row, indices_);
+        value *= evaluator_.finite(*factor->formula, factor->node, indices_);
+        if (inverse && value == 0)
+          fail(*factor->formula, factor->formula->nodes[factor->node].offset, "division by zero");
+      }
+      return value;
+    });
+  };
+  std::vector<double> over = gathered(false), under = gathered(true);
+  if (is_constant(over) && is_constant(under))  // x/3 is rounded once, and not at all in extended precision
+    return graph.div(graph.div(graph.mul(graph.constant(over[0]), seed), graph.constant(under[0])), divisor);
+  for (std::size_t row = 0; row < over.size(); ++row) over[row] /= under[row];
+  return graph.div(graph.mul(uniform(builder, over), seed), divisor);
+}
+
+NodeId Binder::reference(TermBuilder& builder, const Formula& formula, const Syntax& node,
+                         const Scope& scope) {
+  const auto n = static_cast<std::uint32_t>(names_.elements);
+  switch (node.meaning) {
+    case Meaning::coordinate:
+      return coordinate(builder, formula, node, scope);
+    case Meaning::time:
+      return same_input(builder, 2 * n);
+    case Meaning::active:
+      return same_input(builder, 2 * n + 1 + node.id);
+    case Meaning::definition: {
+      const auto known = builder.definitions.find(node.id);
+      if (known != builder.definitions.end()) return known->second;
+      const Formula& definition = names_.definitions[node.id];
+      const NodeId value = bind(builder, definition, definition.root, {});
+      builder.definitions.emplace(node.id, value);
+      return value;
+    }
+    default:
+      fail(formula, node.offset, fmt::format("'{}' cannot stand here", formula.name(node)));
+  }
+}
+
+NodeId Binder::coordinate(TermBuilder& builder, const Formula& formula, const Syntax& node,
+                          const Scope& scope) {
+  const Coordinate& declared = names_.coordinates[node.id];
+  const bool second = node.velocity || node.meaning == Meaning::end;
+  const std::uint32_t base = declared.first + (second ? names_.elements : 0);
+  if (!node.indexed) return same_input(builder, base);
+  std::vector<std::uint32_t> column(builder.rows());
+  for (std::size_t row = 0; row < column.size(); ++row) {
+    builder.read(scope, row, indices_);
+    column[row] = base + evaluator_.element(formula, node, declared.count, indices_);
+  }
+  return builder.input(std::move(column));
+}
+
+NodeId Binder::same_input(TermBuilder& builder, std::uint32_t global) {
+  return builder.input(std::vector<std::uint32_t>(builder.rows(), global));
+}
+
+/// Σ body for the values of the index, term by term. The bounds are the same in all rows.
+NodeId Binder::series(TermBuilder& builder, const Formula& formula, const Syntax& node, const Scope& scope) {
+  const Unrolling unrolling(*this);
+  const auto links = formula.children(node);
+  builder.read(scope, 0, indices_);
+  const long from = evaluator_.integer(formula, links[0].node, indices_, "the lower bound of a sum");
+  const long to = evaluator_.integer(formula, links[1].node, indices_, "the upper bound of a sum");
+  NodeId sum = target_.graph.constant(0);
+  Scope inner = scope;
+  inner.emplace_back();
+  for (long i = from; i <= to; ++i) {
+    inner.back().value = static_cast<double>(i);
+    sum = target_.graph.add(sum, bind(builder, formula, links[2].node, inner));
+  }
+  return sum;
+}
+
+template <class ValueOfRow>
+std::vector<double> Binder::numbers(TermBuilder& builder, const Formula& formula, const Syntax& node,
+                                    ValueOfRow value) {
+  std::vector<double> values(builder.rows());
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    values[row] = value(row);
+    if (!std::isfinite(values[row]))
+      fail(formula, node.offset, fmt::format("the number here is {}", values[row]));
+  }
+  return values;
+}
+
+NodeId Binder::uniform(TermBuilder& builder, std::span<const double> values) {
+  if (is_constant(values)) return target_.graph.constant(values[0]);
+  const auto first = static_cast<std::uint32_t>(2 * names_.elements + 1);
+  std::vector<std::uint32_t> column;
+  for (const double value : values) {
+    const auto next = first + static_cast<std::uint32_t>(target_.uniforms.size());
+    const auto [it, added] = uniforms_.try_emplace(std::bit_cast<std::uint64_t>(value), next);
+    if (added) target_.uniforms.push_back(value);
+    column.push_back(it->second);
+  }
+  return builder.input(std::move(column));
+}
+
+}  // namespace extremal::formula

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "system/expression_evaluate.hpp"
+#include "system/formula_binder.hpp"
+
+/// \file Conditions between end values, and maps of one end to the other.
+
+namespace extremal {
+
+namespace formula {
+
+namespace {
+
+/// A function of coordinates with its gradient. Its inputs are compact: input k reads number read[k].
+struct EndFunction {
+  Graph graph;
+  NodeId value = 0;
+  std::vector<std::uint32_t> read;
+  std::vector<NodeId> slopes;
+};
+
+EndFunction function_of(Formula& formula, Names& names) {
+  resolve(formula, names);
+  LagrangianGraph target;
+  Binder binder(names, target);
+  TermBuilder builder(target.graph);
+  builder.add(binder.bind(builder, formula, formula.root, {}), false);
+  Term term = builder.finish();
+  EndFunction function{std::move(target.graph), term.body, std::move(term.table), {}};
+  std::vector<std::uint32_t> inputs(function.read.size());
+  for (std::uint32_t k = 0; k < inputs.size(); ++k) inputs[k] = k;
+  function.slopes = gradient(function.graph, function.value, inputs);
+  return function;
+}
+
+bool is_affine(const EndFunction& function) {
+  return std::ranges::all_of(function.slopes,
+                             [&](NodeId slope) { return function.graph.is_constant(slope); });
+}
+
+/// Coefficients and constant of an affine function.
+AffineForm coefficients(const EndFunction& function) {
+  AffineForm form;
+  for (std::size_t k = 0; k < function.read.size(); ++k)
+    form.coefficients.push_back(
+        {0, static_cast<int>(function.read[k]), function.graph[function.slopes[k]].value});
+  const std::vector<double> zero(function.read.size());
+  form.constant = evaluate(function.graph, function.value, std::span<const double>(zero));
+  return form;
+}
+
+/// g at both ends, and its gradient over the 2n end values. All nodes are evaluated in one sweep.
+double play(const EndFunction& function, std::span<const double> start, std::span<const double> end,
+            std::span<double> gradient) {
+  std::vector<double> values(function.graph.size());
+  for (NodeId id = 0; id < values.size(); ++id) {
+    const Node& node = function.graph[id];
+    if (node.op == Op::constant) {
+      values[id] = node.value;
+    } else if (node.op == Op::input) {
+      const std::uint32_t e = function.read[node.index];
+      values[id] = e < start.size() ? start[e] : end[e - start.size()];
+    } else {
+      values[id] = scalar::apply(node.op, values[node.a], values[node.b]);
+    }
+  }
+  if (!gradient.empty()) {
+    std::ranges::fill(gradient, 0.0);
+    for (std::size_t k = 0; k < function.read.size(); ++k)
+      gradient[function.read[k]] = values[function.slopes[k]];
+  }
+  return values[function.value];
+}
+
+}  // namespace
+
+}  // namespace formula
+
+EndEquation end_equation(const std::string& text, const System& system, const std::string& where) {
+  using namespace formula;
+  Names names = names_of(Kind::condition, system.parameters, system.coordinates);
+  Formula formula = parse_equation(text, where);
+  const auto function = std::make_shared<const EndFunction>(function_of(formula, names));
+  if (function->read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
+  EndEquation equation;
+  if ((equation.affine = is_affine(*function))) {
+    AffineForm form = coefficients(*function);
+    equation.coefficients = std::move(form.coefficients);
+    equation.constant = form.constant;
+  }
+  equation.function = [function](std::span<const double> start, std::span<const double> end,
+                                 std::span<double> gradient) {
+    return play(*function, start, end, gradient);
+  };
+  return equation;
+}
+
+AffineForm affine_form(const std::string& text, const System& system, const std::string& where) {
+  using namespace formula;
+  Names names = names_of(Kind::map, system.parameters, system.coordinates);
+  Formula formula = parse(text, where);
+  const EndFunction function = function_of(formula, names);
+  if (!is_affine(function))
+    fail(formula, 0,
+         "a map is affine in the coordinates: sums of coordinates with constant factors, and a constant");
+  return coefficients(function);
+}
+
+}  // namespace extremal

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "system/formula_syntax.hpp"
+
+/// \file The names that a formula may use, and what they stand for.
+
+namespace extremal::formula {
+
+/// A function of the language; min, max and atan2 take two arguments.
+struct Function {
+  std::string_view name;
+  Op op;
+};
+std::span<const Function> functions();
+const Function* find_function(std::string_view name);  ///< or null
+
+/// What a kind of formula may use beside parameters and pi.
+enum class Kind {
+  number,      ///< nothing
+  guess,       ///< t, T, and the index i
+  map,         ///< coordinates
+  condition,   ///< end values x(0), x(T)
+  lagrangian,  ///< coordinates, velocities, t, definitions
+};
+
+/// What a declared name is.
+struct Known {
+  Meaning meaning = Meaning::none;
+  int id = 0;
+  int count = 1;  ///< elements of an array or list
+  bool array = false;
+};
+
+struct Names {
+  Kind kind = Kind::number;
+  std::vector<Coordinate> coordinates;
+  int elements = 0;                   ///< of all coordinates together
+  std::vector<Parameter> parameters;  ///< by Known::id
+  std::vector<double> active;         ///< values, by Known::id
+  std::vector<Formula> definitions;   ///< by Known::id
+  std::map<std::string, Known, std::less<>> table;
+  std::vector<std::string> indices;  ///< known outside every sum: i in the guess of an array
+
+  const Known* find(std::string_view name) const;
+  /// Throws FormulaError where the name is malformed, reserved or taken.
+  void declare(const std::string& name, Known known, const std::string& where);
+  void declare(const Coordinate& coordinate, const std::string& where);
+  /// Declares parameters; those of `active` stay symbolic.
+  void declare(const std::map<std::string, ParameterText>& texts, std::span<const std::string> active);
+};
+
+/// Coordinates, parameters and parsed definitions of a system. Throws FormulaError.
+Names names_of(const SystemText& text);
+
+/// Names of a formula of parameters and, where given, a system's coordinates.
+Names names_of(Kind kind, const std::map<std::string, ParameterText>& parameters,
+               std::span<const Coordinate> coordinates = {});
+
+/// Gives every name in the formula its meaning, and likewise in all definitions that it needs.
+void resolve(Formula& formula, Names& names);
+
+}  // namespace extremal::formula

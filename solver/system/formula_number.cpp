@@ -1,0 +1,199 @@
+#include "system/formula_number.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "system/expression_evaluate.hpp"
+
+namespace extremal {
+
+namespace formula {
+
+namespace {
+
+constexpr std::size_t most_work = 300'000'000;  ///< operations, a few seconds
+constexpr double largest_integer = 1e15;
+
+/// " (at i = 3, j = 4)" for the indices that stand below a node.
+std::string circumstances(const Formula& formula, const Syntax& node, std::span<const double> indices) {
+  std::vector<bool> named(indices.size());
+  std::string text;
+  std::vector<Link> open(formula.children(node).begin(), formula.children(node).end());
+  if (node.meaning == Meaning::index) text = fmt::format("{} = {}", formula.name(node), indices[node.id]);
+  while (!open.empty()) {
+    const Syntax& part = formula.nodes[open.back().node];
+    open.pop_back();
+    for (const Link link : formula.children(part)) open.push_back(link);
+    if (part.meaning != Meaning::index || part.id >= static_cast<int>(indices.size()) || named[part.id])
+      continue;
+    named[part.id] = true;
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", formula.name(part), indices[part.id]);
+  }
+  return text.empty() ? text : " (at " + text + ")";
+}
+
+}  // namespace
+
+void Evaluator::spend(const Formula& formula, const Syntax& node, std::size_t amount) {
+  work_ += amount;
+  if (work_ > most_work)
+    fail(formula, node.offset,
+         fmt::format("the sums take more than {} operations; make them shorter", most_work));
+}
+
+double Evaluator::value(const Formula& formula, std::uint32_t id, std::vector<double>& indices) {
+  const Syntax& node = formula.nodes[id];
+  const auto links = formula.children(node);
+  const auto part = [&](std::size_t k) { return value(formula, links[k].node, indices); };
+  spend(formula, node, 1);
+  switch (node.form) {
+    case Form::number:
+      return node.value;
+    case Form::reference:
+      return reference(formula, node, indices);
+    case Form::series:
+      return series(formula, node, indices);
+    case Form::negative:
+      return -part(0);
+    case Form::power:
+      return std::pow(part(0), part(1));
+    case Form::call: {
+      const double first = part(0);
+      return scalar::apply(node.op, first, links.size() > 1 ? part(1) : 0.0);
+    }
+    case Form::total: {
+      double sum = 0;
+      for (std::size_t k = 0; k < links.size(); ++k) sum += links[k].inverse ? -part(k) : part(k);
+      return sum;
+    }
+    case Form::product: {
+      double product = part(0);
+      for (std::size_t k = 1; k < links.size(); ++k) {
+        const double factor = part(k);
+        product = links[k].inverse ? product / factor : product * factor;
+      }
+      return product;
+    }
+  }
+  return 0;
+}
+
+double Evaluator::reference(const Formula& formula, const Syntax& node, std::vector<double>& indices) {
+  switch (node.meaning) {
+    case Meaning::index:
+      return indices[node.id];
+    case Meaning::pi:
+      return std::numbers::pi;
+    case Meaning::time:
+      return time;
+    case Meaning::duration:
+      return duration;
+    case Meaning::parameter: {
+      const Parameter& list = names_.parameters[node.id];
+      return list[node.indexed ? element(formula, node, static_cast<int>(list.size()), indices) : 0];
+    }
+    case Meaning::definition: {
+      Cached& cached = definitions_[node.id];
+      if (!cached.known) {
+        const Formula& definition = names_.definitions[node.id];
+        std::vector<double> none;
+        cached = {true, value(definition, definition.root, none)};
+      }
+      return cached.value;
+    }
+    default:
+      fail(formula, node.offset,
+           fmt::format("'{}' is not a number when the formula is read", formula.name(node)));
+  }
+}
+
+double Evaluator::series(const Formula& formula, const Syntax& node, std::vector<double>& indices) {
+  const auto links = formula.children(node);
+  const long from = integer(formula, links[0].node, indices, "the lower bound of a sum");
+  const long to = integer(formula, links[1].node, indices, "the upper bound of a sum");
+  double sum = 0;
+  indices.push_back(0);
+  for (long i = from; i <= to; ++i) {
+    indices.back() = static_cast<double>(i);
+    sum += value(formula, links[2].node, indices);
+  }
+  indices.pop_back();
+  return sum;
+}
+
+double Evaluator::finite(const Formula& formula, std::uint32_t node, std::vector<double>& indices) {
+  const double result = value(formula, node, indices);
+  const Syntax& syntax = formula.nodes[node];
+  if (!std::isfinite(result))
+    fail(formula, syntax.offset,
+         fmt::format("the value is {}, not a finite number{}", result,
+                     circumstances(formula, syntax, indices)));
+  return result;
+}
+
+long Evaluator::integer(const Formula& formula, std::uint32_t node, std::vector<double>& indices,
+                        std::string_view what) {
+  const double result = value(formula, node, indices);
+  const Syntax& syntax = formula.nodes[node];
+  if (result != std::floor(result) || !(std::abs(result) <= largest_integer))
+    fail(formula, syntax.offset,
+         fmt::format("{} is {}, not an integer{}", what, result, circumstances(formula, syntax, indices)));
+  return static_cast<long>(result);
+}
+
+int Evaluator::element(const Formula& formula, const Syntax& node, int count, std::vector<double>& indices) {
+  const std::uint32_t child = formula.children(node)[0].node;
+  const std::string_view name = formula.name(node);
+  const double result = value(formula, child, indices);
+  if (result >= 1 && result <= count && result == std::floor(result)) return static_cast<int>(result) - 1;
+  const long index = integer(formula, child, indices, fmt::format("the index of '{}'", name));
+  fail(formula, node.offset,
+       fmt::format("{0}[{1}] is out of range: '{0}' has {2} elements, counted from 1{3}", name, index, count,
+                   circumstances(formula, node, indices)));
+}
+
+}  // namespace formula
+
+double number(const std::string& text, const std::map<std::string, ParameterText>& parameters,
+              const std::string& where) {
+  using namespace formula;
+  Names names = names_of(Kind::number, parameters);
+  Formula formula = parse(text, where);
+  resolve(formula, names);
+  std::vector<double> indices;
+  return Evaluator(names).finite(formula, formula.root, indices);
+}
+
+std::vector<double> tabulate(const std::string& text, const std::map<std::string, ParameterText>& parameters,
+                             double duration, std::span<const double> times, int index,
+                             const std::string& where) {
+  using namespace formula;
+  Names names = names_of(Kind::guess, parameters);
+  std::vector<double> indices;
+  if (index > 0) {
+    names.indices = {"i"};
+    indices = {static_cast<double>(index)};
+  }
+  Formula formula = parse(text, where);
+  resolve(formula, names);
+  if (const Known* known = names.find("i"); known != nullptr && index > 0)
+    for (const Syntax& node : formula.nodes)
+      if (node.meaning == Meaning::index && formula.name(node) == "i")
+        fail(formula, node.offset, "'i' is the index of the element and a parameter; rename the parameter");
+  Evaluator evaluator(names);
+  evaluator.duration = duration;
+  std::vector<double> values;
+  for (const double time : times) {
+    evaluator.time = time;
+    const double value = evaluator.value(formula, formula.root, indices);
+    if (!std::isfinite(value))
+      fail(formula, 0, fmt::format("the value is {} at t = {}; a guess must be finite", value, time));
+    values.push_back(value);
+  }
+  return values;
+}
+
+}  // namespace extremal

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "system/formula_names.hpp"
+
+/// \file Formulas as numbers.
+
+namespace extremal::formula {
+
+/// Evaluates resolved formulas of numbers, parameters and indices (and of t, T in a guess). The work of
+/// all evaluations together is bounded: sums may be long, but nothing may hang.
+class Evaluator {
+ public:
+  explicit Evaluator(const Names& names) : names_(names), definitions_(names.definitions.size()) {}
+
+  double time = 0, duration = 0;
+
+  /// `indices` holds the value of each index known at the node, outermost first.
+  double value(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
+
+  /// As above, and finite; else throws.
+  double finite(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
+
+  /// An integer formula; `what` names it in errors.
+  long integer(const Formula& formula, std::uint32_t node, std::vector<double>& indices,
+               std::string_view what);
+
+  /// Which element, from 0, the reference `node` reads among `count`.
+  int element(const Formula& formula, const Syntax& node, int count, std::vector<double>& indices);
+
+  /// Counts `amount` units of work for this formula, and throws where all is too much.
+  void spend(const Formula& formula, const Syntax& node, std::size_t amount);
+
+ private:
+  double reference(const Formula& formula, const Syntax& node, std::vector<double>& indices);
+  double series(const Formula& formula, const Syntax& node, std::vector<double>& indices);
+
+  struct Cached {
+    bool known = false;
+    double value = 0;
+  };
+
+  const Names& names_;
+  std::vector<Cached> definitions_;
+  std::size_t work_ = 0;
+};
+
+}  // namespace extremal::formula

@@ -1,0 +1,23 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "system/formula_graph.hpp"
+
+namespace extremal {
+
+System compile(const SystemText& text) {
+  formula::Names names = formula::names_of(text);
+  System system;
+  system.lagrangian = make_lagrangian(formula::graph_of(names, text.lagrangian));
+  system.parameters = text.parameters;
+  for (const Coordinate& coordinate : names.coordinates) {
+    if (!coordinate.array) system.names.push_back(coordinate.name);
+    for (int i = 1; coordinate.array && i <= coordinate.count; ++i)
+      system.names.push_back(fmt::format("{}[{}]", coordinate.name, i));
+  }
+  system.coordinates = std::move(names.coordinates);
+  return system;
+}
+
+}  // namespace extremal
