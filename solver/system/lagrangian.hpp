@@ -30,14 +30,14 @@ struct HessianEntry {
 /// and R = L. In both cases R is called the remainder.
 struct Structure {
   int coordinates = 0;
-  int parameters = 0;             ///< active parameters: those that derivatives are asked for
-  bool autonomous = true;         ///< L does not depend on t
-  bool quadratic = false;         ///< the form above holds
-  std::vector<Triplet> mass;      ///< M, both triangles
-  std::vector<Triplet> gyroscopic;///< C(row of q', column of q)
-  std::vector<double> linear;     ///< a, or empty
-  bool velocity_free = false;     ///< the remainder does not depend on q'
-  std::vector<int> gradient;      ///< indices z with a gradient row of the remainder, ascending
+  int parameters = 0;                 ///< active parameters: those that derivatives are asked for
+  bool autonomous = true;             ///< L does not depend on t
+  bool quadratic = false;             ///< the form above holds
+  std::vector<Triplet> mass;          ///< M, both triangles
+  std::vector<Triplet> gyroscopic;    ///< C(row of q', column of q)
+  std::vector<double> linear;         ///< a, or empty
+  bool velocity_free = false;         ///< the remainder does not depend on q'
+  std::vector<int> gradient;          ///< indices z with a gradient row of the remainder, ascending
   std::vector<HessianEntry> hessian;  ///< entries with a Hessian row, sorted by (row, column), unique
 };
 
@@ -57,6 +57,7 @@ struct Points {
 /// Memory that an evaluation needs; one for each thread, reused between calls.
 struct Scratch {
   std::vector<double> memory;
+  std::vector<double*> operands;
   double* reserve(std::size_t doubles);  ///< 64-byte aligned; contents undefined
 };
 
@@ -77,7 +78,8 @@ class Lagrangian {
   virtual void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const = 0;
 
   int rows(Order order) const {
-    const int g = static_cast<int>(structure_.gradient.size()), h = static_cast<int>(structure_.hessian.size());
+    const int g = static_cast<int>(structure_.gradient.size()),
+              h = static_cast<int>(structure_.hessian.size());
     return order == Order::value ? 1 : order == Order::gradient ? 1 + g : 1 + g + h;
   }
 

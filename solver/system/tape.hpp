@@ -7,6 +7,7 @@
 
 #include "system/expression.hpp"
 #include "system/lagrangian.hpp"
+#include "system/symbol.hpp"
 
 /// \file From expression graphs to a Lagrangian that is played as a tape.
 
@@ -31,26 +32,11 @@ struct LagrangianGraph {
   Graph graph;
   std::vector<Term> terms;
   std::vector<double> uniforms;
-  int parameters = 0;            ///< active ones: the first uniforms
+  int parameters = 0;  ///< active ones: the first uniforms
 };
 
 /// Reads off the structure, differentiates, compiles. The result is a TapeLagrangian.
 std::shared_ptr<const Lagrangian> make_lagrangian(LagrangianGraph graph);
-
-/// A scalar that records what is computed with it; every operation and function of the formula
-/// language is defined for it (found by argument-dependent lookup).
-class Symbol {
- public:
-  Symbol(double value = 0) : value_(value) {}
-  Symbol(Graph* graph, NodeId id) : graph_(graph), id_(id) {}
-  Graph* graph() const { return graph_; }
-  NodeId node(Graph& graph) const { return graph_ ? id_ : graph.constant(value_); }
-
- private:
-  Graph* graph_ = nullptr;
-  NodeId id_ = 0;
-  double value_ = 0;
-};
 
 /// Traces functor(q, v, t) once, with q and v spans of Symbol, and compiles it:
 ///   auto kepler = trace(2, [](auto q, auto v, auto t) {

@@ -1,0 +1,139 @@
+#include <algorithm>
+
+#include "machine/simd.hpp"
+#include "system/tape_lagrangian.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// What a chunk reads and writes should stay in the first-level cache.
+constexpr int cache_batches = 24 * 1024 / (lanes * sizeof(double));
+constexpr int most_batches = 16;
+
+Player player() {
+  switch (simd_level()) {
+    case SimdLevel::base:
+      return base::play;
+    case SimdLevel::v3:
+      return v3::play;
+    default:
+      return v4::play;
+  }
+}
+
+}  // namespace
+
+/// Some consecutive points of a call.
+struct Tape::Chunk {
+  Player player;
+  const double* q;
+  const double* v;
+  const double* t;
+  double* out;
+  std::ptrdiff_t stride;
+  int batches;
+  double* memory;
+  double** operands;
+};
+
+Tape::Tape(std::span<const Contribution> contributions, int outputs, std::span<const double> uniforms) {
+  std::vector<bool> touched(outputs);
+  for (const Contribution& c : contributions) {
+    tracks_.push_back(track(c, touched, uniforms));
+    slots_ = std::max(slots_, tracks_.back().program.slots);
+    operands_ = std::max(operands_, tracks_.back().program.operands());
+  }
+  for (int row = 0; row < outputs; ++row)
+    if (!touched[row]) untouched_.push_back(row);
+}
+
+/// A root is direct if every row of the kernel is the first to reach its row of output.
+Tape::Track Tape::track(const Contribution& c, std::vector<bool>& touched, std::span<const double> uniforms) {
+  const std::size_t width = c.roots.size();
+  std::vector<bool> first(c.rows.size()), direct(width, true);
+  for (std::size_t e = 0; e < c.rows.size(); ++e) {
+    first[e] = !touched[c.rows[e]];
+    touched[c.rows[e]] = true;
+    direct[e % width] = direct[e % width] && first[e];
+  }
+  std::vector<Root> roots;
+  for (std::size_t k = 0; k < width; ++k) roots.push_back({c.roots[k], direct[k]});
+  Track result{.program = lower(*c.kernel, roots),
+               .rows = c.kernel->rows,
+               .kinds = c.kernel->kinds,
+               .sources = c.kernel->table,
+               .targets = {},
+               .scalars = {}};
+  for (std::size_t e = 0; e < c.rows.size(); ++e)
+    result.targets.push_back({c.rows[e], first[e] && !direct[e % width]});
+  result.scalars = row_numbers(*c.kernel, result.program.scalars, uniforms);
+  if (result.scalars.values.empty()) result.scalars.values.push_back(0);
+  return result;
+}
+
+int Tape::widest_chunk() const { return std::clamp(cache_batches / std::max(operands_, 1), 1, most_batches); }
+
+void Tape::play(const Track& track, const Chunk& chunk) {
+  const Program& program = track.program;
+  const std::size_t length = static_cast<std::size_t>(chunk.batches) * lanes;
+  double** const outputs = chunk.operands + program.inputs;
+  double** const slots = outputs + program.outputs;
+  for (int k = 0; k < program.slots; ++k) slots[k] = chunk.memory + k * length;
+  for (int r = 0; r < track.rows; ++r) {
+    const std::uint32_t* source = track.sources.data() + static_cast<std::size_t>(r) * program.inputs;
+    const Target* target = track.targets.data() + static_cast<std::size_t>(r) * program.outputs;
+    for (int k = 0; k < program.inputs; ++k) {
+      const Variable kind = track.kinds[k];
+      const double* base = kind == Variable::coordinate ? chunk.q
+                           : kind == Variable::velocity ? chunk.v
+                           : kind == Variable::time     ? chunk.t
+                                                        : chunk.memory;
+      const bool row = kind == Variable::coordinate || kind == Variable::velocity;
+      chunk.operands[k] = const_cast<double*>(row ? base + source[k] * chunk.stride : base);
+    }
+    for (int k = 0; k < program.outputs; ++k) {
+      outputs[k] = chunk.out + target[k].row * chunk.stride;
+      if (target[k].clear) std::fill_n(outputs[k], length, 0.0);
+    }
+    chunk.player(program.code.data(), static_cast<int>(program.code.size()), chunk.operands,
+                 track.scalars.row(r), chunk.batches);
+  }
+}
+
+void Tape::play(const Points& points, double* out, Scratch& scratch) const {
+  const int batches = points.count / lanes;
+  const int chunks = (batches + widest_chunk() - 1) / widest_chunk();
+  if (chunks == 0) return;
+  const int width = (batches + chunks - 1) / chunks;
+  double* memory = scratch.reserve(static_cast<std::size_t>(slots_ + 1) * width * lanes);
+  if (scratch.operands.size() < static_cast<std::size_t>(operands_)) scratch.operands.resize(operands_);
+  for (int begin = 0; begin < batches; begin += width) {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(begin) * lanes;
+    const auto from = [&](const double* rows) { return rows ? rows + at : memory; };
+    const Chunk chunk{.player = player(),
+                      .q = from(points.q),
+                      .v = from(points.v),
+                      .t = from(points.t),
+                      .out = out + at,
+                      .stride = points.stride,
+                      .batches = std::min(width, batches - begin),
+                      .memory = memory,
+                      .operands = scratch.operands.data()};
+    for (const Track& track : tracks_) play(track, chunk);
+    for (const int row : untouched_) std::fill_n(chunk.out + row * chunk.stride, chunk.batches * lanes, 0.0);
+  }
+}
+
+TapeSummary Tape::summary() const {
+  TapeSummary s{.kernels = static_cast<int>(tracks_.size()), .slots = slots_};
+  for (const Track& track : tracks_) {
+    const auto length = static_cast<int>(track.program.code.size());
+    s.rows += track.rows;
+    s.instructions += length;
+    s.played += static_cast<long long>(track.rows) * length;
+  }
+  return s;
+}
+
+}  // namespace extremal

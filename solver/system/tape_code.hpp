@@ -1,0 +1,72 @@
+#pragma once
+
+/// \file The instructions of a tape and who plays them. Kernels include this: no inline functions here.
+
+namespace extremal {
+
+/// d = …, over the points of a chunk. a, b, c: operands that vary; s: a scalar.
+enum class Code : unsigned {
+  copy,             ///< a
+  negate,           ///< −a
+  fill,             ///< s
+  add,              ///< a + b
+  add_scalar,       ///< a + s
+  subtract,         ///< a − b
+  subtract_from,    ///< s − a
+  multiply,         ///< a b
+  multiply_negate,  ///< −a b
+  scale,            ///< s a
+  divide,           ///< a / b
+  multiply_add,     ///< a b + c
+  multiply_sub,     ///< a b − c
+  sub_multiply,     ///< c − a b
+  negate_all,       ///< −a b − c
+  scale_add,        ///< s a + c
+  scale_sub,        ///< s a − c
+  multiply_scalar,  ///< a b + s
+  scalar_multiply,  ///< s − a b
+  reciprocal,       ///< 1 / a
+  square_root,      ///< √a
+  reciprocal_root,  ///< 1 / √a
+  step,
+  minimum,
+  maximum,
+  absolute,
+  power,
+  exponential,
+  logarithm,
+  sine,
+  cosine,
+  sine_cosine,  ///< d = sin a, c = cos a
+  tangent,
+  arcsine,
+  arccosine,
+  arctangent,
+  arctangent2,
+  hyperbolic_sine,
+  hyperbolic_cosine,
+  hyperbolic_tangent,
+};
+
+struct Instruction {
+  Code code;
+  unsigned d, a, b, c;  ///< operands
+  unsigned s;           ///< scalar
+};
+
+/// Plays `length` instructions on `vectors` batches of eight points each. operands[k] is the first
+/// point of operand k, aligned to 64 bytes.
+using Player = void (*)(const Instruction* code, int length, double* const* operands, const double* scalars,
+                        int vectors);
+
+namespace base {
+void play(const Instruction*, int, double* const*, const double*, int);
+}
+namespace v3 {
+void play(const Instruction*, int, double* const*, const double*, int);
+}
+namespace v4 {
+void play(const Instruction*, int, double* const*, const double*, int);
+}
+
+}  // namespace extremal

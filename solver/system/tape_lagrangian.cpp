@@ -1,0 +1,93 @@
+#include "system/tape_lagrangian.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "system/structure.hpp"
+
+namespace extremal {
+
+namespace {
+
+int gradient_row(const Structure& s, int z) {
+  return static_cast<int>(std::lower_bound(s.gradient.begin(), s.gradient.end(), z) - s.gradient.begin());
+}
+
+int hessian_row(const Structure& s, HessianEntry entry) {
+  const auto order = [](const HessianEntry& a, const HessianEntry& b) {
+    return std::pair(a.row, a.column) < std::pair(b.row, b.column);
+  };
+  return static_cast<int>(std::lower_bound(s.hessian.begin(), s.hessian.end(), entry, order) -
+                          s.hessian.begin());
+}
+
+/// The rows of Lagrangian::evaluate.
+Tape::Contribution contribution(const Kernel& kernel, const Structure& s, Order order) {
+  Tape::Contribution result{&kernel, {kernel.value}, {}};
+  const bool first = order != Order::value, second = order == Order::hessian;
+  if (first)
+    for (const Partial& p : kernel.gradient) result.roots.push_back(p.value);
+  if (second)
+    for (const SecondPartial& p : kernel.hessian) result.roots.push_back(p.value);
+  const int gradients = static_cast<int>(s.gradient.size());
+  for (int r = 0; r < kernel.rows; ++r) {
+    result.rows.push_back(0);
+    if (first)
+      for (const Partial& p : kernel.gradient)
+        result.rows.push_back(1 + gradient_row(s, state_index(kernel, r, p.input, s.coordinates)));
+    if (second)
+      for (const SecondPartial& p : kernel.hessian)
+        result.rows.push_back(1 + gradients + hessian_row(s, hessian_entry(kernel, r, p, s.coordinates)));
+  }
+  return result;
+}
+
+/// The rows of Lagrangian::sensitivity.
+Tape::Contribution contribution(const Kernel& kernel, const Structure& s, const Kernel::Sensitivity& by) {
+  Tape::Contribution result{&kernel, {by.value}, {}};
+  for (const Partial& p : by.gradient) result.roots.push_back(p.value);
+  for (int r = 0; r < kernel.rows; ++r) {
+    result.rows.push_back(0);
+    for (const Partial& p : by.gradient)
+      result.rows.push_back(1 + gradient_row(s, state_index(kernel, r, p.input, s.coordinates)));
+  }
+  return result;
+}
+
+}  // namespace
+
+TapeLagrangian::TapeLagrangian(const LagrangianGraph& lagrangian) {
+  Analysis analysis = analyse(lagrangian);
+  structure_ = std::move(analysis.structure);
+  for (const Order order : {Order::value, Order::gradient, Order::hessian}) {
+    std::vector<Tape::Contribution> all;
+    for (const Kernel& kernel : analysis.kernels) all.push_back(contribution(kernel, structure_, order));
+    orders_[static_cast<int>(order)] = Tape(all, rows(order), lagrangian.uniforms);
+  }
+  for (int k = 0; k < structure_.parameters; ++k) {
+    std::vector<Tape::Contribution> all;
+    for (const Kernel& kernel : analysis.kernels)
+      for (const Kernel::Sensitivity& s : kernel.sensitivities)
+        if (s.parameter == static_cast<std::uint32_t>(k)) all.push_back(contribution(kernel, structure_, s));
+    sensitivities_.emplace_back(all, rows(Order::gradient), lagrangian.uniforms);
+  }
+}
+
+void TapeLagrangian::evaluate(const Points& points, Order order, double* out, Scratch& scratch) const {
+  orders_[static_cast<int>(order)].play(points, out, scratch);
+}
+
+void TapeLagrangian::sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const {
+  if (parameter < 0 || parameter >= structure_.parameters)
+    throw std::out_of_range("parameter " + std::to_string(parameter) + " of " +
+                            std::to_string(structure_.parameters));
+  sensitivities_[parameter].play(points, out, scratch);
+}
+
+std::shared_ptr<const Lagrangian> make_lagrangian(LagrangianGraph graph) {
+  return std::make_shared<TapeLagrangian>(graph);
+}
+
+}  // namespace extremal

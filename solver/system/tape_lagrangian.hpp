@@ -1,0 +1,77 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "system/lagrangian.hpp"
+#include "system/tape_program.hpp"
+
+namespace extremal {
+
+/// The size of what one evaluation plays.
+struct TapeSummary {
+  int kernels = 0;
+  int rows = 0;          ///< of all kernels
+  int instructions = 0;  ///< one row of each kernel
+  long long played = 0;  ///< all rows
+  int slots = 0;         ///< of the kernel that needs most
+};
+
+/// Kernels ready to be played into numbered rows of output.
+class Tape {
+ public:
+  /// What a kernel adds to the output.
+  struct Contribution {
+    const Kernel* kernel;
+    std::vector<Scaled> roots;
+    std::vector<int> rows;  ///< the kernel's rows × roots: the row of output
+  };
+  Tape() = default;
+  Tape(std::span<const Contribution> contributions, int outputs, std::span<const double> uniforms);
+
+  /// Writes every row of output at every point.
+  void play(const Points& points, double* out, Scratch& scratch) const;
+  TapeSummary summary() const;
+
+ private:
+  struct Target {
+    int row;
+    bool clear;  ///< before it is added to
+  };
+  /// A kernel's program and where its rows read and write.
+  struct Track {
+    Program program;
+    int rows;
+    std::vector<Variable> kinds;
+    std::vector<std::uint32_t> sources;  ///< rows × inputs: index among its kind
+    std::vector<Target> targets;         ///< rows × outputs
+    RowNumbers scalars;
+  };
+  struct Chunk;
+  static Track track(const Contribution& contribution, std::vector<bool>& touched,
+                     std::span<const double> uniforms);
+  static void play(const Track& track, const Chunk& chunk);
+  int widest_chunk() const;
+
+  std::vector<Track> tracks_;
+  std::vector<int> untouched_;  ///< rows of output that no track writes
+  int slots_ = 0, operands_ = 0;
+};
+
+/// A Lagrangian from an expression graph.
+class TapeLagrangian final : public Lagrangian {
+ public:
+  /// Throws std::invalid_argument for a malformed graph.
+  explicit TapeLagrangian(const LagrangianGraph& lagrangian);
+
+  void evaluate(const Points& points, Order order, double* out, Scratch& scratch) const override;
+  void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const override;
+
+  TapeSummary summary(Order order) const { return orders_[static_cast<int>(order)].summary(); }
+
+ private:
+  Tape orders_[3];
+  std::vector<Tape> sensitivities_;  ///< by parameter
+};
+
+}  // namespace extremal

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "system/tape.hpp"
+
+/// \file The terms of a Lagrangian, sorted into groups of rows that one kernel serves.
+
+namespace extremal {
+
+/// What an input of a kernel stands for. A parameter is an active uniform; the same for all rows.
+enum class Variable : std::uint8_t { coordinate, velocity, time, parameter, uniform };
+
+/// Where a body's input comes from: an input of the group or a number.
+struct Binding {
+  bool number = false;
+  double value = 0;
+  std::uint32_t input = 0;
+};
+
+/// A body of the Lagrangian's graph with its inputs bound.
+struct Part {
+  NodeId body = 0;
+  std::vector<Binding> inputs;
+};
+
+/// Σ_rows Σ_parts body. In one row, no two inputs stand for the same variable.
+struct Group {
+  std::vector<Part> parts;
+  std::vector<Variable> kinds;       ///< of the inputs
+  std::vector<std::uint32_t> table;  ///< rows × inputs: index among its kind
+  int rows = 1;
+};
+
+/// Rows of a term that differ in which inputs coincide go to different groups. Uniforms that do not vary
+/// between the rows of a group become numbers. All that stands in a few rows is collected in one group
+/// of one row, so that it shares subexpressions. Throws std::invalid_argument for a malformed table.
+std::vector<Group> group_terms(const LagrangianGraph& lagrangian);
+
+}  // namespace extremal
