@@ -31,18 +31,6 @@ SolveOptions read_options(const SolveTable& table) {
   return options;
 }
 
-/// Refuses what would not fit into memory. Without a scheme the least that a solve begins with.
-void check_memory(const Scene& scene, const System& system, const SolveOptions& options) {
-  const int n = static_cast<int>(system.names.size()), elements = std::max(options.elements, 1);
-  const int degree = options.scheme ? options.scheme->degree : 2;
-  const double needed = solve_bytes(n, elements, degree), available = available_bytes();
-  if (needed > available)
-    throw SceneError(
-        scene.solve.elements ? scene.solve.elements->at : scene.system.at,
-        fmt::format("{} coordinates and {} elements of degree {} need {} of memory; there are {}", n,
-                    elements, degree, byte_text(needed), byte_text(available)));
-}
-
 Problem solved_relation(const BoundaryTable& boundary, Problem problem, const PlacedRelation& placed) {
   try {
     problem.boundary = placed.relation;
@@ -85,9 +73,19 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   study.system = make_system(scene.system);
   study.options = read_options(scene.solve);
   if (scene.system.curvature) study.curvature = scene.system.curvature->value;
-  check_memory(scene, study.system, study.options);
   study.problem = read_problem(scene, study.system);
   return study;
+}
+
+/// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
+void check_memory(const Study& study) {
+  const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
+  const int degree = study.options.scheme ? study.options.scheme->degree : 2;
+  const double needed = solve_bytes(n, elements, degree), available = available_bytes();
+  if (needed > available)
+    throw std::length_error(
+        fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; there are {}",
+                    study.scene, n, elements, degree, byte_text(needed), byte_text(available)));
 }
 
 double median(std::vector<double> values) {
@@ -113,6 +111,7 @@ Study load(const std::string& path, const std::vector<std::string>& sets) {
 
 Solution run(const Study& study, int repeat) {
   if (repeat < 1) throw std::invalid_argument(fmt::format("repeat = {}; need at least 1", repeat));
+  check_memory(study);
   Solver solver;
   Solution solution;
   std::vector<double> solve, analyse;

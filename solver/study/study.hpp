@@ -29,7 +29,8 @@ struct Study {
 Study load(const std::string& path, const std::vector<std::string>& sets = {});
 
 /// Solves `repeat` times from the same guess with one Solver. The solution is the last one's; its seconds
-/// are the medians. Throws std::invalid_argument if repeat < 1.
+/// are the medians. Throws std::invalid_argument if repeat < 1 and std::length_error where the least
+/// that the solve needs exceeds the memory there is.
 Solution run(const Study& study, int repeat = 1);
 
 }  // namespace extremal

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/commands.hpp"
+#include "study/inspection.hpp"
+
+namespace extremal::app {
+namespace {
+
+std::string coordinates_text(const System& system) {
+  std::vector<std::string> texts;
+  for (const Coordinate& c : system.coordinates)
+    texts.push_back(c.array ? fmt::format("{}[{}]", c.name, c.count) : c.name);
+  return fmt::format("{}: {}", system.names.size(), fmt::join(texts, ", "));
+}
+
+std::string boundary_text(const Problem& problem) {
+  const int n = problem.coordinates(), rows = problem.boundary.rows;
+  if (problem.periodic) return "periodic";
+  return fmt::format("{} conditions on {} end values, {} natural", rows, 2 * n, problem.ends.free);
+}
+
+std::string duration_text(const Duration& duration) {
+  if (!duration.free) return fmt::format("{}", duration.value);
+  const std::string closed = duration.energy ? fmt::format("energy = {}", *duration.energy) : "where";
+  return fmt::format("free, guess {}, closed by {}", duration.value, closed);
+}
+
+void line(const char* name, const std::string& text) { fmt::print("{:<14} {}\n", name, text); }
+
+void print_structure(const Inspection& found) {
+  line("time", found.autonomous ? "L does not depend on t: energy is conserved" : "L depends on t");
+  if (found.quadratic)
+    line("velocities",
+         fmt::format("constant mass, {} entries; {} gyroscopic{}", found.mass_entries,
+                     found.gyroscopic_entries,
+                     found.velocity_free ? "; separable: the rest of L depends on positions only" : ""));
+  else
+    line("velocities", "the mass depends on where the system is");
+  line("Hessian", fmt::format("{} entries evaluated: {} in (q, q), {} in (q', q), {} in (q', q')",
+                              found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
+  for (const Inspection::Tape& tape : found.tapes)
+    line(tape.order.c_str(),
+         fmt::format("{} instructions in {} kernel{}, {} played a point", tape.instructions, tape.kernels,
+                     tape.kernels == 1 ? "" : "s", tape.played));
+}
+
+std::string point_text(const Study& study, const WorstDerivative& worst) {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> texts;
+  const auto& names = study.problem.names;
+  for (std::size_t a = 0; a < std::min(names.size(), most); ++a)
+    texts.push_back(fmt::format("{0} = {1:.4g}, {0}' = {2:.4g}", names[a], worst.q[a], worst.v[a]));
+  if (names.size() > most) texts.emplace_back("…");
+  return fmt::format("{}, t = {:.4g}", fmt::join(texts, ", "), worst.t);
+}
+
+void print_worst(const Study& study, const char* order, const WorstDerivative& worst) {
+  if (worst.name.empty()) return;
+  line(order, fmt::format("off by {:.1e} at worst, in {}: {:.15g}, by differences {:.15g}", worst.error,
+                          worst.name, worst.derivative, worst.difference));
+  line("", "at " + point_text(study, worst));
+}
+
+}  // namespace
+
+int check(const CheckArguments& arguments) {
+  const Study study = load(arguments.scene, arguments.sets);
+  const Inspection found = inspect(study);
+  const DerivativeCheck& derivatives = found.derivatives;
+  if (!study.title.empty()) line("title", study.title);
+  line("coordinates", coordinates_text(study.system));
+  line("boundary", boundary_text(study.problem));
+  line("duration", duration_text(study.problem.duration));
+  print_structure(found);
+  line("derivatives", fmt::format("against differences of sixth order at {} points, by {} of {} variables",
+                                  derivatives.points, derivatives.columns, 2 * study.problem.coordinates()));
+  print_worst(study, "first", derivatives.gradient);
+  print_worst(study, "second", derivatives.hessian);
+  if (derivatives.agree()) return Exit::done;
+  fmt::print(stderr, "error: {}: {}\n", arguments.scene,
+             derivatives.points ? "derivatives and differences do not agree"
+                                : "L is not finite at any of the points that were tried");
+  return Exit::not_converged;
+}
+
+}  // namespace extremal::app

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// \file The commands. Each returns the exit code; what is refused is thrown.
+
+namespace extremal::app {
+
+/// Exit codes, as documented for the command line.
+enum Exit : int { done = 0, not_converged = 1, refused = 2 };
+
+/// An option that cannot be used. what() names it, with the numbers.
+struct OptionError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct SolveArguments {
+  std::string scene;
+  std::vector<std::string> sets;
+  std::string output, csv, plot;  ///< paths; empty: not asked for
+  int samples = 0;                ///< 0: not asked for
+  std::string at;                 ///< "T1,T2,…"
+  int repeat = 1;
+  bool quiet = false;
+};
+int solve(const SolveArguments& arguments);
+
+struct CheckArguments {
+  std::string scene;
+  std::vector<std::string> sets;
+};
+int check(const CheckArguments& arguments);
+
+int list();
+
+}  // namespace extremal::app

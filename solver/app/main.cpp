@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+
+#include "app/commands.hpp"
+
+namespace {
+
+using namespace extremal::app;
+
+/// Every --set takes one value, so that the scene may follow it.
+void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& sets) {
+  command.add_option("scene", scene, "the scene, a TOML file")->required()->type_name("SCENE");
+  command.add_option("--set", sets, "change a key of the scene; may be repeated")
+      ->type_name("key=value")
+      ->allow_extra_args(false);
+}
+
+void add_solve(CLI::App& app, SolveArguments& a, std::function<int()>& chosen) {
+  CLI::App& command = *app.add_subcommand("solve", "solve a scene");
+  add_scene(command, a.scene, a.sets);
+  command.add_option("--output", a.output, "write the result as JSON")->type_name("R.json");
+  command.add_option("--csv", a.csv, "write samples as CSV (201 unless --samples or --at)")
+      ->type_name("R.csv");
+  command.add_option("--plot", a.plot, "draw the trajectory")->type_name("P.svg|P.png");
+  command.add_option("--samples", a.samples, "so many equally spaced samples, both ends included")
+      ->type_name("N");
+  command.add_option("--at", a.at, "samples at these times")->type_name("T1,T2,…");
+  command.add_option("--repeat", a.repeat, "solve so many times and report the median time")->type_name("N");
+  command.add_flag("--quiet", a.quiet, "write nothing but errors");
+  command.callback([&a, &chosen, &command] {
+    if (command.count("--samples") && a.samples < 2)
+      throw OptionError(fmt::format("--samples {}: need at least 2", a.samples));
+    chosen = [&a] { return solve(a); };
+  });
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Trajectories of Lagrangian systems as stationary points of the discrete action", "extremal");
+  app.require_subcommand(1);
+  std::function<int()> chosen;
+  SolveArguments solve_arguments;
+  add_solve(app, solve_arguments, chosen);
+
+  CheckArguments check_arguments;
+  CLI::App& checking =
+      *app.add_subcommand("check", "read a scene, check its derivatives, say what was found");
+  add_scene(checking, check_arguments.scene, check_arguments.sets);
+  checking.callback([&] { chosen = [&] { return check(check_arguments); }; });
+
+  app.add_subcommand("list", "systems, schemes and methods")->callback([&] { chosen = list; });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help
+    return app.exit(asked);
+  } catch (const CLI::ParseError& e) {
+    throw OptionError(fmt::format("{} (see extremal --help)", e.what()));
+  }
+  return chosen();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw OptionError("standard output cannot be written");
+    return code;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: there is not enough memory\n");
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+  }
+  return Exit::refused;
+}

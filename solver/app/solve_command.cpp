@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "app/commands.hpp"
+#include "app/sampling.hpp"
+#include "report/csv.hpp"
+#include "report/json.hpp"
+#include "report/plot.hpp"
+#include "report/text.hpp"
+#include "study/study.hpp"
+
+namespace extremal::app {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int csv_samples = 201, plot_samples = 801, most_samples = 10'000'000;
+
+/// Refuses, before anything is solved, a path that cannot be written.
+void check_writable(const char* option, const std::string& path) {
+  if (path.empty()) return;
+  const auto refuse = [&](const std::string& why) {
+    throw OptionError(fmt::format("{} {}: {}", option, path, why));
+  };
+  std::error_code error;
+  if (fs::is_directory(path, error)) refuse("is a directory");
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  const bool exists = fs::exists(path, error);
+  if (!exists && !fs::is_directory(folder, error)) refuse("there is no such folder");
+  if (::access(exists ? path.c_str() : folder.c_str(), W_OK) != 0) refuse(std::strerror(errno));
+}
+
+void check_options(const SolveArguments& a) {
+  if (a.samples && !a.at.empty()) throw OptionError("--samples and --at exclude each other");
+  if (a.samples > most_samples)
+    throw OptionError(fmt::format("--samples {}: at most {} are written", a.samples, most_samples));
+  if (a.repeat < 1) throw OptionError(fmt::format("--repeat {}: need at least 1", a.repeat));
+  check_writable("--output", a.output);
+  check_writable("--csv", a.csv);
+  check_writable("--plot", a.plot);
+  if (!a.plot.empty()) check_plot_path(a.plot);
+}
+
+/// One line that is written over, on a terminal.
+class Progress {
+ public:
+  explicit Progress(bool wanted) : shown_(wanted && ::isatty(STDERR_FILENO)) {}
+  ~Progress() {
+    if (shown_) fmt::print(stderr, "\r\x1b[K");
+  }
+  std::function<void(const Iteration&)> callback() const {
+    if (!shown_) return {};
+    return [](const Iteration& i) {
+      fmt::print(stderr, "\r\x1b[K{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements,
+                 i.degree, i.residual, i.step);
+      std::fflush(stderr);
+    };
+  }
+
+ private:
+  bool shown_;
+};
+
+/// Samples for --samples or --at; none where neither is given.
+std::optional<Samples> wanted_samples(const SolveArguments& a, const std::vector<double>& at,
+                                      const Study& study, const Solution& solution) {
+  if (a.samples)
+    return sample(study.problem, solution.trajectory, equal_times(a.samples, solution.duration()));
+  if (at.empty()) return std::nullopt;
+  check_times(at, solution.duration());
+  return sample(study.problem, solution.trajectory, at);
+}
+
+void write_outputs(const SolveArguments& a, const Study& study, const Result& result) {
+  if (!a.output.empty()) write_json(a.output, result);
+  if (!result.solution.converged()) return;
+  const auto sampled = [&](int count) {
+    const Trajectory& trajectory = result.solution.trajectory;
+    return sample(study.problem, trajectory, equal_times(count, trajectory.duration()));
+  };
+  if (!a.csv.empty()) write_csv(a.csv, result.samples ? *result.samples : sampled(csv_samples), result.names);
+  if (!a.plot.empty()) write_plot(a.plot, {result.title, result.names, sampled(plot_samples)});
+}
+
+}  // namespace
+
+int solve(const SolveArguments& a) {
+  check_options(a);
+  const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
+  Study study = load(a.scene, a.sets);
+  if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
+
+  Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
+  {
+    const Progress progress(!a.quiet && a.repeat == 1);
+    study.options.progress = progress.callback();
+    result.solution = run(study, a.repeat);
+  }
+  const bool converged = result.solution.converged();
+  if (converged) result.samples = wanted_samples(a, at, study, result.solution);
+  write_outputs(a, study, result);
+  if (!a.quiet) fmt::print("{}", summary(result));
+  if (!converged)
+    fmt::print(stderr, "error: {}: {}: {}\n", a.scene, name(result.solution.status), result.solution.message);
+  return converged ? Exit::done : Exit::not_converged;
+}
+
+}  // namespace extremal::app

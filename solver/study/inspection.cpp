@@ -1,0 +1,55 @@
+#include "study/inspection.hpp"
+
+#include <fmt/format.h>
+
+#include "action/scheme.hpp"
+#include "scene/schema.hpp"
+#include "scene/systems.hpp"
+#include "system/tape_lagrangian.hpp"
+
+namespace extremal {
+namespace {
+
+std::vector<Inspection::Tape> tapes_of(const Lagrangian& lagrangian) {
+  const auto* tape = dynamic_cast<const TapeLagrangian*>(&lagrangian);
+  std::vector<Inspection::Tape> tapes;
+  if (!tape) return tapes;
+  for (const auto& [order, text] : {std::pair(Order::value, "value"), std::pair(Order::gradient, "gradient"),
+                                    std::pair(Order::hessian, "Hessian")}) {
+    const TapeSummary summary = tape->summary(order);
+    tapes.push_back({text, summary.kernels, summary.instructions, summary.played});
+  }
+  return tapes;
+}
+
+}  // namespace
+
+Inspection inspect(const Study& study) {
+  const Structure& structure = study.system.lagrangian->structure();
+  Inspection found;
+  found.autonomous = structure.autonomous;
+  found.quadratic = structure.quadratic;
+  found.velocity_free = structure.velocity_free;
+  found.mass_entries = static_cast<int>(structure.mass.size());
+  found.gyroscopic_entries = static_cast<int>(structure.gyroscopic.size());
+  for (const HessianEntry& e : structure.hessian) {
+    const int n = structure.coordinates;
+    ++(e.row < n ? found.qq : e.column < n ? found.vq : found.vv);
+  }
+  found.tapes = tapes_of(*study.system.lagrangian);
+  found.derivatives = check_derivatives(study.problem);
+  return found;
+}
+
+Catalogue catalogue() {
+  Catalogue found;
+  for (const SystemFile& file : system_files()) found.systems.push_back({file.name, file.about});
+  for (const Scheme& s : schemes())
+    found.schemes.push_back({s.name, fmt::format("degree {}, order {}; {}", s.degree, s.order, s.source)});
+  for (const MethodRecord& m : method_records())
+    found.methods.push_back(
+        {std::string(m.name), std::string(m.help) + (m.available ? "" : " (not available yet)")});
+  return found;
+}
+
+}  // namespace extremal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/derivatives.hpp"
+#include "study/study.hpp"
+
+/// \file What was found in a scene, and what there is to write in one.
+
+namespace extremal {
+
+/// The structure of L = ½ q'ᵀMq' + q'ᵀCq + aᵀq' + R and the tapes of R.
+struct Inspection {
+  bool autonomous = true;
+  bool quadratic = false;      ///< M, C, a are constant
+  bool velocity_free = false;  ///< R does not depend on q'
+  int mass_entries = 0, gyroscopic_entries = 0;
+  int qq = 0, vq = 0, vv = 0;  ///< Hessian entries of R in (q, q), (q', q), (q', q'), lower triangle
+  struct Tape {
+    std::string order;  ///< "value", "gradient", "Hessian"
+    int kernels = 0, instructions = 0;
+    long long played = 0;  ///< instructions a point, over all rows of sums
+  };
+  std::vector<Tape> tapes;  ///< none for a Lagrangian that is not a tape
+  DerivativeCheck derivatives;
+};
+Inspection inspect(const Study& study);
+
+/// A name that a scene may use, and what it means.
+struct CatalogueEntry {
+  std::string name, help;
+};
+struct Catalogue {
+  std::vector<CatalogueEntry> systems, schemes, methods;
+};
+/// System files, schemes and methods from their own records.
+Catalogue catalogue();
+
+}  // namespace extremal
