@@ -1,5 +1,5 @@
 # `make demo` and `make test` work on a fresh clone: what is missing is installed, then built.
-SCENE = problems/scenes/figure-eight.toml
+SCENE = problems/scenes/cr3bp.toml
 
 .PHONY: build demo test bench debug asan ubsan sanitize format install packages clean
 

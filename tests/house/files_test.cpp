@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+
+#include "house/sources.hpp"
+
+using namespace house;
+
+namespace {
+
+std::vector<fs::path> all_sources() {
+  std::vector<fs::path> result;
+  for (const char* folder : {"solver", "tests", "bench"})
+    for (const fs::path& file : sources(folder)) result.push_back(file);
+  return result;
+}
+
+/// Characters, not bytes, of a UTF-8 text.
+std::size_t characters(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+}
+
+TEST(Files, FitIntoAHead) {
+  for (const fs::path& file : all_sources()) EXPECT_LE(lines(file).size(), 350u) << file << " holds too much";
+}
+
+TEST(Files, HaveShortCleanLines) {
+  for (const fs::path& file : all_sources()) {
+    int number = 0;
+    for (const std::string& line : lines(file)) {
+      ++number;
+      EXPECT_LE(characters(line), 110u) << file << ":" << number;
+      EXPECT_TRUE(line.empty() || (line.back() != ' ' && line.back() != '\r')) << file << ":" << number;
+      EXPECT_EQ(line.find('\t'), std::string::npos) << file << ":" << number;
+    }
+    EXPECT_TRUE(read(file).ends_with("\n")) << file;
+  }
+}
+
+TEST(Files, HeadersGuardThemselves) {
+  for (const fs::path& file : all_sources()) {
+    if (file.extension() != ".hpp") continue;
+    EXPECT_TRUE(read(file).starts_with("#pragma once\n")) << file;
+  }
+}
+
+}  // namespace
