@@ -1,0 +1,10 @@
+# The compiler's own vectorisation of the small kernels costs more than it gains.
+set_source_files_properties(linear/chain_small.simd.cpp PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize)
+
+# SuiteSparse has no CMake file in Debian 12.
+find_path(SUITESPARSE_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+target_include_directories(${target} PRIVATE ${SUITESPARSE_INCLUDE_DIR})
+foreach(package umfpack cholmod amd suitesparseconfig)
+  find_library(SUITESPARSE_${package} ${package} REQUIRED)
+  target_link_libraries(${target} PUBLIC ${SUITESPARSE_${package}})
+endforeach()
