@@ -28,9 +28,9 @@ struct Samples {
 struct Result {
   std::string title;               ///< may be empty
   std::vector<std::string> names;  ///< of the coordinates: "x", "x[1]"
-  Solution solution;
-  double seconds_read = 0;         ///< from opening the scene until the problem was ready
-  std::optional<Samples> samples;  ///< never written where the solution has not converged
+  Solution solution = {};
+  double seconds_read = 0;              ///< from opening the scene until the problem was ready
+  std::optional<Samples> samples = {};  ///< never written where the solution has not converged
 };
 
 /// Keys in JSON and CSV: "x[1]'" and "p_x[1]".

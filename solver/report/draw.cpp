@@ -1,0 +1,104 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
+
+#include "report/file.hpp"
+#include "report/gnuplot.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Lives as long as the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_((std::filesystem::temp_directory_path() / "extremal-XXXXXX").string()) {
+    if (mkdtemp(path_.data()) == nullptr) {
+      throw std::runtime_error(fmt::format("cannot make the folder {}: {}", path_, std::strerror(errno)));
+    }
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string operator/(const char* file) const { return path_ + "/" + file; }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::string content(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// What the child does between fork and exec.
+class FileActions {
+ public:
+  FileActions(const std::string& folder, const char* log) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_APPEND, 0600);
+    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+  }
+  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
+  FileActions(const FileActions&) = delete;
+  FileActions& operator=(const FileActions&) = delete;
+
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_;
+};
+
+/// Runs `gnuplot -d SCRIPT` (-d: default settings, no start-up files) in the folder; whether it ended well.
+bool run_gnuplot(const std::string& folder, const char* script, const char* log) {
+  std::string arguments[] = {"gnuplot", "-d", script};
+  char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
+  const FileActions actions(folder, log);
+  pid_t child = 0;
+  const int error = posix_spawnp(&child, "gnuplot", actions.get(), nullptr, argv, environ);
+  if (error == ENOENT) {
+    throw std::runtime_error("plots are drawn by gnuplot, which was not found: apt install gnuplot-nox");
+  }
+  if (error != 0) throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) {
+      throw std::runtime_error(fmt::format("cannot wait for gnuplot: {}", std::strerror(errno)));
+    }
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+std::string draw(const Figure& figure, Format format) {
+  const TemporaryFolder folder;
+  write_file(folder / "script", [&](std::ostream& out) { out << gnuplot_script(figure, format, "figure"); });
+  const bool ended_well = run_gnuplot(folder.path(), "script", "log");
+  std::string image = content(folder / "figure");
+  if (!ended_well || image.empty()) {
+    throw std::runtime_error("gnuplot failed: " + printable(content(folder / "log"), 400));
+  }
+  return image;
+}
+
+}  // namespace extremal

@@ -1,0 +1,236 @@
+#include "report/gnuplot.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace extremal {
+
+namespace {
+
+constexpr Colour ink = 0x262A33, quiet_ink = 0x5A606B, frame = 0x8C929C, rule = 0xE8EAED, paper = 0xFFFFFF;
+constexpr double font_size = 13, title_size = 18;  // pixels
+constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
+constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
+
+/// Between single quotes gnuplot substitutes neither commands nor variables nor escapes; a quote is doubled.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : printable(text, 100)) result += c == '\'' ? "''" : std::string(1, c);
+  return result + "'";
+}
+
+std::string hexadecimal(Colour colour) { return fmt::format("'#{:06X}'", colour); }
+
+/// What gnuplot measures in units of its own, which differ with the format.
+struct Sizes {
+  double font;    ///< of a pixel
+  double point;   ///< of a mark
+  double tick;    ///< length of a tick
+  double number;  ///< by how much the numbers below an axis are to be raised, in lines
+};
+constexpr Sizes svg_sizes{.font = 1, .point = 0.6, .tick = 0.4, .number = 0.35};
+constexpr Sizes png_sizes{.font = 0.75, .point = 0.8, .tick = 1, .number = 0};
+
+Box whole_pixels(const Box& box) {
+  return {std::round(box.left), std::round(box.top), std::round(box.width), std::round(box.height)};
+}
+
+/// Texts are placed by fractions of the figure ("screen") or of a panel ("graph"), curves in the units to
+/// which gnuplot rounds, so that values of any size draw alike.
+class Script {
+ public:
+  Script(const Figure& figure, Format format, const std::string& output)
+      : figure_(figure), sizes_(format == Format::svg ? svg_sizes : png_sizes) {
+    terminal(format);
+    add("set output {}\nset encoding utf8\nset key off\nset multiplot\n", quoted(output));
+    add("set cbrange [0:1]\n");
+    for (const Panel& panel : figure.panels) draw(panel);
+    add("unset multiplot\nunset output\n");
+  }
+
+  std::string text() const { return fmt::to_string(buffer_); }
+
+ private:
+  template <class... Values>
+  void add(fmt::format_string<Values...> pattern, Values&&... values) {
+    fmt::format_to(std::back_inserter(buffer_), pattern, std::forward<Values>(values)...);
+  }
+
+  void terminal(Format format) {
+    const char* common = "noenhanced rounded background '#FFFFFF'";
+    const double size = font_size * sizes_.font;
+    if (format == Format::svg) {
+      add("set terminal svg size {:.0f},{:.0f} {} font 'Helvetica,{}'\n", figure_.width, figure_.height,
+          common, size);
+    } else {
+      add("set terminal pngcairo size {:.0f},{:.0f} {} font 'Helvetica,{}'", zoom * figure_.width,
+          zoom * figure_.height, common, size);
+      add(" fontscale {0} linewidth {0} pointscale {0}\n", zoom);
+    }
+  }
+
+  std::string screen(double x, double y) const {
+    return fmt::format("screen {:.5f},{:.5f}", x / figure_.width, 1 - y / figure_.height);
+  }
+
+  void label(const std::string& text, double x, double y, const char* align, Colour colour) {
+    add("set label {} at {} {} textcolor rgb {}\n", quoted(text), screen(x, y), align, hexadecimal(colour));
+  }
+
+  void draw(const Panel& panel) {
+    add("unset label\nunset arrow\nunset colorbox\n");
+    if (&panel == &figure_.panels.front() && !figure_.title.empty()) {
+      add("set label {} at {} left font ',{}' textcolor rgb {}\n", quoted(figure_.title), screen(20, 26),
+          title_size * sizes_.font, hexadecimal(ink));
+    }
+    place(panel);
+    if (panel.axes) axes(panel);
+    for (const Note& note : panel.notes) {
+      add("set label {} at graph {:.5f},{:.5f} center textcolor rgb {}\n", quoted(note.text),
+          panel.x.place(note.x), panel.y.place(note.y), hexadecimal(quiet_ink));
+    }
+    legend(panel);
+    contents(panel);
+  }
+
+  void place(const Panel& panel) {
+    const Box box = whole_pixels(panel.box);
+    add("set xrange [0:{:.0f}]\nset yrange [0:{:.0f}]\n", box.width * raster, box.height * raster);
+    add("set lmargin at screen {:.9f}\nset rmargin at screen {:.9f}\n", box.left / figure_.width,
+        (box.left + box.width) / figure_.width);
+    add("set tmargin at screen {:.9f}\nset bmargin at screen {:.9f}\n", 1 - box.top / figure_.height,
+        1 - (box.top + box.height) / figure_.height);
+    add("unset border\nunset xtics\nunset ytics\nunset grid\n");
+  }
+
+  void axes(const Panel& panel) {
+    add("set border 3 back linecolor rgb {} linewidth 0.8\n", hexadecimal(frame));
+    const Box box = whole_pixels(panel.box);
+    ticks("xtics", panel.x, box.width * raster, sizes_.number);
+    ticks("ytics", panel.y, box.height * raster);
+    if (panel.maps.empty()) {
+      add("set grid xtics ytics back linetype 1 linecolor rgb {} linewidth 0.8\n", hexadecimal(rule));
+    }
+    label(panel.y.label, box.left, box.top - 14, "left", ink);
+    if (panel.x.numbered)
+      label(panel.x.label, box.left + box.width / 2, box.top + box.height + 38, "center", ink);
+  }
+
+  void ticks(const char* which, const Axis& axis, double length, double raised = 0) {
+    add("set {} out nomirror scale {} offset 0,{} textcolor rgb {} (", which, sizes_.tick, raised,
+        hexadecimal(quiet_ink));
+    const char* separator = "";
+    for (const Tick& tick : axis.ticks) {
+      add("{}{} {:.5f}", separator, quoted(axis.numbered ? tick.text : ""), axis.place(tick.at) * length);
+      separator = ",";
+    }
+    add(")\n");
+  }
+
+  /// In the line of the vertical axis's name, from the right.
+  void legend(const Panel& panel) {
+    const double y = panel.box.top - 14;
+    double right = panel.box.left + panel.box.width;
+    for (auto entry = panel.legend.rbegin(); entry != panel.legend.rend(); ++entry) {
+      const double start = right - text_width(entry->text);
+      label(entry->text, start, y, "left", quiet_ink);
+      if (entry->shape == Shape::line) {
+        add("set arrow from {} to {} nohead linewidth 2.2 linecolor rgb {}\n", screen(start - 24, y),
+            screen(start - 7, y), hexadecimal(entry->colour));
+      } else {
+        for (const std::string& disc : discs(entry->shape, entry->colour)) {
+          add("set label '' at {} point {}\n", screen(start - 11, y), disc);
+        }
+      }
+      right = start - 38;
+    }
+  }
+
+  /// What is drawn for a mark, one upon the other: a ring is a disc with a white one inside.
+  std::vector<std::string> discs(Shape shape, Colour colour) const {
+    constexpr auto pattern = "pointtype 7 pointsize {:.2f} linecolor rgb {}";
+    std::vector<std::string> parts{fmt::format(pattern, sizes_.point, hexadecimal(colour))};
+    if (shape == Shape::ring) {
+      parts.push_back(fmt::format(pattern, 0.55 * sizes_.point, hexadecimal(paper)));
+    }
+    return parts;
+  }
+
+  void contents(const Panel& panel) {
+    std::vector<std::string> parts;
+    for (const ColourMap& map : panel.maps) parts.push_back(colours(map, panel.box));
+    for (const Curve& curve : panel.curves) {
+      parts.push_back(fmt::format("{} with lines linewidth {} linecolor rgb {}",
+                                  points(panel, curve.x, curve.y), curve.width, hexadecimal(curve.colour)));
+    }
+    for (const Mark& mark : panel.marks) {
+      const std::string at = points(panel, {mark.x}, {mark.y});
+      for (const std::string& disc : discs(mark.shape, mark.colour))
+        parts.push_back(at + " with points " + disc);
+    }
+    add("plot {}\n", fmt::join(parts, ", "));
+  }
+
+  std::string open_block() {
+    std::string block = fmt::format("$d{}", blocks_++);
+    add("{} << EOD\n", block);
+    return block;
+  }
+
+  /// gnuplot moves exactly horizontal and vertical steps onto whole pixels, which shows as notches where a
+  /// curve turns; so no step is quite that.
+  std::string points(const Panel& panel, const Column& x, const Column& y) {
+    const Box box = whole_pixels(panel.box);
+    const std::string block = open_block();
+    long across = -1, up = -1;
+    const auto next = [](double position, long before) {
+      const long rounded = std::lround(position);
+      return rounded == before ? rounded + 1 : rounded;
+    };
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      across = next(panel.x.place(x[k]) * box.width * raster, across);
+      up = next(panel.y.place(y[k]) * box.height * raster, up);
+      add("{} {}\n", across, up);
+    }
+    add("EOD\n");
+    return block;
+  }
+
+  /// Cells are drawn as pixels whose centres fill the panel from edge to edge.
+  std::string colours(const ColourMap& map, const Box& box) {
+    const char* diverging = "0 '#0B4F8A', 0.25 '#6BAED6', 0.5 '#F7F7F7', 0.75 '#F4A261', 1 '#A63603'";
+    const char* sequential = "0 '#440154', 0.25 '#3B528B', 0.5 '#21918C', 0.75 '#5EC962', 1 '#FDE725'";
+    add("set palette defined ({})\n", map.diverging ? diverging : sequential);
+    add("set colorbox user origin {} size screen {:.5f},{:.5f} noborder\n",
+        screen(box.left + box.width + 18, box.top + box.height), 12 / figure_.width,
+        box.height / figure_.height);
+    ticks("cbtics", map.scale, 1);
+    label(map.scale.label, box.left + box.width + 18, box.top - 14, "left", ink);
+    const std::string block = open_block();
+    for (std::size_t row = 0; row < map.rows; ++row) {
+      for (std::size_t column = 0; column < map.columns; ++column) {
+        add("{:.4f} ", map.scale.place(map.values[row * map.columns + column]));
+      }
+      add("\n");
+    }
+    add("EOD\n");
+    return fmt::format("{} matrix using (($1+0.5)*{}):(($2+0.5)*{}):3 with image", block,
+                       whole_pixels(box).width * raster / static_cast<double>(map.columns),
+                       whole_pixels(box).height * raster / static_cast<double>(map.rows));
+  }
+
+  const Figure& figure_;
+  Sizes sizes_;
+  fmt::memory_buffer buffer_;
+  int blocks_ = 0;
+};
+
+}  // namespace
+
+std::string gnuplot_script(const Figure& figure, Format format, const std::string& output) {
+  return Script(figure, format, output).text();
+}
+
+}  // namespace extremal

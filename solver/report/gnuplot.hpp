@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "report/figure.hpp"
+
+/// \file Figures through gnuplot.
+
+namespace extremal {
+
+enum class Format { svg, png };
+
+/// The commands that draw a figure into the file `output` of the working directory. Every text is a quoted
+/// literal in which gnuplot substitutes nothing.
+std::string gnuplot_script(const Figure& figure, Format format, const std::string& output);
+
+/// Bytes of the drawn file. gnuplot runs without a shell, without start-up files and without anything to
+/// print to, in a temporary folder that is removed. Throws std::runtime_error if it is missing or fails.
+std::string draw(const Figure& figure, Format format);
+
+}  // namespace extremal

@@ -1,0 +1,172 @@
+#include "report/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "report/figure.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// In characters, of UTF-8.
+std::size_t length(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string padded(const std::string& text, std::size_t width, Table::Align align) {
+  const std::string space(width - std::min(width, length(text)), ' ');
+  return align == Table::Align::left ? text + space : space + text;
+}
+
+/// Lines "name  value"; those without a value, or with one that is not finite, are left out.
+class Lines {
+ public:
+  void add(const std::string& name, const std::string& value) {
+    if (!value.empty()) text_ += padded(name, 16, Table::Align::left) + value + "\n";
+  }
+  void add_number(const std::string& name, double value) {
+    if (std::isfinite(value)) add(name, fmt::format("{:.12g}", value));
+  }
+  void add_small(const std::string& name, double value) {
+    if (std::isfinite(value)) add(name, fmt::format("{:.1e}", value));
+  }
+  std::string text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string energy_text(const Solution& solution) {
+  if (!solution.energy || !std::isfinite(*solution.energy)) return "";
+  const std::string energy = fmt::format("{:.12g}", *solution.energy);
+  const bool drift = solution.energy_drift && std::isfinite(*solution.energy_drift);
+  return drift ? fmt::format("{}, drift {:.1e}", energy, *solution.energy_drift) : energy;
+}
+
+std::string index_text(const Solution& solution) {
+  if (!solution.morse_index) return "";
+  std::string text = fmt::format("{}", *solution.morse_index);
+  if (solution.nullity) text += fmt::format(", nullity {}", *solution.nullity);
+  return text + (solution.minimizing ? ", minimising" : "");
+}
+
+/// "1 element", "2 elements".
+std::string counted(int count, const char* noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+/// Widths of the columns, of at least `least` characters.
+std::vector<std::size_t> widths(const Table& table, std::size_t least) {
+  std::vector<std::size_t> widest;
+  for (const Table::Heading& heading : table.head) widest.push_back(std::max(least, length(heading.text)));
+  for (const std::vector<std::string>& row : table.rows) {
+    if (row.size() != table.head.size()) {
+      throw std::invalid_argument(
+          fmt::format("a row has {} cells under {} headings", row.size(), table.head.size()));
+    }
+    for (std::size_t c = 0; c < row.size(); ++c) widest[c] = std::max(widest[c], length(row[c]));
+  }
+  return widest;
+}
+
+std::vector<std::string> headings(const Table& table) {
+  std::vector<std::string> row;
+  for (const Table::Heading& heading : table.head) row.push_back(heading.text);
+  return row;
+}
+
+std::string plain_row(const Table& table, const std::vector<std::string>& cells,
+                      const std::vector<std::size_t>& widest) {
+  std::string line;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    line += (c == 0 ? "" : "  ") + padded(cells[c], widest[c], table.head[c].align);
+  }
+  return line.erase(line.find_last_not_of(' ') + 1) + "\n";
+}
+
+std::string markdown_row(const Table& table, const std::vector<std::string>& cells,
+                         const std::vector<std::size_t>& widest) {
+  std::string line = "|";
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    line += " " + padded(cells[c], widest[c], table.head[c].align) + " |";
+  }
+  return line + "\n";
+}
+
+/// A bar in a cell would end it.
+Table without_bars(Table table) {
+  const auto escape = [](std::string& text) {
+    for (std::size_t k = text.find('|'); k != std::string::npos; k = text.find('|', k + 2))
+      text.insert(k, "\\");
+  };
+  for (Table::Heading& heading : table.head) escape(heading.text);
+  for (std::vector<std::string>& row : table.rows) std::for_each(row.begin(), row.end(), escape);
+  return table;
+}
+
+}  // namespace
+
+std::string summary(const Result& result) {
+  const Solution& solution = result.solution;
+  const Trajectory& trajectory = solution.trajectory;
+  Lines lines;
+  lines.add("title", printable(result.title, 200));
+  lines.add("status", name(solution.status));
+  lines.add("message", printable(solution.message, 2000));
+  lines.add("strategy", printable(solution.strategy, 200));
+  if (trajectory.elements() > 0) {
+    lines.add_number("duration", solution.duration());
+    lines.add_number("action", solution.action);
+    lines.add("energy", energy_text(solution));
+    if (solution.converged()) lines.add_small("error estimate", solution.error_estimate);
+    lines.add_small("residual", solution.residual);
+    lines.add("index", index_text(solution));
+    lines.add("mesh", fmt::format("{} of degree {}, {}", counted(trajectory.elements(), "element"),
+                                  trajectory.degree, counted(solution.unknowns, "unknown")));
+  }
+  lines.add("iterations", fmt::format("{}", solution.iterations));
+  lines.add("time",
+            fmt::format("read {}, solve {}, analyse {}", duration_text(result.seconds_read),
+                        duration_text(solution.seconds_solve), duration_text(solution.seconds_analyse)));
+  return lines.text();
+}
+
+std::string duration_text(double seconds) {
+  struct Unit {
+    double size;
+    const char* name;
+  };
+  static constexpr Unit units[] = {{1e-9, "ns"}, {1e-6, "µs"}, {1e-3, "ms"}, {1, "s"}};
+  const Unit* unit = units;
+  while (unit->size < 1 && seconds / unit->size >= 999.5) ++unit;
+  const double value = seconds / unit->size;
+  const int decimals = value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
+  return fmt::format("{:.{}f} {}", value, decimals, unit->name);
+}
+
+std::string plain_text(const Table& table) {
+  const std::vector<std::size_t> widest = widths(table, 1);
+  std::string text = plain_row(table, headings(table), widest);
+  for (const std::vector<std::string>& row : table.rows) text += plain_row(table, row, widest);
+  return text;
+}
+
+std::string markdown(const Table& given) {
+  const Table table = without_bars(given);
+  const std::vector<std::size_t> widest = widths(table, 4);
+  std::string text = markdown_row(table, headings(table), widest) + "|";
+  for (std::size_t c = 0; c < widest.size(); ++c) {
+    const bool right = table.head[c].align == Table::Align::right;
+    text += " " + std::string(widest[c] - (right ? 1 : 0), '-') + (right ? ": |" : " |");
+  }
+  text += "\n";
+  for (const std::vector<std::string>& row : table.rows) text += markdown_row(table, row, widest);
+  return text;
+}
+
+}  // namespace extremal
