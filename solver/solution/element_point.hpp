@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+
+#include "action/rule.hpp"
+#include "solution/solution.hpp"
+
+/// \file The polynomial of one element.
+
+namespace extremal {
+
+/// q and q' of element k at basis.points[point]; coordinate a goes to q[a*stride] and v[a*stride].
+void element_point(const Trajectory& trajectory, int k, const Basis& basis, int point, double* q, double* v,
+                   std::ptrdiff_t stride);
+
+}  // namespace extremal

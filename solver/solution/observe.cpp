@@ -1,0 +1,151 @@
+#include "solution/observe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "action/rule.hpp"
+#include "solution/element_point.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Points gathered for one call of the Lagrangian; a multiple of the lanes and of 64 bytes.
+constexpr int batch = 64;
+
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  void add(double x) {
+    least = std::min(least, x);
+    most = std::max(most, x);
+  }
+};
+
+std::vector<double> widths(const std::vector<Range>& ranges) {
+  std::vector<double> result;
+  for (const Range& range : ranges) result.push_back(range.most - range.least);
+  return result;
+}
+
+/// A Lagrangian evaluated over points that come one by one.
+class Surveyor {
+ public:
+  Surveyor(const Lagrangian& lagrangian, int coordinates)
+      : lagrangian_(lagrangian), n_(coordinates), ranges_q_(n_), ranges_v_(n_), ranges_p_(n_), p_(n_) {
+    const std::size_t rows = 2 * n_ + 1 + lagrangian.rows(Order::gradient);
+    q_ = storage_.reserve(rows * batch);
+    v_ = q_ + n_ * batch;
+    t_ = v_ + n_ * batch;
+    out_ = t_ + batch;
+  }
+
+  /// Place for the next point: coordinate a stands at q[a*batch], v likewise.
+  double* q() { return q_ + count_; }
+  double* v() { return v_ + count_; }
+
+  void take(double t) {
+    t_[count_++] = t;
+    if (count_ == batch) evaluate();
+  }
+
+  Survey finish() {
+    if (count_ > 0) evaluate();
+    return {finite_, start_, drift_, widths(ranges_q_), widths(ranges_v_), widths(ranges_p_)};
+  }
+
+ private:
+  void evaluate() {
+    for (std::size_t row = 0; row < 2 * n_ + 1; ++row)
+      std::fill(q_ + row * batch + count_, q_ + (row + 1) * batch, q_[row * batch + count_ - 1]);
+    lagrangian_.evaluate({batch, batch, q_, v_, t_}, Order::gradient, out_, scratch_);
+    for (int i = 0; i < count_; ++i) read(i);
+    count_ = 0;
+  }
+
+  /// p = M v + C q + a + ∂R/∂v. In E = p·v − L the terms linear in v cancel:
+  /// E = ½ vᵀMv + v·∂R/∂v − R.
+  void read(int i) {
+    const Structure& s = lagrangian_.structure();
+    const auto q = [&](int a) { return q_[a * batch + i]; };
+    const auto v = [&](int a) { return v_[a * batch + i]; };
+    double energy = -out_[i];
+    std::fill(p_.begin(), p_.end(), 0.0);
+    for (const Triplet& m : s.mass) {
+      p_[m.row] += m.value * v(m.column);
+      energy += 0.5 * v(m.row) * m.value * v(m.column);
+    }
+    for (const Triplet& c : s.gyroscopic) p_[c.row] += c.value * q(c.column);
+    for (std::size_t a = 0; a < s.linear.size(); ++a) p_[a] += s.linear[a];
+    for (std::size_t k = 0; k < s.gradient.size(); ++k) {
+      const int a = s.gradient[k] - static_cast<int>(n_);
+      if (a < 0) continue;
+      const double slope = out_[(1 + k) * batch + i];
+      p_[a] += slope;
+      energy += v(a) * slope;
+    }
+    for (std::size_t a = 0; a < n_; ++a) {
+      ranges_q_[a].add(q(a));
+      ranges_v_[a].add(v(a));
+      ranges_p_[a].add(p_[a]);
+    }
+    if (std::exchange(first_, false)) start_ = energy;
+    finite_ = finite_ && std::isfinite(energy);
+    drift_ = std::max(drift_, std::abs(energy - start_));
+  }
+
+  const Lagrangian& lagrangian_;
+  std::size_t n_;
+  Scratch storage_, scratch_;
+  double *q_, *v_, *t_, *out_;
+  int count_ = 0;
+  bool first_ = true, finite_ = true;
+  double start_ = 0, drift_ = 0;
+  std::vector<Range> ranges_q_, ranges_v_, ranges_p_;
+  std::vector<double> p_;
+};
+
+/// The nodes of an element and the midpoints between them.
+std::vector<double> survey_points(int degree) {
+  const std::vector<double>& nodes = lobatto_barycentric(degree).nodes;
+  std::vector<double> points{nodes.front()};
+  for (int j = 1; j <= degree; ++j) {
+    points.push_back((nodes[j - 1] + nodes[j]) / 2);
+    points.push_back(nodes[j]);
+  }
+  return points;
+}
+
+}  // namespace
+
+Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+  if (lagrangian.structure().coordinates != trajectory.coordinates)
+    throw std::invalid_argument(fmt::format("a trajectory of {} coordinates for a Lagrangian of {}",
+                                            trajectory.coordinates, lagrangian.structure().coordinates));
+  const Basis basis = lobatto_basis(trajectory.degree, survey_points(trajectory.degree));
+  Surveyor surveyor(lagrangian, trajectory.coordinates);
+  for (int k = 0; k < trajectory.elements(); ++k) {
+    const double start = trajectory.times[k], h = trajectory.times[k + 1] - start;
+    for (std::size_t i = 0; i < basis.points.size(); ++i) {
+      element_point(trajectory, k, basis, static_cast<int>(i), surveyor.q(), surveyor.v(), batch);
+      surveyor.take(start + h * basis.points[i]);
+    }
+  }
+  return surveyor.finish();
+}
+
+void observe_energy(const Lagrangian& lagrangian, Solution& solution) {
+  solution.energy.reset();
+  solution.energy_drift.reset();
+  if (!lagrangian.structure().autonomous) return;
+  const Survey found = survey(lagrangian, solution.trajectory);
+  if (!found.finite) return;
+  solution.energy = found.energy;
+  solution.energy_drift = found.energy_drift;
+}
+
+}  // namespace extremal

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "solution/solution.hpp"
+
+/// \file What is read off along a trajectory: energy, momenta and their ranges.
+
+namespace extremal {
+
+/// Over every node of every element and the midpoints between them, each element with its own polynomial.
+struct Survey {
+  bool finite = true;           ///< the energy was finite everywhere
+  double energy = 0;            ///< p·q' − L at t = 0
+  double energy_drift = 0;      ///< largest |E(t) − E(0)|
+  std::vector<double> q, v, p;  ///< range (max − min) of each coordinate, velocity, canonical momentum
+};
+
+/// Throws std::invalid_argument if the two differ in their coordinates.
+Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory);
+
+/// Sets energy and drift of a solution; leaves them absent where L depends on t or they are not finite.
+void observe_energy(const Lagrangian& lagrangian, Solution& solution);
+
+}  // namespace extremal

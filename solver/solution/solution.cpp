@@ -1,0 +1,54 @@
+#include "solution/solution.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "action/rule.hpp"
+#include "solution/element_point.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// t within [0, T]; beyond it by rounding alone is taken to be the end.
+double checked_time(double t, double duration) {
+  const double slack = 4 * std::numeric_limits<double>::epsilon() * duration;
+  if (!(t >= -slack && t <= duration + slack))
+    throw std::invalid_argument(fmt::format("t = {}; the trajectory runs from 0 to {}", t, duration));
+  return std::clamp(t, 0.0, duration);
+}
+
+/// The place of t in element k, on a node where t is that node's time as computed.
+double local_time(const Trajectory& trajectory, int k, double t) {
+  const double start = trajectory.times[k], h = trajectory.times[k + 1] - start;
+  const double tau = std::min((t - start) / h, 1.0);
+  const std::vector<double>& nodes = lobatto_barycentric(trajectory.degree).nodes;
+  const auto above = std::lower_bound(nodes.begin(), nodes.end(), tau);
+  for (auto node = above == nodes.begin() ? above : above - 1; node != nodes.end() && node <= above; ++node)
+    if (start + h * *node == t) return *node;
+  return tau;
+}
+
+}  // namespace
+
+const char* name(Status status) {
+  constexpr std::array names = {"converged",        "not-converged",  "collision",      "lost-convexity",
+                                "no-solution-near", "conjugate-ends", "iteration-limit"};
+  return names.at(static_cast<std::size_t>(status));
+}
+
+void Trajectory::at(double t, std::span<double> q, std::span<double> v) const {
+  const double time = checked_time(t, duration());
+  const auto after = std::upper_bound(times.begin() + 1, times.end() - 1, time);
+  const int k = static_cast<int>(after - times.begin()) - 1;
+  const double tau = local_time(*this, k, time);
+  const Basis basis = lobatto_basis(degree, {&tau, 1});
+  element_point(*this, k, basis, 0, q.data(), v.data(), 1);
+}
+
+}  // namespace extremal
