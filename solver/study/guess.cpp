@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "scene/schema.hpp"
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -61,7 +62,7 @@ void tabulate_formulas(const GuessTable& table, const System& system, Problem& p
   guess.q.resize(guess.tau.size() * n);
   fill_default(problem.ends, guess);
   for (const Assignment& a : table.formulas) {
-    const Range range = range_of(a.name, a.name_at, system);
+    const Range range = range_of(a.name, a.name_at, system, keys_of("guess"));
     const auto fill = [&](int coordinate, const Quantity& q) {
       fill_formula(q, coordinate, coordinate - range.first + 1, system, problem.duration.value, guess);
     };

@@ -29,7 +29,7 @@ double evaluate(const Quantity& quantity, const Parameters& parameters) {
   return value;
 }
 
-Range range_of(const std::string& name, const Location& at, const System& system) {
+Range range_of(const std::string& name, const Location& at, const System& system, std::vector<std::string> keys) {
   const std::size_t bracket = name.find('[');
   const std::string stem = name.substr(0, bracket);
   for (const Coordinate& c : system.coordinates) {
@@ -43,9 +43,8 @@ Range range_of(const std::string& name, const Location& at, const System& system
                        fmt::format("'{}' is out of range: '{}' has elements 1 to {}", name, stem, c.count));
     return {c.first + index - 1, 1, false};
   }
-  std::vector<std::string> known;
-  for (const Coordinate& c : system.coordinates) known.push_back(c.name);
-  throw UnknownName(at, fmt::format("unknown coordinate '{}'", name), stem, known);
+  for (const Coordinate& c : system.coordinates) keys.push_back(c.name);
+  throw UnknownName(at, fmt::format("unknown coordinate '{}'", name), stem, std::move(keys));
 }
 
 void for_each_value(const Assignment& assignment, const Range& range,

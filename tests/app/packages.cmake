@@ -1,0 +1,5 @@
+find_package(nlohmann_json REQUIRED)
+target_link_libraries(${target} PRIVATE nlohmann_json::nlohmann_json)
+if(TARGET extremal_app)
+  add_dependencies(${target} extremal_app)
+endif()

@@ -1,0 +1,141 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+
+using namespace extremal::test;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr double pendulum_slope = 1.3736908728527137;  // q'(0), by integration in 113-bit arithmetic
+
+}  // namespace
+
+TEST_F(Command, SolvesAndSummarises) {
+  const Outcome o = solve(pendulum);
+  EXPECT_EQ(o.exit, 0) << o.error;
+  EXPECT_EQ(o.error, "");
+  EXPECT_NE(o.out.find("converged"), std::string::npos) << o.out;
+}
+
+TEST_F(Command, QuietWritesNothing) {
+  const Outcome o = solve(pendulum, {"--quiet"});
+  EXPECT_EQ(o.exit, 0);
+  EXPECT_EQ(o.out + o.error, "");
+}
+
+TEST_F(Command, WritesJsonWithSamples) {
+  const Outcome o =
+      solve(pendulum, {"--output", "r.json", "--samples", "5", "--set", "solve.tolerance=1e-12"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  const Json r = Json::parse(read_text(folder / "r.json"));
+  EXPECT_EQ(r["status"], "converged");
+  EXPECT_EQ(r["title"], "Pendulum");
+  EXPECT_EQ(r["duration"], 2.0);
+  EXPECT_EQ(r["samples"]["t"], (std::vector<double>{0, 0.5, 1, 1.5, 2}));
+  EXPECT_EQ(r["samples"]["q"][0], 0.0);
+  EXPECT_EQ(r["samples"]["q"][4], 1.5);
+  EXPECT_NEAR(r["momentum_start"]["q"].get<double>(), pendulum_slope, 1e-11);
+  EXPECT_NEAR(r["samples"]["q'"][0].get<double>(), pendulum_slope, 1e-10);
+  EXPECT_EQ(r["samples"]["q'"], r["samples"]["p_q"]);
+  EXPECT_GT(r["seconds"]["read"].get<double>(), 0);
+}
+
+TEST_F(Command, SamplesAtTimes) {
+  ASSERT_EQ(solve(pendulum, {"--output", "r.json", "--at", "0.25,2,0"}).exit, 0);
+  EXPECT_EQ(Json::parse(read_text(folder / "r.json"))["samples"]["t"], (std::vector<double>{0.25, 2, 0}));
+  const Outcome beyond = solve(pendulum, {"--output", "s.json", "--at", "0.5,2.5"});
+  EXPECT_EQ(beyond.exit, 2);
+  EXPECT_EQ(beyond.error, "error: --at: 2.5 is beyond the duration 2\n");
+  EXPECT_FALSE(fs::exists(folder / "s.json"));
+  EXPECT_EQ(solve(pendulum, {"--at", "-1"}).error, "error: --at: -1 is before the start; times run from 0\n");
+  EXPECT_EQ(solve(pendulum, {"--at", "1,,2"}).error, "error: --at: '' is not a time; write T1,T2,…\n");
+}
+
+TEST_F(Command, WritesCsvAndPlot) {
+  const Outcome o = solve(pendulum, {"--csv", "r.csv", "--plot", "r.svg"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  const std::string csv = read_text(folder / "r.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "t,q,q',p_q");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 202);
+  EXPECT_NE(read_text(folder / "r.svg").find("<svg"), std::string::npos);
+}
+
+TEST_F(Command, AResultServesAsTheGuessOfAnother) {
+  ASSERT_EQ(solve(pendulum, {"--output", "r.json", "--samples", "40"}).exit, 0);
+  const Outcome o = solve(pendulum, {"--set", "guess.file=r.json", "--set", "boundary.duration=2.1"});
+  EXPECT_EQ(o.exit, 0) << o.error;
+}
+
+TEST_F(Command, OutputIsDeterministic) {
+  const auto result = [&](const char* name) {
+    solve(pendulum, {"--output", name, "--samples", "9", "--repeat", "3"});
+    Json r = Json::parse(read_text(folder / name));
+    r.erase("seconds");
+    return r.dump();
+  };
+  EXPECT_EQ(result("a.json"), result("b.json"));
+}
+
+TEST_F(Command, OptionsThatAreWrong) {
+  EXPECT_EQ(solve(pendulum, {"--samples", "1"}).error, "error: --samples 1: need at least 2\n");
+  EXPECT_EQ(solve(pendulum, {"--samples", "-3"}).error, "error: --samples -3: need at least 2\n");
+  EXPECT_EQ(solve(pendulum, {"--samples", "100000000"}).error,
+            "error: --samples 100000000: at most 10000000 are written\n");
+  EXPECT_EQ(solve(pendulum, {"--samples", "3", "--at", "1"}).error,
+            "error: --samples and --at exclude each other\n");
+  EXPECT_EQ(solve(pendulum, {"--repeat", "0"}).error, "error: --repeat 0: need at least 1\n");
+  EXPECT_EQ(solve(pendulum, {"--plot", "p.pdf"}).exit, 2);
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
+                                                {"solve"},
+                                                {"solv", "scene.toml"},
+                                                {"solve", "scene.toml", "--ouput", "x"},
+                                                {"solve", "scene.toml", "--samples", "many"},
+                                                {"solve", "scene.toml", "--set"}}) {
+    const Outcome o = extremal(wrong);
+    EXPECT_EQ(o.exit, 2);
+    EXPECT_EQ(o.error.rfind("error: ", 0), 0u) << o.error;
+    EXPECT_EQ(o.out, "");
+  }
+}
+
+TEST_F(Command, OutputsThatCannotBeWrittenAreRefusedBeforeSolving) {
+  EXPECT_EQ(solve(pendulum, {"--output", "no/r.json"}).error,
+            "error: --output no/r.json: there is no such folder\n");
+  fs::create_directory(folder / "sub");
+  const Outcome o = solve(pendulum, {"--csv", "sub", "--output", "r.json"});
+  EXPECT_EQ(o.error, "error: --csv sub: is a directory\n");
+  EXPECT_EQ(o.exit, 2);
+  EXPECT_FALSE(fs::exists(folder / "r.json"));
+  EXPECT_EQ(solve(pendulum, {"--output", "/dev/full"}).exit, 2);
+}
+
+TEST_F(Command, HelpNamesTheOptions) {
+  const Outcome o = extremal({"solve", "--help"});
+  EXPECT_EQ(o.exit, 0);
+  for (const char* option :
+       {"--output", "--csv", "--plot", "--samples", "--at", "--set", "--repeat", "--quiet"})
+    EXPECT_NE(o.out.find(option), std::string::npos) << option;
+}
+
+TEST_F(Command, CheckSaysWhatWasFound) {
+  write("scene.toml", pendulum);
+  const Outcome o = extremal({"check", "scene.toml"});
+  EXPECT_EQ(o.exit, 0) << o.error;
+  for (const char* text :
+       {"1: q", "energy is conserved", "constant mass", "separable", "∂L/∂q", "∂²L/∂q∂q", "instructions"})
+    EXPECT_NE(o.out.find(text), std::string::npos) << text << "\n" << o.out;
+}
+
+TEST_F(Command, ListNamesSchemesMethodsAndSystems) {
+  write(
+      "spring.toml",
+      "[about]\nwhat = \"A spring of its own.\"\n[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n");
+  ::setenv("EXTREMAL_PROBLEMS", folder.c_str(), 1);
+  const Outcome o = extremal({"list"});
+  ::unsetenv("EXTREMAL_PROBLEMS");
+  EXPECT_EQ(o.exit, 0);
+  for (const char* text : {"spring", "A spring of its own.", "midpoint", "lobatto", "newton"})
+    EXPECT_NE(o.out.find(text), std::string::npos) << text;
+}

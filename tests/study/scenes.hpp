@@ -1,0 +1,61 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "scene/source.hpp"
+#include "study/study.hpp"
+
+/// \file Scenes in a folder of their own for each test.
+
+namespace extremal::test {
+namespace fs = std::filesystem;
+
+class Scenes : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(EXTREMAL_BINARY_DIR) / "scratch" /
+             (std::string(info->test_suite_name()) + "." + info->name());
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  std::string write(const std::string& name, const std::string& content) {
+    std::ofstream(folder / name, std::ios::binary) << content;
+    return (folder / name).string();
+  }
+  Study study(const std::string& content, const std::vector<std::string>& sets = {}) {
+    return load(write("scene.toml", content), sets);
+  }
+  /// What the scene is refused with, without the folder's name; "" if it is accepted.
+  std::string message(const std::string& content, const std::vector<std::string>& sets = {}) {
+    try {
+      study(content, sets);
+      return "";
+    } catch (const SceneError& e) {
+      std::string what = e.what();
+      const std::string prefix = folder.string() + "/";
+      for (std::size_t at; (at = what.find(prefix)) != std::string::npos;) what.erase(at, prefix.size());
+      return what;
+    }
+  }
+
+  fs::path folder;
+};
+
+/// Two coordinates and an array, parameters and a definition; [boundary] is to follow as line 6.
+inline const std::string masses =
+    "[system]\n"
+    "coordinates = [\"x\", \"q[3]\"]\n"
+    "parameters = { k = 4.0, m = [1, 2] }\n"
+    "definitions = { v = \"k*x^2/2 + sum(i, 1, 3, q[i]^2/2)\" }\n"
+    "lagrangian = \"m[2]*x'^2/2 + sum(i, 1, 3, q[i]'^2/2) - v\"\n";
+
+inline const std::string ends = "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 2\n";
+
+}  // namespace extremal::test

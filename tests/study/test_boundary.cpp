@@ -1,0 +1,144 @@
+#include <cmath>
+#include <limits>
+
+#include "scenes.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+namespace {
+
+/// The value that the relation fixes an end coordinate to; NaN where it leaves it free.
+double fixed(const Study& study, int e) {
+  return study.problem.ends.fixed[e] ? study.problem.ends.offset[e]
+                                     : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+TEST_F(Scenes, EndsAreNumbersFormulasListsAndElements) {
+  const Study s =
+      study(masses +
+            "[boundary]\nstart = { x = \"sqrt(k) + m[2]\", q = [1, \"k/8\", 3] }\nend = { \"q[2]\" = -2.5 }\n"
+            "duration = \"pi/2\"\n");
+  EXPECT_EQ(s.problem.names, (std::vector<std::string>{"x", "q[1]", "q[2]", "q[3]"}));
+  EXPECT_EQ(fixed(s, 0), 4.0);
+  EXPECT_EQ(fixed(s, 1), 1.0);
+  EXPECT_EQ(fixed(s, 2), 0.5);
+  EXPECT_EQ(fixed(s, 3), 3.0);
+  EXPECT_TRUE(std::isnan(fixed(s, 4)));
+  EXPECT_EQ(fixed(s, 6), -2.5);
+  EXPECT_EQ(s.problem.ends.free, 3);
+  EXPECT_DOUBLE_EQ(s.problem.duration.value, 1.5707963267948966);
+  EXPECT_FALSE(s.problem.guess.given());
+}
+
+TEST_F(Scenes, EndsThatAreWrong) {
+  const auto start = [&](const std::string& s) {
+    return message(masses + "[boundary]\nstart = { " + s + " }\nduration = 2\n");
+  };
+  EXPECT_EQ(start("xx = 0"), "scene.toml:7:11: unknown coordinate 'xx'; did you mean 'x'?");
+  EXPECT_EQ(start("\"q[4]\" = 0"), "scene.toml:7:11: 'q[4]' is out of range: 'q' has elements 1 to 3");
+  EXPECT_EQ(start("\"q[0]\" = 0"), "scene.toml:7:11: 'q[0]' is out of range: 'q' has elements 1 to 3");
+  EXPECT_EQ(start("\"x[1]\" = 0"), "scene.toml:7:11: 'x' is not an array, so 'x[1]' names nothing");
+  EXPECT_EQ(start("q = [1, 2]"), "scene.toml:7:15: 'q' has 3 elements; found 2 values");
+  EXPECT_EQ(start("q = 1"),
+            "scene.toml:7:15: 'q' has 3 elements; give a list of 3 values, or \"q[1]\" = … for one element");
+  EXPECT_EQ(start("x = [1, 2]"), "scene.toml:7:15: 'x' is one number; found a list of 2");
+  EXPECT_EQ(start("x = \"1/0\""), "scene.toml:7:16: '1/0' is not finite");
+  EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 1"),
+            "scene.toml:7:35: this condition contradicts the ones before it");
+  EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 0"),
+            "scene.toml:7:35: this condition follows from the ones before it; leave it out");
+}
+
+TEST_F(Scenes, ErrorsOfFormulasPointIntoTheScene) {
+  EXPECT_EQ(
+      message(masses + "[boundary]\nstart = { x = \"2*kk\" }\nduration = 2\n").rfind("scene.toml:7:18: ", 0),
+      0u);
+  std::string misspelt = masses;
+  misspelt.replace(misspelt.find("sum(i, 1, 3, q[i]^2/2)"), 22, "sinn(x)");
+  const std::string text = message(misspelt + ends);
+  EXPECT_EQ(text.rfind("scene.toml:4:32: ", 0), 0u) << text;
+  EXPECT_NE(text.find("did you mean 'sin'"), std::string::npos) << text;
+}
+
+TEST_F(Scenes, CyclicDefinitionsAreNamed) {
+  const std::string text = message(
+      "[system]\ncoordinates = [\"x\"]\ndefinitions = { a = \"b + 1\", b = \"a + x\" }\nlagrangian = "
+      "\"x'^2/2 - a\"\n" +
+      ends);
+  EXPECT_EQ(text.rfind("scene.toml:3:", 0), 0u) << text;
+}
+
+TEST_F(Scenes, Durations) {
+  EXPECT_EQ(message(masses + "[boundary]\nduration = -2\n"),
+            "scene.toml:7:12: duration = -2; it must be positive");
+  EXPECT_EQ(message(masses + "[boundary]\nduration = \"k - 4\"\n"),
+            "scene.toml:7:12: duration = 0; it must be positive");
+  EXPECT_EQ(message(masses + "[boundary]\nduration = \"fre\"\n").rfind("scene.toml:7:13: ", 0), 0u);
+  const std::string driven =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + x*cos(t)\"\n[boundary]\nstart = { x = 0 }\n"
+      "duration = \"free\"\nenergy = 1\n[guess]\nduration = 1\n";
+  EXPECT_EQ(message(driven), "scene.toml:6:12: a free duration needs a Lagrangian that does not depend on t");
+}
+
+TEST_F(Scenes, FreeDurationsAreClosed) {
+  const Study energy =
+      study(masses + "[boundary]\nduration = \"free\"\nenergy = \"k/2\"\n[guess]\nduration = \"k/8\"\n");
+  EXPECT_TRUE(energy.problem.duration.free);
+  EXPECT_EQ(energy.problem.duration.energy, 2.0);
+  EXPECT_EQ(energy.problem.duration.value, 0.5);
+  const Study where = study(
+      masses + "[boundary]\nduration = \"free\"\nwhere = \"x(0)*q[2](T) = 3\"\n[guess]\nduration = 1\n");
+  std::vector<double> start{2, 0, 0, 0}, end{0, 0, 5, 0}, gradient(8);
+  EXPECT_EQ(where.problem.duration.where(start, end, gradient), 7.0);
+  EXPECT_EQ(gradient, (std::vector<double>{5, 0, 0, 0, 0, 0, 2, 0}));
+  EXPECT_EQ(message(masses + "[boundary]\nduration = \"free\"\nenergy = 1\n[guess]\nduration = -1\n"),
+            "scene.toml:10:12: duration = -1; it must be positive");
+}
+
+TEST_F(Scenes, ConditionsAreLinearRelations) {
+  const Study s =
+      study(masses +
+            "[boundary]\nconditions = [\"x(0) = k/2\", \"q[1](0) + q[2](0) = 0\", \"x(T) = -x(0)\"]\n"
+            "duration = 6.0\n");
+  EXPECT_EQ(s.problem.boundary.rows, 3);
+  EXPECT_EQ(fixed(s, 0), 2.0);
+  EXPECT_EQ(fixed(s, 4), -2.0);
+  EXPECT_EQ(s.problem.ends.free, 5);
+  EXPECT_EQ(message(masses + "[boundary]\nconditions = [\"x(0)*x(T) = 1\"]\nduration = 6.0\n"),
+            "scene.toml:7:16: a condition must be linear in the end values; use 'where' for one that is not");
+  EXPECT_EQ(
+      message(masses +
+              "[boundary]\nconditions = [\"x(0) + x(T) = 1\", \"x(0) = 1\",\n \"x(T) = 1\"]\nduration = 6\n"),
+      "scene.toml:8:3: this condition contradicts the ones before it");
+  EXPECT_EQ(
+      message(masses +
+              "[boundary]\nconditions = [\"x(0) + x(T) = 1\", \"x(0) = 1\",\n \"x(T) = 0\"]\nduration = 6\n"),
+      "scene.toml:8:3: this condition follows from the ones before it; leave it out");
+}
+
+TEST_F(Scenes, PeriodicUpToASymmetry) {
+  const auto periodic = [](const std::string& lagrangian, const std::string& map) {
+    return "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"" + lagrangian +
+           "\"\n[boundary]\nperiodic = true\n" + map +
+           "duration = 3\n[guess]\nx = \"cos(2*pi*t/T)\"\ny = \"sin(2*pi*t/T)\"\n";
+  };
+  const std::string round = "(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)";
+  const Study plain = study(periodic(round, ""));
+  EXPECT_TRUE(plain.problem.periodic);
+  EXPECT_EQ(plain.problem.ends.free, 2);
+  EXPECT_EQ(message(periodic(round, "map = { x = \"-y\", y = \"x\" }\n")), "");
+  EXPECT_EQ(message(periodic("x'^2/2 + y'^2/2 + cos(x)", "map = { x = \"x + 2*pi\" }\n")), "");
+  EXPECT_EQ(message(periodic("x'^2/2 + y'^2/2 - y", "map = { y = \"y + 1\" }\n")), "");  // but for a constant
+  EXPECT_EQ(message(periodic("x'^2/2 + y'^2/2 + x*cos(pi*t/3)", "map = { x = \"-x\" }\n")),
+            "");  // from t to t + T
+  const std::string refused =
+      message(periodic("x'^2/2 + y'^2/2 + x^3", "map = { y = \"-y\", x = \"-x\" }\n"));
+  EXPECT_EQ(refused.rfind("scene.toml:6:9: the map does not leave the Lagrangian unchanged", 0), 0u)
+      << refused;
+  EXPECT_NE(message(periodic(round, "map = { x = \"x + 1e-3*y\" }\n")), "");
+  EXPECT_NE(message(periodic(round, "map = { x = 0 }\n")), "");
+  EXPECT_EQ(message(periodic(round, "map = { x = \"x^2\" }\n")).rfind("scene.toml:6:14: ", 0), 0u);
+}

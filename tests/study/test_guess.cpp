@@ -1,0 +1,108 @@
+#include <cmath>
+
+#include "scenes.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+namespace {
+
+double at(const Study& study, double tau, int coordinate) {
+  std::vector<double> q(study.problem.coordinates());
+  study.problem.guess.at(tau, q);
+  return q[coordinate];
+}
+
+}  // namespace
+
+TEST_F(Scenes, GuessFormulas) {
+  const Study s = study(masses + ends + "[guess]\nx = \"k*sin(pi*t/T)\"\nq = \"i*t\"\n");
+  for (const double tau : {0.0, 0.1234, 0.5, 0.99, 1.0}) {
+    EXPECT_NEAR(at(s, tau, 0), 4 * std::sin(M_PI * tau), 1e-9);
+    for (int i = 1; i <= 3; ++i) EXPECT_NEAR(at(s, tau, i), i * 2 * tau, 1e-14);
+  }
+}
+
+TEST_F(Scenes, GuessListsElementsAndWhatIsLeftOut) {
+  const Study s = study(masses +
+                        "[boundary]\nstart = { q = [1, 1, 1] }\nend = { x = 3, \"q[3]\" = 5 }\nduration = 2\n"
+                        "[guess]\n\"q[1]\" = \"t^2\"\n");
+  EXPECT_NEAR(at(s, 0.5, 1), 1.0, 1e-14);
+  EXPECT_EQ(at(s, 0.5, 0), 3.0);  // one end fixed
+  EXPECT_EQ(at(s, 0.5, 2), 1.0);
+  EXPECT_EQ(at(s, 0.5, 3), 3.0);  // the line
+  const Study list = study(masses + ends + "[guess]\nq = [\"t\", 2, \"T\"]\n");
+  EXPECT_NEAR(at(list, 0.25, 1), 0.5, 1e-15);
+  EXPECT_EQ(at(list, 0.25, 2), 2.0);
+  EXPECT_EQ(at(list, 0.25, 3), 2.0);
+}
+
+TEST_F(Scenes, GuessFormulasThatAreWrong) {
+  const auto guess = [&](const std::string& s) { return message(masses + ends + "[guess]\n" + s + "\n"); };
+  EXPECT_EQ(guess("fiel = \"a.csv\""), "scene.toml:11:1: unknown coordinate 'fiel'; did you mean 'file'?");
+  EXPECT_EQ(guess("q = [\"t\", \"t\"]"), "scene.toml:11:5: 'q' has 3 elements; found 2 values");
+  EXPECT_EQ(guess("x = \"log(t - 1)\""), "scene.toml:11:6: the guess of 'x' is not finite at t = 0");
+  EXPECT_EQ(guess("x = \"2*tt\"").rfind("scene.toml:11:8: ", 0), 0u);
+  EXPECT_EQ(guess("x = \"2*(t\"").rfind("scene.toml:11:", 0), 0u);
+}
+
+TEST_F(Scenes, GuessWhereTheLagrangianIsNotFinite) {
+  const std::string kepler =
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 + 1/sqrt(x^2 + "
+      "y^2)\"\n[boundary]\n"
+      "start = { x = 1, y = 0 }\nend = { x = -1, y = 0 }\nduration = 2\n";
+  EXPECT_EQ(message(kepler + "[guess]\nx = \"1 - t\"\ny = 0\n"),
+            "scene.toml:8:1: L is not finite on the guess at t = 1: x = 0, y = 0");
+  EXPECT_EQ(message(kepler + "[guess]\nx = \"1 - t\"\ny = \"t*(2 - t)\"\n"), "");
+  EXPECT_EQ(message(kepler + "[guess]\nx = \"t\"\ny = \"t\"\n"), "");  // at t = 0 the fixed start stands in
+  EXPECT_EQ(message(kepler), "");                                      // the default guess is the program's
+}
+
+TEST_F(Scenes, GuessFromCsv) {
+  write("g.csv", "# observed\n t , \"q[1]\",x,q[2],q[3]\n1,10,0,1,2\n2,11,1,1,2\r\n\n5,14,4,1,2\n");
+  const Study s = study(masses + ends + "[guess]\nfile = \"g.csv\"\n");
+  ASSERT_EQ(s.problem.guess.tau, (std::vector<double>{0, 0.25, 1}));
+  EXPECT_NEAR(at(s, 0.5, 0), 2.0, 1e-14);
+  EXPECT_NEAR(at(s, 0.5, 1), 12.0, 1e-13);
+  EXPECT_EQ(s.problem.duration.value, 2.0);
+}
+
+TEST_F(Scenes, GuessFileGivesAFreeDuration) {
+  write("g.csv", "t,x,q[1],q[2],q[3]\n0,0,1,1,2\n2.5,1,1,1,2\n");
+  const std::string scene =
+      masses + "[boundary]\nduration = \"free\"\nenergy = 1\n[guess]\nfile = \"g.csv\"\n";
+  EXPECT_EQ(study(scene).problem.duration.value, 2.5);
+  EXPECT_EQ(study(scene, {"guess.duration=3"}).problem.duration.value, 3.0);
+}
+
+TEST_F(Scenes, GuessFromAResult) {
+  write("r.json", R"({"status": "converged", "samples": {"t": [0, 1, 2], "x": [0, 1, 4], "x'": [0, 0, 0],
+                      "q[1]": [1, 2, 3], "q[2]": [0, 0, 0], "q[3]": [1, 1, 1]}})");
+  const Study s = study(masses + ends + "[guess]\nfile = \"r.json\"\n");
+  EXPECT_NEAR(at(s, 0.75, 0), 2.25, 1e-14);  // a parabola through three samples
+  write("r.json", "{\"status\": \"converged\"}");
+  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
+            "r.json: this result has no samples; solve with --samples to write some");
+  write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0, null]}}");
+  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
+            "r.json: 'x' of the samples is not a list of numbers");
+  write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0]}}");
+  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
+            "r.json: the samples have 2 times and 1 values of 'x'");
+  write("r.json", std::string(1'000'000, '['));
+  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n").rfind("r.json:", 0), 0u);
+}
+
+TEST_F(Scenes, GuessFilesThatAreWrong) {
+  const auto csv = [&](const std::string& content) {
+    write("g.csv", content);
+    return message(masses + ends + "[guess]\nfile = \"g.csv\"\n");
+  };
+  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"), "g.csv:1:1: there is no column 'q[3]'");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,a,1,1\n"), "g.csv:3:5: 'a' is not a finite number");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,nan,1,1\n"), "g.csv:3:5: 'nan' is not a finite number");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,1,1\n"), "g.csv:3:1: found 4 values for 5 columns");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n"), "g.csv: found 1 samples; need at least 2");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"), "g.csv: the times must ascend; 0 follows 0");
+  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"), "none.csv: no such file");
+}
