@@ -18,7 +18,7 @@ constexpr int highest_degree = 16;
 constexpr double longest_element = 2.0;
 constexpr int most_elements = 1 << 16;
 /// Coarse elements have done their work when the path is known to this, relative to its range.
-constexpr double coarse_goal = 0.02;
+constexpr double coarse_goal = 3e-3;
 /// Steps allowed for one run of damped Newton.
 constexpr int coarse_steps = 40;
 constexpr int fine_steps = 12;
@@ -120,27 +120,6 @@ void AdaptiveSolve::report_step() {
                        .damping = w_.iteration.damping()});
 }
 
-/// Damped Newton until the last correction is below `goal`.
-bool AdaptiveSolve::approach(double goal) {
-  NewtonIteration& newton = w_.iteration;
-  for (int k = 0; k < coarse_steps; ++k) {
-    scales_ = scales(w_.path, *tables_);
-    newton.set_scale(scales_.q);
-    const StepResult result = newton.full_step(w_.path);
-    report_step();
-    if (result != StepResult::ok) {
-      outcome_.message = result == StepResult::singular ? "the second variation became singular"
-                         : result == StepResult::not_finite
-                             ? "the action is not finite along the path"
-                             : "the damping of Newton's method became too strong";
-      return false;
-    }
-    if (newton.damping() == 1 && newton.norm() < goal && newton.contraction() < 0.5) return true;
-  }
-  outcome_.message = fmt::format("{} Newton steps did not converge", coarse_steps);
-  return false;
-}
-
 bool AdaptiveSolve::meets(const Resolution::Error& error, double safety) const {
   return error.q <= safety * options_.tolerance * scales_.q &&
          error.v <= 10 * safety * options_.tolerance * scales_.v;
@@ -169,40 +148,36 @@ void AdaptiveSolve::halve() {
 }
 
 AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
-  if (!approach(coarse_goal)) return Attempt::failed;
+  const auto on_step = [this] { report_step(); };
+  const NewtonReport coarse = converge(w_.iteration, w_.path, *tables_, {coarse_goal, coarse_steps}, on_step);
+  outcome_.message = coarse.failure;
+  if (!coarse.reached) return Attempt::failed;
   for (;;) {
     scales_ = scales(w_.path, *tables_);
     w_.resolution.measure(w_.path, *tables_);
     const int degree = needed_degree();
     if (degree > highest_degree) return Attempt::refine;
     if (degree > w_.path.degree()) raise(degree);
-    const Attempt result = finish();
-    if (result != Attempt::refine) return result;
-    if (w_.path.degree() == highest_degree) return Attempt::refine;
+    const NewtonGoal goal{std::max(0.05 * options_.tolerance, roundoff), fine_steps};
+    const NewtonReport fine = converge(w_.iteration, w_.path, *tables_, goal, on_step);
+    const Attempt result = judge(fine);
+    if (result != Attempt::refine || w_.path.degree() == highest_degree) return result;
   }
 }
 
-/// Newton to the tolerance on elements of this degree, chord steps where they contract.
-AdaptiveSolve::Attempt AdaptiveSolve::finish() {
-  NewtonIteration& newton = w_.iteration;
-  const double goal = std::max(0.05 * options_.tolerance, roundoff);
-  double remaining = 1;
-  for (int k = 0; k < fine_steps; ++k) {
-    const bool chord = newton.count() > 0 && newton.damping() == 1 && newton.contraction() < 0.2;
-    const StepResult result = chord ? newton.chord_step(w_.path) : newton.full_step(w_.path);
-    report_step();
-    if (result != StepResult::ok) return Attempt::failed;
-    const double rate = std::min(newton.contraction(), 1.0);
-    remaining = newton.norm() * (newton.damping() == 1 ? rate : 1.0);
-    if (remaining <= goal || (newton.norm() < 1e-11 && rate > 0.3)) break;
-  }
+/// What a converged iteration has reached, from the coefficients that its elements leave out.
+AdaptiveSolve::Attempt AdaptiveSolve::judge(const NewtonReport& newton) {
+  outcome_.message = newton.failure;
+  if (!newton.reached) return Attempt::failed;
   scales_ = scales(w_.path, *tables_);
   w_.resolution.measure(w_.path, *tables_);
   const Resolution::Error truncation = w_.resolution.at(w_.path.degree());
   outcome_.tolerance = options_.tolerance * scales_.q;
-  outcome_.error = truncation.q + remaining * scales_.q;
-  if (remaining > options_.tolerance) {
-    outcome_.message = fmt::format("Newton's corrections stay at {:.1e} of the range", remaining);
+  outcome_.error = truncation.q + newton.remaining * scales_.q;
+  if (newton.remaining > options_.tolerance) {
+    outcome_.message =
+        fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
+                    newton.remaining, options_.tolerance);
     return Attempt::failed;
   }
   if (!meets(truncation, 1)) return Attempt::refine;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solve/iteration.hpp"
+#include "solve/converge.hpp"
 #include "solve/levels.hpp"
 #include "solve/resolution.hpp"
 #include "solve/solve.hpp"
@@ -15,6 +15,8 @@ struct Workspace {
   NewtonIteration iteration;
   Path path, other;
   Resolution resolution;
+  std::unique_ptr<SchemeTables> pinned_scheme;
+  ElementTables pinned;
 };
 
 /// Where a solve has got to: the path and tables in the workspace, and what is known of its error.
@@ -41,8 +43,7 @@ class AdaptiveSolve {
   int first_elements();
   bool start(int elements, int degree);
   Attempt attempt();
-  bool approach(double goal);
-  Attempt finish();
+  Attempt judge(const NewtonReport& newton);
   int needed_degree() const;
   bool meets(const Resolution::Error& error, double safety) const;
   void raise(int degree);

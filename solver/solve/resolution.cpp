@@ -60,7 +60,7 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
   tails_.clear();
   double c[4][lanes];
   for (int b = 0; b < path.batches(); ++b) {
-    double last[lanes] = {}, before[lanes] = {};
+    double last[lanes] = {}, second[lanes] = {}, before[lanes] = {};
     for (int a = 0; a < n; ++a) {
       for (int k = 0; k < 4; ++k) {
         if (s - k >= 1)
@@ -69,14 +69,17 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
           std::fill_n(c[k], lanes, 0.0);
       }
       for (int lane = 0; lane < lanes; ++lane) {
-        last[lane] = std::max({last[lane], std::abs(c[0][lane]), std::abs(c[1][lane])});
+        last[lane] = std::max(last[lane], std::abs(c[0][lane]));
+        second[lane] = std::max(second[lane], std::abs(c[1][lane]));
         before[lane] = std::max({before[lane], std::abs(c[2][lane]), std::abs(c[3][lane])});
       }
     }
     const int count = std::min(lanes, path.elements() - b * lanes);
     for (int lane = 0; lane < count; ++lane) {
-      const double rate = before[lane] > 0 ? std::clamp(last[lane] / before[lane], 1e-6, 0.95) : 0.95;
-      tails_.push_back({last[lane], last[lane] == 0 ? 1e-6 : rate, path.h(b)[lane]});
+      const double size = std::max(last[lane], second[lane]);
+      const double rate = before[lane] > 0 ? std::clamp(size / before[lane], 1e-6, 0.95) : 0.95;
+      tails_.push_back(
+          {std::max(last[lane], second[lane] * std::sqrt(rate)), size == 0 ? 1e-6 : rate, path.h(b)[lane]});
     }
   }
 }

@@ -27,7 +27,7 @@ class Resolution {
 
  private:
   struct Tail {
-    double size, rate, h;  ///< of the last two coefficients; fall over two degrees; element length
+    double size, rate, h;  ///< of coefficient s; its fall over two degrees; element length
   };
   int degree_ = 0;
   std::vector<Tail> tails_;

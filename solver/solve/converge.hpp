@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+#include "solve/iteration.hpp"
+#include "solve/resolution.hpp"
+
+/// \file Newton's method run to a goal.
+
+namespace extremal {
+
+/// When a run of Newton steps may end, all relative to the largest range of a coordinate.
+struct NewtonGoal {
+  double remaining = 1e-15;  ///< expected size of the next correction
+  int steps = 50;
+};
+
+struct NewtonReport {
+  bool reached = false;
+  double remaining = 1;  ///< expected error that iterating further would remove, roundoff included
+  int steps = 0;
+  std::string failure;  ///< why it was not reached
+};
+
+/// Steps until the goal, or until corrections are roundoff and shrink no more: full steps, and chord steps
+/// where the last contraction was strong. `on_step` may be empty.
+NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& tables,
+                      const NewtonGoal& goal, const std::function<void()>& on_step);
+
+}  // namespace extremal

@@ -1,0 +1,141 @@
+#include "solve/pinned.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/start.hpp"
+
+namespace extremal {
+
+namespace {
+
+constexpr int most_points = 20;  ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
+constexpr int most_elements = 1 << 20;
+constexpr int steps = 100;
+constexpr double roundoff = 1e-15;
+
+}  // namespace
+
+PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace)
+    : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme) {}
+
+void PinnedSolve::bind(int points) {
+  w_.pinned_scheme = std::make_unique<SchemeTables>(scheme_, points);
+  w_.pinned.bind(*w_.pinned_scheme, *problem_.lagrangian);
+}
+
+void PinnedSolve::report_step() {
+  ++outcome_.iterations;
+  if (options_.progress)
+    options_.progress({.elements = w_.path.elements(),
+                       .degree = w_.path.degree(),
+                       .residual = w_.iteration.action().residual(),
+                       .step = w_.iteration.norm(),
+                       .damping = w_.iteration.damping()});
+}
+
+/// Newton from the guess, or from the path there is, to roundoff.
+bool PinnedSolve::solve_discrete(int elements) {
+  const std::vector<double> ends = starting_ends(problem_);
+  std::vector<double> mesh(elements + 1);
+  for (int k = 0; k <= elements; ++k) mesh[k] = static_cast<double>(k) / elements;
+  bool again = false;
+  for (int points = scheme_.points; points <= most_points; points = points < 8 ? points + 2 : points + 4) {
+    bind(points);
+    w_.iteration.reset(problem_, w_.pinned, elements);
+    for (double bend : {0.0, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0}) {
+      if (again) break;
+      w_.path.reset(w_.pinned, mesh, problem_.duration.value);
+      start_path(problem_, ends, w_.pinned, bend, w_.path);
+      w_.iteration.action().evaluate_plain(w_.path);
+      if (w_.iteration.action().finite() || problem_.guess.given()) break;
+    }
+    const NewtonReport report =
+        converge(w_.iteration, w_.path, w_.pinned, {roundoff, steps}, [this] { report_step(); });
+    outcome_.message = report.failure;
+    if (!report.reached) return false;
+    again = true;
+    if (scheme_.quadrature != Quadrature::exact || exact_quadrature_settled()) break;
+  }
+  return true;
+}
+
+/// Whether two more points leave S_h as it is.
+bool PinnedSolve::exact_quadrature_settled() {
+  w_.iteration.action().evaluate_plain(w_.path);
+  const double action = w_.iteration.action().action();
+  const int points = std::min(w_.pinned_scheme->points + 2, most_points);
+  const SchemeTables finer(scheme_, points);
+  ElementTables tables;
+  tables.bind(finer, *problem_.lagrangian);
+  DiscreteAction check;
+  check.reset(*problem_.lagrangian, tables, w_.path.elements(), false);
+  check.evaluate_plain(w_.path);
+  return std::abs(check.action() - action) <= 1e-15 * std::abs(action);
+}
+
+/// Largest distance of the path from the extremal of elements of higher degree on the same mesh, started
+/// from it; the companion's own truncation is added. Infinite if it does not converge.
+double PinnedSolve::distance_to_companion() {
+  const int n = problem_.coordinates();
+  const int degree = std::min(std::max(scheme_.degree + 3, 6), max_degree);
+  const ElementTables& tables = w_.levels.at(degree);
+  w_.other.interpolate_from(w_.path, tables, w_.levels.raise(w_.path.degree(), degree));
+  const Path start = w_.other;
+  w_.iteration.reset(problem_, tables, w_.other.elements());
+  const NewtonReport report = converge(w_.iteration, w_.other, tables, {1e-12, steps}, {});
+  if (!report.reached) return INFINITY;
+  w_.resolution.measure(w_.other, tables);
+  double distance = w_.resolution.at(degree).q + report.remaining * scales(w_.other, tables).q;
+  std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
+  for (int k = 0; k < start.elements(); ++k) {
+    start.element(k, a.data());
+    w_.other.element(k, b.data());
+    for (std::size_t i = 0; i < a.size(); ++i) distance = std::max(distance, std::abs(a[i] - b[i]));
+  }
+  return distance;
+}
+
+Outcome PinnedSolve::run() {
+  outcome_.strategy = "newton from the guess";
+  outcome_.message = "the action is not finite along the guess";
+  int elements = options_.elements > 0 ? options_.elements : 16;
+  const int order = std::min(scheme_.order, scheme_.degree + 1);
+  for (;;) {
+    if (!solve_discrete(elements)) {
+      if (options_.elements > 0 || elements >= 256) break;
+      elements *= 4;
+      continue;
+    }
+    const Scales size = scales(w_.path, w_.pinned);
+    outcome_.error = distance_to_companion();
+    outcome_.tolerance = options_.tolerance * size.q;
+    outcome_.tables = &w_.pinned;
+    if (!std::isfinite(outcome_.error)) {
+      if (options_.elements == 0 && elements < most_elements) {
+        elements *= 2;
+        continue;
+      }
+      // No better extremal is near: the discrete one may be an artefact of the mesh.
+      outcome_.error = size.q;
+    }
+    if (options_.elements > 0 || outcome_.error <= outcome_.tolerance) {
+      outcome_.status = Status::converged;
+      outcome_.message = "converged";
+      break;
+    }
+    const double growth = std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order);
+    if (elements * std::min(growth, 16.0) > most_elements) {
+      outcome_.message =
+          fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
+                      scheme_.name, most_elements, options_.tolerance);
+      break;
+    }
+    elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * std::clamp(growth, 1.1, 16.0))));
+  }
+  return outcome_;
+}
+
+}  // namespace extremal

@@ -1,0 +1,107 @@
+#include "solve/solve.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "solution/observe.hpp"
+#include "solve/adaptive.hpp"
+#include "solve/pinned.hpp"
+
+namespace extremal {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Eigenvalues of the border within this of zero, relative, count in the nullity.
+constexpr double null_threshold = 1e-7;
+
+Trajectory trajectory_of(const Path& path) {
+  Trajectory t;
+  t.coordinates = path.coordinates();
+  t.degree = path.degree();
+  for (double tau : path.mesh()) t.times.push_back(tau * path.duration());
+  t.nodes.resize(static_cast<std::size_t>(path.elements()) * (path.degree() + 1) * path.coordinates());
+  for (int k = 0; k < path.elements(); ++k)
+    path.element(k, t.nodes.data() + static_cast<std::size_t>(k) * (path.degree() + 1) * path.coordinates());
+  return t;
+}
+
+/// Momenta, residual, index and nullity from one evaluation at the path found.
+void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
+  NewtonIteration& newton = w.iteration;
+  newton.reset(problem, *outcome.tables, w.path.elements());
+  DiscreteAction& action = newton.action();
+  action.evaluate(w.path);
+  const bool factored = newton.system().factor(action.nodes, newton.closing(w.path));
+  solution.action = action.action();
+  solution.momentum_start.resize(problem.coordinates());
+  solution.momentum_end.resize(problem.coordinates());
+  for (int a = 0; a < problem.coordinates(); ++a) {
+    solution.momentum_start[a] = -action.start_gradient()[a];
+    solution.momentum_end[a] = action.end_gradient()[a];
+  }
+  double residual = action.residual(), scale = action.momentum_scale();
+  std::vector<double> free(problem.ends.free, 0);
+  for (const Triplet& z : problem.ends.z) {
+    const int n = problem.coordinates();
+    free[z.column] +=
+        z.value * (z.row < n ? action.start_gradient()[z.row] : action.end_gradient()[z.row - n]);
+  }
+  for (double g : free) residual = std::max(residual, std::abs(g));
+  solution.residual = scale > 0 ? residual / scale : residual;
+  if (!factored) return;
+  const Inertia inertia = newton.system().inertia(null_threshold);
+  solution.morse_index = inertia.negative + action.nodes.negative;
+  solution.nullity = inertia.zero;
+  solution.minimizing = *solution.morse_index == 0;
+}
+
+}  // namespace
+
+struct Solver::Memory {
+  Workspace workspace;
+};
+
+Solver::Solver() : memory_(std::make_unique<Memory>()) {}
+Solver::~Solver() = default;
+Solver::Solver(Solver&&) noexcept = default;
+Solver& Solver::operator=(Solver&&) noexcept = default;
+
+Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
+  Workspace& w = memory_->workspace;
+  Solution solution;
+  const auto start = Clock::now();
+  w.levels.bind(*problem.lagrangian);
+  SolveOptions recording = options;
+  recording.progress = [&](const Iteration& step) {
+    solution.history.push_back(step);
+    if (options.progress) options.progress(step);
+  };
+  const Outcome outcome =
+      options.scheme ? PinnedSolve(problem, recording, w).run() : AdaptiveSolve(problem, recording, w).run();
+  solution.seconds_solve = seconds_since(start);
+
+  const auto analysis = Clock::now();
+  solution.status = outcome.status;
+  solution.message = outcome.message;
+  solution.strategy = outcome.strategy;
+  solution.iterations = outcome.iterations;
+  if (outcome.status == Status::converged) {
+    solution.error_estimate = outcome.error;
+    solution.trajectory = trajectory_of(w.path);
+    const int inner = (w.path.degree() - 1) * w.path.elements() + w.path.elements() - 1;
+    solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
+    read_off(problem, outcome, w, solution);
+    observe_energy(*problem.lagrangian, solution);
+  }
+  solution.seconds_analyse = seconds_since(analysis);
+  return solution;
+}
+
+}  // namespace extremal
