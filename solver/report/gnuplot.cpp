@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <iterator>
 
@@ -14,11 +15,16 @@ constexpr double font_size = 13, title_size = 18;  // pixels
 constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
 constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
 
-/// Between single quotes gnuplot substitutes neither commands nor variables nor escapes; a quote is doubled.
+/// A literal between double quotes. All but letters, digits, spaces and what is not ASCII is written as an
+/// octal escape, so that no text can end the literal or have gnuplot substitute a command in it.
 std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : printable(text, 100)) result += c == '\'' ? "''" : std::string(1, c);
-  return result + "'";
+  std::string result = "\"";
+  for (const char c : printable(text, 100)) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = byte >= 0x80 || c == ' ' || std::isalnum(byte) != 0;
+    result += plain ? std::string(1, c) : fmt::format("\\{:03o}", byte);
+  }
+  return result + "\"";
 }
 
 std::string hexadecimal(Colour colour) { return fmt::format("'#{:06X}'", colour); }

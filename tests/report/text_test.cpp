@@ -1,0 +1,118 @@
+#include "report/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "sample_results.hpp"
+
+namespace extremal {
+namespace {
+
+TEST(Summary, OfAConvergedResult) {
+  EXPECT_EQ(summary(transfer_result()),
+            "title           Planar transfer\n"
+            "status          converged\n"
+            "message         the tolerance 1e-09 is met\n"
+            "strategy        newton from the guess\n"
+            "duration        2.5\n"
+            "action          1.234\n"
+            "energy          -0.4, drift 1.0e-14\n"
+            "error estimate  3.0e-10\n"
+            "residual        2.0e-15\n"
+            "index           0, nullity 1, minimising\n"
+            "mesh            2 elements of degree 8, 62 unknowns\n"
+            "iterations      5\n"
+            "time            read 100 µs, solve 40.0 µs, analyse 10.0 µs\n");
+}
+
+TEST(Summary, LeavesOutWhatThereIsNot) {
+  Result result = transfer_result();
+  result.title.clear();
+  result.solution.status = Status::not_converged;
+  result.solution.message = "the iteration\nstopped";
+  result.solution.energy.reset();
+  result.solution.action = std::numeric_limits<double>::quiet_NaN();
+  result.solution.morse_index.reset();
+  result.solution.trajectory.times = {0, 1};
+  result.solution.unknowns = 1;
+  EXPECT_EQ(summary(result),
+            "status          not-converged\n"
+            "message         the iteration stopped\n"
+            "strategy        newton from the guess\n"
+            "duration        1\n"
+            "residual        2.0e-15\n"
+            "mesh            1 element of degree 8, 1 unknown\n"
+            "iterations      5\n"
+            "time            read 100 µs, solve 40.0 µs, analyse 10.0 µs\n");
+}
+
+TEST(Summary, OfASolutionNeverBegun) {
+  EXPECT_EQ(summary(Result{}),
+            "status          not-converged\n"
+            "message         nothing has been solved\n"
+            "iterations      0\n"
+            "time            read 0.00 ns, solve 0.00 ns, analyse 0.00 ns\n");
+}
+
+TEST(DurationText, HasThreeDigitsInTheUnitThatFits) {
+  EXPECT_EQ(duration_text(8.5e-9), "8.50 ns");
+  EXPECT_EQ(duration_text(850e-9), "850 ns");
+  EXPECT_EQ(duration_text(999.4e-9), "999 ns");
+  EXPECT_EQ(duration_text(999.6e-9), "1.00 µs");
+  EXPECT_EQ(duration_text(9.994e-6), "9.99 µs");
+  EXPECT_EQ(duration_text(9.996e-6), "10.0 µs");
+  EXPECT_EQ(duration_text(99.96e-6), "100 µs");
+  EXPECT_EQ(duration_text(4.56e-3), "4.56 ms");
+  EXPECT_EQ(duration_text(1.234), "1.23 s");
+  EXPECT_EQ(duration_text(12345), "12345 s");
+}
+
+Table small_table() {
+  return {.head = {{"method", Table::Align::left}, {"time"}, {"error"}},
+          .rows = {{"lobatto", "8.1 µs", "3e-10"}, {"dop853", "44 µs", "1e-8"}}};
+}
+
+TEST(Table, PlainTextIsAligned) {
+  EXPECT_EQ(plain_text(small_table()),
+            "method     time  error\n"
+            "lobatto  8.1 µs  3e-10\n"
+            "dop853    44 µs   1e-8\n");
+}
+
+TEST(Table, MarkdownIsAligned) {
+  EXPECT_EQ(markdown(small_table()),
+            "| method  |   time | error |\n"
+            "| ------- | -----: | ----: |\n"
+            "| lobatto | 8.1 µs | 3e-10 |\n"
+            "| dop853  |  44 µs |  1e-8 |\n");
+}
+
+TEST(Table, MarkdownEscapesBars) {
+  EXPECT_EQ(markdown({.head = {{"a|b", Table::Align::left}}, .rows = {{"||"}}}),
+            "| a\\|b |\n"
+            "| ---- |\n"
+            "| \\|\\| |\n");
+}
+
+TEST(Table, NoBlanksAtTheEndOfALine) {
+  EXPECT_EQ(plain_text({.head = {{"a"}, {"long heading", Table::Align::left}}, .rows = {{"1", "x"}}}),
+            "a  long heading\n"
+            "1  x\n");
+}
+
+TEST(Table, RefusesARowOfAnotherLength) {
+  Table table = small_table();
+  table.rows[1].pop_back();
+  for (const auto& write : {plain_text, markdown}) {
+    try {
+      write(table);
+      ADD_FAILURE() << "not refused";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_STREQ(error.what(), "a row has 2 cells under 3 headings");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace extremal
