@@ -106,7 +106,8 @@ void Tape::play(const Points& points, double* out, Scratch& scratch) const {
   const int chunks = (batches + widest_chunk() - 1) / widest_chunk();
   if (chunks == 0) return;
   const int width = (batches + chunks - 1) / chunks;
-  double* memory = scratch.reserve(static_cast<std::size_t>(slots_ + 1) * width * lanes);
+  // Enough for any width, so that a shorter tape does not ask for more after a longer one.
+  double* memory = scratch.reserve(static_cast<std::size_t>(std::max(cache_batches, operands_)) * lanes);
   if (scratch.operands.size() < static_cast<std::size_t>(operands_)) scratch.operands.resize(operands_);
   for (int begin = 0; begin < batches; begin += width) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(begin) * lanes;

@@ -38,11 +38,11 @@ struct LagrangianGraph {
 /// Reads off the structure, differentiates, compiles. The result is a TapeLagrangian.
 std::shared_ptr<const Lagrangian> make_lagrangian(LagrangianGraph graph);
 
-/// Traces functor(q, v, t) once, with q and v spans of Symbol, and compiles it:
+/// Traces functor(q, v, t) once, with q and v spans of Symbol:
 ///   auto kepler = trace(2, [](auto q, auto v, auto t) {
 ///     return (v[0]*v[0] + v[1]*v[1])/2 + 1/sqrt(q[0]*q[0] + q[1]*q[1]); });
 template <class Functor>
-std::shared_ptr<const Lagrangian> trace(int coordinates, Functor&& functor) {
+LagrangianGraph trace_graph(int coordinates, Functor&& functor) {
   LagrangianGraph l;
   l.coordinates = coordinates;
   std::vector<Symbol> z;
@@ -54,7 +54,13 @@ std::shared_ptr<const Lagrangian> trace(int coordinates, Functor&& functor) {
   const Symbol value = functor(std::span<const Symbol>(z.data(), coordinates),
                                std::span<const Symbol>(z.data() + coordinates, coordinates), z.back());
   l.terms.push_back({value.node(l.graph), 2 * coordinates + 1, std::move(table)});
-  return make_lagrangian(std::move(l));
+  return l;
+}
+
+/// Traces and compiles.
+template <class Functor>
+std::shared_ptr<const Lagrangian> trace(int coordinates, Functor&& functor) {
+  return make_lagrangian(trace_graph(coordinates, functor));
 }
 
 }  // namespace extremal

@@ -95,7 +95,7 @@ void Sorter::write_out(const Term& term, const std::vector<std::uint32_t>& used,
       single_.kinds.push_back(o.kind);
       single_.table.push_back(o.index);
     }
-    part.inputs[m].input = at->second;
+    part.inputs[m] = {false, 0, at->second};
   }
   single_.parts.push_back(std::move(part));
 }
@@ -117,8 +117,10 @@ Group Sorter::tabulate(const Term& term, const std::vector<std::uint32_t>& used,
       continue;
     }
     const auto next = static_cast<std::uint32_t>(columns.size());
-    part.inputs[m].input = o.kind == Variable::uniform ? next : known.emplace(global, next).first->second;
-    if (part.inputs[m].input != next) continue;
+    const std::uint32_t input =
+        o.kind == Variable::uniform ? next : known.emplace(global, next).first->second;
+    part.inputs[m] = {false, 0, input};
+    if (input != next) continue;
     columns.push_back(m);
     group.kinds.push_back(o.kind);
   }

@@ -12,9 +12,9 @@ namespace extremal {
 /// What an input of a kernel stands for. A parameter is an active uniform; the same for all rows.
 enum class Variable : std::uint8_t { coordinate, velocity, time, parameter, uniform };
 
-/// Where a body's input comes from: an input of the group or a number.
+/// What a body's input is bound to: a number or an input of the group. What is not read is 0.
 struct Binding {
-  bool number = false;
+  bool number = true;
   double value = 0;
   std::uint32_t input = 0;
 };
