@@ -33,11 +33,11 @@ struct ParameterText {
 /// A system as text. Where a FormulaError comes from is named "coordinates[0]", "definitions.r",
 /// "lagrangian".
 struct SystemText {
-  std::vector<std::string> coordinates;             ///< "x", "x[32]", "x[n]"
-  std::map<std::string, ParameterText> parameters;
-  std::map<std::string, std::string> definitions;
-  std::string lagrangian;
-  std::vector<std::string> active;                  ///< scalar parameters that derivatives are asked for
+  std::vector<std::string> coordinates{};  ///< "x", "x[32]", "x[n]"
+  std::map<std::string, ParameterText> parameters{};
+  std::map<std::string, std::string> definitions{};
+  std::string lagrangian{};
+  std::vector<std::string> active{};  ///< scalar parameters that derivatives are asked for
 };
 
 /// A declared coordinate and where its elements stand in q.
@@ -50,7 +50,7 @@ struct Coordinate {
 
 struct System {
   std::vector<Coordinate> coordinates;
-  std::vector<std::string> names;                   ///< one an element: "x", "q[1]"
+  std::vector<std::string> names;  ///< one an element: "x", "q[1]"
   std::map<std::string, ParameterText> parameters;
   std::shared_ptr<const Lagrangian> lagrangian;
 };
@@ -64,8 +64,9 @@ double number(const std::string& formula, const std::map<std::string, ParameterT
 
 /// A guess x(t) as formulas of t, T, parameters and, for an array, the index i.
 /// Returns the values at each of `times`.
-std::vector<double> tabulate(const std::string& formula, const std::map<std::string, ParameterText>& parameters,
-                             double duration, std::span<const double> times, int index, const std::string& where);
+std::vector<double> tabulate(const std::string& formula,
+                             const std::map<std::string, ParameterText>& parameters, double duration,
+                             std::span<const double> times, int index, const std::string& where);
 
 /// An equation "left = right" between end values x(0), x[2](T), velocities excluded, and parameters:
 /// g = left − right as a function of the 2n end coordinates (start, then end).
@@ -73,7 +74,9 @@ struct EndEquation {
   bool affine = false;
   std::vector<Triplet> coefficients;  ///< (0, e, value), where affine
   double constant = 0;                ///< g = Σ coefficient·x_e + constant, where affine
-  std::function<double(std::span<const double> start, std::span<const double> end, std::span<double> gradient)> function;
+  std::function<double(std::span<const double> start, std::span<const double> end,
+                       std::span<double> gradient)>
+      function;
 };
 EndEquation end_equation(const std::string& text, const System& system, const std::string& where);
 

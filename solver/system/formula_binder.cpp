@@ -202,7 +202,7 @@ std::vector<double> Binder::numbers(TermBuilder& builder, const Formula& formula
   for (std::size_t row = 0; row < values.size(); ++row) {
     values[row] = value(row);
     if (!std::isfinite(values[row]))
-      fail(formula, node.offset, fmt::format("the number here is {}", values[row]));
+      fail(formula, node.offset, "the numbers here do not combine to a finite one");
   }
   return values;
 }

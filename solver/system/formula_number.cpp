@@ -129,8 +129,7 @@ double Evaluator::finite(const Formula& formula, std::uint32_t node, std::vector
   const Syntax& syntax = formula.nodes[node];
   if (!std::isfinite(result))
     fail(formula, syntax.offset,
-         fmt::format("the value is {}, not a finite number{}", result,
-                     circumstances(formula, syntax, indices)));
+         fmt::format("the value is not finite{}", circumstances(formula, syntax, indices)));
   return result;
 }
 
@@ -189,8 +188,7 @@ std::vector<double> tabulate(const std::string& text, const std::map<std::string
   for (const double time : times) {
     evaluator.time = time;
     const double value = evaluator.value(formula, formula.root, indices);
-    if (!std::isfinite(value))
-      fail(formula, 0, fmt::format("the value is {} at t = {}; a guess must be finite", value, time));
+    if (!std::isfinite(value)) fail(formula, 0, fmt::format("the guess is not finite at t = {}", time));
     values.push_back(value);
   }
   return values;

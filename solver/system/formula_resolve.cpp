@@ -167,8 +167,10 @@ class Resolver {
     const bool call = node.form == Form::call;
     if (!call && find_function(name) != nullptr)
       stop(node, fmt::format("'{}' is a function; write {}(…)", name, name));
-    std::vector<std::string> known(indices_);
-    for (const auto& [other, meaning] : names_.table) known.push_back(other);
+    std::vector<std::string> known;
+    if (!call) known = indices_;
+    for (const auto& [other, meaning] : names_.table)
+      if (!call || names_.kind == Kind::condition) known.push_back(other);
     for (const Function& function : functions()) known.emplace_back(function.name);
     known.insert(known.end(), {"sum", "pi"});
     const std::string nearest = nearest_name(name, known);
