@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "scene/schema.hpp"
@@ -47,12 +46,7 @@ void fill_formula(const Quantity& quantity, int a, int index, const System& syst
   const std::vector<double> values = placed(text, [&](const std::string& formula) {
     return tabulate(formula, system.parameters, duration, times, index, "guess");
   });
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (!std::isfinite(values[k]))
-      throw SceneError(position(text, 0),
-                       fmt::format("the guess of '{}' is not finite at t = {}", system.names[a], times[k]));
-    guess.q[k * n + a] = values[k];
-  }
+  for (std::size_t k = 0; k < times.size(); ++k) guess.q[k * n + a] = values[k];
 }
 
 void tabulate_formulas(const GuessTable& table, const System& system, Problem& problem) {

@@ -29,7 +29,8 @@ double evaluate(const Quantity& quantity, const Parameters& parameters) {
   return value;
 }
 
-Range range_of(const std::string& name, const Location& at, const System& system, std::vector<std::string> keys) {
+Range range_of(const std::string& name, const Location& at, const System& system,
+               std::vector<std::string> keys) {
   const std::size_t bracket = name.find('[');
   const std::string stem = name.substr(0, bracket);
   for (const Coordinate& c : system.coordinates) {

@@ -45,7 +45,7 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(start("q = 1"),
             "scene.toml:7:15: 'q' has 3 elements; give a list of 3 values, or \"q[1]\" = … for one element");
   EXPECT_EQ(start("x = [1, 2]"), "scene.toml:7:15: 'x' is one number; found a list of 2");
-  EXPECT_EQ(start("x = \"1/0\""), "scene.toml:7:16: '1/0' is not finite");
+  EXPECT_EQ(start("x = \"1/0\""), "scene.toml:7:16: the value is not finite");
   EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 1"),
             "scene.toml:7:35: this condition contradicts the ones before it");
   EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 0"),

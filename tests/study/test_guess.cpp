@@ -41,7 +41,7 @@ TEST_F(Scenes, GuessFormulasThatAreWrong) {
   const auto guess = [&](const std::string& s) { return message(masses + ends + "[guess]\n" + s + "\n"); };
   EXPECT_EQ(guess("fiel = \"a.csv\""), "scene.toml:11:1: unknown coordinate 'fiel'; did you mean 'file'?");
   EXPECT_EQ(guess("q = [\"t\", \"t\"]"), "scene.toml:11:5: 'q' has 3 elements; found 2 values");
-  EXPECT_EQ(guess("x = \"log(t - 1)\""), "scene.toml:11:6: the guess of 'x' is not finite at t = 0");
+  EXPECT_EQ(guess("x = \"log(t - 1)\""), "scene.toml:11:6: the guess is not finite at t = 0");
   EXPECT_EQ(guess("x = \"2*tt\"").rfind("scene.toml:11:8: ", 0), 0u);
   EXPECT_EQ(guess("x = \"2*(t\"").rfind("scene.toml:11:", 0), 0u);
 }
