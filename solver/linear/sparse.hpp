@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "linear/inertia.hpp"
+
+/// \file Symmetric sparse systems of any structure (lattices, many bodies), by SuiteSparse.
+
+namespace extremal {
+
+/// A symmetric n × n matrix with a fixed pattern, factored again and again: ordering and symbolic analysis
+/// once (AMD), then CHOLMOD's simplicial LDLᵀ, which takes either sign of pivot but does not choose pivots.
+/// It is monitored like the chain; where it grows or meets a tiny pivot, UMFPACK's LU solves instead.
+/// Each object has its own cholmod_common, so different threads may use different objects.
+class SparseSymmetric {
+ public:
+  SparseSymmetric();
+  ~SparseSymmetric();
+  SparseSymmetric(SparseSymmetric&&) noexcept;
+  SparseSymmetric& operator=(SparseSymmetric&&) noexcept;
+
+  /// Entry k stands at (rows[k], columns[k]), in either triangle, and at its mirror image. Entries that share
+  /// a place add up. Throws std::invalid_argument for an index outside 0 … n−1 or spans of different
+  /// lengths, std::bad_alloc without memory.
+  void pattern(int n, std::span<const int> rows, std::span<const int> columns);
+
+  /// One value for each entry of the pattern, in its order.
+  double* values();
+
+  /// Numerical factorisation. False if singular to working precision or not finite.
+  bool factor();
+
+  /// X := A⁻¹ X, row-major n × `columns`, refined once where the factorisation was not the plain one.
+  /// Throws std::logic_error unless factor() has returned true. Not for two threads at a time.
+  void solve(double* x, int columns);
+
+  /// Signs of the eigenvalues of the last factor(), by Sylvester's law. After the plain factorisation exact
+  /// to roundoff. Otherwise from LDLᵀ of A + σI and A − σI (A scaled to entries of at most 1): the negative
+  /// eigenvalues of the first and the positive ones of the second are those of A beyond σ, and what is left
+  /// counts as zero. σ is the smallest power of ten for which roundoff times growth stays below σ on both
+  /// sides: a zero pivot becomes ±σ and lets the factors grow to 1/σ, so 1e-7 serves it. Where no σ below
+  /// 1e-3 serves, all eigenvalues count as zero.
+  Inertia inertia();
+
+  bool pivoted() const;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace extremal
