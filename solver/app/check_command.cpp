@@ -36,7 +36,7 @@ void print_structure(const Inspection& found) {
                      found.gyroscopic_entries,
                      found.velocity_free ? "; separable: the rest of L depends on positions only" : ""));
   else
-    line("velocities", "the mass depends on where the system is");
+    line("velocities", "L is not quadratic in them with a constant mass");
   line("Hessian", fmt::format("{} entries evaluated: {} in (q, q), {} in (q', q), {} in (q', q')",
                               found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
   for (const Inspection::Tape& tape : found.tapes)

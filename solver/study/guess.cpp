@@ -99,6 +99,7 @@ void read_guess(const Scene& scene, const System& system, Problem& problem) {
   }
   if (problem.duration.free) problem.duration.value = guessed_duration(table, system, 0);
   if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
+  if (table.state) integrate_state(*table.state, system, table.at, problem);
 }
 
 }  // namespace extremal

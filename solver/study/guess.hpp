@@ -24,4 +24,9 @@ struct SampledFile {
 /// line and column in a CSV.
 SampledFile read_samples(const std::string& path, const std::vector<std::string>& names);
 
+/// The motion from the state at t = 0 that `values` give ("x" and "x'"; zero where not named), over the
+/// problem's duration. Throws SceneError, at `at` where it cannot be integrated that far.
+void integrate_state(const std::vector<Assignment>& values, const System& system, const Location& at,
+                     Problem& problem);
+
 }  // namespace extremal

@@ -33,8 +33,8 @@ struct Range {
   bool array = false;  ///< the whole of a declared array
 };
 
-/// What "x" or "x[2]" names. Throws UnknownName, with `keys` among the names that may be meant, or SceneError for
-/// an index out of range.
+/// What "x" or "x[2]" names. Throws UnknownName, with `keys` among the names that may be meant, or SceneError
+/// for an index out of range.
 Range range_of(const std::string& name, const Location& at, const System& system,
                std::vector<std::string> keys = {});
 

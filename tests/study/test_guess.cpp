@@ -106,3 +106,29 @@ TEST_F(Scenes, GuessFilesThatAreWrong) {
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"), "g.csv: the times must ascend; 0 follows 0");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"), "none.csv: no such file");
 }
+
+TEST_F(Scenes, GuessFromAState) {
+  const Study s =
+      study(masses + ends + "[guess.state]\nx = 1\n\"x'\" = \"k/2\"\nq = [0, 1, 2]\n\"q[1]'\" = 3\n");
+  const double w = std::sqrt(2.0);  // m[2] x'' = -k x
+  for (const double t : {0.0, 0.3, 1.1, 2.0}) {
+    EXPECT_NEAR(at(s, t / 2, 0), std::cos(w * t) + 2 / w * std::sin(w * t), 1e-6);
+    EXPECT_NEAR(at(s, t / 2, 1), 3 * std::sin(t), 1e-6);
+    EXPECT_NEAR(at(s, t / 2, 3), 2 * std::cos(t), 1e-6);
+  }
+  EXPECT_EQ(message(masses + ends + "[guess.state]\nq = [0, 1]\n"),
+            "scene.toml:11:5: 'q' has 3 elements; found 2 values");
+  EXPECT_EQ(message(masses + ends + "[guess]\nstate = { \"y'\" = 1 }\n"),
+            "scene.toml:11:11: unknown coordinate 'y'");
+}
+
+TEST_F(Scenes, GuessFromAStateThatEndsInACollision) {
+  const std::string text = message(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + 1/abs(x)\"\n[boundary]\nstart = { x = 1 }\n"
+      "duration = 3\n[guess]\nstate = { x = 1 }\n");
+  // From rest at 1 in the field -1/x^2 the centre is reached after pi/(2 sqrt 2).
+  EXPECT_EQ(
+      text.rfind("scene.toml:7:1: the initial state of the guess cannot be integrated beyond t = 1.1107", 0),
+      0u)
+      << text;
+}
