@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,8 @@
 
 namespace extremal {
 namespace {
+
+std::string name(int k) { return fmt::format("d{}", k); }
 
 std::vector<double> sample(int count, unsigned seed) {
   std::mt19937 engine(seed);
@@ -228,8 +231,8 @@ TEST(FormulaGraph, DefinitionsThatDoubleSumsAreRefused) {
   SystemText text{
       .coordinates = {"q[2]"}, .definitions = {{"d0", "sum(i, 1, 2, q[i])"}}, .lagrangian = "d60"};
   for (int k = 1; k <= 60; ++k) {
-    const std::string before = "d" + std::to_string(k - 1);
-    text.definitions["d" + std::to_string(k)] = before + " + " + before;
+    const std::string before = name(k - 1);
+    text.definitions[name(k)] = before + " + " + before;
   }
   EXPECT_EQ(error_of(text), "more than 10000 sums when definitions are put in | definitions.d0 | 4");
 }
