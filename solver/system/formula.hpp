@@ -62,8 +62,8 @@ System compile(const SystemText& text);
 double number(const std::string& formula, const std::map<std::string, ParameterText>& parameters,
               const std::string& where);
 
-/// A guess x(t) as formulas of t, T, parameters and, for an array, the index i.
-/// Returns the values at each of `times`.
+/// A guess x(t) as formulas of t, T, parameters and, for an array, the index i = `index` >= 1 (0 for a
+/// single coordinate, which has none). Returns the values at each of `times`.
 std::vector<double> tabulate(const std::string& formula,
                              const std::map<std::string, ParameterText>& parameters, double duration,
                              std::span<const double> times, int index, const std::string& where);
