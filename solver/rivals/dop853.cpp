@@ -1,0 +1,122 @@
+#include "rivals/dop853.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rivals/dop853_tableau.hpp"
+
+namespace extremal {
+
+namespace {
+
+constexpr double safety = 0.9;
+constexpr double most_growth = 6, most_shrinking = 1.0 / 3;
+/// Shortening where the right-hand side cannot be evaluated.
+constexpr double retreat = 0.25;
+
+int block_size(const IntegrationOptions& options, int size) {
+  return options.block > 0 ? options.block : size;
+}
+
+double largest(std::span<const double> y, int begin, int end) {
+  double found = 0;
+  for (int i = begin; i < end; ++i) found = std::max(found, std::abs(y[i]));
+  return found;
+}
+
+}  // namespace
+
+Dop853::Dop853(RightHandSide right_hand_side, int size)
+    : slope_(std::move(right_hand_side)), size_(size), k_(dop853::stages * size), stage_(size), next_(size) {}
+
+bool Dop853::step(double t, std::span<const double> y, double h) {
+  const auto k = [this](int i) { return std::span<double>(k_).subspan(i * size_, size_); };
+  const auto combine = [&](const dop853::Row& row, int count, std::vector<double>& out) {
+    std::fill(out.begin(), out.end(), 0.0);
+    for (int j = 0; j < count; ++j)
+      if (row[j] != 0)
+        for (int m = 0; m < size_; ++m) out[m] += row[j] * k_[j * size_ + m];
+    for (int m = 0; m < size_; ++m) out[m] = y[m] + h * out[m];
+  };
+  for (int i = 0; i < dop853::stages; ++i) {
+    combine(dop853::a[i], i, stage_);
+    if (!slope_(t + dop853::c[i] * h, stage_, k(i))) return false;
+  }
+  combine(dop853::b, dop853::stages, next_);
+  return std::all_of(next_.begin(), next_.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// Hairer, Nørsett and Wanner (10.17): |h| e5² / √(e5² + 0.01 e3²), in units of the tolerance.
+double Dop853::error_norm(std::span<const double> y, double h, const IntegrationOptions& options) const {
+  const int block = block_size(options, size_);
+  double sum5 = 0, sum3 = 0;
+  for (int begin = 0; begin < size_; begin += block) {
+    const int end = std::min(begin + block, size_);
+    const double scale = std::max(largest(y, begin, end), largest(next_, begin, end)) * options.tolerance;
+    if (scale == 0) continue;
+    for (int m = begin; m < end; ++m) {
+      double e5 = 0, e3 = 0;
+      for (int i = 0; i < dop853::stages; ++i) {
+        e5 += dop853::error5[i] * k_[i * size_ + m];
+        e3 += (dop853::b[i] - dop853::b3[i]) * k_[i * size_ + m];
+      }
+      sum5 += (e5 / scale) * (e5 / scale);
+      sum3 += (e3 / scale) * (e3 / scale);
+    }
+  }
+  return sum5 == 0 ? 0 : std::abs(h) * sum5 / std::sqrt((sum5 + 0.01 * sum3) * size_);
+}
+
+/// A hundredth of the time in which a block would change by its own size; the control does the rest.
+double Dop853::first_step(double t, std::span<const double> y, double span,
+                          const IntegrationOptions& options) {
+  double h = std::abs(span) / 10;
+  if (!slope_(t, y, stage_)) return std::copysign(h, span);
+  const int block = block_size(options, size_);
+  for (int begin = 0; begin < size_; begin += block) {
+    const int end = std::min(begin + block, size_);
+    const double value = largest(y, begin, end), slope = largest(stage_, begin, end);
+    if (value > 0 && slope > 0) h = std::min(h, 0.01 * value / slope);
+  }
+  return std::copysign(h, span);
+}
+
+Integrated Dop853::advance(double& t, std::span<double> y, double end, const IntegrationOptions& options) {
+  if (h_ == 0 || (end - t) * h_ < 0) h_ = first_step(t, y, end - t, options);
+  bool after_rejection = false;
+  for (int taken = 0; t != end; ++taken) {
+    if (taken == options.max_steps) return Integrated::step_limit;
+    const bool last = std::abs(end - t) <= std::abs(h_) * (1 + 1e-12);
+    const double h = last ? end - t : h_;
+    if (std::abs(h_) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t))
+      return Integrated::step_underflow;
+    if (!step(t, y, h)) {
+      h_ = h * retreat;
+      after_rejection = true;
+      ++rejected_;
+      if (h_ == 0) return Integrated::step_underflow;
+      continue;
+    }
+    const double error = error_norm(y, h, options);
+    const double best = error > 0 ? safety * std::pow(error, -1.0 / 8) : most_growth;
+    const double factor = std::clamp(best, most_shrinking, most_growth);
+    if (error > 1) {
+      h_ = h * std::min(factor, safety);
+      after_rejection = true;
+      ++rejected_;
+      continue;
+    }
+    const double proposed = h * (after_rejection ? std::min(factor, 1.0) : factor);
+    // A step cut off at the end says nothing against the longer one that was planned.
+    h_ = last && std::abs(proposed) < std::abs(h_) ? h_ : proposed;
+    after_rejection = false;
+    t = last ? end : t + h;
+    std::copy(next_.begin(), next_.end(), y.begin());
+    ++steps_;
+  }
+  return Integrated::done;
+}
+
+}  // namespace extremal

@@ -1,0 +1,103 @@
+#include "rivals/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace extremal {
+
+namespace {
+
+constexpr int most_iterations = 20;
+/// ∂L/∂q' agrees with p to roundoff.
+constexpr double roundoff = 2e-15;
+/// From below the first of these the next step of Newton ends in roundoff, which is then below the second.
+constexpr double near = 1e-8, acceptable = 1e-12;
+
+double largest(std::span<const double> x) {
+  double found = 0;
+  for (const double a : x) found = std::max(found, std::abs(a));
+  return found;
+}
+
+}  // namespace
+
+Flow::Flow(const Lagrangian& lagrangian)
+    : n_(lagrangian.structure().coordinates),
+      structure_(lagrangian.structure()),
+      point_(lagrangian),
+      mass_(n_),
+      v_(n_),
+      residual_(n_) {
+  if (structure_.quadratic && !mass_.factor(structure_.mass))
+    throw std::invalid_argument("the mass matrix of the Lagrangian is singular");
+}
+
+bool Flow::momentum(std::span<const double> q, std::span<const double> v, double t, std::span<double> p) {
+  std::copy(v.begin(), v.end(), v_.begin());
+  if (!point_.evaluate(q, v, t, Order::gradient)) return false;
+  std::copy(point_.dv().begin(), point_.dv().end(), p.begin());
+  return true;
+}
+
+/// Either leaves q' in v_ and the gradient of L there in point_.
+bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, double t) {
+  return structure_.quadratic ? solve_linear(q, p, t) : solve_newton(q, p, t);
+}
+
+/// p = M q' + C q + a.
+bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, double t) {
+  std::copy(p.begin(), p.end(), v_.begin());
+  for (const Triplet& c : structure_.gyroscopic) v_[c.row] -= c.value * q[c.column];
+  for (std::size_t a = 0; a < structure_.linear.size(); ++a) v_[a] -= structure_.linear[a];
+  mass_.solve(v_);
+  return point_.evaluate(q, v_, t, Order::gradient);
+}
+
+/// Newton from the last velocity: one step where L is quadratic in q'.
+bool Flow::solve_newton(std::span<const double> q, std::span<const double> p, double t) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_iterations; ++i) {
+    if (!point_.evaluate(q, v_, t, Order::gradient)) return false;
+    for (int a = 0; a < n_; ++a) residual_[a] = p[a] - point_.dv()[a];
+    const double error = largest(residual_), scale = largest(p) + mass_.largest() * largest(v_);
+    if (error <= roundoff * scale || (before <= near * scale && error <= acceptable * scale)) return true;
+    if (!point_.evaluate(q, v_, t, Order::hessian) || !mass_.factor(point_.vv())) return false;
+    before = error;
+    mass_.solve(residual_);
+    for (int a = 0; a < n_; ++a) v_[a] += residual_[a];
+  }
+  return false;
+}
+
+bool Flow::velocity(std::span<const double> q, std::span<const double> p, double t, std::span<double> v) {
+  if (!solve_velocity(q, p, t)) return false;
+  std::copy(v_.begin(), v_.end(), v.begin());
+  return true;
+}
+
+bool Flow::slope(double t, std::span<const double> y, std::span<double> slope) {
+  if (!solve_velocity(y.first(n_), y.subspan(n_, n_), t)) return false;
+  std::copy(v_.begin(), v_.end(), slope.begin());
+  std::copy(point_.dq().begin(), point_.dq().end(), slope.begin() + n_);
+  return true;
+}
+
+bool Flow::slope_with_variations(double t, std::span<const double> y, std::span<double> slope) {
+  if (!this->slope(t, y, slope) || !point_.evaluate(y.first(n_), v_, t, Order::hessian)) return false;
+  if (!structure_.quadratic && !mass_.factor(point_.vv())) return false;
+  for (std::size_t begin = 2 * n_; begin < y.size(); begin += 2 * n_) {
+    const auto dq = y.subspan(begin, n_), dp = y.subspan(begin + n_, n_);
+    const auto dv = slope.subspan(begin, n_), force = slope.subspan(begin + n_, n_);
+    std::copy(dp.begin(), dp.end(), dv.begin());
+    for (const Triplet& e : point_.vq()) dv[e.row] -= e.value * dq[e.column];
+    mass_.solve(dv);
+    std::fill(force.begin(), force.end(), 0.0);
+    for (const Triplet& e : point_.qq()) force[e.row] += e.value * dq[e.column];
+    for (const Triplet& e : point_.vq()) force[e.column] += e.value * dv[e.row];
+  }
+  return true;
+}
+
+}  // namespace extremal

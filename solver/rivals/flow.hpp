@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "rivals/mass.hpp"
+#include "rivals/point.hpp"
+
+/// \file The motion of a Lagrangian system as a flow in (q, p), p = ∂L/∂q'.
+
+namespace extremal {
+
+/// q' from ∂L/∂q'(q, q', t) = p, and p' = ∂L/∂q. Holds for every regular L and needs no derivative in t. The
+/// variations follow from the second derivatives of L:
+///   L_vv δq' = δp − L_vq δq,   δp' = L_qq δq + L_vqᵀ δq'.
+class Flow {
+ public:
+  /// `lagrangian` must outlive it.
+  explicit Flow(const Lagrangian& lagrangian);
+
+  int coordinates() const { return n_; }
+
+  /// p at (q, v, t); the search for q' begins from this v. False if L is not finite there.
+  bool momentum(std::span<const double> q, std::span<const double> v, double t, std::span<double> p);
+  /// q' that belongs to p. False if none is found.
+  bool velocity(std::span<const double> q, std::span<const double> p, double t, std::span<double> v);
+
+  /// (q, p)' for y = (q, p).
+  bool slope(double t, std::span<const double> y, std::span<double> slope);
+  /// The same with variations: y = (q, p) and then for each column (δq, δp).
+  bool slope_with_variations(double t, std::span<const double> y, std::span<double> slope);
+
+ private:
+  bool solve_velocity(std::span<const double> q, std::span<const double> p, double t);
+  bool solve_linear(std::span<const double> q, std::span<const double> p, double t);
+  bool solve_newton(std::span<const double> q, std::span<const double> p, double t);
+
+  int n_;
+  const Structure& structure_;
+  PointEvaluator point_;
+  MassMatrix mass_;
+  std::vector<double> v_, residual_;
+};
+
+}  // namespace extremal

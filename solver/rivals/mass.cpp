@@ -1,0 +1,32 @@
+#include "rivals/mass.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace extremal {
+
+MassMatrix::MassMatrix(int size) : size_(size) {}
+
+bool MassMatrix::factor(const std::vector<Triplet>& entries) {
+  largest_ = 0;
+  for (const Triplet& m : entries) largest_ = std::max(largest_, std::abs(m.value));
+  if (dense()) {
+    matrix_.setZero(size_, size_);
+    for (const Triplet& m : entries) matrix_(m.row, m.column) += m.value;
+    dense_.compute(matrix_);
+    return dense_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0;
+  }
+  std::vector<Eigen::Triplet<double>> list;
+  for (const Triplet& m : entries) list.emplace_back(m.row, m.column, m.value);
+  sparse_matrix_.resize(size_, size_);
+  sparse_matrix_.setFromTriplets(list.begin(), list.end());
+  sparse_.compute(sparse_matrix_);
+  return sparse_.info() == Eigen::Success;
+}
+
+void MassMatrix::solve(std::span<double> x, int columns) {
+  Eigen::Map<Eigen::MatrixXd> right(x.data(), size_, columns);
+  right = dense() ? Eigen::MatrixXd(dense_.solve(right)) : Eigen::MatrixXd(sparse_.solve(right));
+}
+
+}  // namespace extremal

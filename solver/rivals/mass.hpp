@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/SparseLU>
+#include <span>
+#include <vector>
+
+#include "system/lagrangian.hpp"
+
+/// \file Solves with ∂²L/∂q'∂q'.
+
+namespace extremal {
+
+/// Dense for few coordinates, sparse for many.
+class MassMatrix {
+ public:
+  explicit MassMatrix(int size);
+  /// False if a pivot is zero.
+  bool factor(const std::vector<Triplet>& entries);
+  /// x := M⁻¹ x, n × columns, column by column.
+  void solve(std::span<double> x, int columns = 1);
+  double largest() const { return largest_; }  ///< largest entry
+
+ private:
+  bool dense() const { return size_ <= dense_limit; }
+  static constexpr int dense_limit = 64;
+  int size_;
+  double largest_ = 0;
+  Eigen::MatrixXd matrix_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> dense_;
+  Eigen::SparseMatrix<double> sparse_matrix_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_;
+};
+
+}  // namespace extremal
