@@ -102,8 +102,8 @@ struct Figure {
 /// Width of a text in pixels, within some 10 %.
 double text_width(const std::string& text);
 
-/// UTF-8 without control characters: each becomes a space, each byte that is no UTF-8 the mark U+FFFD; texts
-/// longer than `limit` characters end in an ellipsis.
+/// UTF-8 that may stand in XML once escaped: control characters become spaces, bytes that are no UTF-8 the
+/// mark U+FFFD, "]]>" gets a space; texts longer than `limit` characters end in an ellipsis.
 std::string printable(const std::string& text, std::size_t limit);
 
 }  // namespace extremal

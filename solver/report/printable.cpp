@@ -46,6 +46,7 @@ std::string printable(const std::string& text, std::size_t limit) {
       continue;
     }
     const std::string_view character = rest.substr(0, length);
+    if (character == ">" && result.ends_with("]]")) result += ' ';  // XML forbids the three together
     result += is_control(character) ? " " : character;
     k += length;
   }

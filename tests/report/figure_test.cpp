@@ -84,6 +84,7 @@ TEST(Printable, ReplacesWhatIsNoText) {
   EXPECT_EQ(printable("\xFF|\xC3|\xC0\x80|\xE0\x80\x80|\xED\xA0\x80|\xF5\x80", 99),
             "\uFFFD|\uFFFD|\uFFFD\uFFFD|\uFFFD\uFFFD\uFFFD|\uFFFD\uFFFD\uFFFD|\uFFFD\uFFFD");
   EXPECT_EQ(printable("\xE2\x82", 9), "\uFFFD\uFFFD");
+  EXPECT_EQ(printable("]]>", 9), "]] >");
 }
 
 TEST(Printable, ShortensByCharacters) {

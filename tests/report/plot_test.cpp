@@ -63,7 +63,7 @@ class Environment {
   std::optional<std::string> before_;
 };
 
-/// Whether tags nest, attributes are quoted, and neither '<' nor a bare '&' stands in text.
+/// Whether tags nest, attributes are quoted, and neither '<', a bare '&' nor "]]>" stands in text.
 testing::AssertionResult well_formed(const std::string& xml) {
   static const std::regex tag(
       R"(<(/?)([A-Za-z:]+)((?:\s+[\w:-]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>|<\?[^>]*\?>)");
@@ -72,7 +72,8 @@ testing::AssertionResult well_formed(const std::string& xml) {
   auto position = xml.cbegin();
   const auto text_is_clean = [&](auto end) {
     const std::string text(position, end);
-    return text.find('<') == std::string::npos && !std::regex_search(text, entity);
+    return text.find('<') == std::string::npos && text.find("]]>") == std::string::npos &&
+           !std::regex_search(text, entity);
   };
   for (std::sregex_iterator match(xml.begin(), xml.end(), tag), end; match != end; ++match) {
     if (!text_is_clean((*match)[0].first)) return testing::AssertionFailure() << "markup in text";
@@ -97,6 +98,7 @@ TEST(WellFormed, FindsFaults) {
   EXPECT_FALSE(well_formed("<a><c></a></c>"));
   EXPECT_FALSE(well_formed("<a>x & y</a>"));
   EXPECT_FALSE(well_formed("<a>x < y</a>"));
+  EXPECT_FALSE(well_formed("<a>x ]]> y</a>"));
   EXPECT_FALSE(well_formed("<a>"));
 }
 
@@ -166,11 +168,13 @@ TEST(Plot, TitlesAreTextAndNothingElse) {
     write_plot(folder / "p.svg", arc(title, {"x", "y"}));
     EXPECT_TRUE(well_formed(content(folder / "p.svg"))) << title;
     EXPECT_FALSE(std::filesystem::exists(mark)) << title;
+  }
+  for (const std::string& title : {titles[0], std::string("τ\xff\xfe\xc3")}) {
     write_plot(folder / "p.png", arc(title, {"x", "y"}));
     EXPECT_FALSE(std::filesystem::exists(mark)) << title;
   }
   write_plot(folder / "p.svg", arc("it's <x> & \"y\" `z` {a}_b^c %d", {"x", "y"}));
-  EXPECT_NE(content(folder / "p.svg").find("it's &lt;x&gt; &amp; \"y\" `z` {a}_b^c %d"), std::string::npos);
+  EXPECT_NE(content(folder / "p.svg").find("it's &lt;x> &amp; \"y\" `z` {a}_b^c %d"), std::string::npos);
 }
 
 TEST(Plot, LeavesNothingBehindAndSaysNothing) {
