@@ -195,7 +195,8 @@ void DiscreteAction::evaluate(const Path& path) {
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
     kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient, 0);
-    kernels_->hessian(tables_->shape(), elements, matrix(b));
+    kernels_->clear(unknowns_, matrix(b));
+    kernels_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix(b));
     if (border_) {
       double *row = gradient + sizes_.vector, *corner = sums + 2 * lanes;
       kernels_->border(tables_->shape(), elements, gradient, row, corner);
@@ -244,7 +245,8 @@ void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> 
   AlignedDoubles matrix(sizes_.matrix), sums(3 * lanes);
   kernels_->gradient(tables_->shape(), elements, sums.data(), matrix.data() + unknowns_ * sizes_.vector,
                      nullptr);
-  kernels_->hessian(tables_->shape(), elements, matrix.data());
+  kernels_->clear(unknowns_, matrix.data());
+  kernels_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix.data());
   for (int i = 0; i < unknowns_; ++i) {
     gradient[i] = matrix[(static_cast<std::size_t>(unknowns_) * unknowns_ + i) * lanes + lane];
     for (int j = 0; j <= i; ++j)

@@ -75,8 +75,10 @@ struct ElementKernels {
   /// L_d, its gradient (m) and, where slope_h is not null, ∂L_d/∂h.
   void (*gradient)(const ElementShape&, const ElementBatch&, double* action, double* gradient,
                    double* slope_h);
-  /// The lower triangle of the Hessian.
-  void (*hessian)(const ElementShape&, const ElementBatch&, double* matrix);
+  /// Zeros the lower triangle of an m × m matrix.
+  void (*clear)(int m, double* matrix);
+  /// Adds the lower triangle of the Hessian: contribution by contribution to the places `slots` (tables.hpp).
+  void (*hessian)(const ElementShape&, const ElementBatch&, const int* slots, double* matrix);
   /// ∂²L_d/∂x∂h (m) and ∂²L_d/∂h². `gradient` is what `gradient` returned.
   void (*border)(const ElementShape&, const ElementBatch&, const double* gradient, double* row,
                  double* corner);

@@ -146,69 +146,60 @@ void gradient(const ElementShape& s, const ElementBatch& b, double* action, doub
   if (slope_h) at(slope_h) = potential - momentum - energy * rate * rate;
 }
 
-/// K ⊗ M/h and the gyroscopic coupling.
-void constant_hessian(const ElementShape& s, const Vec& rate, double* matrix) {
-  const int n = s.n, count = s.functions, m = count * n;
-  for (int e = 0; e < s.mass_count; ++e) {
-    const EntryView& mass = s.mass[e];
-    const Vec scale = mass.value * rate;
-    for (int j = 0; j < count; ++j)
-      for (int k = 0; k <= j; ++k) {
-        if (j == k && mass.column > mass.row) continue;
-        group(matrix, (j * n + mass.row) * m + k * n + mass.column) += s.stiffness[j * count + k] * scale;
-      }
-  }
-  for (int e = 0; e < s.gyroscopic_count; ++e) {
-    const EntryView& c = s.gyroscopic[e];
-    for (int j = 0; j < count; ++j)
-      for (int k = 0; k < count; ++k) {
-        const int row = j * n + c.row, column = k * n + c.column;
-        const double value = c.value * s.gyration[j * count + k];
-        if (row == column)
-          group(matrix, row * m + row) += 2 * value;
-        else
-          group(matrix, (row > column ? row : column) * m + (row > column ? column : row)) += value;
-      }
-  }
-}
-
-/// Both orders of a symmetric entry: (J, a; K, b) and (J, b; K, a).
-inline void add_symmetric(double* matrix, int m, int n, int j, int k, int a, int b, const Vec& value) {
-  group(matrix, (j * n + a) * m + k * n + b) += value;
-  if (a != b && j != k) group(matrix, (j * n + b) * m + k * n + a) += value;
-}
-
-void hessian(const ElementShape& s, const ElementBatch& b, double* matrix) {
-  const int n = s.n, count = s.functions, m = count * n;
-  const Vec h = at(b.h), rate = 1.0 / h;
+void clear(int m, double* matrix) {
   for (int row = 0; row < m; ++row)
     for (int column = 0; column <= row; ++column) group(matrix, row * m + column) = broadcast(0);
-  constant_hessian(s, rate, matrix);
+}
+
+/// Adds to the next place; an entry on the diagonal that stands for itself and its mirror image is marked
+/// by the complement of its place, and counts twice.
+inline void place(double* matrix, const int*& slot, const Vec& value) {
+  const int at = *slot++;
+  if (at >= 0)
+    group(matrix, at) += value;
+  else
+    group(matrix, ~at) += 2.0 * value;
+}
+
+/// K ⊗ M/h and the gyroscopic coupling.
+void constant_hessian(const ElementShape& s, const Vec& rate, const int*& slot, double* matrix) {
+  const int count = s.functions;
+  for (int e = 0; e < s.mass_count; ++e) {
+    if (s.mass[e].column > s.mass[e].row) continue;
+    const Vec scale = s.mass[e].value * rate;
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k <= j; ++k) {
+        const double stiffness = s.stiffness[j * count + k];
+        if (stiffness == 0) continue;
+        const Vec value = stiffness * scale;
+        place(matrix, slot, value);
+        if (s.mass[e].column != s.mass[e].row && j != k) place(matrix, slot, value);
+      }
+  }
+  for (int e = 0; e < s.gyroscopic_count; ++e)
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k < count; ++k)
+        place(matrix, slot, broadcast(s.gyroscopic[e].value * s.gyration[j * count + k]));
+}
+
+void hessian(const ElementShape& s, const ElementBatch& b, const int* slot, double* matrix) {
+  const int n = s.n, count = s.functions;
+  const Vec h = at(b.h), rate = 1.0 / h;
+  constant_hessian(s, rate, slot, matrix);
   for (int e = 0; e < s.hessian_count; ++e) {
     const int zr = s.hessian[e].row, zc = s.hessian[e].column;
     const double* row = row_of(s, b, 1 + s.gradient_count + e);
-    if (zr < n || zc >= n) {
-      const bool velocities = zc >= n;
-      const PointSums& table = velocities ? s.slope_slope : s.value_value;
-      const Vec scale = velocities ? rate : h;
-      const int a = velocities ? zr - n : zr, c = velocities ? zc - n : zc;
-      for (int j = 0, pair = 0; j < count; ++j)
-        for (int k = 0; k <= j; ++k, ++pair)
-          if (table.start[pair] != table.start[pair + 1])
-            add_symmetric(matrix, m, n, j, k, a, c, scale * sum_points(table, pair, row));
-    } else {
-      const int a = zr - n, c = zc;
-      for (int j = 0; j < count; ++j)
-        for (int k = 0; k < count; ++k) {
-          const int pair = j * count + k, r = j * n + a, l = k * n + c;
-          if (s.slope_value.start[pair] == s.slope_value.start[pair + 1]) continue;
-          const Vec value = sum_points(s.slope_value, pair, row);
-          if (r == l)
-            group(matrix, r * m + r) += 2 * value;
-          else
-            group(matrix, (r > l ? r : l) * m + (r > l ? l : r)) += value;
-        }
-    }
+    const bool mixed = zr >= n && zc < n;
+    const PointSums& table = mixed ? s.slope_value : zc >= n ? s.slope_slope : s.value_value;
+    const Vec scale = mixed ? broadcast(1) : zc >= n ? rate : h;
+    int pair = 0;
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k <= (mixed ? count - 1 : j); ++k, ++pair) {
+        if (table.start[pair] == table.start[pair + 1]) continue;
+        const Vec value = scale * sum_points(table, pair, row);
+        place(matrix, slot, value);
+        if (!mixed && zr != zc && j != k) place(matrix, slot, value);
+      }
   }
 }
 
@@ -384,6 +375,7 @@ void expand_step(int inner, int m, const double* matrix, const double* inverse, 
 }  // namespace
 
 extern const ElementKernels element_kernels;
-const ElementKernels element_kernels = {expand, gradient, hessian, border, condense, reduce, expand_step};
+const ElementKernels element_kernels = {expand, gradient, clear,  hessian,
+                                        border, condense, reduce, expand_step};
 
 }  // namespace extremal::EXTREMAL_LEVEL

@@ -1,6 +1,8 @@
 #include "action/tables.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace extremal {
 
@@ -147,6 +149,65 @@ void ElementTables::bind(const SchemeTables& scheme, const Lagrangian& lagrangia
             .hessian_count = static_cast<int>(s.hessian.size()),
             .gradient = s.gradient.data(),
             .hessian = hessian_.data()};
+  list_places();
+}
+
+/// In the order in which the kernel `hessian` makes its contributions.
+void ElementTables::list_places() {
+  const int n = shape_.n, count = shape_.functions, m = unknowns();
+  places_.clear();
+  const auto add = [&](int row, int column, bool mirrored) {
+    places_.push_back({std::max(row, column), std::min(row, column), mirrored && row == column});
+  };
+  for (const EntryView& e : mass_) {
+    if (e.column > e.row) continue;
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k <= j; ++k) {
+        if (shape_.stiffness[j * count + k] == 0) continue;
+        add(j * n + e.row, k * n + e.column, false);
+        if (e.row != e.column && j != k) add(j * n + e.column, k * n + e.row, false);
+      }
+  }
+  for (const EntryView& e : gyroscopic_)
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k < count; ++k) add(j * n + e.row, k * n + e.column, true);
+  for (const EntryView& e : hessian_) {
+    const bool mixed = e.row >= n && e.column < n;
+    const PointSums& table = mixed           ? shape_.slope_value
+                             : e.column >= n ? shape_.slope_slope
+                                             : shape_.value_value;
+    const int a = e.row >= n ? e.row - n : e.row, b = e.column >= n ? e.column - n : e.column;
+    int pair = 0;
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k <= (mixed ? count - 1 : j); ++k, ++pair) {
+        if (table.start[pair] == table.start[pair + 1]) continue;
+        add(j * n + a, k * n + b, mixed);
+        if (!mixed && a != b && j != k) add(j * n + b, k * n + a, false);
+      }
+  }
+  entries_ = {};
+  dense_.clear();
+  if (m > most_dense_unknowns) return;
+  for (const Place& p : places_) dense_.push_back(p.twice ? ~(p.row * m + p.column) : p.row * m + p.column);
+}
+
+const ElementTables::Entries& ElementTables::entries() const {
+  if (!entries_.slots.empty()) return entries_;
+  std::vector<int> order(places_.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int k) { return std::pair(places_[k].row, places_[k].column); };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  entries_.slots.resize(places_.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Place& p = places_[order[k]];
+    if (k == 0 || key(order[k]) != key(order[k - 1])) {
+      entries_.row.push_back(p.row);
+      entries_.column.push_back(p.column);
+    }
+    const int at = static_cast<int>(entries_.row.size()) - 1;
+    entries_.slots[order[k]] = p.twice ? ~at : at;
+  }
+  return entries_;
 }
 
 }  // namespace extremal

@@ -37,6 +37,9 @@ struct SchemeTables {
   explicit SchemeTables(const Scheme& scheme, int exact_points = 0);
 };
 
+/// Above this many unknowns in an element its Hessian is only ever held as a list of entries.
+inline constexpr int most_dense_unknowns = 800;
+
 /// Tables bound to a Lagrangian: what the kernels take.
 class ElementTables {
  public:
@@ -49,11 +52,30 @@ class ElementTables {
   int inner() const { return (shape_.functions - 2) * shape_.n; }
   int unknowns() const { return shape_.functions * shape_.n; }
 
+  /// Where each contribution to the Hessian goes in a lower triangle, m × m row-major.
+  const int* dense_slots() const { return dense_.data(); }
+
+  /// The same for a list of the entries that may differ from zero; made when first asked for.
+  struct Entries {
+    std::vector<int> row, column;  ///< local numbers, row >= column
+    std::vector<int> slots;
+  };
+  const Entries& entries() const;
+
  private:
+  struct Place {
+    int row, column;
+    bool twice;  ///< stands for itself and a mirror image that is the same entry
+  };
+  void list_places();
+
   const SchemeTables* scheme_ = nullptr;
   std::vector<EntryView> mass_, gyroscopic_, hessian_;
   std::vector<double> linear_;
   ElementShape shape_{};
+  std::vector<int> dense_;
+  std::vector<Place> places_;
+  mutable Entries entries_;
 };
 
 }  // namespace extremal

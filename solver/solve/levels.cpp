@@ -2,17 +2,19 @@
 
 namespace extremal {
 
-void Levels::bind(const Lagrangian& lagrangian) {
-  lagrangian_ = &lagrangian;
+void Levels::bind(std::shared_ptr<const Lagrangian> lagrangian) {
+  if (lagrangian == lagrangian_) return;
+  lagrangian_ = std::move(lagrangian);
   for (auto& level : levels_)
-    if (level) level->tables.bind(level->scheme, lagrangian);
+    if (level) level->bound = false;
 }
 
 const ElementTables& Levels::at(int degree) {
   auto& level = levels_[degree];
-  if (!level) {
-    level = std::make_unique<Level>(degree);
+  if (!level) level = std::make_unique<Level>(degree);
+  if (!level->bound) {
     level->tables.bind(level->scheme, *lagrangian_);
+    level->bound = true;
   }
   return level->tables;
 }

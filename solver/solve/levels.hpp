@@ -12,8 +12,8 @@ namespace extremal {
 
 class Levels {
  public:
-  /// Binds every degree to another Lagrangian.
-  void bind(const Lagrangian& lagrangian);
+  /// Tables are for this Lagrangian from now on; those that are for it already stay.
+  void bind(std::shared_ptr<const Lagrangian> lagrangian);
 
   /// lobatto(degree), made when first asked for.
   const ElementTables& at(int degree);
@@ -28,9 +28,10 @@ class Levels {
   struct Level {
     SchemeTables scheme;
     ElementTables tables;
+    bool bound = false;
     explicit Level(int degree) : scheme(lobatto(degree)) {}
   };
-  const Lagrangian* lagrangian_ = nullptr;
+  std::shared_ptr<const Lagrangian> lagrangian_;
   std::array<std::unique_ptr<Level>, max_degree + 1> levels_;
   std::array<std::vector<double>, (max_degree + 1) * (max_degree + 1)> raise_;
   std::array<std::vector<double>, max_degree + 1> halve_;

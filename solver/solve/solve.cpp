@@ -77,7 +77,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   Workspace& w = memory_->workspace;
   Solution solution;
   const auto start = Clock::now();
-  w.levels.bind(*problem.lagrangian);
+  w.levels.bind(problem.lagrangian);
   SolveOptions recording = options;
   recording.progress = [&](const Iteration& step) {
     solution.history.push_back(step);
