@@ -1,0 +1,2 @@
+find_package(Ceres REQUIRED)
+target_link_libraries(${target} PRIVATE Ceres::ceres)
