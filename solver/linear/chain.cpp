@@ -63,7 +63,7 @@ double& Chain::diagonal_entry(int row) {
 }
 
 /// Factors the blocks as they are. Returns how suspicious it is that an eigenvalue is small: the largest
-/// cancellation in a pivot, infinite where pivots had to be chosen; −1 if an entry is not finite.
+/// cancellation in a pivot, or 1 / the smallest pivot that was chosen; −1 if an entry is not finite.
 double Chain::factor_once(double smallest) {
   ChainMonitor m;
   kernels_.factor(diagonal(0), lower(0), blocks_, size_, factor_.data(), &m);
@@ -76,7 +76,7 @@ double Chain::factor_once(double smallest) {
   refine_ = true;
   if (!pivoted_factor_.factor(diagonal(0), lower(0), blocks_, size_, smallest)) return -1;
   inertia_ = pivoted_factor_.inertia();
-  return std::numeric_limits<double>::infinity();
+  return 1 / pivoted_factor_.smallest_pivot();
 }
 
 /// Where the eigenvector to an eigenvalue at most `smallest` of the scaled matrix is largest, or −1 if

@@ -36,46 +36,52 @@ void PivotedChain::extend(const double* diagonal, const double* coupling, int k,
   done_ = 0;
 }
 
-/// 1 / max |L| of the pivot of rows i and j, in all rows that are left (Duff and Reid's bound).
-double PivotedChain::bound(int i, int j) const {
-  double ci = 0, cj = 0;
-  for (int c = done_; c < order_; ++c) {
-    if (c == i || c == j) continue;
-    ci = std::max(ci, std::abs(front(i, c)));
-    cj = std::max(cj, std::abs(front(j, c)));
-  }
-  const double a = std::abs(front(i, i)), c = std::abs(front(j, j)), b = std::abs(front(i, j));
-  if (i == j) return ci > 0 ? a / ci : (a > 0 ? HUGE_VAL : 0.0);
-  const double det = std::abs(front(i, i) * front(j, j) - front(i, j) * front(i, j));
-  const double multiplier = std::max(c * ci + b * cj, b * ci + a * cj);
+/// Largest |entry| of a row that is left, besides columns i and j.
+double PivotedChain::largest(int row, int i, int j) const {
+  const double* const f = &front_[std::size_t(row) * order_];
+  double most = 0;
+  const auto scan = [&](int from, int to) {
+    for (int c = from; c < to; ++c) most = std::max(most, std::abs(f[c]));
+  };
+  scan(done_, std::min(i, j));
+  scan(std::min(i, j) + 1, std::max(i, j));
+  scan(std::max(i, j) + 1, order_);
+  return most;
+}
+
+/// 1 / max |L| of the 2×2 pivot of rows i and j (Duff and Reid's bound).
+double PivotedChain::quality(int i, int j) const {
+  const double a = front(i, i), b = front(i, j), c = front(j, j);
+  const double ci = largest(i, i, j), cj = largest(j, i, j);
+  const double multiplier =
+      std::max(std::abs(c) * ci + std::abs(b) * cj, std::abs(b) * ci + std::abs(a) * cj);
+  const double det = std::abs(a * c - b * b);
   return multiplier > 0 ? det / multiplier : (det > 0 ? HUGE_VAL : 0.0);
 }
 
-PivotedChain::Choice PivotedChain::choose(int summed) const {
+/// The first 1×1 pivot that satisfies, or else the best of all. Deflates on the way.
+PivotedChain::Choice PivotedChain::choose(int summed, double smallest) {
   Choice best;
-  for (int i = done_; i < summed; ++i)
-    if (const double quality = bound(i, i); quality > best.quality) best = {i, i, quality};
-  if (best.quality >= satisfying) return best;
+  for (int i = done_; i < summed; ++i) {
+    const double others = largest(i, i, i);
+    if (others <= smallest && std::abs(front(i, i)) <= smallest) {
+      const double s = scale_[front_rows_[i]];
+      front(i, i) += 1;
+      deflated_.push_back({front_rows_[i], 1 / (s * s)});
+    }
+    const double a = std::abs(front(i, i)), ratio = others > 0 ? a / others : (a > 0 ? HUGE_VAL : 0.0);
+    if (ratio > best.quality) best = {i, i, ratio};
+    if (ratio >= satisfying) return best;
+  }
   for (int i = done_; i < summed; ++i) {
     int partner = i;
-    double largest = 0;
+    double most = 0;
     for (int j = done_; j < summed; ++j)
-      if (j != i && std::abs(front(i, j)) > largest) largest = std::abs(front(i, partner = j));
+      if (j != i && std::abs(front(i, j)) > most) most = std::abs(front(i, partner = j));
     if (partner == i) continue;
-    if (const double quality = bound(i, partner); quality > best.quality) best = {i, partner, quality};
+    if (const double both = quality(i, partner); both > best.quality) best = {i, partner, both};
   }
   return best;
-}
-
-void PivotedChain::deflate(int summed, double smallest) {
-  for (int i = done_; i < summed; ++i) {
-    double largest = 0;
-    for (int j = done_; j < order_; ++j) largest = std::max(largest, std::abs(front(i, j)));
-    if (largest > smallest) continue;
-    front(i, i) += 1;
-    const double s = scale_[front_rows_[i]];
-    deflated_.push_back({front_rows_[i], 1 / (s * s)});
-  }
 }
 
 void PivotedChain::swap_rows(int i, int j) {
@@ -91,6 +97,9 @@ void PivotedChain::take_pivot(int count) {
   const double a = front(p, p), c = front(q, q), b = count == 2 ? front(p, q) : 0.0;
   const double det = a * c - b * b;
   const auto count_sign = [&](bool positive) { ++(positive ? inertia_.positive : inertia_.negative); };
+  smallest_pivot_ =
+      std::min(smallest_pivot_,
+               count == 1 ? std::abs(a) : std::abs(det) / std::max({std::abs(a), std::abs(b), std::abs(c)}));
   pivot_.push_back(a);
   coupling_.push_back(b);
   if (count == 2) {
@@ -107,7 +116,10 @@ void PivotedChain::take_pivot(int count) {
     const double lq = count == 2 ? (a * v - b * u) / det : 0.0;
     double* const row = &front(i, 0);
     const double *const fp = &front(p, 0), *const fq = &front(q, 0);
-    for (int j = q + 1; j < order_; ++j) row[j] -= lp * fp[j] + lq * fq[j];
+    if (count == 2)
+      for (int j = q + 1; j < order_; ++j) row[j] -= lp * fp[j] + lq * fq[j];
+    else if (lp != 0)
+      for (int j = q + 1; j < order_; ++j) row[j] -= lp * fp[j];
     row[p] = lp;
     if (count == 2) row[q] = lq;
   }
@@ -117,8 +129,7 @@ void PivotedChain::take_pivot(int count) {
 
 void PivotedChain::eliminate(int summed, double smallest) {
   while (done_ < summed) {
-    deflate(summed, smallest);
-    const Choice best = choose(summed);
+    const Choice best = choose(summed, smallest);
     if (best.i < 0 || (summed < order_ && best.quality < threshold)) return;
     const int partner = best.j == done_ ? best.i : best.j;  // where the first swap leaves it
     swap_rows(done_, best.i);
@@ -145,6 +156,7 @@ bool PivotedChain::factor(const double* diagonal, const double* lower, int block
   const auto finite = [](double x) { return std::isfinite(x); };
   inertia_ = {};
   deflated_.clear();
+  smallest_pivot_ = HUGE_VAL;
   if (!std::all_of(diagonal, diagonal + blocks * nn, finite) ||
       !std::all_of(lower, lower + (blocks - 1) * nn, finite))
     return false;

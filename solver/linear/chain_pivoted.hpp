@@ -40,6 +40,8 @@ class PivotedChain {
   /// Of A; zero eigenvalues are the deflated ones.
   Inertia inertia() const { return inertia_; }
   std::span<const Deflation> deflated() const { return deflated_; }
+  /// Smallest eigenvalue of a pivot, about, in the scaled matrix.
+  double smallest_pivot() const { return smallest_pivot_; }
 
  private:
   /// Pivots `first_pivot` … of one front; row i of the front is row rows_[first_row + i] of A, eliminated
@@ -55,9 +57,9 @@ class PivotedChain {
 
   void extend(const double* diagonal, const double* coupling, int k, int size);
   void eliminate(int summed, double smallest);
-  void deflate(int summed, double smallest);
-  Choice choose(int summed) const;
-  double bound(int i, int j) const;
+  Choice choose(int summed, double smallest);
+  double largest(int row, int i, int j) const;
+  double quality(int i, int j) const;
   void swap_rows(int i, int j);
   void take_pivot(int count);
   void keep_rest(const Stage& stage);
@@ -66,6 +68,7 @@ class PivotedChain {
   double front(int i, int j) const { return front_[std::size_t(i) * order_ + j]; }
 
   Inertia inertia_;
+  double smallest_pivot_ = 0;
   std::vector<Deflation> deflated_;
   std::vector<double> scale_;  // powers of two
   std::vector<Stage> stages_;

@@ -22,8 +22,13 @@ void equilibrate(const double* diagonal, const double* lower, int blocks, int n,
           largest[below] = std::max(largest[below], b);
           largest[column] = std::max(largest[column], b);
         }
+    bool changed = false;
     for (std::size_t i = 0; i < scale.size(); ++i)
-      if (largest[i] > 0) scale[i] = std::ldexp(scale[i], -(std::ilogb(largest[i]) / 2));
+      if (largest[i] > 0 && (largest[i] < 0.25 || largest[i] >= 4)) {
+        scale[i] = std::ldexp(scale[i], -(std::ilogb(largest[i]) / 2));
+        changed = true;
+      }
+    if (!changed) break;
   }
 }
 
