@@ -15,13 +15,14 @@ constexpr double font_size = 13, title_size = 18;  // pixels
 constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
 constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
 
-/// A literal between double quotes. All but letters, digits, spaces and what is not ASCII is written as an
-/// octal escape, so that no text can end the literal or have gnuplot substitute a command in it.
+/// A literal between double quotes. All but letters, spaces and what is not ASCII is written as an octal
+/// escape, so that no text can end the literal or have gnuplot substitute a command in it. Digits too: one
+/// after an escape would be read as a part of it.
 std::string quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : printable(text, 100)) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool plain = byte >= 0x80 || c == ' ' || std::isalnum(byte) != 0;
+    const bool plain = byte >= 0x80 || c == ' ' || std::isalpha(byte) != 0;
     result += plain ? std::string(1, c) : fmt::format("\\{:03o}", byte);
   }
   return result + "\"";

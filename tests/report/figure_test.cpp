@@ -209,7 +209,8 @@ TEST(Layout, AnOpenPathMarksItsStartAndAClosedOneOnlyItsEnd) {
   Picture picture = waves({"x", "y"});
   const auto shapes = [&] {
     std::vector<Shape> list;
-    for (const Mark& mark : layout(picture).panels[0].marks) list.push_back(mark.shape);
+    const Panel panel = layout(picture).panels[0];
+    for (const Mark& mark : panel.marks) list.push_back(mark.shape);
     return list;
   };
   EXPECT_EQ(shapes(), (std::vector<Shape>{Shape::ring, Shape::disc}));

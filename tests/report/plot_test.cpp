@@ -3,15 +3,16 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <optional>
-#include <regex>
 #include <sstream>
 
 #include "sample_results.hpp"
+#include "well_formed.hpp"
 
 namespace extremal {
 namespace {
@@ -62,36 +63,6 @@ class Environment {
   const char* name_;
   std::optional<std::string> before_;
 };
-
-/// Whether tags nest, attributes are quoted, and neither '<', a bare '&' nor "]]>" stands in text.
-testing::AssertionResult well_formed(const std::string& xml) {
-  static const std::regex tag(
-      R"(<(/?)([A-Za-z:]+)((?:\s+[\w:-]+\s*=\s*(?:"[^"<]*"|'[^'<]*'))*)\s*(/?)>|<\?[^>]*\?>)");
-  static const std::regex entity("&(?!(amp|lt|gt|quot|apos|#[0-9]+|#x[0-9A-Fa-f]+);)");
-  std::vector<std::string> open;
-  auto position = xml.cbegin();
-  const auto text_is_clean = [&](auto end) {
-    const std::string text(position, end);
-    return text.find('<') == std::string::npos && text.find("]]>") == std::string::npos &&
-           !std::regex_search(text, entity);
-  };
-  for (std::sregex_iterator match(xml.begin(), xml.end(), tag), end; match != end; ++match) {
-    if (!text_is_clean((*match)[0].first)) return testing::AssertionFailure() << "markup in text";
-    position = (*match)[0].second;
-    const std::string name = (*match)[2];
-    if (name.empty() || (*match)[4].length() > 0) continue;
-    if ((*match)[1].length() == 0) {
-      open.push_back(name);
-    } else if (open.empty() || open.back() != name) {
-      return testing::AssertionFailure() << "</" << name << "> closes nothing";
-    } else {
-      open.pop_back();
-    }
-  }
-  if (!text_is_clean(xml.cend())) return testing::AssertionFailure() << "markup in text";
-  if (!open.empty()) return testing::AssertionFailure() << "<" << open.back() << "> is not closed";
-  return testing::AssertionSuccess();
-}
 
 TEST(WellFormed, FindsFaults) {
   EXPECT_TRUE(well_formed("<a b=\"1\"><c/>x &amp; y</a>"));
@@ -175,6 +146,33 @@ TEST(Plot, TitlesAreTextAndNothingElse) {
   }
   write_plot(folder / "p.svg", arc("it's <x> & \"y\" `z` {a}_b^c %d", {"x", "y"}));
   EXPECT_NE(content(folder / "p.svg").find("it's &lt;x> &amp; \"y\" `z` {a}_b^c %d"), std::string::npos);
+}
+
+/// The texts of an SVG that hold no further tags, in the order in which they are drawn.
+std::vector<std::string> texts(const std::string& svg) {
+  std::vector<std::string> list;
+  for (std::size_t k = svg.find("<text"); k != svg.npos; k = svg.find("<text", k + 1)) {
+    const std::size_t start = svg.find('>', k) + 1;
+    list.push_back(svg.substr(start, svg.find('<', start) - start));
+  }
+  return list;
+}
+
+TEST(Plot, WritesNumbersAndNamesAsTheyAre) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names{"q_1[1]", "q_1[2]"};
+  Picture picture{.title = "2.5e10's #1", .names = names, .samples = {}};
+  picture.samples = {.t = {0, 2}, .q = {{0, 5e-7}, {1, 1e-6}}, .v = {}, .p = {}};
+  picture.samples.q[1][0] = 0;
+  write_plot(folder / "p.svg", picture);
+  const std::vector<std::string> drawn = texts(content(folder / "p.svg"));
+  const auto has = [&](const std::string& text) {
+    return std::find(drawn.begin(), drawn.end(), text) != drawn.end();
+  };
+  for (const char* text :
+       {"2.5e10's #1", "q_1[1]  (10⁻⁷)", "q_1[2]  (10⁻⁶)", "t", "0.0", "0.5", "1.0", "−2"}) {
+    EXPECT_TRUE(has(text)) << text << " is not in " << testing::PrintToString(drawn);
+  }
 }
 
 TEST(Plot, LeavesNothingBehindAndSaysNothing) {
