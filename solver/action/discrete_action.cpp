@@ -8,7 +8,7 @@
 namespace extremal {
 
 void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements,
-                           bool border) {
+                           bool border, bool condense) {
   lagrangian_ = &lagrangian;
   tables_ = &tables;
   kernels_ = &element_kernels();
@@ -24,15 +24,17 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   v_.resize(tables.shape().velocity_free ? 0 : n_ * sizes_.points);
   t_.resize(sizes_.points);
   rows_.resize(lagrangian.rows(Order::hessian) * sizes_.points);
-  matrices_.resize(batches_ * sizes_.matrix);
-  inverses_.resize(batches_ * sizes_.vector);
+  matrices_.resize(condense ? batches_ * sizes_.matrix : 0);
+  inverses_.resize(condense ? batches_ * sizes_.vector : 0);
   gradients_.resize(batches_ * 3 * lanes);
   work_.resize(2 * sizes_.vector + 4 * lanes);
-  nodes.chain.resize(std::max(elements - 1, 0), n_);
   nodes.gradient.resize(static_cast<std::size_t>(elements + 1) * n_);
   nodes.border.resize(border ? nodes.gradient.size() : 0);
-  for (auto* block : {&nodes.first, &nodes.last, &nodes.first_lower, &nodes.last_lower})
-    block->resize(static_cast<std::size_t>(n_) * n_);
+  if (condense) {
+    nodes.chain.resize(std::max(elements - 1, 0), n_);
+    for (auto* block : {&nodes.first, &nodes.last, &nodes.first_lower, &nodes.last_lower})
+      block->resize(static_cast<std::size_t>(n_) * n_);
+  }
   raw_nodes_.resize(nodes.gradient.size());
   start_gradient_.resize(n_);
   end_gradient_.resize(n_);
@@ -67,7 +69,7 @@ void DiscreteAction::clear_sums() {
 }
 
 /// Sums the values and the gradient of a batch as they are, before condensation.
-void DiscreteAction::gather(const Path& path, int b, const double* gradient, double) {
+void DiscreteAction::gather(const Path& path, int b, const double* gradient) {
   const double *action = gradients_.data() + b * 3 * lanes, *slope = action + lanes;
   const int first = b * lanes, last = std::min(elements_, first + lanes);
   for (int u = 0; u < inner_; ++u)
@@ -143,7 +145,7 @@ void DiscreteAction::gather_schur(int b) {
   }
 }
 
-void DiscreteAction::finish_sums(const Path&) {
+void DiscreteAction::finish_sums() {
   for (int a = 0; a < n_; ++a) {
     start_gradient_[a] = raw_nodes_[a];
     end_gradient_[a] = raw_nodes_[static_cast<std::size_t>(elements_) * n_ + a];
@@ -163,9 +165,9 @@ void DiscreteAction::evaluate_plain(const Path& path) {
     play(elements, Order::gradient);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = work_.data();
     kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
-    gather(path, b, gradient, 0);
+    gather(path, b, gradient);
   }
-  finish_sums(path);
+  finish_sums();
 }
 
 void DiscreteAction::evaluate_gradient(const Path& path) {
@@ -175,11 +177,45 @@ void DiscreteAction::evaluate_gradient(const Path& path) {
     play(elements, Order::gradient);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
     kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
-    gather(path, b, gradient, 0);
+    gather(path, b, gradient);
     kernels_->reduce(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient);
     gather_gradient(b);
   }
-  finish_sums(path);
+  finish_sums();
+}
+
+/// ∂²S/∂x∂T and ∂²S/∂T² from those with the elements' lengths: d/dT = Σ (h_k/T) ∂/∂h_k.
+void DiscreteAction::evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient,
+                                     double* row, double* corner) {
+  kernels_->border(tables_->shape(), elements, gradient, row, corner);
+  for (int lane = 0; lane < lanes; ++lane) {
+    const double share = elements.h[lane] / path.duration();
+    corner[lane] *= share * share;
+    for (int u = 0; u < unknowns_; ++u) row[u * lanes + lane] *= share;
+  }
+}
+
+void DiscreteAction::visit(const Path& path, bool hessian,
+                           const std::function<void(int batch, const BatchValues&)>& use) {
+  clear_sums();
+  const std::size_t count = hessian ? tables_->entries().row.size() * lanes : 0;
+  entries_.resize(std::max(entries_.size(), count));
+  for (int b = 0; b < batches_; ++b) {
+    const ElementBatch elements = batch(path, b);
+    play(elements, hessian ? Order::hessian : Order::gradient);
+    double *sums = gradients_.data() + b * 3 * lanes, *gradient = work_.data(),
+           *row = gradient + sizes_.vector;
+    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    gather(path, b, gradient);
+    if (hessian) {
+      std::fill_n(entries_.begin(), count, 0.0);
+      kernels_->hessian(tables_->shape(), elements, tables_->entries().slots.data(), entries_.data());
+      if (border_) evaluate_border(path, elements, gradient, row, sums + 2 * lanes);
+    }
+    use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr,
+            sums + 2 * lanes});
+  }
+  finish_sums();
 }
 
 void DiscreteAction::evaluate(const Path& path) {
@@ -194,19 +230,10 @@ void DiscreteAction::evaluate(const Path& path) {
     play(elements, Order::hessian);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
     kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
-    gather(path, b, gradient, 0);
+    gather(path, b, gradient);
     kernels_->clear(unknowns_, matrix(b));
     kernels_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix(b));
-    if (border_) {
-      double *row = gradient + sizes_.vector, *corner = sums + 2 * lanes;
-      kernels_->border(tables_->shape(), elements, gradient, row, corner);
-      // d/dT = Σ (h_k/T) ∂/∂h.
-      for (int lane = 0; lane < lanes; ++lane) {
-        const double share = elements.h[lane] / path.duration();
-        corner[lane] *= share * share;
-        for (int u = 0; u < unknowns_; ++u) row[u * lanes + lane] *= share;
-      }
-    }
+    if (border_) evaluate_border(path, elements, gradient, gradient + sizes_.vector, sums + 2 * lanes);
     double *negative = work_.data() + 2 * sizes_.vector, *ratio = negative + lanes;
     kernels_->condense(inner_, unknowns_, unknowns_ + 1 + border_, matrix(b),
                        inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
@@ -217,7 +244,7 @@ void DiscreteAction::evaluate(const Path& path) {
     gather_gradient(b);
     gather_schur(b);
   }
-  finish_sums(path);
+  finish_sums();
 }
 
 void DiscreteAction::expand_step(std::span<const double> node_step, double duration_step,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,12 +28,22 @@ struct NodeEquations {
   double pivot_ratio = 1;           ///< least pivot against the entry it came from
 };
 
+/// The uncondensed values of eight elements, a lane each.
+struct BatchValues {
+  const double* gradient;  ///< over the m local unknowns
+  const double* entries;   ///< Hessian, as ElementTables::entries lists it; null without Hessian
+  const double* border;    ///< ∂²S/∂x∂T, m; null unless T is an unknown
+  const double* corner;    ///< ∂²S/∂T²
+};
+
 /// Evaluates a path, batch by batch in one pass: points, tape, gradient, Hessian, condensation.
 /// Keeps factors of the last factored path, so that a gradient elsewhere can be reduced with them.
 class DiscreteAction {
  public:
-  /// Binds to tables (which must outlive it) and N elements. `border`: T is an unknown.
-  void reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements, bool border);
+  /// Binds to tables (which must outlive it) and N elements. `border`: T is an unknown. Without `condense`
+  /// only visit() and evaluate_plain() may be called, and no dense matrix is held.
+  void reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements, bool border,
+             bool condense = true);
 
   /// S_h and its gradient; condensed with the factors there are into `nodes`.
   void evaluate_gradient(const Path& path);
@@ -40,6 +51,9 @@ class DiscreteAction {
   void evaluate(const Path& path);
   /// Value and gradient only, nothing condensed.
   void evaluate_plain(const Path& path);
+
+  /// S_h and its derivatives, batch by batch, as they are.
+  void visit(const Path& path, bool hessian, const std::function<void(int batch, const BatchValues&)>& use);
 
   NodeEquations nodes;
 
@@ -67,11 +81,13 @@ class DiscreteAction {
   };
   ElementBatch batch(const Path& path, int b);
   void play(const ElementBatch& batch, Order order);
-  void gather(const Path& path, int b, const double* gradient, double slope_sum);
+  void evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient, double* row,
+                       double* corner);
+  void gather(const Path& path, int b, const double* gradient);
   void gather_schur(int b);
   void gather_gradient(int b);
   void clear_sums();
-  void finish_sums(const Path& path);
+  void finish_sums();
   double* matrix(int b) { return matrices_.data() + b * sizes_.matrix; }
   const double* matrix(int b) const { return matrices_.data() + b * sizes_.matrix; }
 
@@ -85,7 +101,7 @@ class DiscreteAction {
   Scratch scratch_;
   AlignedDoubles q_, v_, t_, rows_;                 // of one batch
   AlignedDoubles matrices_, inverses_, gradients_;  // of every batch
-  AlignedDoubles work_, raw_;
+  AlignedDoubles work_, entries_;
   std::vector<double> raw_nodes_, start_gradient_, end_gradient_;
 };
 

@@ -22,8 +22,12 @@ double largest(std::span<const double> x) {
 
 void NewtonIteration::reset(const Problem& problem, const ElementTables& tables, int elements) {
   problem_ = &problem;
-  action_.reset(*problem.lagrangian, tables, elements, problem.duration.free);
-  system_.reset(problem.ends, elements, problem.coordinates(), problem.duration.free);
+  const bool sparse = tables.unknowns() > most_dense_unknowns;
+  auto& model = sparse ? sparse_ : condensed_;
+  if (!model) model = sparse ? make_sparse_model() : make_condensed_model();
+  model_ = model.get();
+  action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
+  model_->reset(problem, tables, elements);
   norm_ = contraction_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
@@ -46,27 +50,25 @@ const ClosingEquation* NewtonIteration::closing(const Path& path) {
 /// The correction from the gradient that was evaluated last; NaN if it is not finite.
 double NewtonIteration::solve_for_step(const Path& path) {
   if (!action_.finite()) return NAN;
-  system_.solve(action_.nodes, closing(path));
-  action_.expand_step(system_.step(), system_.duration_step(), inner_step_);
-  double size = std::max(largest(system_.step()), largest(inner_step_)) / scale_;
-  if (problem_->duration.free) size = std::max(size, std::abs(system_.duration_step()) / path.duration());
+  model_->solve(action_, closing(path), step_);
+  double size = std::max(largest(step_.nodes), largest(step_.inner)) / scale_;
+  if (problem_->duration.free) size = std::max(size, std::abs(step_.duration) / path.duration());
   return std::isfinite(size) ? size : NAN;
 }
 
 void NewtonIteration::apply(Path& path, double factor, bool keep) {
   if (keep) saved_ = path;
-  path.add(system_.step(), inner_step_, factor);
-  if (problem_->duration.free) path.set_duration(path.duration() + factor * system_.duration_step());
+  path.add(step_.nodes, step_.inner, factor);
+  if (problem_->duration.free) path.set_duration(path.duration() + factor * step_.duration);
   path.load_ends();
 }
 
 /// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
 /// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
 StepResult NewtonIteration::full_step(Path& path) {
-  action_.evaluate(path);
   ++count_;
-  if (!action_.finite()) return StepResult::not_finite;
-  if (!system_.factor(action_.nodes, closing(path))) return StepResult::singular;
+  if (!model_->evaluate(action_, path, closing(path)))
+    return action_.finite() ? StepResult::singular : StepResult::not_finite;
   const double step = solve_for_step(path);
   if (std::isnan(step)) return StepResult::not_finite;
   double factor = predicted_;
@@ -74,7 +76,7 @@ StepResult NewtonIteration::full_step(Path& path) {
     if (factor < least_damping) return StepResult::stalled;
     apply(path, factor, true);
     const bool positive = path.duration() > 0;
-    if (positive) action_.evaluate_gradient(path);
+    if (positive) model_->evaluate_gradient(action_, path);
     const double simplified = positive ? solve_for_step(path) : NAN;
     if (simplified <= (1 - factor / 4) * step || simplified < 1e-14) {
       contraction_ = simplified / step;
@@ -83,7 +85,7 @@ StepResult NewtonIteration::full_step(Path& path) {
       break;
     }
     path = saved_;
-    action_.evaluate_gradient(path);
+    model_->evaluate_gradient(action_, path);
     solve_for_step(path);  // the step again
   }
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
@@ -93,7 +95,7 @@ StepResult NewtonIteration::full_step(Path& path) {
 
 StepResult NewtonIteration::chord_step(Path& path) {
   const double before = norm_;
-  action_.evaluate_gradient(path);
+  model_->evaluate_gradient(action_, path);
   ++count_;
   norm_ = solve_for_step(path);
   if (std::isnan(norm_)) return StepResult::not_finite;

@@ -7,7 +7,7 @@
 #include "action/path.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
-#include "solve/node_system.hpp"
+#include "solve/model.hpp"
 
 /// \file Newton's method for δS_h = 0 on one discretisation: full steps damped by natural monotonicity,
 /// and chord steps that reuse a factorisation.
@@ -43,11 +43,10 @@ class NewtonIteration {
   int count() const { return count_; }
 
   DiscreteAction& action() { return action_; }
-  NodeSystem& system() { return system_; }
+  /// The second variation that was factored last.
+  QuadraticModel& model() { return *model_; }
   /// The equation that closes the duration, at the path's ends; null where it is fixed.
   const ClosingEquation* closing(const Path& path);
-  /// The last correction of the mesh nodes, (N + 1) × n.
-  std::span<const double> node_step() const { return system_.step(); }
 
  private:
   double solve_for_step(const Path& path);
@@ -55,9 +54,10 @@ class NewtonIteration {
 
   const Problem* problem_ = nullptr;
   DiscreteAction action_;
-  NodeSystem system_;
+  std::unique_ptr<QuadraticModel> condensed_, sparse_;
+  QuadraticModel* model_ = nullptr;
+  Step step_;
   ClosingEquation closing_;
-  AlignedDoubles inner_step_;
   Path saved_;
   double scale_ = 1, norm_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
   int count_ = 0;

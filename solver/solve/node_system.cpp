@@ -17,8 +17,6 @@ void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool f
   columns_.resize(inner * border_);
   solved_.resize(inner * border_);
   right_.resize(inner);
-  step_.resize(static_cast<std::size_t>(elements + 1) * n_);
-  duration_step_ = 0;
 }
 
 /// Adds factor × (column of end coordinate e) over the chain's nodes.
@@ -77,12 +75,14 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
   return dense_.rank() > 0;
 }
 
-void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closing) {
+void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
+                       double& duration_step) {
   const std::size_t inner = right_.size(), last = static_cast<std::size_t>(elements_) * n_;
   for (std::size_t k = 0; k < inner; ++k) right_[k] = -nodes.gradient[n_ + k];
   if (elements_ > 1) chain_->solve(right_.data(), 1);
-  std::fill(step_.begin(), step_.end(), 0.0);
-  std::copy(right_.begin(), right_.end(), step_.begin() + n_);
+  step.assign(last + n_, 0);
+  duration_step = 0;
+  std::copy(right_.begin(), right_.end(), step.begin() + n_);
   if (border_ == 0) return;
 
   const bool own_row = closing && !closing->row.empty();
@@ -95,9 +95,9 @@ void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closin
       if (!(own_row && c == free_)) r[c] -= columns_[k * border_ + c] * right_[k];
   const Eigen::VectorXd y = dense_.solve(r);
   for (std::size_t k = 0; k < inner; ++k)
-    for (int c = 0; c < border_; ++c) step_[n_ + k] -= solved_[k * border_ + c] * y[c];
-  for (const Triplet& z : ends_->z) step_[z.row < n_ ? z.row : last + z.row - n_] += z.value * y[z.column];
-  duration_step_ = free_duration_ ? y[free_] : 0;
+    for (int c = 0; c < border_; ++c) step[n_ + k] -= solved_[k * border_ + c] * y[c];
+  for (const Triplet& z : ends_->z) step[z.row < n_ ? z.row : last + z.row - n_] += z.value * y[z.column];
+  duration_step = free_duration_ ? y[free_] : 0;
 }
 
 Inertia NodeSystem::inertia(double threshold) const {

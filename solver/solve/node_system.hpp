@@ -7,18 +7,12 @@
 
 #include "action/discrete_action.hpp"
 #include "problem/problem.hpp"
+#include "solve/model.hpp"
 
 /// \file The linear system of one Newton step, after condensation: the nodes between elements as a
 /// chain, bordered by what the boundary relation leaves free of the ends, and by the duration.
 
 namespace extremal {
-
-/// The equation that closes a free duration: row over (q(0), q(T)) and its value, or, where the row is
-/// empty, ∂S/∂T + energy = 0, whose row is the border itself.
-struct ClosingEquation {
-  std::vector<double> row;  ///< 2n, or empty
-  double value = 0;         ///< to become zero
-};
 
 class NodeSystem {
  public:
@@ -28,10 +22,8 @@ class NodeSystem {
   bool factor(NodeEquations& nodes, const ClosingEquation* closing);
 
   /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds.
-  void solve(const NodeEquations& nodes, const ClosingEquation* closing);
-
-  std::span<const double> step() const { return step_; }
-  double duration_step() const { return duration_step_; }
+  void solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
+             double& duration_step);
 
   /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
   /// are counted by NodeEquations. Eigenvalues of the border within `threshold` (relative) are null.
@@ -45,10 +37,9 @@ class NodeSystem {
   int n_ = 0, elements_ = 0, free_ = 0, border_ = 0;
   bool free_duration_ = false;
   const Chain* chain_ = nullptr;
-  std::vector<double> columns_, solved_, step_, right_;
+  std::vector<double> columns_, solved_, right_;
   Eigen::MatrixXd schur_, symmetric_;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> dense_;
-  double duration_step_ = 0;
 };
 
 }  // namespace extremal

@@ -37,8 +37,7 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   NewtonIteration& newton = w.iteration;
   newton.reset(problem, *outcome.tables, w.path.elements());
   DiscreteAction& action = newton.action();
-  action.evaluate(w.path);
-  const bool factored = newton.system().factor(action.nodes, newton.closing(w.path));
+  const bool factored = newton.model().evaluate(action, w.path, newton.closing(w.path));
   solution.action = action.action();
   solution.momentum_start.resize(problem.coordinates());
   solution.momentum_end.resize(problem.coordinates());
@@ -56,8 +55,8 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   for (double g : free) residual = std::max(residual, std::abs(g));
   solution.residual = scale > 0 ? residual / scale : residual;
   if (!factored) return;
-  const Inertia inertia = newton.system().inertia(null_threshold);
-  solution.morse_index = inertia.negative + action.nodes.negative;
+  const Inertia inertia = newton.model().inertia(null_threshold);
+  solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
   solution.minimizing = *solution.morse_index == 0;
 }

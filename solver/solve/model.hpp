@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "action/discrete_action.hpp"
+#include "linear/inertia.hpp"
+#include "problem/problem.hpp"
+
+/// \file The quadratic model of S_h at a path: what a Newton step needs.
+
+namespace extremal {
+
+/// The equation that closes a free duration: row over (q(0), q(T)) and its value, or, where the row is
+/// empty, ∂S/∂T + energy = 0, whose row is the border itself.
+struct ClosingEquation {
+  std::vector<double> row;  ///< 2n, or empty
+  double value = 0;         ///< to become zero
+};
+
+/// A step of every unknown.
+struct Step {
+  std::vector<double> nodes;  ///< (N + 1) × n
+  AlignedDoubles inner;       ///< laid out as Path::x
+  double duration = 0;
+};
+
+/// Second variation under the boundary relation, factored; `closing` is null where T is fixed. Keeps memory.
+class QuadraticModel {
+ public:
+  virtual ~QuadraticModel() = default;
+
+  virtual void reset(const Problem& problem, const ElementTables& tables, int elements) = 0;
+  /// S_h, its gradient and Hessian at a path, factored. False if the Hessian is singular to working
+  /// precision; where the action is not finite nothing is factored (see DiscreteAction::finite).
+  virtual bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) = 0;
+  /// S_h and its gradient at another path, with the factors there are.
+  virtual void evaluate_gradient(DiscreteAction& action, const Path& path) = 0;
+  /// The step from the gradient that was evaluated last.
+  virtual void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) = 0;
+  /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null.
+  virtual Inertia inertia(double threshold) = 0;
+};
+
+/// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.
+std::unique_ptr<QuadraticModel> make_condensed_model();
+
+/// All unknowns at once in a sparse matrix: many coordinates, few of them coupled.
+std::unique_ptr<QuadraticModel> make_sparse_model();
+
+}  // namespace extremal
