@@ -41,18 +41,20 @@ bool Flow::momentum(std::span<const double> q, std::span<const double> v, double
   return true;
 }
 
-/// Either leaves q' in v_ and the gradient of L there in point_.
-bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, double t) {
-  return structure_.quadratic ? solve_linear(q, p, t) : solve_newton(q, p, t);
+/// Either leaves q' in v_, and in point_ the derivatives of L there up to `order`.
+bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, double t, Order order) {
+  if (structure_.quadratic) return solve_linear(q, p, t, order);
+  if (!solve_newton(q, p, t)) return false;
+  return order != Order::hessian || (point_.evaluate(q, v_, t, order) && mass_.factor(point_.vv()));
 }
 
 /// p = M q' + C q + a.
-bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, double t) {
+bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, double t, Order order) {
   std::copy(p.begin(), p.end(), v_.begin());
   for (const Triplet& c : structure_.gyroscopic) v_[c.row] -= c.value * q[c.column];
   for (std::size_t a = 0; a < structure_.linear.size(); ++a) v_[a] -= structure_.linear[a];
   mass_.solve(v_);
-  return point_.evaluate(q, v_, t, Order::gradient);
+  return point_.evaluate(q, v_, t, order);
 }
 
 /// Newton from the last velocity: one step where L is quadratic in q'.
@@ -72,21 +74,24 @@ bool Flow::solve_newton(std::span<const double> q, std::span<const double> p, do
 }
 
 bool Flow::velocity(std::span<const double> q, std::span<const double> p, double t, std::span<double> v) {
-  if (!solve_velocity(q, p, t)) return false;
+  if (!solve_velocity(q, p, t, Order::gradient)) return false;
   std::copy(v_.begin(), v_.end(), v.begin());
   return true;
 }
 
-bool Flow::slope(double t, std::span<const double> y, std::span<double> slope) {
-  if (!solve_velocity(y.first(n_), y.subspan(n_, n_), t)) return false;
+bool Flow::motion(double t, std::span<const double> y, std::span<double> slope, Order order) {
+  if (!solve_velocity(y.first(n_), y.subspan(n_, n_), t, order)) return false;
   std::copy(v_.begin(), v_.end(), slope.begin());
   std::copy(point_.dq().begin(), point_.dq().end(), slope.begin() + n_);
   return true;
 }
 
+bool Flow::slope(double t, std::span<const double> y, std::span<double> slope) {
+  return motion(t, y, slope, Order::gradient);
+}
+
 bool Flow::slope_with_variations(double t, std::span<const double> y, std::span<double> slope) {
-  if (!this->slope(t, y, slope) || !point_.evaluate(y.first(n_), v_, t, Order::hessian)) return false;
-  if (!structure_.quadratic && !mass_.factor(point_.vv())) return false;
+  if (!motion(t, y, slope, Order::hessian)) return false;
   for (std::size_t begin = 2 * n_; begin < y.size(); begin += 2 * n_) {
     const auto dq = y.subspan(begin, n_), dp = y.subspan(begin + n_, n_);
     const auto dv = slope.subspan(begin, n_), force = slope.subspan(begin + n_, n_);

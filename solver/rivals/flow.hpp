@@ -31,8 +31,9 @@ class Flow {
   bool slope_with_variations(double t, std::span<const double> y, std::span<double> slope);
 
  private:
-  bool solve_velocity(std::span<const double> q, std::span<const double> p, double t);
-  bool solve_linear(std::span<const double> q, std::span<const double> p, double t);
+  bool motion(double t, std::span<const double> y, std::span<double> slope, Order order);
+  bool solve_velocity(std::span<const double> q, std::span<const double> p, double t, Order order);
+  bool solve_linear(std::span<const double> q, std::span<const double> p, double t, Order order);
   bool solve_newton(std::span<const double> q, std::span<const double> p, double t);
 
   int n_;

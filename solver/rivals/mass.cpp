@@ -24,9 +24,15 @@ bool MassMatrix::factor(const std::vector<Triplet>& entries) {
   return sparse_.info() == Eigen::Success;
 }
 
-void MassMatrix::solve(std::span<double> x, int columns) {
-  Eigen::Map<Eigen::MatrixXd> right(x.data(), size_, columns);
-  right = dense() ? Eigen::MatrixXd(dense_.solve(right)) : Eigen::MatrixXd(sparse_.solve(right));
+void MassMatrix::solve(std::span<double> x) {
+  Eigen::Map<Eigen::VectorXd> right(x.data(), size_);
+  if (!dense()) {
+    right = Eigen::VectorXd(sparse_.solve(right));
+    return;
+  }
+  right = dense_.permutationP() * right;
+  dense_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(right);
+  dense_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(right);
 }
 
 }  // namespace extremal

@@ -17,8 +17,8 @@ class MassMatrix {
   explicit MassMatrix(int size);
   /// False if a pivot is zero.
   bool factor(const std::vector<Triplet>& entries);
-  /// x := M⁻¹ x, n × columns, column by column.
-  void solve(std::span<double> x, int columns = 1);
+  /// x := M⁻¹ x.
+  void solve(std::span<double> x);
   double largest() const { return largest_; }  ///< largest entry
 
  private:
