@@ -16,6 +16,7 @@ namespace extremal {
 namespace {
 
 constexpr int points_wanted = 5, points_tried = 40, most_columns = 256;
+constexpr int most_work = 1 << 22;              // columns times variables
 constexpr double steps[] = {8e-3, 1e-3, 1e-4};  // of a variable's size: the best of them counts
 /// f'(x) = Σ c_i f(x + i h)/h to sixth order, i = −3 … 3; the eighth lane repeats the middle.
 constexpr std::array<double, lanes> weights = {-1. / 60, 9. / 60,  -45. / 60, 0,
@@ -95,7 +96,9 @@ class PointCheck {
       for (std::size_t row = 0; row <= g; ++row) {
         const double difference = batch_.difference(static_cast<int>(row), h);
         const double expected = row == 0 ? gradient_[k] : column[row - 1];
-        const double off = std::abs(difference - expected) / (row == 0 ? gradient_size_ : hessian_size_);
+        const double roundoff = 16 * DBL_EPSILON * (row == 0 ? value_size_ : gradient_size_) / h;
+        const double size = std::max(row == 0 ? gradient_size_ : hessian_size_, std::abs(difference));
+        const double off = std::max(std::abs(difference - expected) - roundoff, 0.0) / size;
         if (off < error[row]) error[row] = off, best[row] = difference;
       }
     }
@@ -134,7 +137,7 @@ class PointCheck {
   const Structure& structure_;
   Batch& batch_;
   std::vector<double> z_, gradient_, hessian_;
-  double t_ = 0, gradient_size_ = 0, hessian_size_ = 0;
+  double t_ = 0, value_size_ = 0, gradient_size_ = 0, hessian_size_ = 0;
 };
 
 }  // namespace
@@ -142,7 +145,7 @@ class PointCheck {
 DerivativeCheck check_derivatives(const Problem& problem) {
   const int variables = 2 * problem.coordinates();
   DerivativeCheck check;
-  check.columns = std::min(variables, most_columns);
+  check.columns = std::min(variables, std::clamp(most_work / variables, 4, most_columns));
   Batch batch(*problem.lagrangian);
   PointCheck point(problem, batch);
   NearbyPoints nearby(problem);

@@ -14,14 +14,16 @@ struct WorstDerivative {
   std::string name;       ///< "∂L/∂x", "∂²L/∂x'∂y"
   double derivative = 0;  ///< as the tape gives it
   double difference = 0;  ///< of sixth order, of the values (first order) or the gradient (second)
-  double error = 0;       ///< |derivative − difference| / the largest derivative of that order at the point
+  double error =
+      0;  ///< |derivative − difference| beyond roundoff, over the largest of that order at the point
   double t = 0;
   std::vector<double> q, v;
 };
 
 struct DerivativeCheck {
-  int points = 0;   ///< that were finite
-  int columns = 0;  ///< variables that differences were taken by: all, or a spread of them
+  int points = 0;  ///< that were finite
+  int columns =
+      0;  ///< variables that differences were taken by: all, or where they are many a spread of them
   WorstDerivative gradient, hessian;
   bool agree() const { return points > 0 && gradient.error < 1e-6 && hessian.error < 1e-6; }
 };

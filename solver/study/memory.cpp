@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "action/tables.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -22,10 +23,15 @@ double limit_in(const char* path) {
 
 }  // namespace
 
-double solve_bytes(int coordinates, int elements, int degree) {
-  const double n = coordinates, unknowns = (degree + 1) * n, batches = std::ceil(double(elements) / lanes);
-  const double matrices = batches * lanes * unknowns * unknowns, chain = 4.0 * (elements + 1) * n * n;
-  return sizeof(double) * (matrices + chain);
+double solve_bytes(const Structure& structure, int elements, int degree) {
+  const double n = structure.coordinates, functions = degree + 1, unknowns = functions * n;
+  const double batches = std::ceil(double(elements) / lanes);
+  const double rows = (1.0 + structure.gradient.size() + structure.hessian.size()) * functions * lanes;
+  if (unknowns <= most_dense_unknowns)
+    return sizeof(double) * (batches * lanes * unknowns * unknowns + 4.0 * (elements + 1) * n * n + rows);
+  // Sparse: each entry's place, value and source, and factors some times larger.
+  const double entries = (structure.mass.size() + structure.hessian.size()) * functions * functions;
+  return sizeof(double) * (16 * elements * entries + rows);
 }
 
 double available_bytes() {

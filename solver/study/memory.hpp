@@ -2,13 +2,15 @@
 
 #include <string>
 
+#include "system/lagrangian.hpp"
+
 /// \file Memory: what a solve needs and what there is.
 
 namespace extremal {
 
 /// Bytes that `elements` elements take at the least: eight side by side keep a matrix of their (degree + 1) n
 /// unknowns each, and every node between them its blocks of the chain and their factors.
-double solve_bytes(int coordinates, int elements, int degree);
+double solve_bytes(const Structure& structure, int elements, int degree);
 
 /// Bytes that this process may use: physical memory, or less where its own limit or that of its control
 /// group is lower.

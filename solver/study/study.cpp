@@ -81,7 +81,8 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
 void check_memory(const Study& study) {
   const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
   const int degree = study.options.scheme ? study.options.scheme->degree : 2;
-  const double needed = solve_bytes(n, elements, degree), available = available_bytes();
+  const double needed = solve_bytes(study.problem.lagrangian->structure(), elements, degree);
+  const double available = available_bytes();
   if (needed > available)
     throw std::length_error(
         fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; there are {}",

@@ -105,8 +105,12 @@ TEST_F(Scenes, RepeatsReportTheMedianOfTheSameSolution) {
 }
 
 TEST(Memory, SolveIsLinearInElementsAndRefusedBeyondWhatThereIs) {
-  EXPECT_GT(solve_bytes(10, 80, 4), 80 * 50 * 50 * 8.0);
-  EXPECT_NEAR(solve_bytes(3, 160000, 2) / solve_bytes(3, 80000, 2), 2.0, 1e-3);
+  Structure few{.coordinates = 10}, many{.coordinates = 10000};
+  many.mass.resize(10000);
+  many.hessian.resize(20000);
+  EXPECT_GT(solve_bytes(few, 80, 4), 80 * 50 * 50 * 8.0);
+  EXPECT_NEAR(solve_bytes(few, 160000, 2) / solve_bytes(few, 80000, 2), 2.0, 1e-3);
+  EXPECT_LT(solve_bytes(many, 8, 4), 2e9);  // sparse: far from (50,000)² entries an element
   EXPECT_GT(available_bytes(), 1e6);
   EXPECT_EQ(byte_text(3.25e9), "3.25 GB");
   EXPECT_EQ(byte_text(12), "12 B");
