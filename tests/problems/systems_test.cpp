@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "problems/reference.hpp"
+#include "study/inspection.hpp"
+#include "study/study.hpp"
+
+using namespace extremal;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::set<std::string> names_in(const std::string& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(problems::root + "/problems/" + folder))
+    if (entry.path().extension() == ".toml") names.insert(entry.path().stem());
+  return names;
+}
+
+std::string scene_path(const std::string& name) {
+  return problems::root + "/problems/scenes/" + name + ".toml";
+}
+
+TEST(Systems, AreDocumented) {
+  const std::set<std::string> systems = names_in("systems");
+  ASSERT_GE(systems.size(), 20u);
+  for (const std::string& name : systems) {
+    const toml::table file = toml::parse_file(problems::root + "/problems/systems/" + name + ".toml");
+    for (const char* key : {"summary", "formula", "units", "reference"}) {
+      const auto text = file["about"][key].value<std::string>();
+      ASSERT_TRUE(text.has_value()) << name << " lacks " << key;
+      EXPECT_FALSE(text->empty()) << name << ": " << key;
+    }
+    EXPECT_LE(file["about"]["summary"].value<std::string>()->size(), 110u) << name;
+    EXPECT_TRUE(file["about"]["invariants"].is_array()) << name;
+    ASSERT_TRUE(file["about"]["sources"].is_array()) << name;
+    EXPECT_FALSE(file["about"]["sources"].as_array()->empty()) << name;
+  }
+}
+
+TEST(Systems, HaveASceneAndAKnownValueEach) {
+  std::set<std::string> used, known;
+  for (const std::string& name : names_in("scenes")) {
+    const auto system = toml::parse_file(scene_path(name))["system"]["use"].value<std::string>();
+    if (system) used.insert(*system);
+    for (const problems::Reference& reference : problems::references())
+      if (system && reference.scene == name) known.insert(*system);
+  }
+  for (const std::string& name : names_in("systems")) {
+    EXPECT_TRUE(used.contains(name)) << "no scene uses " << name;
+    EXPECT_TRUE(known.contains(name)) << "tests/data/problems.json knows nothing of " << name;
+  }
+}
+
+class EveryScene : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScene, HasRightDerivatives) {
+  const DerivativeCheck check = inspect(load(scene_path(GetParam()))).derivatives;
+  EXPECT_TRUE(check.agree()) << check.gradient.name << " off by " << check.gradient.error << ", "
+                             << check.hessian.name << " by " << check.hessian.error;
+}
+
+TEST_P(EveryScene, KeepsItsEnergy) {
+  const Solution solution = run(load(scene_path(GetParam()), {"solve.tolerance=1e-11"}));
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  if (!solution.energy) return;
+  EXPECT_LE(*solution.energy_drift, 1e-8 * std::max(1.0, std::abs(*solution.energy)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Problems, EveryScene, testing::ValuesIn(names_in("scenes")), [](const auto& info) {
+  std::string name = info.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
