@@ -7,9 +7,10 @@ namespace extremal {
 
 namespace {
 
-/// What a chunk reads and writes should stay in the first-level cache.
-constexpr int cache_batches = 24 * 1024 / (lanes * sizeof(double));
-constexpr int most_batches = 16;
+/// Batches played together: enough to pay for the dispatch of an instruction, and no more than lets
+/// what they read and write stay in the second-level cache.
+constexpr int fewest_batches = 8, most_batches = 16;
+constexpr int cache_batches = 256 * 1024 / (lanes * sizeof(double));
 
 Player player() {
   switch (simd_level()) {
@@ -44,6 +45,7 @@ Tape::Tape(std::span<const Contribution> contributions, int outputs, std::span<c
     slots_ = std::max(slots_, tracks_.back().program.slots);
     operands_ = std::max(operands_, tracks_.back().program.operands());
   }
+  widest_ = std::clamp(cache_batches / std::max(operands_, 1), fewest_batches, most_batches);
   for (int row = 0; row < outputs; ++row)
     if (!touched[row]) untouched_.push_back(row);
 }
@@ -72,7 +74,17 @@ Tape::Track Tape::track(const Contribution& c, std::vector<bool>& touched, std::
   return result;
 }
 
-int Tape::widest_chunk() const { return std::clamp(cache_batches / std::max(operands_, 1), 1, most_batches); }
+int Tape::width(int batches) const {
+  if (batches <= widest_) return batches;
+  const int chunks = (batches + widest_ - 1) / widest_;
+  return (batches + chunks - 1) / chunks;
+}
+
+void Tape::fit(const Tape& other) {
+  slots_ = std::max(slots_, other.slots_);
+  operands_ = std::max(operands_, other.operands_);
+  widest_ = std::min(widest_, other.widest_);
+}
 
 void Tape::play(const Track& track, const Chunk& chunk) {
   const Program& program = track.program;
@@ -102,12 +114,8 @@ void Tape::play(const Track& track, const Chunk& chunk) {
 }
 
 void Tape::play(const Points& points, double* out, Scratch& scratch) const {
-  const int batches = points.count / lanes;
-  const int chunks = (batches + widest_chunk() - 1) / widest_chunk();
-  if (chunks == 0) return;
-  const int width = (batches + chunks - 1) / chunks;
-  // Enough for any width, so that a shorter tape does not ask for more after a longer one.
-  double* memory = scratch.reserve(static_cast<std::size_t>(std::max(cache_batches, operands_)) * lanes);
+  const int batches = points.count / lanes, width = this->width(batches);
+  double* const memory = scratch.reserve(static_cast<std::size_t>(slots_ + 1) * width * lanes);
   if (scratch.operands.size() < static_cast<std::size_t>(operands_)) scratch.operands.resize(operands_);
   for (int begin = 0; begin < batches; begin += width) {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(begin) * lanes;
@@ -127,11 +135,12 @@ void Tape::play(const Points& points, double* out, Scratch& scratch) const {
 }
 
 TapeSummary Tape::summary() const {
-  TapeSummary s{.kernels = static_cast<int>(tracks_.size()), .slots = slots_};
+  TapeSummary s{.kernels = static_cast<int>(tracks_.size())};
   for (const Track& track : tracks_) {
     const auto length = static_cast<int>(track.program.code.size());
     s.rows += track.rows;
     s.instructions += length;
+    s.slots = std::max(s.slots, track.program.slots);
     s.played += static_cast<long long>(track.rows) * length;
   }
   return s;

@@ -66,6 +66,8 @@ TapeLagrangian::TapeLagrangian(const LagrangianGraph& lagrangian) {
     for (const Kernel& kernel : analysis.kernels) all.push_back(contribution(kernel, structure_, order));
     orders_[static_cast<int>(order)] = Tape(all, rows(order), lagrangian.uniforms);
   }
+  for (Tape& tape : orders_)
+    for (const Tape& other : orders_) tape.fit(other);
   for (int k = 0; k < structure_.parameters; ++k) {
     std::vector<Tape::Contribution> all;
     for (const Kernel& kernel : analysis.kernels)

@@ -31,6 +31,8 @@ class Tape {
 
   /// Writes every row of output at every point.
   void play(const Points& points, double* out, Scratch& scratch) const;
+  /// Asks for as much scratch memory as the other, so that none is allocated in going from one to the other.
+  void fit(const Tape& other);
   TapeSummary summary() const;
 
  private:
@@ -51,11 +53,12 @@ class Tape {
   static Track track(const Contribution& contribution, std::vector<bool>& touched,
                      std::span<const double> uniforms);
   static void play(const Track& track, const Chunk& chunk);
-  int widest_chunk() const;
+  int width(int batches) const;
 
   std::vector<Track> tracks_;
-  std::vector<int> untouched_;  ///< rows of output that no track writes
-  int slots_ = 0, operands_ = 0;
+  std::vector<int> untouched_;    ///< rows of output that no track writes
+  int slots_ = 0, operands_ = 0;  ///< of the track that needs most
+  int widest_ = 1;                ///< batches played together
 };
 
 /// A Lagrangian from an expression graph.
