@@ -49,7 +49,10 @@ Box whole_pixels(const Box& box) {
 class Script {
  public:
   Script(const Figure& figure, Format format, const std::string& output)
-      : figure_(figure), sizes_(format == Format::svg ? svg_sizes : png_sizes) {
+      : figure_(figure),
+        width_(std::round(figure.width)),
+        height_(std::round(figure.height)),
+        sizes_(format == Format::svg ? svg_sizes : png_sizes) {
     terminal(format);
     add("set output {}\nset encoding utf8\nset key off\nset multiplot\n", quoted(output));
     add("set cbrange [0:1]\n");
@@ -69,17 +72,16 @@ class Script {
     const char* common = "noenhanced rounded background '#FFFFFF'";
     const double size = font_size * sizes_.font;
     if (format == Format::svg) {
-      add("set terminal svg size {:.0f},{:.0f} {} font 'Helvetica,{}'\n", figure_.width, figure_.height,
-          common, size);
+      add("set terminal svg size {:.0f},{:.0f} {} font 'Helvetica,{}'\n", width_, height_, common, size);
     } else {
-      add("set terminal pngcairo size {:.0f},{:.0f} {} font 'Helvetica,{}'", zoom * figure_.width,
-          zoom * figure_.height, common, size);
+      add("set terminal pngcairo size {:.0f},{:.0f} {} font 'Helvetica,{}'", zoom * width_, zoom * height_,
+          common, size);
       add(" fontscale {0} linewidth {0} pointscale {0}\n", zoom);
     }
   }
 
   std::string screen(double x, double y) const {
-    return fmt::format("screen {:.5f},{:.5f}", x / figure_.width, 1 - y / figure_.height);
+    return fmt::format("screen {:.5f},{:.5f}", x / width_, 1 - y / height_);
   }
 
   void label(const std::string& text, double x, double y, const char* align, Colour colour) {
@@ -105,10 +107,10 @@ class Script {
   void place(const Panel& panel) {
     const Box box = whole_pixels(panel.box);
     add("set xrange [0:{:.0f}]\nset yrange [0:{:.0f}]\n", box.width * raster, box.height * raster);
-    add("set lmargin at screen {:.9f}\nset rmargin at screen {:.9f}\n", box.left / figure_.width,
-        (box.left + box.width) / figure_.width);
-    add("set tmargin at screen {:.9f}\nset bmargin at screen {:.9f}\n", 1 - box.top / figure_.height,
-        1 - (box.top + box.height) / figure_.height);
+    add("set lmargin at screen {:.9f}\nset rmargin at screen {:.9f}\n", box.left / width_,
+        (box.left + box.width) / width_);
+    add("set tmargin at screen {:.9f}\nset bmargin at screen {:.9f}\n", 1 - box.top / height_,
+        1 - (box.top + box.height) / height_);
     add("unset border\nunset xtics\nunset ytics\nunset grid\n");
   }
 
@@ -121,8 +123,9 @@ class Script {
       add("set grid xtics ytics back linetype 1 linecolor rgb {} linewidth 0.8\n", hexadecimal(rule));
     }
     label(panel.y.label, box.left, box.top - 14, "left", ink);
-    if (panel.x.numbered)
+    if (panel.x.numbered) {
       label(panel.x.label, box.left + box.width / 2, box.top + box.height + 38, "center", ink);
+    }
   }
 
   void ticks(const char* which, const Axis& axis, double length, double raised = 0) {
@@ -174,8 +177,9 @@ class Script {
     }
     for (const Mark& mark : panel.marks) {
       const std::string at = points(panel, {mark.x}, {mark.y});
-      for (const std::string& disc : discs(mark.shape, mark.colour))
+      for (const std::string& disc : discs(mark.shape, mark.colour)) {
         parts.push_back(at + " with points " + disc);
+      }
     }
     add("plot {}\n", fmt::join(parts, ", "));
   }
@@ -211,8 +215,7 @@ class Script {
     const char* sequential = "0 '#440154', 0.25 '#3B528B', 0.5 '#21918C', 0.75 '#5EC962', 1 '#FDE725'";
     add("set palette defined ({})\n", map.diverging ? diverging : sequential);
     add("set colorbox user origin {} size screen {:.5f},{:.5f} noborder\n",
-        screen(box.left + box.width + 18, box.top + box.height), 12 / figure_.width,
-        box.height / figure_.height);
+        screen(box.left + box.width + 18, box.top + box.height), 12 / width_, box.height / height_);
     ticks("cbtics", map.scale, 1);
     label(map.scale.label, box.left + box.width + 18, box.top - 14, "left", ink);
     const std::string block = open_block();
@@ -229,6 +232,7 @@ class Script {
   }
 
   const Figure& figure_;
+  double width_, height_;  ///< whole pixels
   Sizes sizes_;
   fmt::memory_buffer buffer_;
   int blocks_ = 0;
