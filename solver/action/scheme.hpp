@@ -12,12 +12,12 @@ enum class Quadrature { left, right, midpoint, ends, simpson, gauss, lobatto, ex
 
 /// A discretisation by name, as a record: command line, documentation and tests read it from here.
 struct Scheme {
-  std::string name;         ///< "midpoint", "lobatto(3)"
-  int degree = 1;           ///< s, of the polynomial in an element
+  std::string name;  ///< "midpoint", "lobatto(3)"
+  int degree = 1;    ///< s, of the polynomial in an element
   Quadrature quadrature = Quadrature::lobatto;
-  int points = 2;           ///< r, of the quadrature; for `exact` the first try
-  int order = 2;            ///< of the values at the nodes between elements, for smooth L
-  std::string source;       ///< paper and equation
+  int points = 2;      ///< r, of the quadrature; for `exact` the first try
+  int order = 2;       ///< of the values at the nodes between elements, for smooth L
+  std::string source;  ///< paper and equation
 };
 
 inline constexpr int max_degree = 24;

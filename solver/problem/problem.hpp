@@ -32,16 +32,16 @@ struct BoundaryRelation {
 /// The relation solved for as many ends as it fixes: x_e = offset_e + Σ_f Z(e, f) y_f, y free.
 struct EndMap {
   int free = 0;
-  std::vector<double> offset;   ///< 2n
-  std::vector<Triplet> z;       ///< (e, f, coefficient); identity for an end coordinate that is free
-  std::vector<char> fixed;      ///< 2n: the coordinate does not depend on y
+  std::vector<double> offset;  ///< 2n
+  std::vector<Triplet> z;      ///< (e, f, coefficient); identity for an end coordinate that is free
+  std::vector<char> fixed;     ///< 2n: the coordinate does not depend on y
 };
 
 /// Throws RelationError if the rows contradict each other or one follows from the others.
 EndMap solve_relation(const BoundaryRelation& relation);
 
 struct RelationError : std::exception {
-  int row;            ///< the row that is redundant or contradicts the earlier ones
+  int row;  ///< the row that is redundant or contradicts the earlier ones
   bool contradiction;
   RelationError(int row, bool contradiction) : row(row), contradiction(contradiction) {}
   const char* what() const noexcept override {
@@ -66,24 +66,25 @@ struct Guess {
   std::vector<double> tau;
   std::vector<double> q;
   bool given() const { return !tau.empty(); }
-  /// Local cubic interpolation.
+  /// Local cubic interpolation, through the samples; constant before the first and after the last.
   void at(double tau, std::span<double> q) const;
 };
 
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
 struct Problem {
   std::shared_ptr<const Lagrangian> lagrangian;
-  std::vector<std::string> names;    ///< of the coordinates: "x", "q[1]"
+  std::vector<std::string> names;  ///< of the coordinates: "x", "q[1]"
   BoundaryRelation boundary;
-  EndMap ends;                       ///< of `boundary`
-  bool periodic = false;             ///< closed, perhaps up to a symmetry
+  EndMap ends;            ///< of `boundary`
+  bool periodic = false;  ///< closed, perhaps up to a symmetry
   Duration duration;
   Guess guess;
 
   int coordinates() const { return boundary.coordinates; }
 };
 
-/// Checks dimensions, durations and relations, and fills `ends`. Throws std::invalid_argument or RelationError.
+/// Checks dimensions, durations and relations, and fills `ends`. Throws std::invalid_argument or
+/// RelationError.
 Problem make_problem(Problem problem);
 
 }  // namespace extremal

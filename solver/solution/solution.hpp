@@ -28,21 +28,22 @@ const char* name(Status status);
 /// Piecewise polynomial q(t) on [0, T].
 struct Trajectory {
   int coordinates = 0;
-  int degree = 0;               ///< s of every element
-  std::vector<double> times;    ///< N + 1 ends of elements, 0 … T
-  std::vector<double> nodes;    ///< (s + 1) values an element at its Lobatto points: [(k*(s+1) + j)*n + a]
+  int degree = 0;             ///< s of every element
+  std::vector<double> times;  ///< N + 1 ends of elements, 0 … T
+  std::vector<double> nodes;  ///< (s + 1) values an element at its Lobatto points: [(k*(s+1) + j)*n + a]
 
   int elements() const { return static_cast<int>(times.size()) - 1; }
   double duration() const { return times.empty() ? 0 : times.back(); }
-  /// q and q' at t in [0, T], n entries each.
+  /// q and q' at t in [0, T], n entries each; between two elements of the later one. Throws
+  /// std::invalid_argument for other t.
   void at(double t, std::span<double> q, std::span<double> v) const;
 };
 
 /// One step of the iteration, for the history.
 struct Iteration {
   int elements = 0, degree = 0;
-  double residual = 0;          ///< largest component of δS divided by the largest momentum
-  double step = 0;              ///< largest change of q
+  double residual = 0;  ///< largest component of δS divided by the largest momentum
+  double step = 0;      ///< largest change of q
   double damping = 1;
 };
 
@@ -55,7 +56,7 @@ struct Solution {
 
   double action = 0;
   std::optional<double> energy, energy_drift;  ///< absent where L depends on t
-  double error_estimate = 0;    ///< supremum over [0, T] of the error of q, in units of q
+  double error_estimate = 0;                   ///< supremum over [0, T] of the error of q, in units of q
   double residual = 0;
   std::optional<int> morse_index, nullity;
   bool minimizing = false;
