@@ -1,0 +1,314 @@
+#include <Eigen/Dense>
+#include <functional>
+#include <numbers>
+
+#include "solve/laws.hpp"
+
+/// \file Every form of boundary relation, against closed forms.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+using Relation = std::function<void(BoundaryRelation&)>;
+
+Problem with_ends(std::shared_ptr<const Lagrangian> lagrangian, double duration, const Relation& relation) {
+  Problem problem;
+  const int n = lagrangian->structure().coordinates;
+  problem.lagrangian = std::move(lagrangian);
+  for (int a = 0; a < n; ++a) problem.names.push_back("q[" + std::to_string(a + 1) + "]");
+  problem.boundary.coordinates = n;
+  relation(problem.boundary);
+  problem.duration.value = duration;
+  return make_problem(std::move(problem));
+}
+
+/// Σ coefficient x_e = c.
+void couple(BoundaryRelation& relation, const std::vector<std::pair<int, double>>& terms, double c) {
+  const int row = relation.add_row(c);
+  for (const auto& [e, coefficient] : terms) relation.add(row, e, coefficient);
+}
+
+Problem guessed(Problem problem, const std::function<Values(double)>& q_of_tau) {
+  for (int i = 0; i <= 100; ++i) {
+    problem.guess.tau.push_back(i / 100.0);
+    for (double q : q_of_tau(i / 100.0)) problem.guess.q.push_back(q);
+  }
+  return make_problem(std::move(problem));
+}
+
+/// Largest distance from q(t) over 100 times.
+double distance(const Trajectory& path, const std::function<Values(double)>& q) {
+  double result = 0;
+  for (int i = 0; i <= 100; ++i) {
+    const double t = path.duration() * i / 100;
+    result = std::max(result, largest_difference(at(path, t).q, q(t)));
+  }
+  return result;
+}
+
+const SolveOptions tight = within(1e-12);
+
+TEST(NaturalEnds, OscillatorFreeAtOneEnd) {
+  const double w = 1.3, T = 2, a = 0.7;
+  const auto truth = [=](double t) { return Values{a * std::cos(w * (T - t)) / std::cos(w * T)}; };
+  const auto end_free = with_ends(systems::oscillator(w), T, [=](auto& b) { b.fix(0, false, a); });
+  const auto start_free = with_ends(systems::oscillator(w), T, [=](auto& b) { b.fix(0, true, a); });
+  const Solution forward = solve(end_free, tight), backward = solve(start_free, tight);
+  EXPECT_LT(distance(forward.trajectory, truth), 1e-12);
+  EXPECT_LT(distance(backward.trajectory, [&](double t) { return truth(T - t); }), 1e-12);
+  EXPECT_LT(std::abs(forward.momentum_end[0]), 1e-14);
+  EXPECT_LT(std::abs(backward.momentum_start[0]), 1e-14);
+}
+
+/// q'' = t − q, q'(0) = q'(T) = 0: q = t − sin t + tan(T/2) cos t.
+TEST(NaturalEnds, DrivenOscillatorFreeAtBothEnds) {
+  const double T = 2.5;
+  const auto lagrangian =
+      trace(1, [](auto q, auto v, auto t) { return (v[0] * v[0] - q[0] * q[0]) / 2 + t * q[0]; });
+  const Solution s = solve(with_ends(lagrangian, T, [](auto&) {}), tight);
+  EXPECT_LT(distance(s.trajectory,
+                     [=](double t) { return Values{t - std::sin(t) + std::tan(T / 2) * std::cos(t)}; }),
+            1e-12);
+  EXPECT_LT(std::abs(s.momentum_start[0]), 1e-14);
+  EXPECT_LT(std::abs(s.momentum_end[0]), 1e-14);
+}
+
+/// From q = 0, at rest after a quarter of the period 4K(sin²(A/2)): the amplitude A, from p = 2 sin(A/2).
+TEST(NaturalEnds, PendulumComesToRestAtItsAmplitude) {
+  const double amplitude = 1.0, T = std::comp_ellint_1(std::sin(amplitude / 2));
+  const Problem problem = guessed(with_ends(systems::pendulum(), T, [](auto& b) { b.fix(0, false, 0); }),
+                                  [](double tau) { return Values{1.1 * std::sin(pi * tau / 2)}; });
+  const Solution s = solve(problem, within(1e-13));
+  EXPECT_NEAR(at(s.trajectory, T).q[0], amplitude, 1e-12);
+  EXPECT_NEAR(s.momentum_start[0], 2 * std::sin(amplitude / 2), 1e-12);
+  EXPECT_LT(std::abs(s.momentum_end[0]), 1e-14);
+}
+
+TEST(NaturalEnds, DiscreteMomentumVanishesForEveryScheme) {
+  const Problem problem = guided(with_ends(systems::double_pendulum(), 0.7,
+                                           [](auto& b) { b.fix(0, false, 0.4), b.fix(1, true, -0.3); }));
+  for (const Scheme& scheme : schemes_and_families())
+    for (int elements : {1, 2, 9}) {
+      const Solution s = solve(problem, pinned(scheme, elements));
+      const double bound = 1e-14 * std::max(largest(s.momentum_start), largest(s.momentum_end));
+      EXPECT_LT(std::abs(s.momentum_start[1]), bound) << scheme.name << ' ' << elements;
+      EXPECT_LT(std::abs(s.momentum_end[0]), bound) << scheme.name << ' ' << elements;
+      EXPECT_NE(s.momentum_start[0], 0);
+    }
+}
+
+/// Three driven oscillators, q_i = f_i/ω_i² + A_i cos ω_i t + B_i sin ω_i t.
+class Trio {
+ public:
+  static constexpr double omega[] = {1.0, 1.3, 0.8}, force[] = {0.5, -1.0, 0.7};
+  static constexpr double T = 2.2;
+
+  static std::shared_ptr<const Lagrangian> lagrangian() {
+    return trace(3, [](auto q, auto v, auto) {
+      auto l = 0 * v[0];
+      for (int i = 0; i < 3; ++i)
+        l += (v[i] * v[i] - omega[i] * omega[i] * q[i] * q[i]) / 2 + force[i] * q[i];
+      return l;
+    });
+  }
+
+  /// Adds the equation Σ coefficient·(q_i or p_i at 0 or T) = c to those that determine A and B.
+  struct Item {
+    int i;
+    bool momentum, at_end;
+    double coefficient;
+  };
+  void demand(const std::vector<Item>& items, double c) {
+    matrix_.row(rows_).setZero();
+    right_[rows_] = c;
+    for (const Item& x : items) {
+      const double w = omega[x.i], t = x.at_end ? T : 0;
+      matrix_(rows_, 2 * x.i) += x.coefficient * (x.momentum ? -w * std::sin(w * t) : std::cos(w * t));
+      matrix_(rows_, 2 * x.i + 1) += x.coefficient * (x.momentum ? w * std::cos(w * t) : std::sin(w * t));
+      if (!x.momentum) right_[rows_] -= x.coefficient * force[x.i] / (w * w);
+    }
+    if (++rows_ == 6) c_ = matrix_.fullPivLu().solve(right_);
+  }
+
+  Values operator()(double t) const {
+    Values q(3);
+    for (int i = 0; i < 3; ++i)
+      q[i] = force[i] / (omega[i] * omega[i]) + c_[2 * i] * std::cos(omega[i] * t) +
+             c_[2 * i + 1] * std::sin(omega[i] * t);
+    return q;
+  }
+
+ private:
+  int rows_ = 0;
+  Eigen::Matrix<double, 6, 6> matrix_;
+  Eigen::Matrix<double, 6, 1> right_, c_;
+};
+
+constexpr bool q = false, p = true, start = false, end = true;
+
+TEST(MixedEnds, EachCoordinateItsOwn) {
+  Trio truth;
+  truth.demand({{0, q, start, 1}}, 0.2);
+  truth.demand({{0, q, end, 1}}, -0.4);
+  truth.demand({{1, q, start, 1}}, 1.0);
+  truth.demand({{1, p, end, 1}}, 0);
+  truth.demand({{2, p, start, 1}}, 0);
+  truth.demand({{2, p, end, 1}}, 0);
+  const Solution s = solve(with_ends(Trio::lagrangian(), Trio::T,
+                                     [](auto& b) {
+                                       b.fix(0, false, 0.2);
+                                       b.fix(0, true, -0.4);
+                                       b.fix(1, false, 1.0);
+                                     }),
+                           tight);
+  EXPECT_LT(distance(s.trajectory, truth), 1e-12);
+  EXPECT_EQ(at(s.trajectory, 0).q[0], 0.2);
+  EXPECT_EQ(at(s.trajectory, Trio::T).q[0], -0.4);
+}
+
+/// Where δx is admitted only along Z, stationarity asks (−p(0), p(T))·Z = 0.
+TEST(CoupledEnds, NaturalConditionsAreThoseOfTheRelation) {
+  Trio truth;
+  truth.demand({{0, q, end, 1}, {0, q, start, 1}}, 0);     // x(T) = −x(0)
+  truth.demand({{0, p, end, 1}, {0, p, start, 1}}, 0);     // and so p_x(T) = −p_x(0)
+  truth.demand({{1, q, start, 1}, {2, q, start, 1}}, 0);   // y(0) + z(0) = 0
+  truth.demand({{1, p, start, 1}, {2, p, start, -1}}, 0);  // p_y(0) = p_z(0)
+  truth.demand({{1, q, end, 1}, {2, q, end, -2}}, 1);      // y(T) = 2 z(T) + 1
+  truth.demand({{1, p, end, 2}, {2, p, end, 1}}, 0);       // 2 p_y(T) + p_z(T) = 0
+  const Solution s = solve(with_ends(Trio::lagrangian(), Trio::T,
+                                     [](auto& b) {
+                                       couple(b, {{3, 1}, {0, 1}}, 0);
+                                       couple(b, {{1, 1}, {2, 1}}, 0);
+                                       couple(b, {{4, 1}, {5, -2}}, 1);
+                                     }),
+                           tight);
+  EXPECT_LT(distance(s.trajectory, truth), 2e-12);
+  EXPECT_NEAR(s.momentum_end[0], -s.momentum_start[0], 1e-14);
+  EXPECT_NEAR(s.momentum_start[1], s.momentum_start[2], 1e-14);
+  EXPECT_NEAR(2 * s.momentum_end[1], -s.momentum_end[2], 1e-14);
+}
+
+/// q'' = −ω²q + cos Ωt with period 2π/Ω: q = cos Ωt/(ω² − Ω²).
+TEST(CoupledEnds, ForcedPeriodicOscillation) {
+  const double w = 1.7, rate = 1.0, T = 2 * pi / rate;
+  const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
+    return (v[0] * v[0] - w * w * q[0] * q[0]) / 2 + q[0] * cos(rate * t);
+  });
+  const Solution s = solve(with_ends(lagrangian, T, [](auto& b) { couple(b, {{1, 1}, {0, -1}}, 0); }), tight);
+  EXPECT_LT(
+      distance(s.trajectory, [=](double t) { return Values{std::cos(rate * t) / (w * w - rate * rate)}; }),
+      1e-12);
+  EXPECT_NEAR(s.momentum_start[0], s.momentum_end[0], 1e-14);
+}
+
+Problem at_energy(Problem problem, double energy, double guess) {
+  problem.duration = {.value = guess, .free = true, .energy = energy, .where = {}};
+  return make_problem(std::move(problem));
+}
+
+/// q = √(2E) sin t reaches 1 at asin(1/√(2E)) and on the way back.
+TEST(FreeDuration, OscillatorAtGivenEnergy) {
+  const Problem fixed = fixed_ends(systems::oscillator(1), {0}, {1}, 1);
+  const Solution first = solve(at_energy(fixed, 2, 0.7), tight);
+  EXPECT_NEAR(first.duration(), pi / 6, 1e-13);
+  EXPECT_NEAR(*first.energy, 2, 1e-12);
+  const Problem far =
+      guessed(at_energy(fixed, 2, 2.4), [](double tau) { return Values{2 * std::sin(2.5 * tau)}; });
+  const Solution second = solve(far, tight);
+  EXPECT_NEAR(second.duration(), 5 * pi / 6, 1e-12);
+  EXPECT_NEAR(second.momentum_start[0], 2, 1e-12);
+}
+
+/// Range d at speed v: sin 2θ = g d/v², T = 2 v sin θ/g; the flat throw and the steep one.
+TEST(FreeDuration, ProjectileAtGivenEnergy) {
+  const double g = 9.81, speed = 12, d = 10;
+  const auto lagrangian =
+      trace(2, [=](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1]) / 2 - g * q[1]; });
+  const double flat = std::asin(g * d / (speed * speed)) / 2, steep = pi / 2 - flat;
+  for (double angle : {flat, steep}) {
+    const double T = 2 * speed * std::sin(angle) / g;
+    const Problem problem = at_energy(fixed_ends(lagrangian, {0, 0}, {d, 0}, 1), speed * speed / 2, 1.1 * T);
+    const Solution s = solve(problem, tight);
+    EXPECT_NEAR(s.duration(), T, 1e-12);
+    EXPECT_NEAR(s.momentum_start[0], speed * std::cos(angle), 1e-11);
+    EXPECT_NEAR(s.momentum_start[1], speed * std::sin(angle), 1e-11);
+  }
+}
+
+/// With any scheme, T is where the slope of the discrete action is −E.
+TEST(FreeDuration, SlopeOfTheDiscreteActionIsMinusTheEnergy) {
+  const Problem fixed = fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8);
+  const double energy = *solve(fixed, tight).energy;
+  for (const Scheme& scheme : schemes_and_families())
+    for (int elements : {3, 8}) {
+      Problem problem = guided(fixed);
+      const Solution s = solve(at_energy(problem, energy, 0.8), pinned(scheme, elements));
+      const auto action = [&](double h) {
+        problem.duration.value = s.duration() + h;
+        return solve(problem, pinned(scheme, elements)).action;
+      };
+      EXPECT_NEAR(difference(action, 1e-3), -energy, 1e-9 * std::abs(energy))
+          << scheme.name << ' ' << elements;
+    }
+}
+
+Problem closed_by(Problem problem, EndFunction where, double guess) {
+  problem.duration = {.value = guess, .free = true, .energy = {}, .where = std::move(where)};
+  return make_problem(std::move(problem));
+}
+
+/// Thrown upwards, at rest at height h: T = √(2h/g).
+TEST(FreeDuration, ThrowThatComesToRestWhereItShould) {
+  const double g = 9.81, h = 3;
+  const auto lagrangian = trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - g * q[0]; });
+  const Problem problem = closed_by(
+      with_ends(lagrangian, 1, [](auto& b) { b.fix(0, false, 0); }),
+      [=](auto, auto end, auto gradient) {
+        gradient[0] = 0, gradient[1] = 1;
+        return end[0] - h;
+      },
+      0.5);
+  const Solution s = solve(problem, tight);
+  EXPECT_NEAR(s.duration(), std::sqrt(2 * h / g), 1e-13);
+  EXPECT_NEAR(s.momentum_start[0], std::sqrt(2 * g * h), 1e-12);
+}
+
+/// Released at rest at q(0) = A, where 1 − cos q(0) = 1 − cos A, through q = 0: a quarter of 4K(sin²(A/2)).
+TEST(FreeDuration, PendulumReleasedWhereItShould) {
+  for (double amplitude : {0.3, 1.0, 2.5}) {
+    const double T = std::comp_ellint_1(std::sin(amplitude / 2));
+    Problem problem = closed_by(
+        with_ends(systems::pendulum(), T, [](auto& b) { b.fix(0, true, 0); }),
+        [=](auto start, auto, auto gradient) {
+          gradient[0] = std::sin(start[0]), gradient[1] = 0;
+          return std::cos(amplitude) - std::cos(start[0]);
+        },
+        1.05 * T);
+    problem = guessed(problem, [=](double tau) { return Values{0.95 * amplitude * std::cos(pi * tau / 2)}; });
+    const Solution s = solve(problem, tight);
+    EXPECT_NEAR(s.duration(), T, 2e-12 * T) << amplitude;
+    EXPECT_NEAR(at(s.trajectory, 0).q[0], amplitude, 1e-12);
+    EXPECT_NEAR(s.momentum_end[0], -2 * std::sin(amplitude / 2), 4e-12);
+    EXPECT_LT(std::abs(s.momentum_start[0]), 1e-13);
+  }
+}
+
+/// The equilibrium, on which nothing moves and which has no size.
+TEST(Equilibrium, IsASolution) {
+  for (const auto& relation : {Relation([](auto& b) { b.fix(0, false, 0), b.fix(0, true, 0); }),
+                               Relation([](auto& b) { b.fix(0, false, 0); }), Relation([](auto&) {})}) {
+    const Problem problem = with_ends(systems::pendulum(), 1.2, relation);
+    for (const SolveOptions& options : {within(1e-9), pinned(lobatto(2), 5)}) {
+      const Solution s = solve(problem, options);
+      EXPECT_EQ(largest(at(s.trajectory, 0.6).q), 0);
+      EXPECT_EQ(s.momentum_start[0], 0);
+      EXPECT_NEAR(s.action, 1.2, 1e-14);
+      EXPECT_TRUE(std::isfinite(s.error_estimate) && std::isfinite(s.residual));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace extremal::laws

@@ -1,0 +1,3 @@
+# Scenes of bench/data and the published cases of tests/data are read as well.
+find_package(nlohmann_json REQUIRED)
+target_link_libraries(${target} PRIVATE extremal nlohmann_json::nlohmann_json)
