@@ -81,10 +81,15 @@ Kernel differentiate(const Graph& source, const Group& group, bool at_rest) {
   return kernel;
 }
 
-bool depends(const Kernel& kernel, NodeId node, std::initializer_list<Variable> kinds) {
-  for (const std::uint32_t input : inputs_of(kernel.graph, node))
-    if (std::find(kinds.begin(), kinds.end(), kernel.kinds[input]) != kinds.end()) return true;
-  return false;
+std::vector<bool> dependents(const Kernel& kernel, std::initializer_list<Variable> kinds) {
+  std::vector<bool> result(kernel.graph.size());
+  for (NodeId id = 0; id < result.size(); ++id) {
+    const Node& n = kernel.graph[id];
+    result[id] = n.op == Op::input
+                     ? std::find(kinds.begin(), kinds.end(), kernel.kinds[n.index]) != kinds.end()
+                     : (arity(n.op) > 0 && result[n.a]) || (arity(n.op) > 1 && result[n.b]);
+  }
+  return result;
 }
 
 RowNumbers row_numbers(const Kernel& kernel, std::span<const Scaled> expressions,

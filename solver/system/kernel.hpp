@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -46,8 +47,8 @@ struct Kernel {
 /// Differentiates the sum of the group's parts; at rest, velocities are put to zero first.
 Kernel differentiate(const Graph& source, const Group& group, bool at_rest);
 
-/// Whether the node depends on one of these kinds of input.
-bool depends(const Kernel& kernel, NodeId node, std::initializer_list<Variable> kinds);
+/// For each node of the kernel's graph: whether it depends on one of these kinds of input.
+std::vector<bool> dependents(const Kernel& kernel, std::initializer_list<Variable> kinds);
 
 /// Numbers for each row of a kernel.
 struct RowNumbers {

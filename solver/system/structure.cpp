@@ -13,19 +13,6 @@ namespace {
 constexpr std::initializer_list<Variable> varying = {Variable::coordinate, Variable::velocity, Variable::time,
                                                      Variable::parameter};
 
-/// ∂f/∂input of a kernel where q = q' = 0: the coefficient of a velocity if f is quadratic in them.
-Scaled at_origin(const Kernel& kernel, Graph& graph, Scaled partial) {
-  Algebra algebra(graph);
-  std::vector<Scaled> replacement;
-  for (std::uint32_t k = 0; k < kernel.kinds.size(); ++k) {
-    const bool state = kernel.kinds[k] == Variable::coordinate || kernel.kinds[k] == Variable::velocity;
-    replacement.push_back(state ? Scaled{} : algebra.input(k));
-  }
-  Scaled value = algebra.import(kernel.graph, partial.node, replacement);
-  value.factor *= partial.factor;
-  return value;
-}
-
 /// The constant coefficients of ½ q'ᵀ M q' + q'ᵀ C q + aᵀ q', summed over kernels.
 class QuadraticForm {
  public:
@@ -51,9 +38,10 @@ bool QuadraticForm::add(const Kernel& kernel) { return add_hessian(kernel) && ad
 bool QuadraticForm::add_hessian(const Kernel& kernel) {
   std::vector<SecondPartial> entries;
   std::vector<Scaled> values;
+  const std::vector<bool> varies = dependents(kernel, varying);
   for (const SecondPartial& p : kernel.hessian) {
     if (kernel.kinds[p.row] != Variable::velocity && kernel.kinds[p.column] != Variable::velocity) continue;
-    if (depends(kernel, p.value.node, varying)) return false;
+    if (varies[p.value.node]) return false;
     entries.push_back(p);
     values.push_back(p.value);
   }
@@ -77,20 +65,30 @@ bool QuadraticForm::add_hessian(const Kernel& kernel) {
   return true;
 }
 
+/// a = ∂L/∂q' where q = q' = 0.
 bool QuadraticForm::add_linear(const Kernel& kernel) {
   Kernel origin;
   origin.kinds = kernel.kinds;
   origin.table = kernel.table;
   origin.rows = kernel.rows;
+  Algebra algebra(origin.graph);
+  std::vector<Scaled> replacement;
+  for (std::uint32_t k = 0; k < kernel.kinds.size(); ++k) {
+    const bool state = kernel.kinds[k] == Variable::coordinate || kernel.kinds[k] == Variable::velocity;
+    replacement.push_back(state ? Scaled{} : algebra.input(k));
+  }
   std::vector<std::uint32_t> velocities;
   std::vector<Scaled> values;
   for (const Partial& p : kernel.gradient) {
     if (kernel.kinds[p.input] != Variable::velocity) continue;
-    const Scaled value = at_origin(kernel, origin.graph, p.value);
-    if (depends(origin, value.node, varying)) return false;
+    Scaled value = algebra.import(kernel.graph, p.value.node, replacement);
+    value.factor *= p.value.factor;
     velocities.push_back(p.input);
     values.push_back(value);
   }
+  const std::vector<bool> varies = dependents(origin, varying);
+  if (std::any_of(values.begin(), values.end(), [&](const Scaled& a) { return varies[a.node]; }))
+    return false;
   const RowNumbers numbers = row_numbers(origin, values, l_.uniforms);
   for (int r = 0; r < kernel.rows; ++r) {
     for (std::size_t k = 0; k < velocities.size(); ++k) {
@@ -162,7 +160,7 @@ Analysis analyse(const LagrangianGraph& l) {
   const std::vector<Group> groups = group_terms(l);
   for (const Group& group : groups) result.kernels.push_back(differentiate(l.graph, group, false));
   for (const Kernel& kernel : result.kernels)
-    s.autonomous = s.autonomous && !depends(kernel, kernel.value.node, {Variable::time});
+    s.autonomous = s.autonomous && !dependents(kernel, {Variable::time})[kernel.value.node];
 
   QuadraticForm form(l, s);
   if (std::all_of(result.kernels.begin(), result.kernels.end(),
@@ -172,9 +170,10 @@ Analysis analyse(const LagrangianGraph& l) {
     for (const Group& group : groups) result.kernels.push_back(differentiate(l.graph, group, true));
   }
   std::erase_if(result.kernels, [](const Kernel& kernel) { return kernel.value.zero(); });
-  s.velocity_free = std::none_of(result.kernels.begin(), result.kernels.end(), [](const Kernel& kernel) {
-    return depends(kernel, kernel.value.node, {Variable::velocity});
-  });
+  s.velocity_free =
+      std::none_of(result.kernels.begin(), result.kernels.end(), [](const Kernel& kernel) -> bool {
+        return dependents(kernel, {Variable::velocity})[kernel.value.node];
+      });
   collect_rows(result.kernels, s);
   return result;
 }

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "machine/simd.hpp"
 #include "system/tape_lagrangian.hpp"
@@ -114,6 +116,9 @@ void Tape::play(const Track& track, const Chunk& chunk) {
 }
 
 void Tape::play(const Points& points, double* out, Scratch& scratch) const {
+  if (points.count % lanes != 0)
+    throw std::invalid_argument("a batch of " + std::to_string(points.count) +
+                                " points; need a multiple of " + std::to_string(lanes));
   const int batches = points.count / lanes, width = this->width(batches);
   double* const memory = scratch.reserve(static_cast<std::size_t>(slots_ + 1) * width * lanes);
   if (scratch.operands.size() < static_cast<std::size_t>(operands_)) scratch.operands.resize(operands_);

@@ -189,6 +189,16 @@ TEST(Tape, WhatIsNotReadMayBeNull) {
   EXPECT_EQ(with, without);
 }
 
+TEST(Tape, PartsOfABatchAreRefused) {
+  const auto kepler = make_lagrangian(systems::kepler());
+  const Batch batch(2, 16);
+  Points points = batch.points();
+  points.count = 12;
+  AlignedDoubles out(6 * 16);
+  Scratch scratch;
+  EXPECT_THROW(kepler->evaluate(points, Order::hessian, out.data(), scratch), std::invalid_argument);
+}
+
 TEST(Tape, SymbolsOfTwoGraphsDoNotMix) {
   Graph g, h;
   const Symbol x(&g, g.input(0)), y(&h, h.input(0));
