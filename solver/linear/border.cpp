@@ -13,9 +13,9 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Eigenvalues of A this small, relative, are left to the border: what the elimination would lose beyond
-/// is the square of it at most, and refinement brings that back.
-constexpr double deflated_below = 1e-6;
+/// Eigenvalues of A this small, relative, are left to the border. Larger ones cost the elimination half of
+/// the digits at most, and two refinements bring those back.
+constexpr double deflated_below = 1e-8;
 
 /// Parts this much larger than the solution they add up to cost digits that refinement brings back.
 constexpr double cancellation = 4;
