@@ -32,6 +32,7 @@ class Path {
 
   /// q at mesh node k (n entries), rounded to double.
   const double* node(int k) const { return high_.data() + static_cast<std::size_t>(k) * n_; }
+  std::span<const double> nodes() const { return high_; }  ///< (N + 1) × n
   void set_node(int k, int a, double value);
 
   /// x += factor·step, with nodes' steps (N + 1) × n and inner steps in lanes as x() is laid out.

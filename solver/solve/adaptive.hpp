@@ -15,6 +15,7 @@ struct Workspace {
   NewtonIteration iteration;
   Path path, other;
   Resolution resolution;
+  std::vector<double> before;  ///< mesh nodes before the degree rose
   std::unique_ptr<SchemeTables> pinned_scheme;
   ElementTables pinned;
 };
@@ -40,12 +41,15 @@ class AdaptiveSolve {
 
  private:
   enum class Attempt { converged, refine, failed };
-  int first_elements();
-  bool start(int elements, int degree);
+  bool start(const std::vector<double>& mesh, int degree);
   Attempt attempt();
-  Attempt judge(const NewtonReport& newton);
+  /// Before the degree rose: expected truncation, and how far the mesh nodes moved since.
+  struct NodeError {
+    double truncation = 0, moved = 0;
+  };
+  Attempt judge(const NewtonReport& newton, const NodeError& nodes);
   int needed_degree() const;
-  bool meets(const Resolution::Error& error, double safety) const;
+  double excess(const Resolution::Error& error) const;
   void raise(int degree);
   void halve();
   void report_step();
@@ -56,6 +60,7 @@ class AdaptiveSolve {
   Outcome outcome_;
   std::vector<double> ends_;
   Scales scales_;
+  double worst_ = 0;  ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 

@@ -9,6 +9,8 @@ namespace {
 
 /// Below this the damped iteration has stopped to make progress.
 constexpr double least_damping = 1e-3;
+/// Steps below this may fail to contract because they are roundoff; they are taken.
+constexpr double amplified_roundoff = 1e-11;
 /// A simplified correction this much smaller than the step is worth taking.
 constexpr double worth_taking = 0.3;
 
@@ -78,7 +80,7 @@ StepResult NewtonIteration::full_step(Path& path) {
     const bool positive = path.duration() > 0;
     if (positive) model_->evaluate_gradient(action_, path);
     const double simplified = positive ? solve_for_step(path) : NAN;
-    if (simplified <= (1 - factor / 4) * step || simplified < 1e-14) {
+    if (simplified <= (1 - factor / 4) * step || step < amplified_roundoff) {
       contraction_ = simplified / step;
       damping_ = factor;
       norm_ = simplified;

@@ -9,6 +9,8 @@ namespace extremal {
 
 namespace {
 
+constexpr double noise = 0x1p-50;
+
 /// Legendre coefficient k of coordinate a over the eight elements of a batch.
 void coefficient(const double* x, const SchemeTables& tables, int n, int a, int k, double* out) {
   const double* row = tables.legendre.data() + static_cast<std::size_t>(k) * tables.functions;
@@ -46,6 +48,7 @@ Scales scales(const Path& path, const ElementTables& tables) {
     const double magnitude = std::max(std::abs(high), std::abs(low));
     const double range = high - low > 1e-12 * magnitude ? high - low : magnitude;
     result.q = std::max(result.q, range);
+    result.magnitude = std::max(result.magnitude, magnitude);
     result.v = std::max({result.v, fast - slow});
   }
   // A uniform motion has no range of velocity: then its own size.
@@ -58,9 +61,16 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
   const int n = path.coordinates(), s = scheme.degree;
   degree_ = s;
   tails_.clear();
-  double c[4][lanes];
+  double c[4][lanes], extent[lanes];
   for (int b = 0; b < path.batches(); ++b) {
     double last[lanes] = {}, second[lanes] = {}, before[lanes] = {};
+    std::fill_n(extent, lanes, 0.0);
+    for (int u = 0; u < n * (s - 1); ++u)
+      for (int lane = 0; lane < lanes; ++lane)
+        extent[lane] = std::max(extent[lane], std::abs(path.x(b)[u * lanes + lane]));
+    for (int a = 0; a < n; ++a)
+      for (int lane = 0; lane < lanes; ++lane)
+        extent[lane] = std::max(extent[lane], 0.5 * std::abs(path.x(b)[(s * n + a) * lanes + lane]));
     for (int a = 0; a < n; ++a) {
       for (int k = 0; k < 4; ++k) {
         if (s - k >= 1)
@@ -76,6 +86,8 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
     }
     const int count = std::min(lanes, path.elements() - b * lanes);
     for (int lane = 0; lane < count; ++lane) {
+      // Coefficients at roundoff of the element's own extent tell nothing.
+      if (std::max(last[lane], second[lane]) < noise * extent[lane]) last[lane] = second[lane] = 0;
       const double size = std::max(last[lane], second[lane]);
       const double rate = before[lane] > 0 ? std::clamp(size / before[lane], 1e-6, 0.95) : 0.95;
       tails_.push_back(

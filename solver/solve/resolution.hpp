@@ -6,9 +6,9 @@
 
 namespace extremal {
 
-/// Sizes of a path: largest range of a coordinate and of a velocity.
+/// Sizes of a path: largest range of a coordinate and of a velocity, largest |q|.
 struct Scales {
-  double q = 0, v = 0;
+  double q = 0, v = 0, magnitude = 0;
 };
 Scales scales(const Path& path, const ElementTables& tables);
 
