@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -19,11 +20,17 @@ struct Reference {
   std::vector<std::string> sets;  ///< changes to the scene, as for --set
 };
 
+inline void PrintTo(const Reference& reference, std::ostream* out) {
+  *out << reference.quantity << " of " << reference.scene;
+  for (const std::string& set : reference.sets) *out << " --set " << set;
+}
+
 /// In the order of the file.
 inline std::vector<Reference> references() {
   std::ifstream in(root + "/tests/data/problems.json");
+  const nlohmann::json file = nlohmann::json::parse(in);
   std::vector<Reference> result;
-  for (const auto& c : nlohmann::json::parse(in).at("cases"))
+  for (const auto& c : file.at("cases"))
     result.push_back({c.at("scene"), c.at("quantity"), std::stod(c.at("value").get<std::string>()),
                       c.at("digits"), c.value("set", std::vector<std::string>{})});
   return result;
