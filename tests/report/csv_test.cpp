@@ -10,7 +10,7 @@
 #include <random>
 #include <sstream>
 
-#include "sample_results.hpp"
+#include "report/sample_results.hpp"
 
 namespace extremal {
 namespace {

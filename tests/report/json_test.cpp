@@ -13,7 +13,7 @@
 #include <random>
 #include <sstream>
 
-#include "sample_results.hpp"
+#include "report/sample_results.hpp"
 
 namespace extremal {
 namespace {

@@ -11,8 +11,8 @@
 #include <optional>
 #include <sstream>
 
-#include "sample_results.hpp"
-#include "well_formed.hpp"
+#include "report/sample_results.hpp"
+#include "report/well_formed.hpp"
 
 namespace extremal {
 namespace {

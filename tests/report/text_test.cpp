@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "sample_results.hpp"
+#include "report/sample_results.hpp"
 
 namespace extremal {
 namespace {
