@@ -11,7 +11,8 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
                            bool border, bool condense) {
   lagrangian_ = &lagrangian;
   tables_ = &tables;
-  kernels_ = &element_kernels();
+  assembly_ = &assembly();
+  elimination_ = &elimination();
   border_ = border;
   n_ = tables.coordinates();
   elements_ = elements;
@@ -51,7 +52,7 @@ ElementBatch DiscreteAction::batch(const Path& path, int b) {
 }
 
 void DiscreteAction::play(const ElementBatch& batch, Order order) {
-  kernels_->expand(tables_->shape(), batch);
+  assembly_->expand(tables_->shape(), batch);
   const int count = static_cast<int>(sizes_.points);
   lagrangian_->evaluate({count, count, batch.q, batch.v, batch.t}, order, rows_.data(), scratch_);
 }
@@ -164,7 +165,7 @@ void DiscreteAction::evaluate_plain(const Path& path) {
     const ElementBatch elements = batch(path, b);
     play(elements, Order::gradient);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = work_.data();
-    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
   }
   finish_sums();
@@ -176,9 +177,9 @@ void DiscreteAction::evaluate_gradient(const Path& path) {
     const ElementBatch elements = batch(path, b);
     play(elements, Order::gradient);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
-    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
-    kernels_->reduce(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient);
+    elimination_->reduce(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient);
     gather_gradient(b);
   }
   finish_sums();
@@ -187,7 +188,7 @@ void DiscreteAction::evaluate_gradient(const Path& path) {
 /// ∂²S/∂x∂T and ∂²S/∂T² from those with the elements' lengths: d/dT = Σ (h_k/T) ∂/∂h_k.
 void DiscreteAction::evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient,
                                      double* row, double* corner) {
-  kernels_->border(tables_->shape(), elements, gradient, row, corner);
+  assembly_->border(tables_->shape(), elements, gradient, row, corner);
   for (int lane = 0; lane < lanes; ++lane) {
     const double share = elements.h[lane] / path.duration();
     corner[lane] *= share * share;
@@ -205,11 +206,11 @@ void DiscreteAction::visit(const Path& path, bool hessian,
     play(elements, hessian ? Order::hessian : Order::gradient);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = work_.data(),
            *row = gradient + sizes_.vector;
-    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
     if (hessian) {
       std::fill_n(entries_.begin(), count, 0.0);
-      kernels_->hessian(tables_->shape(), elements, tables_->entries().slots.data(), entries_.data());
+      assembly_->hessian(tables_->shape(), elements, tables_->entries().slots.data(), entries_.data());
       if (border_) evaluate_border(path, elements, gradient, row, sums + 2 * lanes);
     }
     use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr,
@@ -229,14 +230,14 @@ void DiscreteAction::evaluate(const Path& path) {
     const ElementBatch elements = batch(path, b);
     play(elements, Order::hessian);
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
-    kernels_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
+    assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
-    kernels_->clear(unknowns_, matrix(b));
-    kernels_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix(b));
+    assembly_->clear(unknowns_, matrix(b));
+    assembly_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix(b));
     if (border_) evaluate_border(path, elements, gradient, gradient + sizes_.vector, sums + 2 * lanes);
     double *negative = work_.data() + 2 * sizes_.vector, *ratio = negative + lanes;
-    kernels_->condense(inner_, unknowns_, unknowns_ + 1 + border_, matrix(b),
-                       inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
+    elimination_->condense(inner_, unknowns_, unknowns_ + 1 + border_, matrix(b),
+                           inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
     for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {
       nodes.negative += static_cast<int>(negative[lane]);
       if (!(ratio[lane] >= nodes.pivot_ratio)) nodes.pivot_ratio = ratio[lane];
@@ -259,8 +260,8 @@ void DiscreteAction::expand_step(std::span<const double> node_step, double durat
       for (int a = 0; a < 2 * n_; ++a) ends[a * lanes + lane] = node_step[k * n_ + a];
     }
     const double* gradient = matrix(b) + unknowns_ * sizes_.vector;
-    kernels_->expand_step(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient,
-                          border_ ? gradient + sizes_.vector : nullptr, step_h, x);
+    elimination_->expand_step(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient,
+                              border_ ? gradient + sizes_.vector : nullptr, step_h, x);
   }
 }
 
@@ -270,10 +271,10 @@ void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> 
   const ElementBatch elements = batch(path, b);
   play(elements, Order::hessian);
   AlignedDoubles matrix(sizes_.matrix), sums(3 * lanes);
-  kernels_->gradient(tables_->shape(), elements, sums.data(), matrix.data() + unknowns_ * sizes_.vector,
-                     nullptr);
-  kernels_->clear(unknowns_, matrix.data());
-  kernels_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix.data());
+  assembly_->gradient(tables_->shape(), elements, sums.data(), matrix.data() + unknowns_ * sizes_.vector,
+                      nullptr);
+  assembly_->clear(unknowns_, matrix.data());
+  assembly_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix.data());
   for (int i = 0; i < unknowns_; ++i) {
     gradient[i] = matrix[(static_cast<std::size_t>(unknowns_) * unknowns_ + i) * lanes + lane];
     for (int j = 0; j <= i; ++j)

@@ -93,7 +93,8 @@ class DiscreteAction {
 
   const Lagrangian* lagrangian_ = nullptr;
   const ElementTables* tables_ = nullptr;
-  const ElementKernels* kernels_ = nullptr;
+  const Assembly* assembly_ = nullptr;
+  const Elimination* elimination_ = nullptr;
   int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
   bool border_ = false, finite_ = false;
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;

@@ -5,23 +5,37 @@
 namespace extremal {
 
 namespace base {
-extern const ElementKernels element_kernels;
-}
+extern const Assembly assembly;
+extern const Elimination elimination;
+}  // namespace base
 namespace v3 {
-extern const ElementKernels element_kernels;
-}
+extern const Assembly assembly;
+extern const Elimination elimination;
+}  // namespace v3
 namespace v4 {
-extern const ElementKernels element_kernels;
-}
+extern const Assembly assembly;
+extern const Elimination elimination;
+}  // namespace v4
 
-const ElementKernels& element_kernels() {
+const Assembly& assembly() {
   switch (simd_level()) {
     case SimdLevel::base:
-      return base::element_kernels;
+      return base::assembly;
     case SimdLevel::v3:
-      return v3::element_kernels;
+      return v3::assembly;
     default:
-      return v4::element_kernels;
+      return v4::assembly;
+  }
+}
+
+const Elimination& elimination() {
+  switch (simd_level()) {
+    case SimdLevel::base:
+      return base::elimination;
+    case SimdLevel::v3:
+      return v3::elimination;
+    default:
+      return v4::elimination;
   }
 }
 

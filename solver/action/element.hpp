@@ -66,10 +66,10 @@ struct ElementBatch {
   const double* rows;   ///< rows of the remainder × points: value, gradient, Hessian
 };
 
-/// Kernels of one instruction set. `matrix` is row-major with m columns: rows 0 … m − 1 hold the lower
-/// triangle of the Hessian, row m the gradient, row m + 1, where a border is asked for,
-/// ∂²L_d/∂x∂h. Each entry is a group of eight.
-struct ElementKernels {
+/// Points, gradient and Hessian of a batch. `matrix` is row-major with m columns: rows 0 … m − 1 hold the
+/// lower triangle of the Hessian, row m the gradient, row m + 1, where a border is asked for, ∂²L_d/∂x∂h.
+/// Each entry is a group of eight.
+struct Assembly {
   /// x -> q, q', t at the quadrature points.
   void (*expand)(const ElementShape&, const ElementBatch&);
   /// L_d, its gradient (m) and, where slope_h is not null, ∂L_d/∂h.
@@ -82,6 +82,10 @@ struct ElementKernels {
   /// ∂²L_d/∂x∂h (m) and ∂²L_d/∂h². `gradient` is what `gradient` returned.
   void (*border)(const ElementShape&, const ElementBatch&, const double* gradient, double* row,
                  double* corner);
+};
+
+/// Elimination of the inner unknowns.
+struct Elimination {
   /// Eliminates the first `inner` unknowns of `rows` rows and m columns: LDLᵀ in place, where column
   /// j < inner keeps the unscaled y_ij = L_ij d_j and the rest becomes the Schur complement.
   /// `inverse` receives 1/d_j; `negative` the number of negative pivots; `ratio` the least |d_j| against the
@@ -96,6 +100,8 @@ struct ElementKernels {
                       const double* border, const double* step_h, double* x);
 };
 
-const ElementKernels& element_kernels();
+/// Those of the instruction set in use.
+const Assembly& assembly();
+const Elimination& elimination();
 
 }  // namespace extremal

@@ -145,7 +145,7 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
     w_.resolution.measure(w_.path, *tables_);
     const int degree = needed_degree();
     if (degree > highest_degree) {
-      worst_ = excess(w_.resolution.at(highest_degree));
+      worst_ = INFINITY;  // not measured yet
       return Attempt::refine;
     }
     nodes = {w_.resolution.at(w_.path.degree()).q, 0};

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "action/element.hpp"
+#include "machine/lanes.hpp"
+
+/// \file What the kernels of elements share.
+
+namespace extremal::EXTREMAL_LEVEL {
+
+static constexpr int lanes = 8;
+
+/// Group k of eight.
+static inline const Vec& group(const double* p, long k) { return at(p + lanes * k); }
+static inline Vec& group(double* p, long k) { return at(p + lanes * k); }
+
+}  // namespace extremal::EXTREMAL_LEVEL
