@@ -57,8 +57,10 @@ std::string point_text(const Study& study, const WorstDerivative& worst) {
 
 void print_worst(const Study& study, const char* order, const WorstDerivative& worst) {
   if (worst.name.empty()) return;
-  line(order, fmt::format("off by {:.1e} at worst, in {}: {:.15g}, by differences {:.15g}", worst.error,
-                          worst.name, worst.derivative, worst.difference));
+  const std::string off =
+      worst.error > 0 ? fmt::format("off by {:.1e}", worst.error) : "equal but for roundoff";
+  line(order, fmt::format("at worst {} = {:.15g}, by differences {:.15g}: {}", worst.name, worst.derivative,
+                          worst.difference, off));
   line("", "at " + point_text(study, worst));
 }
 
