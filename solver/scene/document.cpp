@@ -24,6 +24,13 @@ std::string quoted(std::string_view s) {
   return out;
 }
 
+/// What the parser says, but for a string without its closing quote: it blames the end of the line.
+std::string readable(std::string_view description) {
+  if (description.find("unescaped control characters") == std::string_view::npos)
+    return std::string(description);
+  return "a string that is not closed on its line, or holds a control character";
+}
+
 struct Setting {
   std::vector<std::string> key;
   std::string value;
@@ -110,7 +117,7 @@ Document parse_document(const std::shared_ptr<const Source>& source) {
   try {
     document.root = toml::parse(source->text, source->name);
   } catch (const toml::parse_error& e) {
-    throw SceneError(document.at(e.source()), std::string(e.description()));
+    throw SceneError(document.at(e.source()), readable(e.description()));
   }
   return document;
 }

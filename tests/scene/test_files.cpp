@@ -50,6 +50,11 @@ TEST_F(SceneFiles, SyntaxNamesThePlace) {
             "scene.toml:2:5: Error while parsing key-value pair: cannot redefine existing integer 'x'");
 }
 
+TEST_F(SceneFiles, UnclosedString) {
+  EXPECT_EQ(message("title = \"abc\n"),
+            "scene.toml:1:13: a string that is not closed on its line, or holds a control character");
+}
+
 TEST_F(SceneFiles, DeepNestingIsRefused) {
   const std::size_t million = 1'000'000;
   EXPECT_NE(message("x = " + std::string(million, '[')).find("exceeded maximum nested value depth of 256"),
