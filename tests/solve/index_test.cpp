@@ -23,6 +23,8 @@ Problem with_free_ends(Problem problem) {
   const int n = problem.coordinates();
   problem.boundary = {};
   problem.boundary.coordinates = n;
+  problem.guess.tau = {0, 0.5, 1};
+  problem.guess.q.assign(3 * n, 0.5);
   return make_problem(std::move(problem));
 }
 

@@ -49,15 +49,27 @@ inline SolveOptions within(double tolerance) {
   return options;
 }
 
+/// The options, held to their word: throws when more steps are taken than they allow.
+inline SolveOptions counted(SolveOptions options) {
+  options.progress = [limit = options.max_iterations, count = 0](const Iteration&) mutable {
+    if (++count > limit) throw std::runtime_error(fmt::format("more than {} Newton steps", limit));
+  };
+  return options;
+}
+
 /// Solves. Throws, and so fails the test, where that does not converge.
-inline Solution solve(const Problem& problem, const SolveOptions& options) {
-  Solver solver;
-  Solution solution = solver.solve(problem, options);
+inline Solution solve(Solver& solver, const Problem& problem, const SolveOptions& options) {
+  Solution solution = solver.solve(problem, counted(options));
   if (!solution.converged())
     throw std::runtime_error(fmt::format("{}: {} ({}, {} elements, T = {})", name(solution.status),
                                          solution.message, options.scheme ? options.scheme->name : "adaptive",
                                          options.elements, problem.duration.value));
   return solution;
+}
+
+inline Solution solve(const Problem& problem, const SolveOptions& options) {
+  Solver solver;
+  return solve(solver, problem, options);
 }
 
 /// The same problem, guessed by its own solution: on a mesh so coarse that a straight line leads elsewhere.

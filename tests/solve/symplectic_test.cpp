@@ -146,7 +146,7 @@ Eigen::MatrixXd canonical_form(Eigen::Index n) {
 TEST(Symplecticity, TangentMapPreservesTheCanonicalForm) {
   for (const Case& c : cases())
     for (const Scheme& scheme : schemes_and_families())
-      for (int elements : {1, 2, 7, 20}) {
+      for (int elements : {1, 4, 20}) {
         const Eigen::MatrixXd m = end_hessian(c, scheme, elements).tangent();
         const Eigen::MatrixXd j = canonical_form(m.rows() / 2);
         const double defect = (m.transpose() * j * m - j).cwiseAbs().maxCoeff();
