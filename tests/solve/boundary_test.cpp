@@ -1,5 +1,4 @@
 #include <Eigen/Dense>
-#include <functional>
 #include <numbers>
 
 #include "solve/laws.hpp"
@@ -11,41 +10,10 @@ namespace {
 
 using std::numbers::pi;
 
-using Relation = std::function<void(BoundaryRelation&)>;
-
-Problem with_ends(std::shared_ptr<const Lagrangian> lagrangian, double duration, const Relation& relation) {
-  Problem problem;
-  const int n = lagrangian->structure().coordinates;
-  problem.lagrangian = std::move(lagrangian);
-  for (int a = 0; a < n; ++a) problem.names.push_back("q[" + std::to_string(a + 1) + "]");
-  problem.boundary.coordinates = n;
-  relation(problem.boundary);
-  problem.duration.value = duration;
-  return make_problem(std::move(problem));
-}
-
 /// Σ coefficient x_e = c.
 void couple(BoundaryRelation& relation, const std::vector<std::pair<int, double>>& terms, double c) {
   const int row = relation.add_row(c);
   for (const auto& [e, coefficient] : terms) relation.add(row, e, coefficient);
-}
-
-Problem guessed(Problem problem, const std::function<Values(double)>& q_of_tau) {
-  for (int i = 0; i <= 100; ++i) {
-    problem.guess.tau.push_back(i / 100.0);
-    for (double q : q_of_tau(i / 100.0)) problem.guess.q.push_back(q);
-  }
-  return make_problem(std::move(problem));
-}
-
-/// Largest distance from q(t) over 100 times.
-double distance(const Trajectory& path, const std::function<Values(double)>& q) {
-  double result = 0;
-  for (int i = 0; i <= 100; ++i) {
-    const double t = path.duration() * i / 100;
-    result = std::max(result, largest_difference(at(path, t).q, q(t)));
-  }
-  return result;
 }
 
 const SolveOptions tight = within(1e-12);
@@ -201,99 +169,6 @@ TEST(CoupledEnds, ForcedPeriodicOscillation) {
       distance(s.trajectory, [=](double t) { return Values{std::cos(rate * t) / (w * w - rate * rate)}; }),
       1e-12);
   EXPECT_NEAR(s.momentum_start[0], s.momentum_end[0], 1e-14);
-}
-
-Problem at_energy(Problem problem, double energy, double guess) {
-  problem.duration = {.value = guess, .free = true, .energy = energy, .where = {}};
-  return make_problem(std::move(problem));
-}
-
-/// q = √(2E) sin t reaches 1 at asin(1/√(2E)) and on the way back.
-TEST(FreeDuration, OscillatorAtGivenEnergy) {
-  const Problem fixed = fixed_ends(systems::oscillator(1), {0}, {1}, 1);
-  const Solution first = solve(at_energy(fixed, 2, 0.7), tight);
-  EXPECT_NEAR(first.duration(), pi / 6, 1e-13);
-  EXPECT_NEAR(*first.energy, 2, 1e-12);
-  const Problem far =
-      guessed(at_energy(fixed, 2, 2.4), [](double tau) { return Values{2 * std::sin(2.5 * tau)}; });
-  const Solution second = solve(far, tight);
-  EXPECT_NEAR(second.duration(), 5 * pi / 6, 1e-12);
-  EXPECT_NEAR(second.momentum_start[0], 2, 1e-12);
-}
-
-/// Range d at speed v: sin 2θ = g d/v², T = 2 v sin θ/g; the flat throw and the steep one.
-TEST(FreeDuration, ProjectileAtGivenEnergy) {
-  const double g = 9.81, speed = 12, d = 10;
-  const auto lagrangian =
-      trace(2, [=](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1]) / 2 - g * q[1]; });
-  const double flat = std::asin(g * d / (speed * speed)) / 2, steep = pi / 2 - flat;
-  for (double angle : {flat, steep}) {
-    const double T = 2 * speed * std::sin(angle) / g;
-    const Problem problem = at_energy(fixed_ends(lagrangian, {0, 0}, {d, 0}, 1), speed * speed / 2, 1.1 * T);
-    const Solution s = solve(problem, tight);
-    EXPECT_NEAR(s.duration(), T, 1e-12);
-    EXPECT_NEAR(s.momentum_start[0], speed * std::cos(angle), 1e-11);
-    EXPECT_NEAR(s.momentum_start[1], speed * std::sin(angle), 1e-11);
-  }
-}
-
-/// With any scheme, T is where the slope of the discrete action is −E.
-TEST(FreeDuration, SlopeOfTheDiscreteActionIsMinusTheEnergy) {
-  const Problem fixed = fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8);
-  const double energy = *solve(fixed, tight).energy;
-  for (const Scheme& scheme : schemes_and_families())
-    for (int elements : {6, 24}) {
-      if (one_sided(scheme) && elements < 20) continue;  // so coarse, no path has that energy
-      Problem problem = guided(fixed);
-      const Solution s = solve(at_energy(problem, energy, 0.8), pinned(scheme, elements));
-      const auto action = [&](double h) {
-        problem.duration.value = s.duration() + h;
-        return solve(problem, pinned(scheme, elements)).action;
-      };
-      EXPECT_NEAR(difference(action, 1e-3), -energy, 1e-9 * std::abs(energy))
-          << scheme.name << ' ' << elements;
-    }
-}
-
-Problem closed_by(Problem problem, EndFunction where, double guess) {
-  problem.duration = {.value = guess, .free = true, .energy = {}, .where = std::move(where)};
-  return make_problem(std::move(problem));
-}
-
-/// Thrown upwards, at rest at height h: T = √(2h/g).
-TEST(FreeDuration, ThrowThatComesToRestWhereItShould) {
-  const double g = 9.81, h = 3;
-  const auto lagrangian = trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - g * q[0]; });
-  const Problem problem = closed_by(
-      with_ends(lagrangian, 1, [](auto& b) { b.fix(0, false, 0); }),
-      [=](auto, auto end, auto gradient) {
-        gradient[0] = 0, gradient[1] = 1;
-        return end[0] - h;
-      },
-      0.5);
-  const Solution s = solve(problem, tight);
-  EXPECT_NEAR(s.duration(), std::sqrt(2 * h / g), 1e-13);
-  EXPECT_NEAR(s.momentum_start[0], std::sqrt(2 * g * h), 1e-12);
-}
-
-/// Released at rest at q(0) = A, where 1 − cos q(0) = 1 − cos A, through q = 0: a quarter of 4K(sin²(A/2)).
-TEST(FreeDuration, PendulumReleasedWhereItShould) {
-  for (double amplitude : {0.3, 1.0, 2.5}) {
-    const double T = std::comp_ellint_1(std::sin(amplitude / 2));
-    Problem problem = closed_by(
-        with_ends(systems::pendulum(), T, [](auto& b) { b.fix(0, true, 0); }),
-        [=](auto start, auto, auto gradient) {
-          gradient[0] = std::sin(start[0]), gradient[1] = 0;
-          return std::cos(amplitude) - std::cos(start[0]);
-        },
-        1.05 * T);
-    problem = guessed(problem, [=](double tau) { return Values{0.95 * amplitude * std::cos(pi * tau / 2)}; });
-    const Solution s = solve(problem, tight);
-    EXPECT_NEAR(s.duration(), T, 2e-12 * T) << amplitude;
-    EXPECT_NEAR(at(s.trajectory, 0).q[0], amplitude, 1e-12);
-    EXPECT_NEAR(s.momentum_end[0], -2 * std::sin(amplitude / 2), 4e-12);
-    EXPECT_LT(std::abs(s.momentum_start[0]), 1e-13);
-  }
 }
 
 /// The equilibrium, on which nothing moves and which has no size.

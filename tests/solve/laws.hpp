@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
@@ -34,6 +35,28 @@ inline Problem fixed_ends(std::shared_ptr<const Lagrangian> lagrangian, const Va
     problem.boundary.fix(static_cast<int>(a), true, end[a]);
   }
   problem.duration.value = duration;
+  return make_problem(std::move(problem));
+}
+
+using Relation = std::function<void(BoundaryRelation&)>;
+
+inline Problem with_ends(std::shared_ptr<const Lagrangian> lagrangian, double duration,
+                         const Relation& relation) {
+  Problem problem;
+  const int n = lagrangian->structure().coordinates;
+  problem.lagrangian = std::move(lagrangian);
+  for (int a = 0; a < n; ++a) problem.names.push_back("q[" + std::to_string(a + 1) + "]");
+  problem.boundary.coordinates = n;
+  relation(problem.boundary);
+  problem.duration.value = duration;
+  return make_problem(std::move(problem));
+}
+
+inline Problem guessed(Problem problem, const std::function<Values(double)>& q_of_tau) {
+  for (int i = 0; i <= 100; ++i) {
+    problem.guess.tau.push_back(i / 100.0);
+    for (double q : q_of_tau(i / 100.0)) problem.guess.q.push_back(q);
+  }
   return make_problem(std::move(problem));
 }
 
@@ -137,6 +160,16 @@ inline double node_distance(const Trajectory& path, const Trajectory& truth) {
   double result = 0;
   for (int k = 0; k <= path.elements(); ++k)
     result = std::max(result, largest_difference(node(path, k), at(truth, path.times[k]).q));
+  return result;
+}
+
+/// Largest distance from q(t) over 100 times.
+inline double distance(const Trajectory& path, const std::function<Values(double)>& q) {
+  double result = 0;
+  for (int i = 0; i <= 100; ++i) {
+    const double t = path.duration() * i / 100;
+    result = std::max(result, largest_difference(at(path, t).q, q(t)));
+  }
   return result;
 }
 

@@ -169,7 +169,7 @@ TEST(Symplecticity, MomentaOfNeighboursFollowTheTangentMap) {
         for (int e = 0; e < 2 * n; ++e)
           for (int a = 0; a < n; ++a) {
             const auto slope = [&](auto momentum) {
-              return difference([&](double h) { return (moved(c, options, e, h).*momentum)[a]; }, 1e-3);
+              return difference([&](double h) { return (moved(c, options, e, h).*momentum)[a]; }, 2.5e-4);
             };
             (e < n ? start_by_start(a, e) : start_by_end(a, e - n)) = slope(&Solution::momentum_start);
             (e < n ? end_by_start(a, e) : end_by_end(a, e - n)) = slope(&Solution::momentum_end);
