@@ -81,7 +81,7 @@ TEST_P(Accuracy, MeetsEveryToleranceAndEstimatesItsError) {
     EXPECT_LE(e.p, 10 * options.tolerance) << "p at " << options.tolerance;
     // Below, the truth itself is rounded.
     const double rounding = 4e-16 * e.absolute / std::max(e.q, 1e-300);
-    EXPECT_LE(s.error_estimate, 100 * (e.absolute + rounding)) << "estimate at " << options.tolerance;
+    EXPECT_LE(s.error_estimate, 10 * (e.absolute + rounding)) << "estimate at " << options.tolerance;
     EXPECT_GE(s.error_estimate, 0.1 * (e.absolute - rounding)) << "estimate at " << options.tolerance;
   }
 }
