@@ -1,13 +1,16 @@
 # `make demo` and `make test` work on a fresh clone: what is missing is installed, then built.
 SCENE = problems/scenes/cr3bp.toml
 
-.PHONY: build demo test bench debug asan ubsan sanitize format install packages clean
+.PHONY: configure build demo test bench debug asan ubsan sanitize format install packages clean
 
-build: packages
+configure: packages
 	@cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
+
+build: configure
 	@cmake --build --preset release
 
-demo: build
+demo: configure
+	@cmake --build --preset release --target extremal_app
 	@mkdir -p out
 	build/release/extremal solve $(SCENE) --output out/demo.json --plot out/demo.svg
 	@echo "The plot is out/demo.svg, the numbers are out/demo.json"
