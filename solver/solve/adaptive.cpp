@@ -27,6 +27,8 @@ constexpr int coarse_steps = 40;
 constexpr int fine_steps = 12;
 /// Corrections below this (relative) are roundoff.
 constexpr double roundoff = 1e-15;
+/// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
+constexpr double loosest_newton = 1e-6;
 constexpr double near_roundoff = 1e-9;
 
 int first_elements(const Frequency& frequency) {
@@ -109,6 +111,7 @@ void AdaptiveSolve::report_step() {
 
 /// In units of what the tolerance allows.
 double AdaptiveSolve::excess(const Resolution::Error& error) const {
+  if (error.q == 0 && error.v == 0) return 0;  // at rest
   return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
 }
 
@@ -149,19 +152,20 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
       return Attempt::refine;
     }
     nodes = {w_.resolution.at(w_.path.degree()).q, 0};
-    if (degree > w_.path.degree()) {
+    const bool rises = degree > w_.path.degree();
+    if (rises) {
       raise(degree);
       w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
     }
-    const NewtonGoal goal{std::max(0.05 * options_.tolerance, roundoff), fine_steps};
+    const NewtonGoal goal{std::clamp(0.05 * options_.tolerance, roundoff, loosest_newton), fine_steps};
     const NewtonReport fine = converge(w_.iteration, w_.path, *tables_, goal, on_step);
-    if (degree == w_.path.degree() && w_.before.size() == w_.path.nodes().size())
+    if (rises)
       for (std::size_t k = 0; k < w_.before.size(); ++k)
         nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
     // What Newton's method had left to do is no error of the elements.
     nodes.moved = std::max(0.0, nodes.moved - 2 * coarse.remaining * scales_.q);
     const Attempt result = judge(fine, nodes);
-    if (result != Attempt::refine || w_.path.degree() == highest_degree) return result;
+    if (result != Attempt::refine || !rises || w_.path.degree() == highest_degree) return result;
   }
 }
 

@@ -43,7 +43,7 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
     const double rate = std::min(newton.contraction(), 1.0);
     const bool settled = newton.damping() == 1 && rate < 0.5;
     report.remaining = settled ? newton.norm() * rate : newton.norm();
-    const bool roundoff = newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
+    const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
                           newton.norm() > 0.3 * before;
     if (report.remaining <= goal.remaining || roundoff) {
       report.reached = true;

@@ -9,6 +9,8 @@ namespace {
 
 /// Below this the damped iteration has stopped to make progress.
 constexpr double least_damping = 1e-3;
+/// Pivots this much smaller than the entry they came from are not trusted.
+constexpr double breakdown = 1e-11;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
 constexpr double amplified_roundoff = 1e-11;
 /// A simplified correction this much smaller than the step is worth taking.
@@ -24,6 +26,7 @@ double largest(std::span<const double> x) {
 
 void NewtonIteration::reset(const Problem& problem, const ElementTables& tables, int elements) {
   problem_ = &problem;
+  tables_ = &tables;
   const bool sparse = tables.unknowns() > most_dense_unknowns;
   auto& model = sparse ? sparse_ : condensed_;
   if (!model) model = sparse ? make_sparse_model() : make_condensed_model();
@@ -53,7 +56,7 @@ const ClosingEquation* NewtonIteration::closing(const Path& path) {
 double NewtonIteration::solve_for_step(const Path& path) {
   if (!action_.finite()) return NAN;
   model_->solve(action_, closing(path), step_);
-  double size = std::max(largest(step_.nodes), largest(step_.inner)) / scale_;
+  double size = std::max(largest(step_.nodes), largest(step_.inner)) / (scale_ > 0 ? scale_ : 1);
   if (problem_->duration.free) size = std::max(size, std::abs(step_.duration) / path.duration());
   return std::isfinite(size) ? size : NAN;
 }
@@ -65,14 +68,30 @@ void NewtonIteration::apply(Path& path, double factor, bool keep) {
   path.load_ends();
 }
 
+/// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
+/// element, all unknowns are factored at once with pivoting.
+bool NewtonIteration::factor(const Path& path) {
+  if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;
+  if (!action_.finite() || model_ == sparse_.get()) return false;
+  if (!sparse_) sparse_ = make_sparse_model();
+  model_ = sparse_.get();
+  model_->reset(*problem_, *tables_, path.elements());
+  return model_->evaluate(action_, path, closing(path));
+}
+
 /// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
 /// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
 StepResult NewtonIteration::full_step(Path& path) {
   ++count_;
-  if (!model_->evaluate(action_, path, closing(path)))
-    return action_.finite() ? StepResult::singular : StepResult::not_finite;
+  if (!factor(path)) return action_.finite() ? StepResult::singular : StepResult::not_finite;
+  if (scale_ == 0) scale_ = solve_for_step(path);  // a path without extent: its first step is the scale
   const double step = solve_for_step(path);
-  if (std::isnan(step)) return StepResult::not_finite;
+  if (std::isnan(step)) return StepResult::singular;
+  if (step == 0) {
+    norm_ = contraction_ = 0;
+    damping_ = 1;
+    return StepResult::ok;
+  }
   double factor = predicted_;
   for (;; factor = std::max(factor / 2, 0.1 * factor)) {
     if (factor < least_damping) return StepResult::stalled;
@@ -99,8 +118,9 @@ StepResult NewtonIteration::chord_step(Path& path) {
   const double before = norm_;
   model_->evaluate_gradient(action_, path);
   ++count_;
-  norm_ = solve_for_step(path);
-  if (std::isnan(norm_)) return StepResult::not_finite;
+  const double norm = solve_for_step(path);
+  if (std::isnan(norm)) return StepResult::not_finite;
+  norm_ = norm;
   contraction_ = before > 0 ? norm_ / before : 0;
   apply(path, 1, false);
   return StepResult::ok;

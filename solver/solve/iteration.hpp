@@ -49,10 +49,12 @@ class NewtonIteration {
   const ClosingEquation* closing(const Path& path);
 
  private:
+  bool factor(const Path& path);
   double solve_for_step(const Path& path);
   void apply(Path& path, double factor, bool keep);
 
   const Problem* problem_ = nullptr;
+  const ElementTables* tables_ = nullptr;
   DiscreteAction action_;
   std::unique_ptr<QuadraticModel> condensed_, sparse_;
   QuadraticModel* model_ = nullptr;

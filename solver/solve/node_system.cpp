@@ -6,6 +6,30 @@
 
 namespace extremal {
 
+namespace {
+
+/// Pivots of the border this much smaller than the largest are null directions.
+constexpr double singular_border = 1e-11;
+
+/// Without the temporary of PartialPivLU::solve.
+void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Eigen::VectorXd& x) {
+  const auto& swaps = lu.permutationP().indices();
+  const Eigen::Index size = x.size();
+  thread_local Eigen::VectorXd permuted;
+  permuted.resize(size);
+  for (Eigen::Index i = 0; i < size; ++i) permuted[swaps[i]] = x[i];
+  const auto& factor = lu.matrixLU();
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = 0; j < i; ++j) permuted[i] -= factor(i, j) * permuted[j];
+  for (Eigen::Index i = size - 1; i >= 0; --i) {
+    for (Eigen::Index j = i + 1; j < size; ++j) permuted[i] -= factor(i, j) * permuted[j];
+    permuted[i] /= factor(i, i);
+  }
+  x = permuted;
+}
+
+}  // namespace
+
 void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool free_duration) {
   ends_ = &ends;
   n_ = coordinates;
@@ -64,15 +88,22 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMatrix> c(columns_.data(), right_.size(), border_),
       x(solved_.data(), right_.size(), border_);
-  schur_.noalias() -= c.transpose() * x;
+  schur_.noalias() -= c.transpose().lazyProduct(x);
   symmetric_ = schur_.topLeftCorner(free_, free_);
   if (closing && !closing->row.empty()) {
     schur_.row(free_).setZero();
     for (const Triplet& z : ends_->z) schur_(free_, z.column) += closing->row[z.row] * z.value;
   }
   if (!schur_.allFinite()) return false;
-  dense_.compute(schur_);
-  return dense_.rank() > 0;
+  lu_.compute(schur_);
+  const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
+  if (pivots.minCoeff() > singular_border * pivots.maxCoeff()) {
+    least_norm_.reset();
+    return true;
+  }
+  // A family of extremals: of all steps the shortest.
+  least_norm_.emplace(schur_);
+  return least_norm_->rank() > 0;
 }
 
 void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
@@ -86,14 +117,19 @@ void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closin
   if (border_ == 0) return;
 
   const bool own_row = closing && !closing->row.empty();
-  Eigen::VectorXd r = Eigen::VectorXd::Zero(border_);
+  Eigen::VectorXd& r = small_;
+  r.setZero(border_);
   for (const Triplet& z : ends_->z)
     r[z.column] -= z.value * (z.row < n_ ? nodes.gradient[z.row] : nodes.gradient[last + z.row - n_]);
   if (free_duration_) r[free_] = own_row ? -closing->value : -(nodes.border_gradient + closing->value);
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)
       if (!(own_row && c == free_)) r[c] -= columns_[k * border_ + c] * right_[k];
-  const Eigen::VectorXd y = dense_.solve(r);
+  if (least_norm_)
+    r = least_norm_->solve(r).eval();
+  else
+    solve_in_place(lu_, r);
+  const Eigen::VectorXd& y = r;
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c) step[n_ + k] -= solved_[k * border_ + c] * y[c];
   for (const Triplet& z : ends_->z) step[z.row < n_ ? z.row : last + z.row - n_] += z.value * y[z.column];

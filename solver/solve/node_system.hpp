@@ -39,7 +39,10 @@ class NodeSystem {
   const Chain* chain_ = nullptr;
   std::vector<double> columns_, solved_, right_;
   Eigen::MatrixXd schur_, symmetric_;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> dense_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>
+      least_norm_;  ///< where LU is singular
+  Eigen::VectorXd small_;
 };
 
 }  // namespace extremal
