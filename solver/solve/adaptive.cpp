@@ -29,6 +29,8 @@ constexpr int fine_steps = 12;
 constexpr double roundoff = 1e-15;
 /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
 constexpr double loosest_newton = 1e-6;
+/// An undamped step longer than this, relative to the path, casts doubt on the equations.
+constexpr double suspicious_step = 1e6;
 constexpr double near_roundoff = 1e-9;
 
 int first_elements(const Frequency& frequency) {
@@ -95,12 +97,33 @@ Outcome AdaptiveSolve::run() {
     mesh = halved(mesh);
     if (!start(mesh, first_degree)) break;
   }
+  if (outcome_.status != Status::converged ? longest_ > suspicious_step : !confirmed()) {
+    outcome_.status = Status::conjugate_ends;
+    outcome_.message =
+        "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "
+        "family of them; move an end or the duration";
+  }
   outcome_.tables = tables_;
   return outcome_;
 }
 
+/// A step much longer than the path means a second variation that is nearly singular, and perhaps only by
+/// the error of the elements: then other elements give another path.
+bool AdaptiveSolve::confirmed() {
+  if (longest_ < suspicious_step) return true;
+  w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
+  raise(std::min(w_.path.degree() + 2, max_degree));
+  const NewtonReport report =
+      converge(w_.iteration, w_.path, *tables_, {loosest_newton, fine_steps}, [this] { report_step(); });
+  double moved = 0;
+  for (std::size_t k = 0; k < w_.before.size(); ++k)
+    moved = std::max(moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
+  return report.reached && moved <= 10 * outcome_.error + loosest_newton * scales_.q;
+}
+
 void AdaptiveSolve::report_step() {
   ++outcome_.iterations;
+  longest_ = std::max(longest_, w_.iteration.undamped());
   if (options_.progress)
     options_.progress({.elements = w_.path.elements(),
                        .degree = w_.path.degree(),
@@ -143,10 +166,10 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
   outcome_.message = coarse.failure;
   if (!coarse.reached) return Attempt::failed;
   NodeError nodes;
-  for (;;) {
+  for (int least = 0;; least = w_.path.degree() + 1) {
     scales_ = scales(w_.path, *tables_);
     w_.resolution.measure(w_.path, *tables_);
-    const int degree = needed_degree();
+    const int degree = std::max(needed_degree(), least);
     if (degree > highest_degree) {
       worst_ = INFINITY;  // not measured yet
       return Attempt::refine;
@@ -165,7 +188,7 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
     // What Newton's method had left to do is no error of the elements.
     nodes.moved = std::max(0.0, nodes.moved - 2 * coarse.remaining * scales_.q);
     const Attempt result = judge(fine, nodes);
-    if (result != Attempt::refine || !rises || w_.path.degree() == highest_degree) return result;
+    if (result != Attempt::refine || w_.path.degree() == highest_degree) return result;
   }
 }
 

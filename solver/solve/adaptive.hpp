@@ -18,6 +18,7 @@ struct Workspace {
   std::vector<double> before;  ///< mesh nodes before the degree rose
   std::unique_ptr<SchemeTables> pinned_scheme;
   ElementTables pinned;
+  const ElementTables* final_tables = nullptr;
 };
 
 /// Where a solve has got to: the path and tables in the workspace, and what is known of its error.
@@ -52,6 +53,7 @@ class AdaptiveSolve {
   double excess(const Resolution::Error& error) const;
   void raise(int degree);
   void halve();
+  bool confirmed();
   void report_step();
 
   const Problem& problem_;
@@ -60,7 +62,8 @@ class AdaptiveSolve {
   Outcome outcome_;
   std::vector<double> ends_;
   Scales scales_;
-  double worst_ = 0;  ///< error in units of the tolerance, when elements were last judged
+  double longest_ = 0;  ///< undamped step so far, relative
+  double worst_ = 0;    ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 

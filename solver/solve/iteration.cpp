@@ -87,6 +87,7 @@ StepResult NewtonIteration::full_step(Path& path) {
   if (scale_ == 0) scale_ = solve_for_step(path);  // a path without extent: its first step is the scale
   const double step = solve_for_step(path);
   if (std::isnan(step)) return StepResult::singular;
+  undamped_ = step;
   if (step == 0) {
     norm_ = contraction_ = 0;
     damping_ = 1;

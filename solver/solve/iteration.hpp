@@ -41,6 +41,8 @@ class NewtonIteration {
   double contraction() const { return contraction_; }
   double damping() const { return damping_; }
   int count() const { return count_; }
+  /// The undamped step of the last full_step.
+  double undamped() const { return undamped_; }
 
   DiscreteAction& action() { return action_; }
   /// The second variation that was factored last.
@@ -61,7 +63,7 @@ class NewtonIteration {
   Step step_;
   ClosingEquation closing_;
   Path saved_;
-  double scale_ = 1, norm_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
+  double scale_ = 1, norm_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
   int count_ = 0;
 };
 

@@ -12,10 +12,10 @@ namespace {
 constexpr double singular_border = 1e-11;
 
 /// Without the temporary of PartialPivLU::solve.
-void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Eigen::VectorXd& x) {
+void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Eigen::VectorXd& x,
+                    Eigen::VectorXd& permuted) {
   const auto& swaps = lu.permutationP().indices();
   const Eigen::Index size = x.size();
-  thread_local Eigen::VectorXd permuted;
   permuted.resize(size);
   for (Eigen::Index i = 0; i < size; ++i) permuted[swaps[i]] = x[i];
   const auto& factor = lu.matrixLU();
@@ -25,7 +25,7 @@ void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Eigen::Vecto
     for (Eigen::Index j = i + 1; j < size; ++j) permuted[i] -= factor(i, j) * permuted[j];
     permuted[i] /= factor(i, i);
   }
-  x = permuted;
+  x.swap(permuted);
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closin
   if (least_norm_)
     r = least_norm_->solve(r).eval();
   else
-    solve_in_place(lu_, r);
+    solve_in_place(lu_, r, permuted_);
   const Eigen::VectorXd& y = r;
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c) step[n_ + k] -= solved_[k * border_ + c] * y[c];

@@ -42,7 +42,7 @@ class NodeSystem {
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>
       least_norm_;  ///< where LU is singular
-  Eigen::VectorXd small_;
+  Eigen::VectorXd small_, permuted_;
 };
 
 }  // namespace extremal

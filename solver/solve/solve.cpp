@@ -1,5 +1,6 @@
 #include "solve/solve.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -61,6 +62,31 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   solution.minimizing = *solution.morse_index == 0;
 }
 
+/// The closing equation must hold at what is returned: a duration that runs away can look like convergence.
+bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  const ClosingEquation* closing = w.iteration.closing(w.path);
+  if (!closing) return true;
+  const double slope = w.iteration.action().slope_duration();
+  const double size = closing->row.empty() ? std::abs(slope) + std::abs(closing->value)
+                                           : std::max(1.0, scales(w.path, *w.final_tables).magnitude);
+  const double value = closing->row.empty() ? slope + closing->value : closing->value;
+  const double allowed = std::max(10 * (options.elements > 0 ? 0 : options.tolerance), 1e-6);
+  return std::abs(value) <= allowed * size && w.path.duration() < 1e6 * problem.duration.value;
+}
+
+/// Why a solve may have failed before it began; empty if nothing is found.
+std::string irregularity(const Problem& problem) {
+  const int n = problem.coordinates();
+  if (n > 64) return {};
+  std::vector<double> q(n), v(n, 0.1);
+  problem.guess.given() ? problem.guess.at(0.5, q) : (void)std::fill(q.begin(), q.end(), 0.1);
+  Scratch scratch;
+  const PointValues at = evaluate_at(*problem.lagrangian, q, v, 0, Order::hessian, scratch);
+  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
+  if (!mass.allFinite() || mass.fullPivLu().rank() == n) return {};
+  return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
+}
+
 }  // namespace
 
 struct Solver::Memory {
@@ -97,8 +123,19 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     const int inner = (w.path.degree() - 1) * w.path.elements() + w.path.elements() - 1;
     solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
     read_off(problem, outcome, w, solution);
+    w.final_tables = outcome.tables;
+    if (!closed(problem, options, w)) {
+      solution = Solution{
+          .status = Status::no_solution_near,
+          .message = "the duration ran away: no extremal near the guess meets the condition that closes it",
+          .strategy = outcome.strategy,
+          .iterations = outcome.iterations};
+      return solution;
+    }
     observe_energy(*problem.lagrangian, solution);
   }
+  if (!solution.converged())
+    if (const std::string reason = irregularity(problem); !reason.empty()) solution.message = reason;
   solution.seconds_analyse = seconds_since(analysis);
   return solution;
 }
