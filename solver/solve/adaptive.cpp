@@ -166,25 +166,22 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
   outcome_.message = coarse.failure;
   if (!coarse.reached) return Attempt::failed;
   NodeError nodes;
-  for (int least = 0;; least = w_.path.degree() + 1) {
+  for (;;) {
     scales_ = scales(w_.path, *tables_);
     w_.resolution.measure(w_.path, *tables_);
-    const int degree = std::max(needed_degree(), least);
+    // At least one more, which tells how far off the nodes are.
+    const int degree = std::max(needed_degree(), std::min(w_.path.degree() + 1, highest_degree));
     if (degree > highest_degree) {
       worst_ = INFINITY;  // not measured yet
       return Attempt::refine;
     }
     nodes = {w_.resolution.at(w_.path.degree()).q, 0};
-    const bool rises = degree > w_.path.degree();
-    if (rises) {
-      raise(degree);
-      w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
-    }
+    if (degree > w_.path.degree()) raise(degree);
+    w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
     const NewtonGoal goal{std::clamp(0.05 * options_.tolerance, roundoff, loosest_newton), fine_steps};
     const NewtonReport fine = converge(w_.iteration, w_.path, *tables_, goal, on_step);
-    if (rises)
-      for (std::size_t k = 0; k < w_.before.size(); ++k)
-        nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
+    for (std::size_t k = 0; k < w_.before.size(); ++k)
+      nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
     // What Newton's method had left to do is no error of the elements.
     nodes.moved = std::max(0.0, nodes.moved - 2 * coarse.remaining * scales_.q);
     const Attempt result = judge(fine, nodes);
