@@ -73,9 +73,13 @@ void DiscreteAction::clear_sums() {
 void DiscreteAction::gather(const Path& path, int b, const double* gradient) {
   const double *action = gradients_.data() + b * 3 * lanes, *slope = action + lanes;
   const int first = b * lanes, last = std::min(elements_, first + lanes);
+  double largest[lanes] = {};
   for (int u = 0; u < inner_; ++u)
-    for (int lane = 0; lane < lanes; ++lane)
-      residual_ = std::max(residual_, std::abs(gradient[u * lanes + lane]));
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double size = std::abs(gradient[u * lanes + lane]);
+      largest[lane] = size > largest[lane] ? size : largest[lane];
+    }
+  residual_ = std::max(residual_, *std::max_element(largest, largest + lanes));
   for (int k = first; k < last; ++k) {
     const int lane = k - first;
     action_ += action[lane];

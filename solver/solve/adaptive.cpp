@@ -68,7 +68,6 @@ bool AdaptiveSolve::start(const std::vector<double>& mesh, int degree) {
 
 Outcome AdaptiveSolve::run() {
   ends_ = starting_ends(problem_);
-  outcome_.strategy = "newton from the guess";
   outcome_.message = "the action is not finite along the guess";
   if (!start(uniform_mesh(lanes), first_degree)) return outcome_;
   const Frequency frequency = frequency_along(problem_, w_.iteration.action(), *tables_, w_.path);
@@ -140,9 +139,9 @@ double AdaptiveSolve::excess(const Resolution::Error& error) const {
 
 /// The least degree that resolves the path to the tolerance, or one above the highest.
 int AdaptiveSolve::needed_degree() const {
-  int degree = w_.path.degree();
-  while (degree <= highest_degree && excess(w_.resolution.at(degree)) > 0.5) ++degree;
-  return degree > highest_degree && excess(w_.resolution.at(highest_degree)) <= 1 ? highest_degree : degree;
+  const Resolution::Error allowed{options_.tolerance * scales_.q, 10 * options_.tolerance * scales_.v};
+  const int degree = w_.resolution.degree_for({0.5 * allowed.q, 0.5 * allowed.v}, highest_degree);
+  return degree > highest_degree ? w_.resolution.degree_for(allowed, highest_degree) : degree;
 }
 
 void AdaptiveSolve::raise(int degree) {

@@ -25,7 +25,7 @@ struct Workspace {
 struct Outcome {
   Status status = Status::not_converged;
   std::string message;
-  std::string strategy;
+  const char* strategy = "newton from the guess";
   double error = 0;      ///< of q, absolute
   double tolerance = 0;  ///< absolute
   int iterations = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace extremal {
 
@@ -16,10 +17,22 @@ constexpr double amplified_roundoff = 1e-11;
 /// A simplified correction this much smaller than the step is worth taking.
 constexpr double worth_taking = 0.3;
 
+/// Largest |x|, or NaN if one is not finite, which the sum remembers and a maximum would not.
 double largest(std::span<const double> x) {
-  double result = 0;
-  for (double value : x) result = std::max(result, std::abs(value));
-  return result;
+  double part[8] = {}, sum[8] = {};
+  std::size_t i = 0;
+  for (; i + 8 <= x.size(); i += 8)
+    for (int k = 0; k < 8; ++k) {
+      const double size = std::abs(x[i + k]);
+      part[k] = size > part[k] ? size : part[k];
+      sum[k] += size;
+    }
+  for (; i < x.size(); ++i) {
+    part[0] = std::max(part[0], std::abs(x[i]));
+    sum[0] += std::abs(x[i]);
+  }
+  const double total = std::accumulate(sum, sum + 8, 0.0);
+  return std::isfinite(total) ? *std::max_element(part, part + 8) : NAN;
 }
 
 }  // namespace
@@ -56,7 +69,9 @@ const ClosingEquation* NewtonIteration::closing(const Path& path) {
 double NewtonIteration::solve_for_step(const Path& path) {
   if (!action_.finite()) return NAN;
   model_->solve(action_, closing(path), step_);
-  double size = std::max(largest(step_.nodes), largest(step_.inner)) / (scale_ > 0 ? scale_ : 1);
+  const double nodes = largest(step_.nodes), inner = largest(step_.inner);
+  if (std::isnan(nodes) || std::isnan(inner)) return NAN;
+  double size = std::max(nodes, inner) / (scale_ > 0 ? scale_ : 1);
   if (problem_->duration.free) size = std::max(size, std::abs(step_.duration) / path.duration());
   return std::isfinite(size) ? size : NAN;
 }

@@ -99,7 +99,6 @@ double PinnedSolve::distance_to_companion() {
 }
 
 Outcome PinnedSolve::run() {
-  outcome_.strategy = "newton from the guess";
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
   const int order = std::min(scheme_.order, scheme_.degree + 1);

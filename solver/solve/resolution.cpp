@@ -28,28 +28,38 @@ Scales scales(const Path& path, const ElementTables& tables) {
   const int n = path.coordinates(), degree = path.degree();
   Scales result;
   for (int a = 0; a < n; ++a) {
-    double low = path.node(0)[a], high = low, fast = 0, slow = 0;
-    bool first = true;
-    for (int k = 0; k < path.elements(); ++k) {
-      const double* x = path.x(k / lanes) + k % lanes;
-      const double qa = path.node(k)[a], delta = x[(degree * n + a) * lanes];
-      const double h = path.h(k / lanes)[k % lanes], speed = delta / h;
-      if (first || speed > fast) fast = speed;
-      if (first || speed < slow) slow = speed;
-      first = false;
-      high = std::max(high, qa + delta);
-      low = std::min(low, qa + delta);
-      for (int j = 0; j + 1 < degree; ++j) {
-        const double q = qa + tables.scheme().lobatto[j + 1] * delta + x[(j * n + a) * lanes];
-        high = std::max(high, q);
-        low = std::min(low, q);
+    // Lane by lane; idle lanes repeat the last element.
+    double low[lanes], high[lanes], slow[lanes], fast[lanes];
+    std::fill_n(low, lanes, path.node(0)[a]);
+    std::fill_n(high, lanes, path.node(0)[a]);
+    std::fill_n(slow, lanes, INFINITY);
+    std::fill_n(fast, lanes, -INFINITY);
+    for (int b = 0; b < path.batches(); ++b) {
+      const double* x = path.x(b) + static_cast<std::size_t>(a) * lanes;
+      const double *start = x + static_cast<std::size_t>((degree - 1) * n) * lanes,
+                   *delta = start + n * lanes;
+      for (int j = 0; j <= degree; ++j) {
+        const double tau = tables.scheme().lobatto[j];
+        const double* inner = x + static_cast<std::size_t>((j - 1) * n) * lanes;
+        const bool end = j == 0 || j == degree;
+        for (int lane = 0; lane < lanes; ++lane) {
+          const double q = start[lane] + tau * delta[lane] + (end ? 0 : inner[lane]);
+          low[lane] = q < low[lane] ? q : low[lane];
+          high[lane] = q > high[lane] ? q : high[lane];
+        }
+      }
+      for (int lane = 0; lane < lanes; ++lane) {
+        const double speed = delta[lane] / path.h(b)[lane];
+        slow[lane] = speed < slow[lane] ? speed : slow[lane];
+        fast[lane] = speed > fast[lane] ? speed : fast[lane];
       }
     }
-    const double magnitude = std::max(std::abs(high), std::abs(low));
-    const double range = high - low > 1e-12 * magnitude ? high - low : magnitude;
-    result.q = std::max(result.q, range);
+    const double least = *std::min_element(low, low + lanes), most = *std::max_element(high, high + lanes);
+    const double magnitude = std::max(std::abs(most), std::abs(least));
     result.magnitude = std::max(result.magnitude, magnitude);
-    result.v = std::max({result.v, fast - slow});
+    result.q = std::max(result.q, most - least > 1e-12 * magnitude ? most - least : magnitude);
+    result.v =
+        std::max(result.v, *std::max_element(fast, fast + lanes) - *std::min_element(slow, slow + lanes));
   }
   // A uniform motion has no range of velocity: then its own size.
   result.v = std::max(result.v, path.duration() > 0 ? result.q / path.duration() : 0.0);
@@ -90,21 +100,35 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
       if (std::max(last[lane], second[lane]) < noise * extent[lane]) last[lane] = second[lane] = 0;
       const double size = std::max(last[lane], second[lane]);
       const double rate = before[lane] > 0 ? std::clamp(size / before[lane], 1e-6, 0.95) : 0.95;
-      tails_.push_back(
-          {std::max(last[lane], second[lane] * std::sqrt(rate)), size == 0 ? 1e-6 : rate, path.h(b)[lane]});
+      const double fall = size == 0 ? 1e-3 : std::sqrt(rate);
+      tails_.push_back({std::max(last[lane], second[lane] * fall), fall, path.h(b)[lane]});
     }
   }
 }
 
 Resolution::Error Resolution::at(int degree) const {
   Error error;
-  const double steps = 0.5 * (degree - degree_) + 0.5;
   for (const Tail& tail : tails_) {
-    const double size = tail.size * std::pow(tail.rate, steps);
+    double size = tail.size * tail.fall;
+    for (int k = degree_; k < degree; ++k) size *= tail.fall;
     error.q = std::max(error.q, size);
     error.v = std::max(error.v, size * (degree + 1) * (degree + 2) / tail.h);
   }
   return error;
+}
+
+int Resolution::degree_for(const Error& allowed, int highest) const {
+  int degree = degree_;
+  for (const Tail& tail : tails_) {
+    double size = tail.size * tail.fall;
+    for (int k = degree_; k < degree; ++k) size *= tail.fall;
+    while (degree <= highest &&
+           (size > allowed.q || size * (degree + 1) * (degree + 2) > allowed.v * tail.h)) {
+      size *= tail.fall;
+      ++degree;
+    }
+  }
+  return degree;
 }
 
 }  // namespace extremal

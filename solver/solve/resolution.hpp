@@ -25,9 +25,12 @@ class Resolution {
   /// Expected truncation error with elements of `degree`, worst over elements and coordinates.
   Error at(int degree) const;
 
+  /// The least degree from the present one on whose expected error is allowed; above `highest` if none is.
+  int degree_for(const Error& allowed, int highest) const;
+
  private:
   struct Tail {
-    double size, rate, h;  ///< of coefficient s; its fall over two degrees; element length
+    double size, fall, h;  ///< of coefficient s; factor from one to the next; element length
   };
   int degree_ = 0;
   std::vector<Tail> tails_;

@@ -103,6 +103,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   Solution solution;
   const auto start = Clock::now();
   w.levels.bind(problem.lagrangian);
+  solution.history.reserve(32);
   SolveOptions recording = options;
   recording.progress = [&](const Iteration& step) {
     solution.history.push_back(step);
