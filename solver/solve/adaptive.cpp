@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
-#include "solve/frequency.hpp"
 #include "solve/start.hpp"
 
 namespace extremal {
@@ -23,7 +22,7 @@ constexpr int most_elements = 1 << 16;
 /// Coarse elements have done their work when the path is known to this, relative to its range.
 constexpr double coarse_goal = 3e-3;
 /// Steps allowed for one run of damped Newton.
-constexpr int coarse_steps = 40;
+constexpr int coarse_steps = 25;
 constexpr int fine_steps = 12;
 /// Corrections below this (relative) are roundoff.
 constexpr double roundoff = 1e-15;
@@ -31,6 +30,7 @@ constexpr double roundoff = 1e-15;
 constexpr double loosest_newton = 1e-6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
+constexpr unsigned most_bends = 8;
 constexpr double near_roundoff = 1e-9;
 
 int first_elements(const Frequency& frequency) {
@@ -52,49 +52,71 @@ double grading(const std::vector<double>& mesh) {
 AdaptiveSolve::AdaptiveSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem), options_(options), w_(workspace) {}
 
-/// The guess on a mesh, moved aside until the action is finite. False if it never is.
-bool AdaptiveSolve::start(const std::vector<double>& mesh, int degree) {
-  tables_ = &w_.levels.at(degree);
+void AdaptiveSolve::start(const std::vector<double>& mesh, const Bend& bend) {
+  tables_ = &w_.levels.at(first_degree);
   w_.iteration.reset(problem_, *tables_, static_cast<int>(mesh.size()) - 1);
-  for (double bend : {0.0, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0}) {
-    w_.path.reset(*tables_, mesh, problem_.duration.value);
-    start_path(problem_, ends_, *tables_, bend, w_.path);
-    w_.iteration.action().evaluate_plain(w_.path);
-    if (w_.iteration.action().finite()) return true;
-    if (problem_.guess.given()) break;
+  w_.path.reset(*tables_, mesh, problem_.duration.value);
+  start_path(problem_, ends_, *tables_, w_.path);
+  bend_path(bend, *tables_, w_.path);
+}
+
+/// Puts the guess on a mesh that follows the frequency along it. The default guess is moved aside until L
+/// is finite on it; false if it never is.
+bool AdaptiveSolve::begin(std::vector<double>& mesh, Bend& bend) {
+  mesh = uniform_mesh(lanes);
+  for (unsigned seed = 0; seed <= most_bends; ++seed) {
+    bend = {0.1 * seed, seed};
+    start(mesh, bend);
+    measure_frequency(problem_, w_.iteration.action(), *tables_, w_.path, w_.frequency);
+    if (w_.frequency.finite()) break;
+    if (problem_.guess.given() || seed == most_bends) return false;
   }
-  return false;
+  std::vector<double> graded =
+      w_.frequency.mesh(first_elements(w_.frequency), problem_.guess.given() ? 0.25 : 1.0);
+  if (graded.size() == mesh.size() && grading(graded) < mild_grading) return true;
+  mesh = std::move(graded);
+  start(mesh, bend);
+  return true;
+}
+
+/// Newton on a mesh, halved while it does not resolve the path.
+AdaptiveSolve::Attempt AdaptiveSolve::pursue() {
+  Attempt result = attempt();
+  for (double before = INFINITY; result == Attempt::refine; before = worst_) {
+    // Truncation this small that halving does not reduce is roundoff.
+    const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
+    if (hopeless || 2 * w_.path.elements() > most_elements) {
+      outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
+                                     w_.path.elements(), w_.path.degree(), options_.tolerance);
+      return Attempt::unreachable;
+    }
+    halve();
+    result = attempt();
+  }
+  return result;
 }
 
 Outcome AdaptiveSolve::run() {
   ends_ = starting_ends(problem_);
   outcome_.message = "the action is not finite along the guess";
-  if (!start(uniform_mesh(lanes), first_degree)) return outcome_;
-  const Frequency frequency = frequency_along(problem_, w_.iteration.action(), *tables_, w_.path);
-  std::vector<double> mesh = frequency.mesh(first_elements(frequency), problem_.guess.given() ? 0.25 : 1.0);
-  if (grading(mesh) < mild_grading && mesh.size() == lanes + 1)
-    mesh = uniform_mesh(lanes);
-  else if (!start(mesh, first_degree))
-    return outcome_;
-
-  for (int tries = 0; tries < 3; ++tries) {
-    Attempt result = attempt();
-    // Truncation this small that halving does not reduce is roundoff.
-    for (double before = INFINITY; result == Attempt::refine; before = worst_) {
-      const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
-      if (hopeless || 2 * w_.path.elements() > most_elements) break;
-      halve();
-      result = attempt();
-    }
-    if (result == Attempt::converged) break;
-    if (result == Attempt::refine) {
-      outcome_.message =
-          fmt::format("{} elements of degree {} are at {:.1f} times the tolerance {:.1e}; loosen it",
-                      w_.path.elements(), w_.path.degree(), worst_, options_.tolerance);
-      break;
-    }
-    mesh = halved(mesh);
-    if (!start(mesh, first_degree)) break;
+  std::vector<double> mesh;
+  Bend bend;
+  if (!begin(mesh, bend)) return outcome_;
+  Attempt result = pursue();
+  const std::string first_failure = outcome_.message;
+  // Finer elements first, then other guesses, while the steps allowed last.
+  for (unsigned k = 1; result == Attempt::failed && outcome_.iterations < options_.max_iterations; ++k) {
+    if (k <= 2) mesh = halved(mesh);
+    if (k > 2) outcome_.strategy = "newton from the guess plus smooth noise";
+    start(mesh, k <= 2 ? bend : Bend{0.3, k});
+    result = pursue();
+  }
+  if (result == Attempt::failed && outcome_.iterations >= options_.max_iterations) {
+    outcome_.status = Status::iteration_limit;
+    outcome_.message = fmt::format(
+        "{} Newton steps from the guess and others found no extremal (from the guess: {}); "
+        "try a better guess or a shorter duration",
+        outcome_.iterations, first_failure);
   }
   if (outcome_.status != Status::converged ? longest_ > suspicious_step : !confirmed()) {
     outcome_.status = Status::conjugate_ends;
@@ -159,9 +181,14 @@ void AdaptiveSolve::halve() {
   w_.iteration.reset(problem_, *tables_, w_.path.elements());
 }
 
+int AdaptiveSolve::steps_left(int wanted) const {
+  return std::max(0, std::min(wanted, options_.max_iterations - outcome_.iterations));
+}
+
 AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
   const auto on_step = [this] { report_step(); };
-  const NewtonReport coarse = converge(w_.iteration, w_.path, *tables_, {coarse_goal, coarse_steps}, on_step);
+  const NewtonReport coarse =
+      converge(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)}, on_step);
   outcome_.message = coarse.failure;
   if (!coarse.reached) return Attempt::failed;
   NodeError nodes;
@@ -177,7 +204,8 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
     nodes = {w_.resolution.at(w_.path.degree()).q, 0};
     if (degree > w_.path.degree()) raise(degree);
     w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
-    const NewtonGoal goal{std::clamp(0.05 * options_.tolerance, roundoff, loosest_newton), fine_steps};
+    const NewtonGoal goal{std::clamp(0.05 * options_.tolerance, roundoff, loosest_newton),
+                          steps_left(fine_steps)};
     const NewtonReport fine = converge(w_.iteration, w_.path, *tables_, goal, on_step);
     for (std::size_t k = 0; k < w_.before.size(); ++k)
       nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
@@ -206,7 +234,7 @@ AdaptiveSolve::Attempt AdaptiveSolve::judge(const NewtonReport& newton, const No
     outcome_.message =
         fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
                     newton.remaining, options_.tolerance);
-    return Attempt::failed;
+    return Attempt::unreachable;
   }
   worst_ = excess(error);
   if (!(worst_ <= 1)) return Attempt::refine;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "solve/converge.hpp"
+#include "solve/frequency.hpp"
 #include "solve/levels.hpp"
 #include "solve/resolution.hpp"
 #include "solve/solve.hpp"
+#include "solve/start.hpp"
 
 /// \file Mesh and degree chosen for a tolerance, while Newton converges.
 
@@ -15,6 +17,7 @@ struct Workspace {
   NewtonIteration iteration;
   Path path, other;
   Resolution resolution;
+  Frequency frequency;
   std::vector<double> before;  ///< mesh nodes before the degree rose
   std::unique_ptr<SchemeTables> pinned_scheme;
   ElementTables pinned;
@@ -34,15 +37,19 @@ struct Outcome {
 
 /// Coarse elements first: Newton on them until the path is known to a few digits, which tells the degree
 /// that the tolerance needs; then elements of that degree, started a few digits off. Where no degree
-/// suffices, or Newton fails, elements are halved.
+/// suffices, or Newton fails, elements are halved; where that does not help, Newton starts from other
+/// guesses.
 class AdaptiveSolve {
  public:
   AdaptiveSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace);
   Outcome run();
 
  private:
-  enum class Attempt { converged, refine, failed };
-  bool start(const std::vector<double>& mesh, int degree);
+  enum class Attempt { converged, refine, failed, unreachable };
+  void start(const std::vector<double>& mesh, const Bend& bend);
+  bool begin(std::vector<double>& mesh, Bend& bend);
+  Attempt pursue();
+  int steps_left(int wanted) const;
   Attempt attempt();
   /// Before the degree rose: expected truncation, and how far the mesh nodes moved since.
   struct NodeError {

@@ -9,8 +9,16 @@ namespace extremal {
 
 namespace {
 
+/// A light particle in a strong field is the fast one.
+double lightest_mass(const Structure& s) {
+  double lightest = INFINITY;
+  for (const Triplet& m : s.mass)
+    if (m.row == m.column) lightest = std::min(lightest, std::abs(m.value));
+  return std::isfinite(lightest) ? lightest : 1;
+}
+
 /// Sizes of L_qq against L_q'q' in one point: rows of the remainder with a stride.
-double squared_frequency(const Structure& s, const double* hessian, std::size_t stride) {
+double squared_frequency(const Structure& s, double lightest, const double* hessian, std::size_t stride) {
   const int n = s.coordinates;
   double force = 0, inertia = 0;
   for (std::size_t e = 0; e < s.hessian.size(); ++e) {
@@ -19,20 +27,24 @@ double squared_frequency(const Structure& s, const double* hessian, std::size_t 
     if (s.hessian[e].column >= n && s.hessian[e].row == s.hessian[e].column)
       inertia = std::max(inertia, size);
   }
-  if (s.quadratic) {
-    // Equal weights would do for equal masses; a light particle in a strong field is the fast one.
-    double lightest = INFINITY;
-    for (const Triplet& m : s.mass)
-      if (m.row == m.column) lightest = std::min(lightest, std::abs(m.value));
-    inertia = std::isfinite(lightest) ? lightest : 1;
-  }
+  if (s.quadratic) inertia = lightest;
   return inertia > 0 ? force / inertia : 0;
 }
 
 }  // namespace
 
+void Frequency::clear() {
+  tau_.clear();
+  omega_.clear();
+  sum_ = 0;
+  finite_ = true;
+}
+
 void Frequency::add(double tau, double omega) {
-  if (!std::isfinite(omega)) omega = omega_.empty() ? 0 : omega_.back();
+  if (!std::isfinite(omega)) {
+    finite_ = false;
+    omega = omega_.empty() ? 0 : omega_.back();
+  }
   if (!tau_.empty()) {
     if (tau <= tau_.back()) return;
     sum_ += 0.5 * (omega + omega_.back()) * (tau - tau_.back());
@@ -64,12 +76,13 @@ std::vector<double> Frequency::mesh(int elements, double floor) const {
   return mesh;
 }
 
-Frequency frequency_along(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
-                          const Path& path) {
+void measure_frequency(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
+                       const Path& path, Frequency& frequency) {
   const Structure& s = problem.lagrangian->structure();
   const int points = tables.shape().points;
   const std::size_t stride = static_cast<std::size_t>(points) * lanes;
-  Frequency frequency;
+  const double lightest = lightest_mass(s);
+  frequency.clear();
   frequency.set_duration(path.duration());
   for (int b = 0; b < path.batches(); ++b) {
     const double* hessian = action.rows(path, b, Order::hessian) + (1 + s.gradient.size()) * stride;
@@ -77,10 +90,9 @@ Frequency frequency_along(const Problem& problem, DiscreteAction& action, const 
       const double from = path.mesh()[b * lanes + lane], to = path.mesh()[b * lanes + lane + 1];
       for (int i = 0; i < points; ++i)
         frequency.add(from + tables.scheme().node[i] * (to - from),
-                      std::sqrt(squared_frequency(s, hessian + i * lanes + lane, stride)));
+                      std::sqrt(squared_frequency(s, lightest, hessian + i * lanes + lane, stride)));
     }
   }
-  return frequency;
 }
 
 std::vector<double> uniform_mesh(int elements) {

@@ -12,7 +12,11 @@ namespace extremal {
 /// A local bound of the frequency, piecewise linear in τ = t/T.
 class Frequency {
  public:
+  void clear();
   void add(double tau, double omega);
+
+  /// Whether every ω was.
+  bool finite() const { return finite_; }
 
   /// ∫ω dt; finite.
   double phase() const { return sum_ * duration_; }
@@ -24,11 +28,13 @@ class Frequency {
  private:
   std::vector<double> tau_, omega_;
   double sum_ = 0, duration_ = 1;
+  bool finite_ = true;
 };
 
-/// ω² bounds M⁻¹ L_qq by its largest entry at each quadrature point of `path`.
-Frequency frequency_along(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
-                          const Path& path);
+/// ω² bounds M⁻¹ L_qq by its largest entry at each quadrature point of `path`. Keeps the memory of
+/// `frequency`.
+void measure_frequency(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
+                       const Path& path, Frequency& frequency);
 
 std::vector<double> uniform_mesh(int elements);
 std::vector<double> halved(const std::vector<double>& mesh);

@@ -11,7 +11,8 @@ namespace extremal {
 
 namespace {
 
-constexpr int most_points = 20;  ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
+constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
+constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
 constexpr int most_elements = 1 << 20;
 constexpr int steps = 100;
 constexpr double roundoff = 1e-15;
@@ -45,15 +46,16 @@ bool PinnedSolve::solve_discrete(int elements) {
   for (int points = scheme_.points; points <= most_points; points = points < 8 ? points + 2 : points + 4) {
     bind(points);
     w_.iteration.reset(problem_, w_.pinned, elements);
-    for (double bend : {0.0, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0}) {
-      if (again) break;
+    for (unsigned seed = 0; !again && seed <= most_bends; ++seed) {
       w_.path.reset(w_.pinned, mesh, problem_.duration.value);
-      start_path(problem_, ends, w_.pinned, bend, w_.path);
+      start_path(problem_, ends, w_.pinned, w_.path);
+      bend_path({seed * 0.1, seed}, w_.pinned, w_.path);
       w_.iteration.action().evaluate_plain(w_.path);
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
     const NewtonReport report =
-        converge(w_.iteration, w_.path, w_.pinned, {roundoff, steps}, [this] { report_step(); });
+        converge(w_.iteration, w_.path, w_.pinned, {roundoff, std::min(steps, options_.max_iterations)},
+                 [this] { report_step(); });
     outcome_.message = report.failure;
     if (!report.reached) return false;
     again = true;

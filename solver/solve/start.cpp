@@ -3,6 +3,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <random>
+
+#include "solve/resolution.hpp"
 
 namespace extremal {
 
@@ -40,6 +43,7 @@ std::vector<double> nearest(const EndMap& ends, const std::vector<double>& targe
 }  // namespace
 
 std::vector<double> starting_ends(const Problem& problem) {
+  if (problem.ends.free == 0) return problem.ends.offset;
   const std::size_t n = problem.coordinates();
   std::vector<double> target(2 * n, 0);
   if (problem.guess.given()) {
@@ -56,13 +60,10 @@ std::vector<double> starting_ends(const Problem& problem) {
 }
 
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
-                double bend, Path& path) {
+                Path& path) {
   const std::size_t n = problem.coordinates();
   const int degree = path.degree();
   std::vector<double> q((degree + 1) * n), guess_ends = ends;
-  double length = 0;
-  for (std::size_t a = 0; a < n; ++a) length += (ends[n + a] - ends[a]) * (ends[n + a] - ends[a]);
-  length = length > 0 ? std::sqrt(length) : 1;
   if (problem.guess.given()) {
     problem.guess.at(0, {guess_ends.data(), n});
     problem.guess.at(1, {guess_ends.data() + n, n});
@@ -76,19 +77,44 @@ void start_path(const Problem& problem, const std::vector<double>& ends, const E
         problem.guess.at(tau, {point, n});
       else
         for (std::size_t a = 0; a < n; ++a) point[a] = ends[a] + tau * (ends[n + a] - ends[a]);
-      for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t a = 0; a < n; ++a)
         point[a] += (1 - tau) * (ends[a] - guess_ends[a]) + tau * (ends[n + a] - guess_ends[n + a]);
-        // Directions that no symmetry of a system is likely to share.
-        if (bend != 0)
-          point[a] +=
-              bend * length * std::sin(std::numbers::pi * tau) * std::cos(1.0 + 2.4 * static_cast<double>(a));
-      }
     }
     path.set_element(k, q.data());
   }
   for (std::size_t a = 0; a < n; ++a) {
     path.set_node(0, static_cast<int>(a), ends[a]);
     path.set_node(path.elements(), static_cast<int>(a), ends[n + a]);
+  }
+  path.load_ends();
+}
+
+void bend_path(const Bend& bend, const ElementTables& tables, Path& path) {
+  if (bend.size == 0) return;
+  const int n = path.coordinates(), degree = path.degree(), elements = path.elements();
+  const double extent = scales(path, tables).q, size = bend.size * (extent > 0 ? extent : 1);
+  std::minstd_rand random(bend.seed + 1);
+  random.discard(3);
+  std::vector<double> amplitude(3 * static_cast<std::size_t>(n));
+  for (double& c : amplitude) c = 2.0 * random() / std::minstd_rand::max() - 1;
+  std::vector<double> q((degree + 1) * static_cast<std::size_t>(n)), ends(2 * static_cast<std::size_t>(n));
+  std::copy_n(path.node(0), n, ends.begin());
+  std::copy_n(path.node(elements), n, ends.begin() + n);
+  for (int k = 0; k < elements; ++k) {
+    path.element(k, q.data());
+    for (int j = 0; j <= degree; ++j) {
+      // The first node of an element is already where the one before left it.
+      if (j == 0 && k > 0) continue;
+      const double tau = path.mesh()[k] + tables.scheme().lobatto[j] * (path.mesh()[k + 1] - path.mesh()[k]);
+      for (int m = 1; m <= 3; ++m)
+        for (int a = 0; a < n; ++a)
+          q[j * n + a] += size / m * amplitude[(m - 1) * n + a] * std::sin(m * std::numbers::pi * tau);
+    }
+    path.set_element(k, q.data());
+  }
+  for (int a = 0; a < n; ++a) {
+    path.set_node(0, a, ends[a]);
+    path.set_node(elements, a, ends[n + a]);
   }
   path.load_ends();
 }

@@ -13,9 +13,15 @@ namespace extremal {
 /// the shortest line: a coordinate given at one end stays constant, coupled ends have least norm.
 std::vector<double> starting_ends(const Problem& problem);
 
-/// Fills `path` (already reset) from the guess. A guess is shifted linearly in t so that its ends are
-/// `ends`. `bend` moves the default guess aside, in units of its length; 0 leaves it.
+/// Fills `path` (already reset) from the guess, shifted linearly in t so that its ends are `ends`.
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
-                double bend, Path& path);
+                Path& path);
+
+/// Smooth deterministic noise, the same for the same seed: Σ_m c_m sin(mπ t/T) with m <= 3, the ends at rest.
+struct Bend {
+  double size = 0;  ///< in units of the path's extent
+  unsigned seed = 0;
+};
+void bend_path(const Bend& bend, const ElementTables& tables, Path& path);
 
 }  // namespace extremal

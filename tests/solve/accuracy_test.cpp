@@ -92,23 +92,14 @@ TEST_P(Accuracy, MeetsEveryToleranceAndEstimatesItsError) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Accuracy,
                          ::testing::Values("pendulum-short", "pendulum-long", "kepler-arc",
-                                           "double-pendulum-1", "double-pendulum-3", "henon-heiles-10",
-                                           "henon-heiles-60", "halo-half", "lyapunov-half", "nrho-half",
-                                           "fpu-32"),
+                                           "kepler-eccentric", "double-pendulum-1", "double-pendulum-3",
+                                           "henon-heiles-10", "henon-heiles-60", "halo-half", "lyapunov-half",
+                                           "nrho-half", "fpu-32"),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
-
-/// A known defect: from its rough guess the eccentric arc is not found by damped Newton alone, whatever
-/// the tolerance. What may not happen is that something else is called converged.
-TEST(AccuracyEccentric, FailsAndSaysSo) {
-  const Study study = load(bench_data("kepler-eccentric.toml"));
-  const Solution s = Solver().solve(study.problem, study.options);
-  EXPECT_FALSE(s.converged()) << "the defect is mended: move kepler-eccentric among the scenes above";
-  EXPECT_FALSE(s.message.empty());
-}
 
 /// Without cancellation in the residuals, the initial momentum is right to the last digits.
 TEST(AccuracyKepler, MomentumToTheLastDigits) {

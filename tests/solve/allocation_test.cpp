@@ -35,7 +35,7 @@ class Steps {
   long run(int full, int chord) {
     newton_.reset(problem_, tables_, elements_);
     path_.reset(tables_, mesh_, problem_.duration.value);
-    start_path(problem_, starting_ends(problem_), tables_, 0, path_);
+    start_path(problem_, starting_ends(problem_), tables_, path_);
     newton_.set_scale(1);
     EXPECT_EQ(newton_.full_step(path_), StepResult::ok);
     const long before = allocations;
