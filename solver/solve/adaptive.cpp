@@ -20,7 +20,7 @@ constexpr double longest_element = 2.0;
 constexpr double mild_grading = 3;
 constexpr int most_elements = 1 << 16;
 /// Coarse elements have done their work when the path is known to this, relative to its range.
-constexpr double coarse_goal = 3e-3;
+constexpr double coarse_goal = 1e-3;
 /// Steps allowed for one run of damped Newton.
 constexpr int coarse_steps = 25;
 constexpr int fine_steps = 12;
@@ -192,7 +192,7 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
   outcome_.message = coarse.failure;
   if (!coarse.reached) return Attempt::failed;
   NodeError nodes;
-  for (;;) {
+  for (bool again = false;;) {
     scales_ = scales(w_.path, *tables_);
     w_.resolution.measure(w_.path, *tables_);
     // At least one more, which tells how far off the nodes are.
@@ -201,7 +201,8 @@ AdaptiveSolve::Attempt AdaptiveSolve::attempt() {
       worst_ = INFINITY;  // not measured yet
       return Attempt::refine;
     }
-    nodes = {w_.resolution.at(w_.path.degree()).q, 0};
+    nodes = {w_.resolution.at(w_.path.degree()).q, 0, again};
+    again = true;
     if (degree > w_.path.degree()) raise(degree);
     w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
     const NewtonGoal goal{std::clamp(0.05 * options_.tolerance, roundoff, loosest_newton),
@@ -227,7 +228,9 @@ AdaptiveSolve::Attempt AdaptiveSolve::judge(const NewtonReport& newton, const No
   Resolution::Error error = w_.resolution.at(w_.path.degree());
   const double fall = nodes.truncation > 0 ? std::min(1.0, error.q / nodes.truncation) : 0;
   const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
-  error.q += nodes.moved * fall * fall + 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const double truncation = error.q + 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const double at_nodes = nodes.moved * fall * fall;
+  error.q = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
   outcome_.error = error.q + newton.remaining * scales_.q;
   if (newton.remaining > options_.tolerance) {
@@ -238,6 +241,9 @@ AdaptiveSolve::Attempt AdaptiveSolve::judge(const NewtonReport& newton, const No
   }
   worst_ = excess(error);
   if (!(worst_ <= 1)) return Attempt::refine;
+  // Much movement may have been Newton's, not the elements': from this converged path it is not.
+  if (at_nodes > 3 * truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
+    return Attempt::refine;
   outcome_.status = Status::converged;
   outcome_.message = "converged";
   return Attempt::converged;

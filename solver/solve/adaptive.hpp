@@ -51,9 +51,11 @@ class AdaptiveSolve {
   Attempt pursue();
   int steps_left(int wanted) const;
   Attempt attempt();
-  /// Before the degree rose: expected truncation, and how far the mesh nodes moved since.
+  /// Before the degree rose: expected truncation; how far the mesh nodes moved since; whether Newton's
+  /// method had gone to the end before.
   struct NodeError {
     double truncation = 0, moved = 0;
+    bool from_converged = false;
   };
   Attempt judge(const NewtonReport& newton, const NodeError& nodes);
   int needed_degree() const;
