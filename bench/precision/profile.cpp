@@ -156,7 +156,7 @@ double print_frame(const extremal::Problem& problem, const extremal::ElementTabl
   const double guess = nanoseconds([&] {
     const std::vector<double> ends = extremal::starting_ends(problem);
     start.reset(tables, mesh, problem.duration.value);
-    extremal::start_path(problem, ends, tables, 0, start);
+    extremal::start_path(problem, ends, tables, start);
   });
   const double estimate = nanoseconds([&] {
     extremal::scales(path, tables);

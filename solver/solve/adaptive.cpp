@@ -31,6 +31,8 @@ constexpr double loosest_newton = 1e-6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
 constexpr unsigned most_bends = 8;
+/// Of the guess's extent, in turn.
+constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 constexpr double near_roundoff = 1e-9;
 
 int first_elements(const Frequency& frequency) {
@@ -104,14 +106,18 @@ Outcome AdaptiveSolve::run() {
   if (!begin(mesh, bend)) return outcome_;
   Attempt result = pursue();
   const std::string first_failure = outcome_.message;
+  const int most_steps = options_.max_iterations;
   // Finer elements first, then other guesses, while the steps allowed last.
-  for (unsigned k = 1; result == Attempt::failed && outcome_.iterations < options_.max_iterations; ++k) {
-    if (k <= 2) mesh = halved(mesh);
-    if (k > 2) outcome_.strategy = "newton from the guess plus smooth noise";
-    start(mesh, k <= 2 ? bend : Bend{0.3, k});
+  if (result == Attempt::failed) {
+    start(halved(mesh), bend);
     result = pursue();
   }
-  if (result == Attempt::failed && outcome_.iterations >= options_.max_iterations) {
+  for (unsigned k = 0; result == Attempt::failed && outcome_.iterations < most_steps; ++k) {
+    outcome_.strategy = "newton from the guess plus smooth noise";
+    start(mesh, {noise_sizes[k % std::size(noise_sizes)], k});
+    result = pursue();
+  }
+  if (result == Attempt::failed && outcome_.iterations >= most_steps) {
     outcome_.status = Status::iteration_limit;
     outcome_.message = fmt::format(
         "{} Newton steps from the guess and others found no extremal (from the guess: {}); "

@@ -10,7 +10,7 @@ namespace extremal::formula {
 namespace {
 
 /// Levels that evaluation descends, through definitions too: the stack must hold them.
-constexpr int deepest_tree = 4000;
+constexpr int deepest_tree = 1000;
 
 const char* kind_of(Meaning meaning) {
   switch (meaning) {
