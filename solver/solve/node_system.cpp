@@ -8,8 +8,9 @@ namespace extremal {
 
 namespace {
 
-/// Pivots of the border this much smaller than the largest are null directions.
-constexpr double singular_border = 1e-11;
+/// Pivots of the border this much smaller than the largest are null directions: families of extremals, whose
+/// eigenvalue is zero but for the error of the elements.
+constexpr double singular_border = 1e-8;
 
 /// Without the temporary of PartialPivLU::solve.
 void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Eigen::VectorXd& x,
@@ -102,7 +103,8 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
     return true;
   }
   // A family of extremals: of all steps the shortest.
-  least_norm_.emplace(schur_);
+  least_norm_.emplace(schur_.rows(), schur_.cols());
+  least_norm_->setThreshold(singular_border).compute(schur_);
   return least_norm_->rank() > 0;
 }
 
