@@ -59,7 +59,7 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   const Inertia inertia = newton.model().inertia(null_threshold);
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
-  solution.minimizing = *solution.morse_index == 0;
+  solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
 }
 
 /// The closing equation must hold at what is returned: a duration that runs away can look like convergence.
