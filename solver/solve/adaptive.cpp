@@ -30,6 +30,9 @@ constexpr double roundoff = 1e-15;
 constexpr double loosest_newton = 1e-6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
+/// Newton steps in all, times unknowns of the first mesh: what restarts may cost.
+constexpr double most_work = 1e6;
+constexpr double least_steps = 100;
 constexpr unsigned most_bends = 8;
 /// Of the guess's extent, in turn.
 constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
@@ -104,20 +107,22 @@ Outcome AdaptiveSolve::run() {
   std::vector<double> mesh;
   Bend bend;
   if (!begin(mesh, bend)) return outcome_;
+  const double unknowns = static_cast<double>(tables_->unknowns()) * w_.path.elements();
+  most_steps_ =
+      std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns)));
   Attempt result = pursue();
   const std::string first_failure = outcome_.message;
-  const int most_steps = options_.max_iterations;
   // Finer elements first, then other guesses, while the steps allowed last.
   if (result == Attempt::failed) {
     start(halved(mesh), bend);
     result = pursue();
   }
-  for (unsigned k = 0; result == Attempt::failed && outcome_.iterations < most_steps; ++k) {
+  for (unsigned k = 0; result == Attempt::failed && outcome_.iterations < most_steps_; ++k) {
     outcome_.strategy = "newton from the guess plus smooth noise";
     start(mesh, {noise_sizes[k % std::size(noise_sizes)], k});
     result = pursue();
   }
-  if (result == Attempt::failed && outcome_.iterations >= most_steps) {
+  if (result == Attempt::failed && outcome_.iterations >= most_steps_) {
     outcome_.status = Status::iteration_limit;
     outcome_.message = fmt::format(
         "{} Newton steps from the guess and others found no extremal (from the guess: {}); "
@@ -188,7 +193,7 @@ void AdaptiveSolve::halve() {
 }
 
 int AdaptiveSolve::steps_left(int wanted) const {
-  return std::max(0, std::min(wanted, options_.max_iterations - outcome_.iterations));
+  return std::max(0, std::min(wanted, most_steps_ - outcome_.iterations));
 }
 
 AdaptiveSolve::Attempt AdaptiveSolve::attempt() {

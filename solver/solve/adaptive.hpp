@@ -71,6 +71,7 @@ class AdaptiveSolve {
   Outcome outcome_;
   std::vector<double> ends_;
   Scales scales_;
+  int most_steps_ = 0;
   double longest_ = 0;  ///< undamped step so far, relative
   double worst_ = 0;    ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
