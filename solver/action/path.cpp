@@ -65,6 +65,13 @@ void Path::add(std::span<const double> node_step, const AlignedDoubles& inner_st
   }
 }
 
+void Path::copy_values(const Path& other) {
+  high_ = other.high_;
+  low_ = other.low_;
+  x_ = other.x_;
+  if (duration_ != other.duration_) set_duration(other.duration_);
+}
+
 void Path::load_ends() {
   for (int k = 0; k < batches_ * lanes; ++k) {
     const std::size_t e = static_cast<std::size_t>(std::min(k, elements_ - 1)) * n_;

@@ -38,6 +38,9 @@ class Path {
   /// x += factor·step, with nodes' steps (N + 1) × n and inner steps in lanes as x() is laid out.
   void add(std::span<const double> node_step, const AlignedDoubles& inner_step, double factor);
 
+  /// The values alone, of a path on the same discretisation.
+  void copy_values(const Path& other);
+
   /// Copies the nodes into the lanes (q_a and Δ); after any change of them.
   void load_ends();
 

@@ -43,15 +43,6 @@ int first_elements(const Frequency& frequency) {
   return lanes * std::max(1, static_cast<int>(std::ceil(wanted / lanes)));
 }
 
-double grading(const std::vector<double>& mesh) {
-  double longest = 0, shortest = 1;
-  for (std::size_t k = 0; k + 1 < mesh.size(); ++k) {
-    longest = std::max(longest, mesh[k + 1] - mesh[k]);
-    shortest = std::min(shortest, mesh[k + 1] - mesh[k]);
-  }
-  return longest / shortest;
-}
-
 }  // namespace
 
 AdaptiveSolve::AdaptiveSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace)
@@ -76,10 +67,10 @@ bool AdaptiveSolve::begin(std::vector<double>& mesh, Bend& bend) {
     if (w_.frequency.finite()) break;
     if (problem_.guess.given() || seed == most_bends) return false;
   }
-  std::vector<double> graded =
-      w_.frequency.mesh(first_elements(w_.frequency), problem_.guess.given() ? 0.25 : 1.0);
-  if (graded.size() == mesh.size() && grading(graded) < mild_grading) return true;
-  mesh = std::move(graded);
+  const int elements = first_elements(w_.frequency);
+  const double floor = problem_.guess.given() ? 0.25 : 1.0;
+  if (elements == lanes && w_.frequency.grading(floor) < mild_grading) return true;
+  mesh = w_.frequency.mesh(elements, floor);
   start(mesh, bend);
   return true;
 }

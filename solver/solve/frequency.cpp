@@ -49,8 +49,15 @@ void Frequency::add(double tau, double omega) {
     if (tau <= tau_.back()) return;
     sum_ += 0.5 * (omega + omega_.back()) * (tau - tau_.back());
   }
+  least_ = tau_.empty() ? omega : std::min(least_, omega);
+  most_ = tau_.empty() ? omega : std::max(most_, omega);
   tau_.push_back(tau);
   omega_.push_back(omega);
+}
+
+double Frequency::grading(double floor) const {
+  const double base = floor * sum_;
+  return least_ + base > 0 ? (most_ + base) / (least_ + base) : 1;
 }
 
 std::vector<double> Frequency::mesh(int elements, double floor) const {

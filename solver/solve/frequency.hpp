@@ -22,12 +22,15 @@ class Frequency {
   double phase() const { return sum_ * duration_; }
   void set_duration(double duration) { duration_ = duration; }
 
+  /// Longest against shortest element of such a mesh, at most.
+  double grading(double floor) const;
+
   /// Elements of equal ∫(ω + floor·mean ω) dt.
   std::vector<double> mesh(int elements, double floor) const;
 
  private:
   std::vector<double> tau_, omega_;
-  double sum_ = 0, duration_ = 1;
+  double sum_ = 0, duration_ = 1, least_ = 0, most_ = 0;
   bool finite_ = true;
 };
 

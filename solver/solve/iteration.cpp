@@ -77,7 +77,7 @@ double NewtonIteration::solve_for_step(const Path& path) {
 }
 
 void NewtonIteration::apply(Path& path, double factor, bool keep) {
-  if (keep) saved_ = path;
+  if (keep) saved_.copy_values(path);
   path.add(step_.nodes, step_.inner, factor);
   if (problem_->duration.free) path.set_duration(path.duration() + factor * step_.duration);
   path.load_ends();
@@ -121,7 +121,7 @@ StepResult NewtonIteration::full_step(Path& path) {
       norm_ = simplified;
       break;
     }
-    path = saved_;
+    path.copy_values(saved_);
     model_->evaluate_gradient(action_, path);
     solve_for_step(path);  // the step again
   }
