@@ -286,4 +286,23 @@ void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> 
   }
 }
 
+/// M, C and a do not depend on active parameters: what does is a Lagrangian of its own, ∂R/∂p.
+double DiscreteAction::parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed) {
+  ElementShape shape = tables_->shape();
+  shape.mass_count = shape.gyroscopic_count = shape.linear_count = 0;
+  mixed.resize(batches_ * sizes_.vector);
+  const int count = static_cast<int>(sizes_.points);
+  double sum = 0;
+  for (int b = 0; b < batches_; ++b) {
+    const ElementBatch elements = batch(path, b);
+    assembly_->expand(shape, elements);
+    lagrangian_->sensitivity({count, count, elements.q, elements.v, elements.t}, parameter, rows_.data(),
+                             scratch_);
+    double* action = gradients_.data() + b * 3 * lanes;
+    assembly_->gradient(shape, elements, action, mixed.data() + b * sizes_.vector, nullptr);
+    for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) sum += action[lane];
+  }
+  return sum;
+}
+
 }  // namespace extremal

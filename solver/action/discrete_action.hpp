@@ -72,6 +72,10 @@ class DiscreteAction {
   /// element.hpp: for tests, large sparse systems and the spectrum.
   void element_hessian(const Path& path, int k, std::span<double> hessian, std::span<double> gradient);
 
+  /// ∂S_h/∂p of an active parameter, returned, and ∂²S_h/∂x∂p, laid out as Path::x: the m local unknowns of
+  /// each element, its share of the nodes at q_a and q_b.
+  double parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed);
+
   /// Rows of the remainder at the quadrature points of a batch, as Lagrangian::evaluate returns them.
   const double* rows(const Path& path, int batch, Order order);
 

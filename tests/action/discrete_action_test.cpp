@@ -8,6 +8,7 @@
 #include <random>
 
 #include "action/systems.hpp"
+#include "system/formula.hpp"
 
 namespace extremal {
 namespace {
@@ -188,6 +189,42 @@ TEST(DiscreteAction, BorderOfTheDurationIsCondensed) {
       for (int a = 0; a < 2 * n; ++a)
         EXPECT_NEAR(d.action.nodes.border[a], reduced[a], 1e-7 * scale) << c.name << ' ' << scheme.name;
       EXPECT_NEAR(d.action.nodes.corner, corner, 1e-7 * scale) << c.name << ' ' << scheme.name;
+    }
+  }
+}
+
+/// Two parameters, one in front of a velocity term, against systems compiled with other values.
+TEST(DiscreteAction, DerivativesWithRespectToParameters) {
+  const auto with = [](double a, double b) {
+    SystemText text{.coordinates = {"x", "y"},
+                    .parameters = {{"a", {{a}}}, {"b", {{b}}}},
+                    .lagrangian = "(x'^2 + y'^2)/2 + a^2*cos(x)*y + sin(b*x)*x'*y'",
+                    .active = {"a", "b"}};
+    return compile(text).lagrangian;
+  };
+  for (const Scheme& scheme : {lobatto(4), gauss(3), lobatto(1)}) {
+    Discretisation d(with(0.7, 1.3), scheme, 10);
+    const int m = d.tables.unknowns();
+    for (int p : {0, 1}) {
+      const auto moved = [&](double h) { return with(0.7 + (p == 0 ? h : 0), 1.3 + (p == 1 ? h : 0)); };
+      const auto action_at = [&](double h) {
+        Discretisation e(moved(h), scheme, 10);
+        return e.value(d.path);
+      };
+      AlignedDoubles mixed;
+      const double slope = d.action.parameter_slope(d.path, p, mixed);
+      EXPECT_NEAR(slope, difference(action_at, 1e-3), 1e-10) << scheme.name;
+      for (int k : {0, 9})
+        for (int u = 0; u < m; ++u) {
+          const auto gradient_at = [&](double h) {
+            Discretisation e(moved(h), scheme, 10);
+            std::vector<double> hessian(m * m), gradient(m);
+            e.action.element_hessian(d.path, k, hessian, gradient);
+            return gradient[u];
+          };
+          EXPECT_NEAR(mixed[(k / 8 * m + u) * 8 + k % 8], difference(gradient_at, 1e-3), 1e-10)
+              << scheme.name;
+        }
     }
   }
 }
