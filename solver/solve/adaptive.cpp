@@ -33,9 +33,11 @@ constexpr double suspicious_step = 1e6;
 /// Newton steps in all, times unknowns of the first mesh: what restarts may cost.
 constexpr double most_work = 1e6;
 constexpr double least_steps = 100;
+/// Tries to move the default guess to where L is finite.
 constexpr unsigned most_bends = 8;
 /// Of the guess's extent, in turn.
 constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
+/// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
 int first_elements(const Frequency& frequency) {
@@ -49,6 +51,7 @@ AdaptiveSolve::AdaptiveSolve(const Problem& problem, const SolveOptions& options
     : problem_(problem), options_(options), w_(workspace) {}
 
 void AdaptiveSolve::start(const std::vector<double>& mesh, const Bend& bend) {
+  longest_ = 0;
   tables_ = &w_.levels.at(first_degree);
   w_.iteration.reset(problem_, *tables_, static_cast<int>(mesh.size()) - 1);
   w_.path.reset(*tables_, mesh, problem_.duration.value);
