@@ -126,12 +126,14 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     read_off(problem, outcome, w, solution);
     w.final_tables = outcome.tables;
     if (!closed(problem, options, w)) {
-      solution = Solution{
-          .status = Status::no_solution_near,
-          .message = "the duration ran away: no extremal near the guess meets the condition that closes it",
-          .strategy = outcome.strategy,
-          .iterations = outcome.iterations};
-      return solution;
+      Solution failed;
+      failed.status = Status::no_solution_near;
+      failed.message = "the duration ran away: no extremal near the guess meets the condition that closes it";
+      failed.strategy = outcome.strategy;
+      failed.iterations = outcome.iterations;
+      failed.history = std::move(solution.history);
+      failed.seconds_solve = solution.seconds_solve;
+      return failed;
     }
     observe_energy(*problem.lagrangian, solution);
   }
