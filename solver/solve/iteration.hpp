@@ -45,6 +45,7 @@ class NewtonIteration {
   double undamped() const { return undamped_; }
 
   DiscreteAction& action() { return action_; }
+  const DiscreteAction& action() const { return action_; }
   /// The second variation that was factored last.
   QuadraticModel& model() { return *model_; }
   /// The equation that closes the duration, at the path's ends; null where it is fixed.

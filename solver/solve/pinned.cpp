@@ -27,16 +27,6 @@ void PinnedSolve::bind(int points) {
   w_.pinned.bind(*w_.pinned_scheme, *problem_.lagrangian);
 }
 
-void PinnedSolve::report_step() {
-  ++outcome_.iterations;
-  if (options_.progress)
-    options_.progress({.elements = w_.path.elements(),
-                       .degree = w_.path.degree(),
-                       .residual = w_.iteration.action().residual(),
-                       .step = w_.iteration.norm(),
-                       .damping = w_.iteration.damping()});
-}
-
 /// Newton from the guess, or from the path there is, to roundoff.
 bool PinnedSolve::solve_discrete(int elements) {
   const std::vector<double> ends = starting_ends(problem_);
@@ -55,7 +45,7 @@ bool PinnedSolve::solve_discrete(int elements) {
     }
     const NewtonReport report =
         converge(w_.iteration, w_.path, w_.pinned, {roundoff, std::min(steps, options_.max_iterations)},
-                 [this] { report_step(); });
+                 [this] { outcome_.record(w_, options_); });
     outcome_.message = report.failure;
     if (!report.reached) return false;
     again = true;

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "solve/adaptive.hpp"
+#include "solve/converge.hpp"
+#include "solve/workspace.hpp"
 
 /// \file A scheme that the user names: exactly so many equal elements, or as many as the tolerance needs.
 
@@ -19,7 +20,6 @@ class PinnedSolve {
   bool exact_quadrature_settled();
   double distance_to_companion();
   void bind(int points);
-  void report_step();
 
   const Problem& problem_;
   const SolveOptions& options_;

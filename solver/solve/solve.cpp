@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "solution/observe.hpp"
-#include "solve/adaptive.hpp"
 #include "solve/pinned.hpp"
+#include "solve/search.hpp"
 
 namespace extremal {
 
@@ -110,7 +110,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     if (options.progress) options.progress(step);
   };
   const Outcome outcome =
-      options.scheme ? PinnedSolve(problem, recording, w).run() : AdaptiveSolve(problem, recording, w).run();
+      options.scheme ? PinnedSolve(problem, recording, w).run() : Search(problem, recording, w).run();
   solution.seconds_solve = seconds_since(start);
 
   const auto analysis = Clock::now();

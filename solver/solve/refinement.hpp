@@ -1,0 +1,71 @@
+#pragma once
+
+#include <vector>
+
+#include "solve/converge.hpp"
+#include "solve/workspace.hpp"
+
+/// \file Mesh and degree chosen for a tolerance, while Newton converges.
+
+namespace extremal {
+
+/// From a path on coarse elements to an extremal that meets the tolerance. Newton on the coarse elements
+/// until the path is known to a few digits, which tells the degree that the tolerance needs; then elements of
+/// that degree, started a few digits off. Where no degree suffices, elements are halved.
+class Refinement {
+ public:
+  enum class Result {
+    converged,    ///< the path in the workspace meets the tolerance
+    failed,       ///< Newton found no extremal from this path; another may do
+    unreachable,  ///< an extremal is near, but the tolerance is not met
+  };
+
+  Refinement(const Problem& problem, const SolveOptions& options, Workspace& workspace, Outcome& outcome);
+
+  /// Steps that all paths together may take.
+  void allow(int steps) { most_steps_ = steps; }
+  bool exhausted() const { return outcome_.iterations >= most_steps_; }
+
+  /// Puts an empty path of coarse elements on `mesh` into the workspace, to be filled by the caller.
+  void open(const std::vector<double>& mesh);
+  /// Of the path that was opened last.
+  const ElementTables& tables() const { return *tables_; }
+
+  /// Refines the path in the workspace.
+  Result pursue();
+
+  /// False if steps from this path were so long that the second variation is nearly singular, and other
+  /// elements find another path.
+  bool confirmed();
+  /// Whether a step from this path was much longer than the path.
+  bool suspicious() const;
+
+ private:
+  enum class Attempt { converged, refine, failed, unreachable };
+  /// Before the degree rose: expected truncation; how far the mesh nodes moved since; whether Newton's
+  /// method had gone to the end before.
+  struct NodeError {
+    double truncation = 0, moved = 0;
+    bool from_converged = false;
+  };
+  Attempt attempt();
+  Attempt judge(const NewtonReport& newton, const NodeError& nodes);
+  int steps_left(int wanted) const;
+  int needed_degree() const;
+  double excess(const Resolution::Error& error) const;
+  void raise(int degree);
+  void halve();
+  void record();
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  Workspace& w_;
+  Outcome& outcome_;
+  Scales scales_;
+  int most_steps_ = 0;
+  double longest_ = 0;  ///< undamped step so far, relative
+  double worst_ = 0;    ///< error in units of the tolerance, when elements were last judged
+  const ElementTables* tables_ = nullptr;
+};
+
+}  // namespace extremal

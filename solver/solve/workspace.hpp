@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solve/frequency.hpp"
+#include "solve/iteration.hpp"
+#include "solve/levels.hpp"
+#include "solve/resolution.hpp"
+#include "solve/solve.hpp"
+
+/// \file What the stages of a solve hand to each other.
+
+namespace extremal {
+
+/// Memory that solves share.
+struct Workspace {
+  Levels levels;
+  NewtonIteration iteration;
+  Path path, other;
+  Resolution resolution;
+  Frequency frequency;
+  std::vector<double> before;  ///< mesh nodes before the degree rose
+  std::unique_ptr<SchemeTables> pinned_scheme;
+  ElementTables pinned;
+  const ElementTables* final_tables = nullptr;
+};
+
+/// Where a solve has got to: the path and tables in the workspace, and what is known of its error.
+struct Outcome {
+  Status status = Status::not_converged;
+  std::string message;
+  const char* strategy = "newton from the guess";
+  double error = 0;      ///< of q, absolute
+  double tolerance = 0;  ///< absolute
+  int iterations = 0;
+  const ElementTables* tables = nullptr;
+
+  /// Counts a step of the workspace's iteration and tells whoever listens.
+  void record(const Workspace& workspace, const SolveOptions& options);
+};
+
+}  // namespace extremal
