@@ -16,6 +16,10 @@ constexpr double most_growth = 6, most_shrinking = 1.0 / 3;
 /// Shortening where the right-hand side cannot be evaluated.
 constexpr double retreat = 0.25;
 
+int controlled_size(const IntegrationOptions& options, int size) {
+  return options.controlled > 0 ? std::min(options.controlled, size) : size;
+}
+
 int block_size(const IntegrationOptions& options, int size) {
   return options.block > 0 ? options.block : size;
 }
@@ -29,7 +33,12 @@ double largest(std::span<const double> y, int begin, int end) {
 }  // namespace
 
 Dop853::Dop853(RightHandSide right_hand_side, int size)
-    : slope_(std::move(right_hand_side)), size_(size), k_(dop853::stages * size), stage_(size), next_(size) {}
+    : slope_(std::move(right_hand_side)),
+      size_(size),
+      k_(static_cast<std::size_t>(dop853::interpolating_stages) * size),
+      stage_(size),
+      next_(size),
+      last_y_(size) {}
 
 bool Dop853::step(double t, std::span<const double> y, double h) {
   const auto k = [this](int i) { return std::span<double>(k_).subspan(i * size_, size_); };
@@ -50,10 +59,10 @@ bool Dop853::step(double t, std::span<const double> y, double h) {
 
 /// Hairer, Nørsett and Wanner (10.17): |h| e5² / √(e5² + 0.01 e3²), in units of the tolerance.
 double Dop853::error_norm(std::span<const double> y, double h, const IntegrationOptions& options) const {
-  const int block = block_size(options, size_);
+  const int size = controlled_size(options, size_), block = block_size(options, size);
   double sum5 = 0, sum3 = 0;
-  for (int begin = 0; begin < size_; begin += block) {
-    const int end = std::min(begin + block, size_);
+  for (int begin = 0; begin < size; begin += block) {
+    const int end = std::min(begin + block, size);
     const double scale = std::max(largest(y, begin, end), largest(next_, begin, end)) * options.tolerance;
     if (scale == 0) continue;
     for (int m = begin; m < end; ++m) {
@@ -66,7 +75,7 @@ double Dop853::error_norm(std::span<const double> y, double h, const Integration
       sum3 += (e3 / scale) * (e3 / scale);
     }
   }
-  return sum5 == 0 ? 0 : std::abs(h) * sum5 / std::sqrt((sum5 + 0.01 * sum3) * size_);
+  return sum5 == 0 ? 0 : std::abs(h) * sum5 / std::sqrt((sum5 + 0.01 * sum3) * size);
 }
 
 /// A hundredth of the time in which a block would change by its own size; the control does the rest.
@@ -74,29 +83,26 @@ double Dop853::first_step(double t, std::span<const double> y, double span,
                           const IntegrationOptions& options) {
   double h = std::abs(span) / 10;
   if (!slope_(t, y, stage_)) return std::copysign(h, span);
-  const int block = block_size(options, size_);
-  for (int begin = 0; begin < size_; begin += block) {
-    const int end = std::min(begin + block, size_);
+  const int size = controlled_size(options, size_), block = block_size(options, size);
+  for (int begin = 0; begin < size; begin += block) {
+    const int end = std::min(begin + block, size);
     const double value = largest(y, begin, end), slope = largest(stage_, begin, end);
     if (value > 0 && slope > 0) h = std::min(h, 0.01 * value / slope);
   }
   return std::copysign(h, span);
 }
 
-Integrated Dop853::advance(double& t, std::span<double> y, double end, const IntegrationOptions& options) {
+Integrated Dop853::accept_step(double& t, std::span<double> y, double end,
+                               const IntegrationOptions& options) {
   if (h_ == 0 || (end - t) * h_ < 0) h_ = first_step(t, y, end - t, options);
-  bool after_rejection = false;
-  for (int taken = 0; t != end; ++taken) {
-    if (taken == options.max_steps) return Integrated::step_limit;
+  for (bool after_rejection = false;; after_rejection = true) {
     const bool last = std::abs(end - t) <= std::abs(h_) * (1 + 1e-12);
     const double h = last ? end - t : h_;
-    if (std::abs(h_) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t))
+    if (std::abs(h_) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t) || h_ == 0)
       return Integrated::step_underflow;
     if (!step(t, y, h)) {
       h_ = h * retreat;
-      after_rejection = true;
       ++rejected_;
-      if (h_ == 0) return Integrated::step_underflow;
       continue;
     }
     const double error = error_norm(y, h, options);
@@ -104,19 +110,67 @@ Integrated Dop853::advance(double& t, std::span<double> y, double end, const Int
     const double factor = std::clamp(best, most_shrinking, most_growth);
     if (error > 1) {
       h_ = h * std::min(factor, safety);
-      after_rejection = true;
       ++rejected_;
       continue;
     }
     const double proposed = h * (after_rejection ? std::min(factor, 1.0) : factor);
     // A step cut off at the end says nothing against the longer one that was planned.
     h_ = last && std::abs(proposed) < std::abs(h_) ? h_ : proposed;
-    after_rejection = false;
+    std::copy(y.begin(), y.end(), last_y_.begin());
+    last_t_ = t;
+    last_h_ = h;
     t = last ? end : t + h;
     std::copy(next_.begin(), next_.end(), y.begin());
     ++steps_;
+    return Integrated::done;
+  }
+}
+
+Integrated Dop853::advance(double& t, std::span<double> y, double end, const IntegrationOptions& options) {
+  for (int taken = 0; t != end; ++taken) {
+    if (taken == options.max_steps) return Integrated::step_limit;
+    const Integrated outcome = accept_step(t, y, end, options);
+    if (outcome != Integrated::done) return outcome;
   }
   return Integrated::done;
+}
+
+/// Hairer, Nørsett and Wanner, II.6: q0 + θ (f0 + (1 − θ) (f1 + θ (f2 + …))).
+bool Dop853::prepare_interpolation(std::span<const double> y, int components) {
+  const auto k = [&](int i) { return std::span<double>(k_).subspan(std::size_t(i) * size_, components); };
+  interpolated_ = components;
+  if (!slope_(last_t_ + last_h_, y.first(components), k(dop853::stages))) return false;
+  for (int i = 0; i < 3; ++i) {
+    for (int m = 0; m < components; ++m) {
+      double sum = 0;
+      for (int j = 0; j <= dop853::stages + i; ++j)
+        sum += dop853::more_a[i][j] * k_[std::size_t(j) * size_ + m];
+      stage_[m] = last_y_[m] + last_h_ * sum;
+    }
+    const double t = last_t_ + dop853::more_c[i] * last_h_;
+    if (!slope_(t, std::span(stage_).first(components), k(dop853::stages + 1 + i))) return false;
+  }
+  shape_.assign(std::size_t(7) * components, 0.0);
+  for (int m = 0; m < components; ++m) {
+    double* const shape = shape_.data() + std::size_t(7) * m;
+    const double delta = y[m] - last_y_[m], first = last_h_ * k_[m], last = last_h_ * k(dop853::stages)[m];
+    shape[0] = delta;
+    shape[1] = first - delta;
+    shape[2] = 2 * delta - (first + last);
+    for (int r = 0; r < 4; ++r)
+      for (int i = 0; i < dop853::interpolating_stages; ++i)
+        shape[3 + r] += last_h_ * dop853::d[r][i] * k_[std::size_t(i) * size_ + m];
+  }
+  return true;
+}
+
+void Dop853::interpolate(double theta, std::span<double> y) const {
+  for (int m = 0; m < interpolated_; ++m) {
+    const double* const shape = shape_.data() + std::size_t(7) * m;
+    double value = 0;
+    for (int r = 6; r >= 0; --r) value = (value + shape[r]) * (r % 2 == 0 ? theta : 1 - theta);
+    y[m] = last_y_[m] + value;
+  }
 }
 
 }  // namespace extremal

@@ -47,30 +47,4 @@ Flight fly(const Lagrangian& lagrangian, std::span<const double> q, std::span<co
   return flight;
 }
 
-std::optional<double> defect(const Lagrangian& lagrangian, const Trajectory& trajectory, int pieces,
-                             double tolerance) {
-  const std::size_t n = lagrangian.structure().coordinates;
-  if (trajectory.coordinates != static_cast<int>(n))
-    throw std::invalid_argument(
-        fmt::format("a trajectory of {} coordinates for a Lagrangian of {}", trajectory.coordinates, n));
-  if (pieces < 1) throw std::invalid_argument(fmt::format("pieces = {}; need at least 1", pieces));
-  Flow flow(lagrangian);
-  Dop853 integrator(motion(flow), static_cast<int>(2 * n));
-  std::vector<double> y(2 * n), q(n), v(n);
-  double largest = 0;
-  for (int k = 0; k < pieces; ++k) {
-    double t = trajectory.duration() * k / pieces;
-    const double end = k + 1 == pieces ? trajectory.duration() : trajectory.duration() * (k + 1) / pieces;
-    trajectory.at(t, q, v);
-    std::copy(q.begin(), q.end(), y.begin());
-    if (!flow.momentum(q, v, t, std::span(y).subspan(n))) return std::nullopt;
-    if (integrator.advance(t, y, end, {.tolerance = tolerance, .block = static_cast<int>(n)}) !=
-        Integrated::done)
-      return std::nullopt;
-    trajectory.at(end, q, v);
-    for (std::size_t a = 0; a < n; ++a) largest = std::max(largest, std::abs(y[a] - q[a]));
-  }
-  return largest;
-}
-
 }  // namespace extremal

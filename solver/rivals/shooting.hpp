@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,8 +7,8 @@
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
 
-/// \file What integration forward in time can do: run from a state, check a trajectory, and solve a problem
-/// with fixed ends by single shooting.
+/// \file What integration forward in time can do: run from a state, and solve a problem with fixed ends by
+/// single shooting.
 
 namespace extremal {
 
@@ -24,12 +23,6 @@ struct Flight {
 /// singular constant mass, wrong sizes or times that do not ascend.
 Flight fly(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
            std::span<const double> times, double tolerance = 1e-13);
-
-/// Cuts the trajectory into equal pieces, integrates each from its own start, and returns the largest
-/// difference in q at the end of a piece: a check that shares nothing with the discrete action. Nothing where
-/// an integration fails. The piece must be short enough for the instability of the motion.
-std::optional<double> defect(const Lagrangian& lagrangian, const Trajectory& trajectory, int pieces,
-                             double tolerance = 1e-14);
 
 struct ShootingOptions {
   double tolerance = 1e-9;  ///< error at the end, relative to the largest end value or distance

@@ -113,6 +113,26 @@ TEST(Dop853, OrderEightAsASlope) {
   EXPECT_NEAR(std::log2(error(12) / error(24)), 8, 0.4);
 }
 
+TEST(Dop853, InterpolationOfOrderSeven) {
+  // The error of one step of length h, against the solution through its start, falls as h⁸.
+  const auto error = [](double h) {
+    Dop853 method(square, 1);
+    double t = 0, y = 1, between = 0, largest = 0;
+    EXPECT_EQ(method.advance(t, {&y, 1}, 0.1, {.tolerance = 1}), Integrated::done);
+    const double start = y;
+    EXPECT_EQ(method.accept_step(t, {&y, 1}, t + h, {.tolerance = 1}), Integrated::done);
+    EXPECT_EQ(t, 0.1 + h);
+    EXPECT_TRUE(method.prepare_interpolation({&y, 1}, 1));
+    for (const double theta : {0.0, 0.13, 0.4, 0.77, 1.0}) {
+      method.interpolate(theta, {&between, 1});
+      largest = std::max(largest, std::abs(between - start / (1 - start * theta * h)));
+    }
+    return largest;
+  };
+  EXPECT_NEAR(std::log2(error(0.08) / error(0.04)), 8, 0.5);
+  EXPECT_LT(error(0.04), 1e-10);
+}
+
 TEST(Dop853, ErrorFollowsTheTolerance) {
   for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-13}) {
     Dop853 method(square, 1);

@@ -3,35 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <stdexcept>
 
-#include "action/rule.hpp"
 #include "rivals/flow.hpp"
-#include "system/tape.hpp"
+#include "rivals/problems.hpp"
 
 namespace extremal {
 namespace {
 
 using std::numbers::pi;
-
-std::shared_ptr<const Lagrangian> kepler() {
-  return trace(2, [](auto q, auto v, auto) {
-    return (v[0] * v[0] + v[1] * v[1]) / 2.0 + 1.0 / sqrt(q[0] * q[0] + q[1] * q[1]);
-  });
-}
-
-std::shared_ptr<const Lagrangian> pendulum() {
-  return trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + cos(q[0]); });
-}
-
-std::shared_ptr<const Lagrangian> double_pendulum() {
-  return trace(2, [](auto q, auto v, auto) {
-    return v[0] * v[0] + v[1] * v[1] / 2.0 + v[0] * v[1] * cos(q[0] - q[1]) + 2 * 9.81 * cos(q[0]) +
-           9.81 * cos(q[1]);
-  });
-}
 
 TEST(Fly, KeplerOrbitCloses) {
   // a = 1, e = 0.6, from pericentre.
@@ -135,59 +116,6 @@ TEST(Flow, VariationsAreTheDerivativeOfTheSlope) {
     for (int i = 0; i < 2 * n; ++i)
       EXPECT_NEAR(slope[2 * n * (c + 1) + i], (a[i] - 8 * b[i] + 8 * d[i] - e[i]) / (12 * h), 2e-9) << c << i;
   }
-}
-
-/// Elements of degree 12 that carry f at their nodes.
-template <class Function>
-Trajectory sampled(int elements, double duration, Function f) {
-  Trajectory trajectory{1, 12, {}, {}};
-  for (int k = 0; k <= elements; ++k) trajectory.times.push_back(duration * k / elements);
-  for (int k = 0; k < elements; ++k)
-    for (const double node : lobatto_rule(13).nodes)
-      trajectory.nodes.push_back(f(trajectory.times[k] + duration / elements * node));
-  return trajectory;
-}
-
-TEST(Defect, TellsASolutionFromWhatIsNone) {
-  const auto oscillator = trace(1, [](auto q, auto v, auto) { return (v[0] * v[0] - q[0] * q[0]) / 2.0; });
-  const auto exact = defect(*oscillator, sampled(20, 10, [](double t) { return std::sin(t + 0.3); }), 40);
-  ASSERT_TRUE(exact);
-  EXPECT_LE(*exact, 1e-13);
-  const auto wrong = defect(*oscillator, sampled(20, 10, [](double t) { return std::sin(1.001 * t); }), 40);
-  ASSERT_TRUE(wrong);
-  // q'' + q = (1 − 1.001²) sin 1.001t, for a quarter: about 0.002 · (1/4)² / 2.
-  EXPECT_NEAR(*wrong, 0.002 / 32, 1e-6);
-  EXPECT_THROW(defect(*oscillator, sampled(1, 1, [](double t) { return t; }), 0), std::invalid_argument);
-}
-
-Problem fixed_ends(std::shared_ptr<const Lagrangian> lagrangian, std::vector<double> start,
-                   std::vector<double> end, double duration) {
-  Problem problem;
-  problem.lagrangian = std::move(lagrangian);
-  problem.boundary.coordinates = static_cast<int>(start.size());
-  for (int a = 0; a < problem.boundary.coordinates; ++a) {
-    problem.boundary.fix(a, false, start[a]);
-    problem.boundary.fix(a, true, end[a]);
-  }
-  problem.duration.value = duration;
-  return make_problem(std::move(problem));
-}
-
-/// Rows t, coordinates, velocities of a reference solution.
-std::vector<std::vector<double>> reference(const std::string& name) {
-  std::ifstream file(std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/" + name + ".csv");
-  std::string line, cell;
-  std::getline(file, line);
-  std::vector<std::vector<double>> rows;
-  while (std::getline(file, line)) {
-    rows.emplace_back();
-    for (std::size_t begin = 0; begin <= line.size();) {
-      const std::size_t end = std::min(line.find(',', begin), line.size());
-      rows.back().push_back(std::stod(line.substr(begin, end - begin)));
-      begin = end + 1;
-    }
-  }
-  return rows;
 }
 
 void expect_reference(const Problem& problem, const std::string& name, double bound) {

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rivals/conditions.hpp"
+#include "rivals/correction.hpp"
+#include "rivals/dop853.hpp"
+#include "rivals/flow.hpp"
+#include "rivals/verify.hpp"
+
+/// \file The motion run beside a trajectory, piece by piece.
+
+namespace extremal {
+
+/// q' and p may be off by this many tolerances of their range.
+inline constexpr double velocity_factor = 10;
+
+class Chase {
+ public:
+  /// The references must outlive it.
+  Chase(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options);
+
+  /// Reads the trajectory at points of every element, and the scales off them. What failed, or nothing.
+  std::string sample();
+  /// Fills defects, growth and counts. What failed, or nothing.
+  std::string run(Verification& result);
+
+  const PhaseScales& scales() const { return scales_; }
+  double allowed_q() const { return allowed_q_; }
+  const EndStates& ends() const { return ends_; }
+  /// Empty where there are too many coordinates.
+  const std::vector<Piece>& pieces() const { return pieces_; }
+
+ private:
+  /// (q, p) of the trajectory at time t; its velocity is left in v_. False if L is not finite there.
+  bool state_at(double t, std::span<double> y);
+  void begin_piece(double t);
+  bool compare_step(double before, double now, Verification& result);
+  bool compare(double t, std::span<const double> q, std::span<const double> v, std::span<const double> state,
+               Verification& result);
+  double growth() const;
+  double growth_limit() const;
+  std::string run_piece(double& t, double limit, const IntegrationOptions& integration, Verification& result);
+  void mark(double t);
+  bool end_piece(double start, double end, Verification& result);
+
+  const Problem& problem_;
+  const Trajectory& trajectory_;
+  const VerifyOptions& options_;
+  const std::size_t n_;
+  const bool complete_;        ///< all variations are integrated, not only some
+  const std::size_t columns_;  ///< variations
+  Flow flow_;
+  Dop853 integrator_;
+  PhaseScales scales_;
+  double allowed_q_ = 0, allowed_v_ = 0;
+  double reach_ = 1;  ///< range of q by its size: what the integrator's relative tolerance is measured by
+  EndStates ends_;
+  std::vector<double> y_, v_, motion_v_, interpolated_, next_, saved_;
+  std::vector<double> t_samples_, q_samples_, v_samples_;
+  std::size_t compared_ = 0;  ///< samples
+  std::vector<Piece> pieces_;
+  std::vector<Mark> marks_;  ///< of the piece that is being integrated
+  std::size_t marked_ = 0;   ///< numbers kept in marks
+};
+
+}  // namespace extremal

@@ -1,0 +1,89 @@
+#include "rivals/correction.hpp"
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+
+namespace extremal {
+
+namespace {
+
+/// Directions whose singular value is below this part of the largest entry count as free.
+constexpr double least_singular = 1e-6;
+constexpr int refinements = 3;
+
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+void add_dense(Entries& entries, Eigen::Index row, Eigen::Index column, const Eigen::MatrixXd& block) {
+  for (Eigen::Index j = 0; j < block.cols(); ++j)
+    for (Eigen::Index i = 0; i < block.rows(); ++i)
+      if (block(i, j) != 0) entries.emplace_back(row + i, column + j, block(i, j));
+}
+
+struct LinearSystem {
+  Eigen::SparseMatrix<double> matrix;
+  Eigen::VectorXd right;
+};
+
+LinearSystem assemble(const std::vector<Piece>& pieces, const EndConditions::Values& conditions,
+                      const PhaseScales& scales) {
+  const Eigen::Index size = pieces.front().transition.rows(), n = size / 2;
+  const auto count = static_cast<Eigen::Index>(pieces.size());
+  const bool free_duration = pieces.front().by_duration.size() > 0;
+  const Eigen::Index rows = count * size + conditions.residual.size(),
+                     columns = (count + 1) * size + (free_duration ? 1 : 0);
+  Entries entries;
+  LinearSystem system{Eigen::SparseMatrix<double>(rows, columns), Eigen::VectorXd(rows)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    add_dense(entries, k * size, k * size, pieces[k].transition);
+    for (Eigen::Index i = 0; i < size; ++i) entries.emplace_back(k * size + i, (k + 1) * size + i, -1.0);
+    if (free_duration) add_dense(entries, k * size, columns - 1, pieces[k].by_duration);
+    system.right.segment(k * size, size) = -pieces[k].defect;
+  }
+  const auto weight = [&](Eigen::Index row) {
+    return conditions.size[row] > 0 ? 1 / conditions.size[row] : 1.0;
+  };
+  for (const Triplet& e : conditions.derivatives) {
+    const double scale = (e.column / n) % 2 == 0 ? scales.q : scales.p;
+    const Eigen::Index column = e.column < size ? e.column : count * size + e.column - size;
+    entries.emplace_back(count * size + e.row, column, e.value * scale * weight(e.row));
+  }
+  for (Eigen::Index row = 0; row < conditions.residual.size(); ++row)
+    system.right[count * size + row] = -conditions.residual[row] * weight(row);
+  system.matrix.setFromTriplets(entries.begin(), entries.end());
+  return system;
+}
+
+}  // namespace
+
+/// Iterated Tikhonov regularisation, x += (AᵀA + μ²)⁻¹ Aᵀ (b − A x).
+Eigen::VectorXd correction(const std::vector<Piece>& pieces, const EndConditions::Values& conditions,
+                           const PhaseScales& scales) {
+  const LinearSystem system = assemble(pieces, conditions, scales);
+  const Eigen::SparseMatrix<double> transposed = system.matrix.transpose();
+  Eigen::SparseMatrix<double> normal = transposed * system.matrix;
+  const double largest = normal.diagonal().maxCoeff();
+  for (Eigen::Index i = 0; i < normal.rows(); ++i)
+    normal.coeffRef(i, i) += least_singular * least_singular * largest;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(normal);
+  if (factors.info() != Eigen::Success) return {};
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(system.matrix.cols());
+  for (int k = 0; k <= refinements; ++k) x += factors.solve(transposed * (system.right - system.matrix * x));
+  if (!x.allFinite()) return {};
+  return x.head((static_cast<Eigen::Index>(pieces.size()) + 1) * pieces.front().transition.rows());
+}
+
+double largest_change(const std::vector<Piece>& pieces, const Eigen::VectorXd& correction) {
+  const Eigen::Index size = pieces.front().transition.rows(), n = size / 2;
+  double largest = 0;
+  for (Eigen::Index k = 0; k * size < correction.size(); ++k)
+    largest = std::max(largest, correction.segment(k * size, n).cwiseAbs().maxCoeff());
+  for (std::size_t k = 0; k < pieces.size(); ++k)
+    for (const Mark& mark : pieces[k].marks) {
+      const Eigen::VectorXd change =
+          mark.transition * correction.segment(static_cast<Eigen::Index>(k) * size, size) + mark.defect;
+      largest = std::max(largest, change.cwiseAbs().maxCoeff());
+    }
+  return largest;
+}
+
+}  // namespace extremal
