@@ -6,6 +6,7 @@
 
 #include "action/path.hpp"
 #include "linear/chain.hpp"
+#include "machine/simd.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file The discrete action S_h = Σ L_d of a path, its derivatives, and the equations that remain at the
@@ -75,6 +76,12 @@ class DiscreteAction {
   /// ∂S_h/∂p of an active parameter, returned, and ∂²S_h/∂x∂p, laid out as Path::x: the m local unknowns of
   /// each element, its share of the nodes at q_a and q_b.
   double parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed);
+
+  /// Entry (i, j), i >= j, of the Hessian of element k in (q_a, q_b), 2n × 2n, as evaluate() condensed it.
+  double condensed(int k, int i, int j) const {
+    const std::size_t row = inner_ + i, column = inner_ + j;
+    return matrix(k / lanes)[(row * unknowns_ + column) * lanes + k % lanes];
+  }
 
   /// Rows of the remainder at the quadrature points of a batch, as Lagrangian::evaluate returns them.
   const double* rows(const Path& path, int batch, Order order);

@@ -79,6 +79,7 @@ struct Problem {
   bool periodic = false;  ///< closed, perhaps up to a symmetry
   Duration duration;
   Guess guess;
+  std::optional<double> curvature;  ///< a bound of M⁻¹V'' known to hold everywhere
 
   int coordinates() const { return boundary.coordinates; }
 };

@@ -73,6 +73,20 @@ class Fields {
     append(object_, "morse_index", count(result_.solution.morse_index));
     append(object_, "nullity", count(result_.solution.nullity));
     append(object_, "minimizing", result_.solution.minimizing);
+    windows();
+  }
+
+  /// Null where they are not known.
+  void windows() {
+    const Solution& solution = result_.solution;
+    const bool known = converged_ && solution.certificate != Certificate::none;
+    append(object_, "certificate", known ? Json(name(solution.certificate)) : Json(nullptr));
+    Json windows = Json::array(), times = Json::array();
+    for (const auto& [from, to] : solution.windows)
+      windows.push_back({number("windows", from), number("windows", to)});
+    for (double time : solution.conjugate_times) times.push_back(number("conjugate_times", time));
+    append(object_, "windows", known ? std::move(windows) : Json(nullptr));
+    append(object_, "conjugate_times", known ? std::move(times) : Json(nullptr));
   }
 
   void counts() {

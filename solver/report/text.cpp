@@ -55,6 +55,18 @@ std::string index_text(const Solution& solution) {
   return text + (solution.minimizing ? ", minimising" : "");
 }
 
+std::string windows_text(const Solution& solution) {
+  if (!solution.converged() || solution.certificate == Certificate::none) return "";
+  std::string text = fmt::format("{}, {}", solution.windows.size(), name(solution.certificate));
+  const std::vector<double>& times = solution.conjugate_times;
+  if (times.empty()) return text;
+  constexpr std::size_t shown = 6;
+  text += "; conjugate times ";
+  for (std::size_t k = 0; k < std::min(times.size(), shown); ++k)
+    text += fmt::format("{}{:.6g}", k ? ", " : "", times[k]);
+  return times.size() > shown ? text + fmt::format(", … ({} in all)", times.size()) : text;
+}
+
 /// "1 element", "2 elements".
 std::string counted(int count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -126,6 +138,7 @@ std::string summary(const Result& result) {
     if (solution.converged()) lines.add_small("error estimate", solution.error_estimate);
     lines.add_small("residual", solution.residual);
     lines.add("index", index_text(solution));
+    lines.add("windows", windows_text(solution));
     lines.add("mesh", fmt::format("{} of degree {}, {}", counted(trajectory.elements(), "element"),
                                   trajectory.degree, counted(solution.unknowns, "unknown")));
   }

@@ -42,6 +42,11 @@ const char* name(Status status) {
   return names.at(static_cast<std::size_t>(status));
 }
 
+const char* name(Certificate certificate) {
+  constexpr std::array names = {"none", "sampled", "global"};
+  return names.at(static_cast<std::size_t>(certificate));
+}
+
 void Trajectory::at(double t, std::span<double> q, std::span<double> v) const {
   const double time = checked_time(t, duration());
   const auto after = std::upper_bound(times.begin() + 1, times.end() - 1, time);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,13 @@ enum class Status {
 
 /// As written in a result: "converged", "not-converged", …
 const char* name(Status status);
+
+/// What is known of each window, among the paths with its ends: nothing where there are no windows; a strict
+/// local minimum, by the second variation sampled along the trajectory; the only minimum there is.
+enum class Certificate { none, sampled, global };
+
+/// "none", "sampled", "global".
+const char* name(Certificate certificate);
 
 /// Piecewise polynomial q(t) on [0, T].
 struct Trajectory {
@@ -60,6 +68,12 @@ struct Solution {
   double residual = 0;
   std::optional<int> morse_index, nullity;
   bool minimizing = false;
+  /// Abutting, from 0 to T: each minimising with its ends fixed, the union of two neighbours not. Empty where
+  /// L_vv is not positive definite, so that no path is a minimum, and where coordinates are too many.
+  std::vector<std::array<double, 2>> windows;
+  /// In (0, T), to the start as fixed, ascending, repeated by multiplicity. Known where there are windows.
+  std::vector<double> conjugate_times;
+  Certificate certificate = Certificate::none;
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
   int unknowns = 0, iterations = 0;

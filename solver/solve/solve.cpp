@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solution/observe.hpp"
+#include "solve/minimality.hpp"
 #include "solve/pinned.hpp"
 #include "solve/search.hpp"
 
@@ -74,6 +75,18 @@ bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
   return std::abs(value) <= allowed * size && w.path.duration() < 1e6 * problem.duration.value;
 }
 
+/// What is left of a solution that turned out to be none.
+Solution without_path(Solution solution) {
+  Solution failed;
+  failed.status = solution.status;
+  failed.message = std::move(solution.message);
+  failed.strategy = std::move(solution.strategy);
+  failed.iterations = solution.iterations;
+  failed.history = std::move(solution.history);
+  failed.seconds_solve = solution.seconds_solve;
+  return failed;
+}
+
 /// Why a solve may have failed before it began; empty if nothing is found.
 std::string irregularity(const Problem& problem) {
   const int n = problem.coordinates();
@@ -91,6 +104,7 @@ std::string irregularity(const Problem& problem) {
 
 struct Solver::Memory {
   Workspace workspace;
+  SecondVariation variation;
 };
 
 Solver::Solver() : memory_(std::make_unique<Memory>()) {}
@@ -125,17 +139,16 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
     read_off(problem, outcome, w, solution);
     w.final_tables = outcome.tables;
-    if (!closed(problem, options, w)) {
-      Solution failed;
-      failed.status = Status::no_solution_near;
-      failed.message = "the duration ran away: no extremal near the guess meets the condition that closes it";
-      failed.strategy = outcome.strategy;
-      failed.iterations = outcome.iterations;
-      failed.history = std::move(solution.history);
-      failed.seconds_solve = solution.seconds_solve;
-      return failed;
+    if (closed(problem, options, w)) {
+      observe_energy(*problem.lagrangian, solution);
+      read_minimality(problem, options, memory_->variation, solution);
+    } else {
+      solution.status = Status::no_solution_near;
+      solution.message =
+          "the duration ran away: no extremal near the guess meets the condition that closes "
+          "it";
     }
-    observe_energy(*problem.lagrangian, solution);
+    if (!solution.converged()) solution = without_path(std::move(solution));
   }
   if (!solution.converged())
     if (const std::string reason = irregularity(problem); !reason.empty()) solution.message = reason;

@@ -50,6 +50,7 @@ Problem read_problem(const Scene& scene, const System& system) {
   problem.lagrangian = system.lagrangian;
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
+  if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
   problem = solved_relation(scene.boundary, std::move(problem), read_relation(scene.boundary, system));
   problem.duration = read_duration(scene.boundary, system);
   read_guess(scene, system, problem);
@@ -72,7 +73,6 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   study.title = scene.title;
   study.system = make_system(scene.system);
   study.options = read_options(scene.solve);
-  if (scene.system.curvature) study.curvature = scene.system.curvature->value;
   study.problem = read_problem(scene, study.system);
   return study;
 }

@@ -21,7 +21,6 @@ struct Study {
   System system;
   Problem problem;
   SolveOptions options;
-  std::optional<double> curvature;  ///< a bound of M⁻¹V'' known to hold everywhere
   double seconds_read = 0;          ///< from opening the file until this was ready
 };
 

@@ -50,12 +50,12 @@ std::string refusal(const Result& result) {
 
 TEST(Json, WritesEveryFieldInTheOrderOfTheContract) {
   const Json json = parsed(transfer_result());
-  EXPECT_EQ(keys(json),
-            (std::vector<std::string>{
-                "status",     "message",        "strategy",       "title",    "duration",    "action",
-                "energy",     "energy_drift",   "error_estimate", "residual", "morse_index", "nullity",
-                "minimizing", "momentum_start", "momentum_end",   "elements", "degree",      "unknowns",
-                "iterations", "seconds",        "samples"}));
+  EXPECT_EQ(keys(json), (std::vector<std::string>{
+                            "status",          "message",        "strategy",     "title",          "duration",
+                            "action",          "energy",         "energy_drift", "error_estimate", "residual",
+                            "morse_index",     "nullity",        "minimizing",   "certificate",    "windows",
+                            "conjugate_times", "momentum_start", "momentum_end", "elements",       "degree",
+                            "unknowns",        "iterations",     "seconds",      "samples"}));
   EXPECT_EQ(json["status"], "converged");
   EXPECT_EQ(json["message"], "the tolerance 1e-09 is met");
   EXPECT_EQ(json["strategy"], "newton from the guess");
@@ -69,6 +69,9 @@ TEST(Json, WritesEveryFieldInTheOrderOfTheContract) {
   EXPECT_EQ(json["morse_index"], 0);
   EXPECT_EQ(json["nullity"], 1);
   EXPECT_EQ(json["minimizing"], true);
+  EXPECT_EQ(json["certificate"], "sampled");
+  EXPECT_EQ(json["windows"].dump(), "[[0.0,1.2],[1.2,2.5]]");
+  EXPECT_EQ(json["conjugate_times"].dump(), "[1.25]");
   EXPECT_EQ(json["momentum_start"].dump(), R"({"x":0.1,"y":0.9})");
   EXPECT_EQ(json["momentum_end"].dump(), R"({"x":-0.3,"y":0.7})");
   EXPECT_EQ(json["elements"], 2);
@@ -207,11 +210,24 @@ TEST(Json, AFailedResultKeepsWhatIsFinite) {
   EXPECT_FALSE(json.contains("samples"));
 }
 
+TEST(Json, WritesEmptyListsOnlyWhereTheyAreKnown) {
+  Result result = transfer_result();
+  result.solution.conjugate_times.clear();
+  result.solution.certificate = Certificate::global;
+  EXPECT_EQ(parsed(result)["conjugate_times"].dump(), "[]");
+  EXPECT_EQ(parsed(result)["certificate"], "global");
+  result.solution.windows.clear();
+  result.solution.certificate = Certificate::none;
+  EXPECT_TRUE(parsed(result)["windows"].is_null());
+  EXPECT_TRUE(parsed(result)["conjugate_times"].is_null());
+}
+
 TEST(Json, ASolutionNeverBegunHasNoNumbers) {
   const Json json = parsed(Result{.title = "", .names = {"x"}});
   EXPECT_EQ(json["status"], "not-converged");
-  for (const char* field : {"duration", "action", "energy", "energy_drift", "error_estimate", "residual",
-                            "morse_index", "nullity", "momentum_start", "momentum_end"}) {
+  for (const char* field :
+       {"duration", "action", "energy", "energy_drift", "error_estimate", "residual", "morse_index",
+        "nullity", "certificate", "windows", "conjugate_times", "momentum_start", "momentum_end"}) {
     EXPECT_TRUE(json.at(field).is_null()) << field;
   }
   EXPECT_EQ(json["elements"], 0);

@@ -21,9 +21,21 @@ TEST(Summary, OfAConvergedResult) {
             "error estimate  3.0e-10\n"
             "residual        2.0e-15\n"
             "index           0, nullity 1, minimising\n"
+            "windows         2, sampled; conjugate times 1.25\n"
             "mesh            2 elements of degree 8, 62 unknowns\n"
             "iterations      5\n"
             "time            read 100 µs, solve 40.0 µs, analyse 10.0 µs\n");
+}
+
+TEST(Summary, ListsTheFirstConjugateTimes) {
+  Result result = transfer_result();
+  result.solution.conjugate_times = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
+  EXPECT_NE(summary(result).find("; conjugate times 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, … (7 in all)\n"),
+            std::string::npos);
+  result.solution.conjugate_times.clear();
+  EXPECT_NE(summary(result).find("windows         2, sampled\n"), std::string::npos);
+  result.solution.certificate = Certificate::none;
+  EXPECT_EQ(summary(result).find("windows"), std::string::npos);
 }
 
 TEST(Summary, LeavesOutWhatThereIsNot) {

@@ -1,0 +1,210 @@
+#include "analysis/jacobi.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace extremal {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Cholesky's pivots against the diagonal: below, a conjugate time may be near and X near singular.
+constexpr double calm = 1e-3;
+/// Largest entry of W, in the units of a piece, for which it stands for the fields.
+constexpr double moderate = 1e3;
+/// Eigenvalues within this of zero at the end of a piece are zero there.
+constexpr double at_end = 1e-12;
+/// Of a conjugate time, as a fraction of its piece.
+constexpr double resolution = 1e-13;
+
+MatrixXd even(const MatrixXd& m) { return (m + m.transpose()) / 2; }
+
+/// Of momenta over coordinates, square roots: those in which the rows of A, B, D have entries of at most
+/// about
+/// 1. A diagonal may vanish; rows do not.
+VectorXd units(const Piece& piece) {
+  constexpr int sweeps = 3;
+  MatrixXd size =
+      piece.a.cwiseAbs() + piece.b.cwiseAbs() + piece.b.transpose().cwiseAbs() + piece.d.cwiseAbs();
+  VectorXd unit = VectorXd::Ones(size.rows());
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const VectorXd row = size.rowwise().maxCoeff().cwiseSqrt();
+    unit = unit.cwiseProduct(row);
+    size = row.cwiseInverse().asDiagonal() * size * row.cwiseInverse().asDiagonal();
+  }
+  return unit;
+}
+
+/// A zero of f between `low` and `high`, where f has the values given, of opposite signs: the method of Brent
+/// (Algorithms for Minimization without Derivatives, 4.2).
+template <class F>
+double zero(F f, double a, double fa, double b, double fb, double tolerance) {
+  double c = a, fc = fa, step = b - a, before = step;
+  for (;;) {
+    if (std::abs(fc) < std::abs(fb)) {
+      a = std::exchange(b, c), c = a;
+      fa = std::exchange(fb, fc), fc = fa;
+    }
+    const double middle = 0.5 * (c - b);
+    if (fb == 0 || std::abs(middle) <= tolerance) return b;
+    if (std::abs(before) < tolerance || std::abs(fa) <= std::abs(fb)) {
+      step = before = middle;
+    } else {
+      const double s = fb / fa, q = a == c ? 1 : fa / fc, r = a == c ? 0 : fb / fc;
+      double p = a == c ? 2 * middle * s : s * (2 * middle * q * (q - r) - (b - a) * (r - 1));
+      double d = a == c ? 1 - s : (q - 1) * (r - 1) * (s - 1);
+      p > 0 ? d = -d : p = -p;
+      const bool good = 2 * p < std::min(3 * middle * d - std::abs(tolerance * d), std::abs(before * d));
+      before = good ? std::exchange(step, p / d) : (step = middle);
+    }
+    a = b, fa = fb;
+    b += std::abs(step) > tolerance ? step : std::copysign(tolerance, middle);
+    fb = f(b);
+    if ((fb > 0) == (fc > 0)) {
+      c = a, fc = fa;
+      step = before = b - a;
+    }
+  }
+}
+
+VectorXd eigenvalues(const MatrixXd& symmetric) {
+  if (symmetric.size() == 0) return {};
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+}  // namespace
+
+/// The fields are those with x_a = I (x_b = I) where `tau` is nearer the end (start), and so far from zero.
+void JacobiFields::begin(SecondVariation& variation, int k, double tau) {
+  const Piece piece = variation.piece(k);
+  vanishing_ = 0;
+  normalised_ = tau < 0.5;
+  if (tau == 0) {
+    p_ = piece.d;
+    return;
+  }
+  variation.fields(k, tau, from_start_, from_end_);
+  if (normalised_) {
+    p_ = even(piece.d - piece.b * from_start_.partialPivLu().solve(from_end_));
+    return;
+  }
+  x_ = -from_end_.partialPivLu().solve(from_start_);
+  p_ = piece.b + piece.d * x_;
+}
+
+const std::vector<double>& JacobiFields::advance(SecondVariation& variation, int k, bool first_only) {
+  const Piece piece = variation.piece(k);
+  times_.clear();
+  if (normalised_ && step(piece)) return times_;
+  split(piece);
+  whole_ = form(variation, k, 1);
+  eigenvalues_ = eigenvalues(whole_);
+  const int inside = static_cast<int>((eigenvalues_.array() < -at_end).count());
+  const int reached = static_cast<int>((eigenvalues_.array() <= at_end).count());
+  find(variation, k, first_only ? std::min(inside, 1) : inside);
+  times_.insert(times_.end(), reached - inside, 1.0);
+  carry(piece);
+  vanishing_ = reached - inside;
+  if (vanishing_ > 0) normalised_ = false;
+  return times_;
+}
+
+/// W at the end is D − B (W + A)⁻¹ Bᵀ; false if W + A is not safely positive definite.
+bool JacobiFields::step(const Piece& piece) {
+  whole_ = p_ + piece.a;
+  cholesky_.compute(whole_);
+  if (cholesky_.info() != Eigen::Success) return false;
+  const auto pivots = cholesky_.matrixLLT().diagonal().array().square();
+  const auto scale = piece.a.diagonal().array().abs() + piece.b.diagonal().array().abs();
+  if (!(pivots >= calm * scale).all()) return false;
+  next_ = piece.b.transpose();
+  cholesky_.matrixL().solveInPlace(next_);
+  p_ = piece.d;
+  p_.noalias() -= next_.transpose() * next_;
+  return true;
+}
+
+/// An orthonormal basis of the span, X above P, with coordinates in `unit`.
+MatrixXd JacobiFields::orthonormal(const VectorXd& unit) const {
+  const auto n = unit.size();
+  MatrixXd both(2 * n, n);
+  both.topRows(n) = unit.asDiagonal() * (normalised_ ? MatrixXd::Identity(n, n) : x_);
+  both.bottomRows(n) = unit.cwiseInverse().asDiagonal() * p_;
+  both.colwise().normalize();
+  return Eigen::HouseholderQR<MatrixXd>(both).householderQ() * MatrixXd::Identity(2 * n, n);
+}
+
+double JacobiFields::distance(SecondVariation& variation, int k) {
+  constexpr double step = 0.01;
+  split(variation.piece(k));
+  const VectorXd last = eigenvalues(form(variation, k, 1)),
+                 before = eigenvalues(form(variation, k, 1 - step));
+  double nearest = INFINITY;
+  for (Eigen::Index i = 0; i < last.size(); ++i)
+    nearest = std::min(nearest, std::abs(step * last[i] / (before[i] - last[i])));
+  return nearest;
+}
+
+/// An orthonormal basis of the span, in units in which A has a diagonal of 1, and the singular values of its
+/// X. Where they are small that part of the form is divided by them, so that the form stays of order 1.
+void JacobiFields::split(const Piece& piece) {
+  const int n = static_cast<int>(piece.a.rows());
+  unit_ = units(piece);
+  const MatrixXd both = orthonormal(unit_);
+  const Eigen::BDCSVD<MatrixXd> svd(both.topRows(n), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  x_ = unit_.cwiseInverse().asDiagonal() * both.topRows(n);
+  p_ = unit_.asDiagonal() * both.bottomRows(n);
+  normalised_ = false;
+  const int r = n - vanishing_;
+  const VectorXd root = svd.singularValues().head(r).cwiseSqrt();
+  range_ = svd.matrixU().leftCols(r) * root.asDiagonal();
+  share_ = svd.matrixU().leftCols(r).transpose() * both.bottomRows(n) * svd.matrixV().leftCols(r);
+  // Σ UᵀPV is symmetric: of two mirrored entries, the one in the row of the smaller singular value is exact.
+  for (int i = 0; i < r; ++i)
+    for (int j = 0; j <= i; ++j)
+      share_(i, j) = share_(j, i) = share_(i, j) * (root[j] > 0 ? root[i] / root[j] : 0);
+}
+
+/// Xᵀ(P + A(tau) X) on the range of X.
+MatrixXd JacobiFields::form(SecondVariation& variation, int k, double tau) {
+  const Piece piece = variation.piece(k);
+  MatrixXd a = piece.a;
+  if (tau < 1) {
+    variation.fields(k, tau, from_start_, from_end_);
+    a -= piece.b.transpose() * from_end_.partialPivLu().solve(from_start_);
+  }
+  const VectorXd inverse = unit_.cwiseInverse();
+  return share_ + range_.transpose() * even(inverse.asDiagonal() * a * inverse.asDiagonal()) * range_;
+}
+
+void JacobiFields::find(SecondVariation& variation, int k, int count) {
+  if (count == 0) return;
+  // A(t) is about A·length/(t − start) at first.
+  const VectorXd first = eigenvalues(whole_ - share_);
+  for (int i = 0; i < count; ++i)
+    times_.push_back(crossing(variation, k, i, std::max(first[0], at_end), eigenvalues_[i]));
+  std::sort(times_.begin(), times_.end());
+}
+
+/// Where eigenvalue `index` times tau, positive at 0 and negative at 1, is zero.
+double JacobiFields::crossing(SecondVariation& variation, int k, int index, double first, double last) {
+  const auto value = [&](double tau) { return tau * eigenvalues(form(variation, k, tau))[index]; };
+  return zero(value, 0, first, 1, last, resolution);
+}
+
+/// The fields at the end: B⁻ᵀ(P + A X) = −X there.
+void JacobiFields::carry(const Piece& piece) {
+  const MatrixXd next = -piece.b.transpose().partialPivLu().solve(p_ + piece.a * x_);
+  p_ = (piece.b * x_ + piece.d * next).eval();
+  x_ = next;
+  const Eigen::PartialPivLU<MatrixXd> lu(x_.transpose());
+  const MatrixXd w = lu.solve(p_.transpose());
+  const VectorXd inverse = units(piece).cwiseInverse();
+  normalised_ = (inverse.asDiagonal() * w * inverse.asDiagonal()).cwiseAbs().maxCoeff() < moderate;
+  if (normalised_) p_ = even(w);
+}
+
+}  // namespace extremal

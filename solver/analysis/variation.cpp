@@ -1,0 +1,211 @@
+#include "analysis/variation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "action/rule.hpp"
+#include "machine/simd.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Of the polynomials. The higher, the fewer pieces; with many coordinates an element must stay small.
+constexpr int usual_degree = 12, middle_degree = 8, low_degree = 4, highest_degree = 20;
+constexpr int few_coordinates = 16;
+/// The two highest Legendre coefficients of a Jacobi field, relative to its largest. The error of the field
+/// is some two orders below, that of A, B, D its square.
+constexpr double allowed_tail = 1e-9;
+/// Pivots this small against the entry they came from: the ends of a piece are nearly conjugate.
+constexpr double least_pivot = 1e-3;
+/// Of an element, halved again and again.
+constexpr double shortest_part = 0x1p-12;
+
+/// Values q, n entries, at tau of the polynomial through `nodes`.
+void interpolate(const Barycentric& at, double tau, const double* nodes, int n, double* q) {
+  std::fill_n(q, n, 0.0);
+  double sum = 0;
+  for (std::size_t j = 0; j < at.nodes.size(); ++j) {
+    if (tau == at.nodes[j]) {
+      std::copy_n(nodes + j * n, n, q);
+      return;
+    }
+    const double weight = at.weights[j] / (tau - at.nodes[j]);
+    sum += weight;
+    for (int a = 0; a < n; ++a) q[a] += weight * nodes[j * n + a];
+  }
+  for (int a = 0; a < n; ++a) q[a] /= sum;
+}
+
+int degree_for(int n, int trajectory_degree) {
+  if (n <= few_coordinates) return std::max(usual_degree, std::min(trajectory_degree + 3, highest_degree));
+  for (int degree : {usual_degree, middle_degree})
+    if ((degree + 1) * n <= most_dense_unknowns) return degree;
+  return low_degree;
+}
+
+}  // namespace
+
+bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory) {
+  if (trajectory.coordinates > most_coordinates)
+    throw std::invalid_argument(fmt::format("second variation of {} coordinates; at most {} are possible",
+                                            trajectory.coordinates, most_coordinates));
+  const bool bound = lagrangian_ == lagrangian;
+  lagrangian_ = std::move(lagrangian);
+  trajectory_ = &trajectory;
+  const int degree = degree_for(trajectory.coordinates, trajectory.degree);
+  const bool made = scheme_ && scheme_->degree == degree;
+  if (!made) scheme_ = std::make_unique<SchemeTables>(lobatto(degree));
+  if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
+  pieces_.clear();
+  forms_.clear();
+  loaded_ = -1;
+  if (cut()) return true;
+  pieces_.clear();
+  return false;
+}
+
+Piece SecondVariation::piece(int k) const {
+  const int n = coordinates();
+  const double* forms = forms_.data() + static_cast<std::size_t>(k) * 3 * n * n;
+  return {
+      pieces_[k].start, pieces_[k].length, {forms, n, n}, {forms + n * n, n, n}, {forms + 2 * n * n, n, n}};
+}
+
+/// Evaluates parts, eight at a time, in the order of time, and halves those that are too long.
+bool SecondVariation::cut() {
+  waiting_.clear();  // the next one last
+  for (int k = trajectory_->elements(); k-- > 0;) waiting_.push_back({k, 0, 1});
+  while (!waiting_.empty()) {
+    const std::size_t count = std::min<std::size_t>(lanes, waiting_.size());
+    batch_.assign(waiting_.rbegin(), waiting_.rbegin() + count);
+    evaluate(batch_);
+    if (!action_.finite()) return false;
+    waiting_.resize(waiting_.size() - count);
+    if (resolved(static_cast<int>(count))) {
+      keep(batch_);
+      continue;
+    }
+    for (auto part = batch_.rbegin(); part != batch_.rend(); ++part) {
+      const double middle = (part->tau0 + part->tau1) / 2;
+      if (part->tau1 - part->tau0 < shortest_part) return false;
+      waiting_.push_back({part->element, middle, part->tau1});
+      waiting_.push_back({part->element, part->tau0, middle});
+    }
+  }
+  return true;
+}
+
+void SecondVariation::evaluate(std::span<const Part> parts) {
+  const int n = coordinates(), s = trajectory_->degree, count = static_cast<int>(parts.size());
+  const std::vector<double>& times = trajectory_->times;
+  const auto time = [&](int element, double tau) {
+    return times[element] + tau * (times[element + 1] - times[element]);
+  };
+  mesh_.clear();
+  for (const Part& part : parts) mesh_.push_back(time(part.element, part.tau0));
+  mesh_.push_back(time(parts.back().element, parts.back().tau1));
+  path_.reset(tables_, mesh_, 1);
+  values_.resize(static_cast<std::size_t>(scheme_->functions) * n);
+  for (int k = 0; k < count; ++k) {
+    const Part& part = parts[k];
+    const double* nodes = trajectory_->nodes.data() + static_cast<std::size_t>(part.element) * (s + 1) * n;
+    for (int j = 0; j < scheme_->functions; ++j) {
+      const double tau = part.tau0 + scheme_->lobatto[j] * (part.tau1 - part.tau0);
+      interpolate(lobatto_barycentric(s), tau, nodes, n, values_.data() + j * n);
+    }
+    path_.set_element(k, values_.data());
+  }
+  path_.load_ends();
+  action_.reset(*lagrangian_, tables_, count, false);
+  action_.evaluate(path_);
+}
+
+/// Whether pieces are short enough, tried with one Jacobi field that has a share of all.
+bool SecondVariation::resolved(int count) {
+  if (action_.nodes.negative > 0 || !(action_.nodes.pivot_ratio > least_pivot)) return false;
+  const int n = coordinates(), functions = scheme_->functions;
+  steps_.resize(static_cast<std::size_t>(count + 1) * n);
+  for (std::size_t i = 0; i < steps_.size(); ++i) steps_[i] = std::cos(1 + 2.4 * i);
+  action_.expand_step(steps_, 0, inner_);
+  std::fill(steps_.begin(), steps_.end(), 0.0);
+  action_.expand_step(steps_, 0, rest_);
+  for (int lane = 0; lane < count; ++lane)
+    for (int a = 0; a < n; ++a) {
+      double largest = 0, tail = 0;
+      for (int k = 0; k < functions; ++k) {
+        double coefficient = 0;
+        for (int j = 0; j < functions; ++j) {
+          const std::size_t at = static_cast<std::size_t>(j * n + a) * lanes + lane;
+          coefficient += scheme_->legendre[k * functions + j] * (inner_[at] - rest_[at]);
+        }
+        largest = std::max(largest, std::abs(coefficient));
+        if (k >= functions - 2) tail = std::max(tail, std::abs(coefficient));
+      }
+      if (!(tail <= allowed_tail * largest)) return false;
+    }
+  return true;
+}
+
+void SecondVariation::keep(std::span<const Part> parts) {
+  const int n = coordinates(), first = count();
+  for (int k = 0; k < static_cast<int>(parts.size()); ++k) {
+    pieces_.push_back({parts[k], mesh_[k], mesh_[k + 1] - mesh_[k], first});
+    const std::size_t size = static_cast<std::size_t>(n) * n, at = forms_.size();
+    forms_.resize(at + 3 * size);
+    double *const a = forms_.data() + at, *const b = a + size, *const d = b + size;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        a[j * n + i] = action_.condensed(k, std::max(i, j), std::min(i, j));
+        b[j * n + i] = action_.condensed(k, n + i, j);
+        d[j * n + i] = action_.condensed(k, n + std::max(i, j), n + std::min(i, j));
+      }
+  }
+}
+
+/// Makes the inner fields of piece k, and of those that were evaluated with it, ready.
+void SecondVariation::load(int k) {
+  const int begin = pieces_[k].first, n = coordinates();
+  if (loaded_ == begin) return;
+  batch_.clear();
+  for (int i = begin; i < this->count() && pieces_[i].first == begin; ++i) batch_.push_back(pieces_[i].part);
+  const int count = static_cast<int>(batch_.size());
+  evaluate(batch_);
+  const int inner = tables_.inner();
+  unfolded_.assign(count, Eigen::MatrixXd(inner, 2 * n));
+  steps_.assign(static_cast<std::size_t>(count + 1) * n, 0);
+  action_.expand_step(steps_, 0, rest_);
+  // The start of one piece is the end of the one before: every second node at a time.
+  for (int parity = 0; parity < 2; ++parity)
+    for (int a = 0; a < n; ++a) {
+      for (int node = parity; node <= count; node += 2) steps_[node * n + a] = 1;
+      action_.expand_step(steps_, 0, inner_);
+      for (int node = parity; node <= count; node += 2) steps_[node * n + a] = 0;
+      for (int lane = 0; lane < count; ++lane) {
+        const int column = a + (lane % 2 == parity ? 0 : n);
+        for (int u = 0; u < inner; ++u) {
+          const std::size_t at = static_cast<std::size_t>(u) * lanes + lane;
+          unfolded_[lane](u, column) = inner_[at] - rest_[at];
+        }
+      }
+    }
+  loaded_ = begin;
+}
+
+void SecondVariation::fields(int k, double tau, Eigen::MatrixXd& from_start, Eigen::MatrixXd& from_end) {
+  load(k);
+  const int n = coordinates();
+  const Basis basis = lobatto_basis(scheme_->degree, {&tau, 1});
+  from_start = (1 - tau) * Eigen::MatrixXd::Identity(n, n);
+  from_end = tau * Eigen::MatrixXd::Identity(n, n);
+  const Eigen::MatrixXd& unfolded = unfolded_[k - loaded_];
+  for (int j = 1; j < scheme_->degree; ++j) {
+    from_start += basis.value[j] * unfolded.block((j - 1) * n, 0, n, n);
+    from_end += basis.value[j] * unfolded.block((j - 1) * n, n, n, n);
+  }
+}
+
+}  // namespace extremal

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <vector>
+
+#include "action/discrete_action.hpp"
+#include "solution/solution.hpp"
+
+/// \file The second variation of the action along a trajectory, piece by piece.
+
+namespace extremal {
+
+/// Quadratic form of Jacobi fields η on a piece, by their values x_a, x_b at its ends:
+///   δ²S = ∫ η'ᵀL_vv η' + 2 η'ᵀL_vq η + ηᵀL_qq η dt = x_aᵀA x_a + 2 x_bᵀB x_a + x_bᵀD x_b,
+/// and so their momenta L_vv η' + L_vq η are −(A x_a + Bᵀx_b) at the start and B x_a + D x_b at the end.
+struct Piece {
+  double start = 0, length = 0;
+  Eigen::Map<const Eigen::MatrixXd> a, b, d;  ///< n × n
+};
+
+/// Pieces so short that the fixed-end form of each is positive definite and that polynomials resolve its
+/// Jacobi fields: the elements of the trajectory, halved as often as that takes. Keeps memory.
+class SecondVariation {
+ public:
+  /// Beyond this many coordinates the forms are not made.
+  static constexpr int most_coordinates = most_dense_unknowns / 5;
+
+  /// The trajectory must outlive it. False where no piece is short enough: L_vv is not positive definite
+  /// somewhere (Legendre's condition), or the second derivatives of L are not finite; there are no pieces
+  /// then. Throws std::invalid_argument for more than most_coordinates.
+  bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory);
+
+  int coordinates() const { return trajectory_->coordinates; }
+  int count() const { return static_cast<int>(pieces_.size()); }
+  Piece piece(int k) const;
+  double end(int k) const { return pieces_[k].start + pieces_[k].length; }
+
+  /// The Jacobi fields of piece k at start + tau·length, n × n: those with x_a = I, x_b = 0 and with x_a = 0,
+  /// x_b = I.
+  void fields(int k, double tau, Eigen::MatrixXd& from_start, Eigen::MatrixXd& from_end);
+
+ private:
+  /// A part of an element, from tau0 to tau1.
+  struct Part {
+    int element;
+    double tau0, tau1;
+  };
+  struct Kept {
+    Part part;
+    double start, length;
+    int first;  ///< the first piece of those that were evaluated with it
+  };
+  void choose_scheme();
+  bool cut();
+  void evaluate(std::span<const Part> parts);
+  bool resolved(int count);
+  void keep(std::span<const Part> parts);
+  void load(int k);
+
+  std::shared_ptr<const Lagrangian> lagrangian_;
+  const Trajectory* trajectory_ = nullptr;
+  std::unique_ptr<SchemeTables> scheme_;
+  ElementTables tables_;
+
+  std::vector<Kept> pieces_;
+  std::vector<double> forms_;  ///< A, B, D of each piece
+
+  // What was evaluated last.
+  DiscreteAction action_;
+  Path path_;
+  std::vector<Part> waiting_, batch_;
+  std::vector<double> mesh_, values_, steps_;
+  AlignedDoubles inner_, rest_;
+  int loaded_ = -1;                        ///< first piece of those whose fields are ready
+  std::vector<Eigen::MatrixXd> unfolded_;  ///< of each of them: inner unknowns, (s − 1) n × 2n, by x_a, x_b
+};
+
+}  // namespace extremal

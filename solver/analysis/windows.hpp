@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "analysis/jacobi.hpp"
+
+/// \file Where a trajectory is minimising: the times conjugate to its start, and windows.
+
+namespace extremal {
+
+/// Both follow from the second variation with fixed ends along the trajectory as it is returned.
+struct Minimality {
+  std::vector<double> conjugate_times;         ///< in (0, T), ascending, each as often as its multiplicity
+  std::vector<std::array<double, 2>> windows;  ///< from and to; abutting, from 0 to T
+  /// From T to the nearest conjugate time, about; infinite where none is near.
+  double distance = std::numeric_limits<double>::infinity();
+  /// Whether no window needed to be shorter than `longest` (see below).
+  bool within_longest = true;
+};
+
+/// Windows are the longest there are from the left, less one part in a million: in each the second variation
+/// is positive definite, and in the union of two neighbours it is not. `longest`: windows are also shorter
+/// than this, and the union of two neighbours is not.
+Minimality minimality(SecondVariation& variation, double longest = std::numeric_limits<double>::infinity());
+
+}  // namespace extremal

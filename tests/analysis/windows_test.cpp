@@ -1,0 +1,119 @@
+#include <numbers>
+
+#include "analysis/independent.hpp"
+
+/// \file Windows cover the trajectory, each is minimising, no two neighbours are; and what is claimed of
+/// them.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+TEST(Windows, AreMinimisingAndNoTwoNeighboursAre) {
+  const std::vector<Problem> problems = {
+      fixed_ends(systems::pendulum(), {0.3}, {1.5}, 1),
+      fixed_ends(systems::pendulum(), {0.3}, {1.5}, 20),
+      fixed_ends(systems::magnetic(), {0.3, -0.2}, {0.2, 0.5}, 9),
+      guessed(fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 2),
+              [](double tau) {
+                return Values{0.5 - 0.7 * tau, 0.5 - 0.8 * tau};
+              }),
+      with_ends(systems::oscillator(1.3), 11, [](auto& b) { b.fix(0, false, 0.7); }),
+  };
+  for (const Problem& problem : problems) {
+    const Solution s = solve(problem, within(1e-10));
+    EXPECT_EQ(s.certificate, Certificate::sampled);
+    expect_windows(s, problem.lagrangian);
+  }
+}
+
+/// Of a driven system the index is not that of the same ends later; what remains is that they abut.
+TEST(Windows, OfADrivenSystem) {
+  const Problem problem = fixed_ends(systems::driven(), {0}, {1}, 9);
+  expect_windows(solve(problem, within(1e-10)), problem.lagrangian, false);
+}
+
+TEST(Windows, OfTheOscillatorAreHalfPeriods) {
+  for (double omega : {0.4, 1.0, 2.7})
+    for (double T : {1.0, 4.0, 33.0}) {
+      const Solution s = solve(fixed_ends(systems::oscillator(omega), {0}, {1}, T), within(1e-9));
+      ASSERT_EQ(s.windows.size(), std::ceil(T * omega / pi));
+      for (std::size_t k = 0; k + 1 < s.windows.size(); ++k) {
+        EXPECT_LT(s.windows[k][1] - s.windows[k][0], pi / omega);
+        EXPECT_GT(s.windows[k + 1][1] - s.windows[k][0], pi / omega);
+      }
+    }
+}
+
+/// The second variation is positive definite up to the conjugate time, exclusively.
+TEST(Windows, EndBeforeTheConjugateTime) {
+  for (double T : {pi * (1 - 1e-5), pi * (1 + 1e-5)}) {
+    const Solution s = solve(fixed_ends(systems::oscillator(1), {0}, {1}, T), within(1e-6));
+    EXPECT_EQ(s.windows.size(), T < pi ? 1 : 2);
+    EXPECT_EQ(s.minimizing, T < pi);
+  }
+}
+
+/// Masses of both signs: however short, no part of a trajectory is a minimum.
+TEST(Windows, AreNoneWhereTheKineticEnergyIsIndefinite) {
+  const auto lagrangian = trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] - v[1] * v[1]) / 2 - q[0] * q[0] / 2 + q[0] * q[1];
+  });
+  const Solution s = solve(fixed_ends(lagrangian, {0, 0}, {1, 0.5}, 1), within(1e-9));
+  EXPECT_TRUE(s.windows.empty());
+  EXPECT_FALSE(s.minimizing);
+  EXPECT_EQ(s.certificate, Certificate::none);
+  EXPECT_NE(s.message.find("not positive definite"), std::string::npos);
+}
+
+Problem bounded(Problem problem, double curvature) {
+  problem.curvature = curvature;
+  return problem;
+}
+
+/// The pendulum has V'' = cos q ≤ 1: windows shorter than π are global minima, also where the local bound is
+/// weaker.
+TEST(Certificate, IsGlobalWhereCurvatureBoundsThePotential) {
+  const Problem problem = fixed_ends(systems::pendulum(), {0.3}, {2.5}, 20);
+  const Solution s = solve(bounded(problem, 1), within(1e-9));
+  EXPECT_EQ(s.certificate, Certificate::global);
+  EXPECT_EQ(s.windows.size(), 7);
+  for (std::size_t k = 0; k < s.windows.size(); ++k) {
+    EXPECT_LT(s.windows[k][1] - s.windows[k][0], pi);
+    if (k > 0) EXPECT_GT(s.windows[k][1] - s.windows[k - 1][0], pi);
+  }
+  EXPECT_LT(solve(problem, within(1e-9)).windows.size(), 7);
+  const Solution short_one =
+      solve(bounded(fixed_ends(systems::pendulum(), {0.3}, {1.5}, 2), 1), within(1e-9));
+  EXPECT_EQ(short_one.certificate, Certificate::global);
+  EXPECT_EQ(short_one.windows, (std::vector<std::array<double, 2>>{{0, 2}}));
+}
+
+/// V'' ≤ 0: one window, however long.
+TEST(Certificate, OfAConcavePotentialIsOneWindow) {
+  const auto lagrangian = trace(1, [](auto q, auto v, auto) { return (v[0] * v[0] + q[0] * q[0]) / 2; });
+  const Solution s = solve(bounded(fixed_ends(lagrangian, {0}, {1}, 30), 0), within(1e-9));
+  EXPECT_EQ(s.certificate, Certificate::global);
+  EXPECT_EQ(s.windows.size(), 1);
+}
+
+/// The bound is one of M⁻¹V'': it says nothing where forces depend on velocities or the mass on the place.
+TEST(Certificate, IsSampledWhereTheBoundDoesNotApply) {
+  const Solution magnetic =
+      solve(bounded(fixed_ends(systems::magnetic(), {0.3, -0.2}, {0.9, 0.5}, 1.5), 4), within(1e-9));
+  EXPECT_EQ(magnetic.certificate, Certificate::sampled);
+  const Problem swing = fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8);
+  EXPECT_EQ(solve(bounded(swing, 100), within(1e-9)).certificate, Certificate::sampled);
+}
+
+/// A bound below the curvature that the trajectory itself has.
+TEST(Certificate, IsSampledWhereTheBoundIsWrong) {
+  const Problem problem = fixed_ends(systems::oscillator(2), {0}, {1}, 5);
+  const Solution s = solve(bounded(problem, 1), within(1e-9));
+  EXPECT_EQ(s.certificate, Certificate::sampled);
+  EXPECT_EQ(s.windows, solve(problem, within(1e-9)).windows);
+}
+
+}  // namespace
+}  // namespace extremal::laws
