@@ -13,10 +13,6 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-/// Eigenvalues of A this small, relative, are left to the border. Larger ones cost the elimination half of
-/// the digits at most, and two refinements bring those back.
-constexpr double deflated_below = 1e-8;
-
 /// Parts this much larger than the solution they add up to cost digits that refinement brings back.
 constexpr double cancellation = 4;
 
@@ -86,11 +82,11 @@ void Border::form_schur(const Chain& a) {
   schur_.array().rowwise() /= unit_.transpose().array();
 }
 
-bool Border::factor(Chain& a) {
+bool Border::factor(Chain& a, double deflated) {
   finite_ = regular_ = false;
   if (a.order() != order_)
     throw std::invalid_argument(fmt::format("border: {} rows around a chain of {}", order_, a.order()));
-  if (!a.factor(deflated_below) && a.deflated().empty()) return false;
+  if (!a.factor(deflated) && a.deflated().empty()) return false;
   chain_inertia_ = a.inertia();
   chain_inertia_.positive += chain_inertia_.zero;
   chain_inertia_.zero = 0;

@@ -32,8 +32,12 @@ class Border {
   double* row_block();                          ///< Rᵀ, order × m, row-major; throws if symmetric
   double* corner() { return d_.data(); }        ///< D, m × m, row-major
 
+  /// Eigenvalues of A this small, relative, are left to the border unless more are asked for. Larger ones
+  /// cost the elimination half of the digits at most, and two refinements bring those back.
+  static constexpr double deflated_below = 1e-8;
+
   /// Factors the chain and S. False if the system is singular to working precision or not finite.
-  bool factor(Chain& a);
+  bool factor(Chain& a, double deflated = deflated_below);
 
   /// X := K⁻¹ X for all order() rows, row-major with `columns` columns, with the chain that was factored.
   /// Refines on the whole system where the parts are much larger than the solution.

@@ -7,11 +7,10 @@
 
 namespace extremal {
 
-/// Sets windows, conjugate times and certificate of a converged solution. Where its ends are fixed and nearly
-/// conjugate, adds to error_estimate the roundoff that this amplifies; where they are conjugate within the
-/// error, or the roundoff exceeds the tolerance, the solution has not converged: status and message then say
-/// so. `memory` is kept between solves.
-void read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
-                     Solution& solution);
+/// Sets windows, conjugate times and certificate of a converged solution. Returns how far T is from a time
+/// conjugate to 0, about; infinite where none is near, or where it is not known. `memory` is kept between
+/// solves.
+double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
+                       Solution& solution);
 
 }  // namespace extremal

@@ -8,9 +8,14 @@ namespace extremal {
 
 namespace {
 
-/// Pivots of the border this much smaller than the largest are null directions: families of extremals, whose
+/// What of the border is this small, relative, are null directions: families of extremals, whose
 /// eigenvalue is zero but for the error of the elements.
 constexpr double singular_border = 1e-8;
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Whether the equation that closes the duration is not ∂S/∂T + energy = 0.
+bool has_own_row(const ClosingEquation* closing) { return closing && !closing->row.empty(); }
 
 /// Without the temporary of PartialPivLU::solve.
 void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Eigen::VectorXd& x,
@@ -57,7 +62,7 @@ void NodeSystem::add_end(double* column, int stride, int e, double factor, const
 
 void NodeSystem::assemble_border(const NodeEquations& nodes) {
   std::fill(columns_.begin(), columns_.end(), 0.0);
-  schur_.setZero(border_, border_);
+  corner_.setZero(border_, border_);
   for (const Triplet& z : ends_->z) add_end(columns_.data() + z.column, border_, z.row, z.value, nodes);
   for (const Triplet& z : ends_->z)
     for (const Triplet& w : ends_->z) {
@@ -66,32 +71,39 @@ void NodeSystem::assemble_border(const NodeEquations& nodes) {
       if (z.row >= n_ && w.row >= n_) value = nodes.last[(z.row - n_) * n_ + w.row - n_];
       if (elements_ == 1 && z.row >= n_ && w.row < n_) value = nodes.first_lower[(z.row - n_) * n_ + w.row];
       if (elements_ == 1 && z.row < n_ && w.row >= n_) value = nodes.first_lower[(w.row - n_) * n_ + z.row];
-      schur_(z.column, w.column) += z.value * w.value * value;
+      corner_(z.column, w.column) += z.value * w.value * value;
     }
   if (!free_duration_) return;
   const std::size_t inner = right_.size(), last = static_cast<std::size_t>(elements_) * n_;
   for (std::size_t k = 0; k < inner; ++k) columns_[k * border_ + free_] = nodes.border[n_ + k];
   for (const Triplet& z : ends_->z) {
     const double t = z.value * (z.row < n_ ? nodes.border[z.row] : nodes.border[last + z.row - n_]);
-    schur_(z.column, free_) += t;
-    schur_(free_, z.column) += t;
+    corner_(z.column, free_) += t;
+    corner_(free_, z.column) += t;
   }
-  schur_(free_, free_) = nodes.corner;
+  corner_(free_, free_) = nodes.corner;
 }
 
 bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
   chain_ = &nodes.chain;
-  if (elements_ > 1 && !nodes.chain.factor()) return false;
+  // Alone, an almost singular chain is the whole system; with a border it is better left to that.
+  const bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? Border::deflated_below : 0);
+  exact_ = !regular && border_ > 0 && !chain_->deflated().empty();
+  if (!regular && !exact_) return false;
   if (border_ == 0) return true;
   assemble_border(nodes);
+  return exact_ ? factor_exactly(closing) : factor_schur(closing);
+}
+
+/// The Schur complement of a regular chain.
+bool NodeSystem::factor_schur(const ClosingEquation* closing) {
   solved_ = columns_;
-  if (elements_ > 1) nodes.chain.solve(solved_.data(), border_);
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  if (elements_ > 1) chain_->solve(solved_.data(), border_);
   const Eigen::Map<const RowMatrix> c(columns_.data(), right_.size(), border_),
       x(solved_.data(), right_.size(), border_);
+  schur_ = corner_;
   schur_.noalias() -= c.transpose().lazyProduct(x);
-  symmetric_ = schur_.topLeftCorner(free_, free_);
-  if (closing && !closing->row.empty()) {
+  if (has_own_row(closing)) {
     schur_.row(free_).setZero();
     for (const Triplet& z : ends_->z) schur_(free_, z.column) += closing->row[z.row] * z.value;
   }
@@ -108,46 +120,94 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
   return least_norm_->rank() > 0;
 }
 
+/// The ends are conjugate as if both were fixed, but are not both fixed: the system may be regular all the
+/// same.
+bool NodeSystem::factor_exactly(const ClosingEquation* closing) {
+  const bool own_row = has_own_row(closing);
+  const int inner = static_cast<int>(right_.size());
+  system_.resize(inner, border_, !own_row);
+  std::copy(columns_.begin(), columns_.end(), system_.column_block());
+  Eigen::Map<RowMatrix> corner(system_.corner(), border_, border_);
+  corner = corner_;
+  if (own_row) {
+    corner.row(free_).setZero();
+    for (const Triplet& z : ends_->z) corner(free_, z.column) += closing->row[z.row] * z.value;
+    Eigen::Map<RowMatrix> rows(system_.row_block(), inner, border_);
+    rows = Eigen::Map<const RowMatrix>(columns_.data(), inner, border_);
+    rows.col(free_).setZero();
+  }
+  regular_ = system_.factor(*chain_);
+  const Eigen::VectorXd sizes = system_.singular_values();
+  if (sizes.size() == 0) return false;
+  regular_ = regular_ && sizes.minCoeff() > singular_border;
+  return true;
+}
+
+/// Minus the derivatives by what is free of the ends, and what the closing equation lacks.
+void NodeSystem::border_right(const NodeEquations& nodes, const ClosingEquation* closing) {
+  const std::size_t last = static_cast<std::size_t>(elements_) * n_;
+  small_.setZero(border_);
+  for (const Triplet& z : ends_->z)
+    small_[z.column] -= z.value * (z.row < n_ ? nodes.gradient[z.row] : nodes.gradient[last + z.row - n_]);
+  if (free_duration_)
+    small_[free_] = has_own_row(closing) ? -closing->value : -(nodes.border_gradient + closing->value);
+}
+
 void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
                        double& duration_step) {
   const std::size_t inner = right_.size(), last = static_cast<std::size_t>(elements_) * n_;
   for (std::size_t k = 0; k < inner; ++k) right_[k] = -nodes.gradient[n_ + k];
-  if (elements_ > 1) chain_->solve(right_.data(), 1);
+  border_right(nodes, closing);
+  if (exact_)
+    solve_exactly();
+  else
+    solve_schur(has_own_row(closing));
   step.assign(last + n_, 0);
-  duration_step = 0;
   std::copy(right_.begin(), right_.end(), step.begin() + n_);
-  if (border_ == 0) return;
-
-  const bool own_row = closing && !closing->row.empty();
-  Eigen::VectorXd& r = small_;
-  r.setZero(border_);
   for (const Triplet& z : ends_->z)
-    r[z.column] -= z.value * (z.row < n_ ? nodes.gradient[z.row] : nodes.gradient[last + z.row - n_]);
-  if (free_duration_) r[free_] = own_row ? -closing->value : -(nodes.border_gradient + closing->value);
+    step[z.row < n_ ? z.row : last + z.row - n_] += z.value * small_[z.column];
+  duration_step = free_duration_ ? small_[free_] : 0;
+}
+
+/// right_ and small_ become the solution.
+void NodeSystem::solve_schur(bool own_row) {
+  const std::size_t inner = right_.size();
+  if (elements_ > 1) chain_->solve(right_.data(), 1);
+  if (border_ == 0) return;
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)
-      if (!(own_row && c == free_)) r[c] -= columns_[k * border_ + c] * right_[k];
+      if (!(own_row && c == free_)) small_[c] -= columns_[k * border_ + c] * right_[k];
   if (least_norm_)
-    r = least_norm_->solve(r).eval();
+    small_ = least_norm_->solve(small_).eval();
   else
-    solve_in_place(lu_, r, permuted_);
-  const Eigen::VectorXd& y = r;
+    solve_in_place(lu_, small_, permuted_);
   for (std::size_t k = 0; k < inner; ++k)
-    for (int c = 0; c < border_; ++c) step[n_ + k] -= solved_[k * border_ + c] * y[c];
-  for (const Triplet& z : ends_->z) step[z.row < n_ ? z.row : last + z.row - n_] += z.value * y[z.column];
-  duration_step = free_duration_ ? y[free_] : 0;
+    for (int c = 0; c < border_; ++c) right_[k] -= solved_[k * border_ + c] * small_[c];
+}
+
+void NodeSystem::solve_exactly() {
+  Eigen::VectorXd all(right_.size() + border_);
+  all << Eigen::Map<const Eigen::VectorXd>(right_.data(), right_.size()), small_;
+  if (regular_)
+    system_.solve(*chain_, all.data(), 1);
+  else
+    system_.solve_least_norm(*chain_, all.data(), 1, singular_border);
+  std::copy_n(all.begin(), right_.size(), right_.begin());
+  small_ = all.tail(border_);
 }
 
 Inertia NodeSystem::inertia(double threshold) const {
-  Inertia result = elements_ > 1 ? chain_->inertia() : Inertia{};
-  if (free_ == 0) return result;
-  const Eigen::MatrixXd even = (symmetric_ + symmetric_.transpose()) / 2;
-  const Eigen::VectorXd eigenvalues =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(even, Eigen::EigenvaluesOnly).eigenvalues();
-  const double scale = eigenvalues.cwiseAbs().maxCoeff();
-  for (double value : eigenvalues)
-    ++(std::abs(value) <= threshold * scale ? result.zero : value < 0 ? result.negative : result.positive);
-  return result;
+  if (elements_ < 2 && free_ == 0) return {};
+  if (free_ == 0) return chain_->inertia();
+  Chain chain = *chain_;
+  Border ends;
+  ends.resize(static_cast<int>(right_.size()), free_);
+  using Eigen::Map;
+  Map<RowMatrix>(ends.column_block(), right_.size(), free_) =
+      Map<const RowMatrix>(columns_.data(), right_.size(), border_).leftCols(free_);
+  Map<RowMatrix>(ends.corner(), free_, free_) = corner_.topLeftCorner(free_, free_);
+  ends.factor(chain, std::max(threshold, Border::deflated_below));
+  return ends.inertia(threshold);
 }
 
 }  // namespace extremal

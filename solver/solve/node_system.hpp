@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "action/discrete_action.hpp"
+#include "linear/border.hpp"
 #include "problem/problem.hpp"
 #include "solve/model.hpp"
 
@@ -26,23 +27,32 @@ class NodeSystem {
              double& duration_step);
 
   /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
-  /// are counted by NodeEquations. Eigenvalues of the border within `threshold` (relative) are null.
+  /// are counted by NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
+  /// Schur complement that remains, are null.
   Inertia inertia(double threshold) const;
 
  private:
+  bool factor_schur(const ClosingEquation* closing);
+  bool factor_exactly(const ClosingEquation* closing);
+  void border_right(const NodeEquations& nodes, const ClosingEquation* closing);
+  void solve_schur(bool own_row);
+  void solve_exactly();
   void assemble_border(const NodeEquations& nodes);
   void add_end(double* column, int stride, int e, double factor, const NodeEquations& nodes) const;
 
   const EndMap* ends_ = nullptr;
   int n_ = 0, elements_ = 0, free_ = 0, border_ = 0;
   bool free_duration_ = false;
-  const Chain* chain_ = nullptr;
+  Chain* chain_ = nullptr;
   std::vector<double> columns_, solved_, right_;
-  Eigen::MatrixXd schur_, symmetric_;
+  Eigen::MatrixXd corner_, schur_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>
       least_norm_;  ///< where LU is singular
   Eigen::VectorXd small_, permuted_;
+
+  bool exact_ = false, regular_ = false;  ///< the chain is singular, and what system_ is for; system_ is not
+  Border system_;
 };
 
 }  // namespace extremal

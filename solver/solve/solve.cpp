@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solution/observe.hpp"
+#include "solve/conjugate_ends.hpp"
 #include "solve/minimality.hpp"
 #include "solve/pinned.hpp"
 #include "solve/search.hpp"
@@ -20,8 +21,12 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Eigenvalues of the border within this of zero, relative, count in the nullity.
-constexpr double null_threshold = 1e-7;
+/// Eigenvalues within the error of the discretisation of zero, relative, count in the nullity; it is taken to
+/// be that of the trajectory, and within these bounds.
+constexpr double least_null = 1e-8, largest_null = 1e-3;
+double null_threshold(double error, double size) {
+  return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
+}
 
 Trajectory trajectory_of(const Path& path) {
   Trajectory t;
@@ -57,7 +62,8 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   for (double g : free) residual = std::max(residual, std::abs(g));
   solution.residual = scale > 0 ? residual / scale : residual;
   if (!factored) return;
-  const Inertia inertia = newton.model().inertia(null_threshold);
+  const double size = scales(w.path, *outcome.tables).q;
+  const Inertia inertia = newton.model().inertia(null_threshold(outcome.error, size));
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
@@ -141,17 +147,21 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     w.final_tables = outcome.tables;
     if (closed(problem, options, w)) {
       observe_energy(*problem.lagrangian, solution);
-      read_minimality(problem, options, memory_->variation, solution);
+      const double distance = read_minimality(problem, options, memory_->variation, solution);
+      judge_conjugate_ends(problem, options, distance, w, solution);
     } else {
       solution.status = Status::no_solution_near;
-      solution.message =
-          "the duration ran away: no extremal near the guess meets the condition that closes "
-          "it";
+      solution.message = "the duration ran away: no extremal near the guess meets what closes it";
     }
     if (!solution.converged()) solution = without_path(std::move(solution));
+  } else if (const std::string reason = irregularity(problem); !reason.empty()) {
+    solution.message = reason;
+  } else if (failed_at_conjugate_ends(problem, trajectory_of(w.path), memory_->variation)) {
+    solution.status = Status::conjugate_ends;
+    solution.message =
+        "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
+        outcome.message + ")";
   }
-  if (!solution.converged())
-    if (const std::string reason = irregularity(problem); !reason.empty()) solution.message = reason;
   solution.seconds_analyse = seconds_since(analysis);
   return solution;
 }

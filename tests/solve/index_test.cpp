@@ -1,6 +1,7 @@
 #include <numbers>
 
 #include "solve/laws.hpp"
+#include "solve/scenes.hpp"
 
 /// \file The Morse index of the oscillator: ⌈Tω/π⌉ − 1 with fixed ends, ⌊Tω/π⌋ + 1 with free ones.
 
@@ -78,6 +79,61 @@ TEST(MorseIndex, OfPeriodicEnds) {
     problem.boundary.add(row, 1, 1);
     const Solution s = solve(make_problem(problem), within(1e-9));
     EXPECT_EQ(s.morse_index, 2 * std::floor(phase) + 1) << T;
+  }
+}
+
+/// One coordinate closed, one free at both ends, one fixed at the start: each counts as it would alone. Fixed
+/// at one end: ⌊Tω/π + 1/2⌋.
+TEST(MorseIndex, OfMixedEnds) {
+  const Values omega{0.7, 1.3, 2.1};
+  for (double T : durations) {
+    const double closed = T * omega[0] / (2 * pi), free = T * omega[1] / pi, fixed = T * omega[2] / pi + 0.5;
+    if (degenerate(closed) || degenerate(free) || degenerate(fixed)) continue;
+    const Solution s = solve(with_ends(oscillators(omega), T,
+                                       [](auto& b) {
+                                         const int row = b.add_row(0);
+                                         b.add(row, 0, -1);
+                                         b.add(row, 3, 1);
+                                         b.fix(2, false, 1);
+                                       }),
+                             within(1e-9));
+    EXPECT_EQ(s.morse_index, 2 * std::floor(closed) + 1 + std::floor(free) + 1 + std::floor(fixed)) << T;
+    EXPECT_EQ(s.nullity, 0);
+  }
+}
+
+/// In the plane, with T fixed: time shift, rotation, and the family of ellipses with the same period.
+TEST(Nullity, OfPeriodicKeplerOrbitsIsThree) {
+  for (double e : {0.0, 0.3, 0.6})
+    for (double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
+      if (e == 0.6 && tolerance == 1e-3) continue;  // no orbit is found on so coarse a mesh
+      Problem problem = with_ends(systems::kepler(), 2 * pi, [](auto& b) {
+        for (int a : {0, 1}) {
+          const int row = b.add_row(0);
+          b.add(row, a, -1);
+          b.add(row, 2 + a, 1);
+        }
+      });
+      problem.periodic = true;
+      problem = guessed(problem, [=](double tau) {
+        const double E = 2 * pi * tau;
+        return Values{std::cos(E) - e, std::sqrt(1 - e * e) * std::sin(E)};
+      });
+      const Solution s = solve(problem, within(tolerance));
+      EXPECT_EQ(s.nullity, 3) << e << ' ' << tolerance;
+      EXPECT_EQ(s.morse_index, 0) << e << ' ' << tolerance;
+      EXPECT_TRUE(s.minimizing);
+    }
+}
+
+/// Two translations, rotation, time shift.
+TEST(Nullity, OfTheFigureEightIsFour) {
+  for (double tolerance : {1e-3, 1e-5, 1e-9, 1e-11}) {
+    Study study = load(bench_data("figure-eight.toml"));
+    study.options.tolerance = tolerance;
+    const Solution s = run(study);
+    EXPECT_EQ(s.nullity, 4) << tolerance;
+    EXPECT_EQ(s.morse_index, 2) << tolerance;
   }
 }
 
