@@ -194,10 +194,10 @@ void print_profile(const std::string& name, const std::string& scene, double tol
     resample(solution.trajectory, stage, *tables, path);
     newton.reset(study.problem, *tables, stage.elements);
     newton.set_scale(1);
-    newton.full_step(path);
+    newton.full_step(path, 0);
     const bool condensed = tables->unknowns() <= extremal::most_dense_unknowns;
     pieces = condensed ? time_pieces(study.problem, solution.trajectory, *tables, path, newton) : Pieces();
-    pieces.step = nanoseconds([&] { newton.full_step(path); });
+    pieces.step = nanoseconds([&] { newton.full_step(path, 0); });
     steps += stage.iterations * pieces.step;
     print_line(stage, pieces);
   }

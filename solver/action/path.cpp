@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "action/rule.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -132,6 +133,67 @@ void Path::split_from(const Path& other, const ElementTables& tables, std::span<
       high_[2 * k * n_ + a] = other.high_[k * n_ + a];
       low_[2 * k * n_ + a] = other.low_[k * n_ + a];
     }
+  load_ends();
+}
+
+/// q at `count` points τ of element k, coordinate a of point p at q[a*count + p], by the barycentric formula
+/// for the deviation from the chord.
+void Path::values(int k, int count, const double* tau, double* q) const {
+  constexpr double nothing = 1e-290;  // from a node: its own weight is then all there is
+  const std::vector<double>& weights = lobatto_barycentric(degree_).weights;
+  const double* x = this->x(k / lanes) + k % lanes;
+  const double* delta = x + static_cast<std::size_t>(unknowns_ - n_) * lanes;
+  double sum[max_degree + 1] = {}, weight[max_degree + 1];
+  std::fill_n(q, static_cast<std::size_t>(n_) * count, 0.0);
+  for (int j = 0; j <= degree_; ++j) {
+    for (int p = 0; p < count; ++p) {
+      const double distance = tau[p] - lobatto_[j];
+      weight[p] = weights[j] / (distance == 0 ? nothing : distance);
+      sum[p] += weight[p];
+    }
+    if (j == 0 || j == degree_) continue;
+    for (int a = 0; a < n_; ++a) {
+      const double deviation = x[((j - 1) * n_ + a) * lanes];
+      for (int p = 0; p < count; ++p) q[a * count + p] += weight[p] * deviation;
+    }
+  }
+  for (int a = 0; a < n_; ++a)
+    for (int p = 0; p < count; ++p)
+      q[a * count + p] = node(k)[a] + (tau[p] * delta[a * lanes] + q[a * count + p] / sum[p]);
+}
+
+void Path::resample_from(const Path& other, const ElementTables& tables, std::span<const double> mesh) {
+  reset(tables, mesh, other.duration_);
+  const int count = degree_ + 1;
+  std::vector<double> q(static_cast<std::size_t>(count) * n_), part(q.size());
+  double tau[max_degree + 1];
+  int at = 0;
+  for (int k = 0; k < elements_; ++k) {
+    // Runs of points that lie in one element of the other path.
+    for (int j = 0; j < count;) {
+      const auto time = [&](int i) {
+        return i == degree_ ? mesh_[k + 1] : mesh_[k] + lobatto_[i] * (mesh_[k + 1] - mesh_[k]);
+      };
+      while (at + 1 < other.elements_ && time(j) >= other.mesh_[at + 1]) ++at;
+      const double from = other.mesh_[at], to = other.mesh_[at + 1];
+      int run = 0;
+      for (; j + run < count && (time(j + run) < to || at + 1 == other.elements_); ++run)
+        tau[run] = std::min((time(j + run) - from) / (to - from), 1.0);
+      other.values(at, run, tau, part.data());
+      for (int p = 0; p < run; ++p)
+        for (int a = 0; a < n_; ++a) q[(j + p) * n_ + a] = part[a * run + p];
+      j += run;
+    }
+    set_element(k, q.data());
+    at = std::max(0, at - 1);
+  }
+  for (int a = 0; a < n_; ++a) {
+    high_[a] = other.high_[a];
+    low_[a] = other.low_[a];
+    const std::size_t last = high_.size() - n_ + a, other_last = other.high_.size() - n_ + a;
+    high_[last] = other.high_[other_last];
+    low_[last] = other.low_[other_last];
+  }
   load_ends();
 }
 

@@ -60,10 +60,16 @@ class Path {
   /// Lobatto nodes of the two halves.
   void split_from(const Path& other, const ElementTables& tables, std::span<const double> halves);
 
+  /// The same path on another mesh with other elements, as near as those come: through its values at their
+  /// nodes.
+  void resample_from(const Path& other, const ElementTables& tables, std::span<const double> mesh);
+
   /// q at the s + 1 Lobatto nodes of element k.
   void element(int k, double* q) const;
 
  private:
+  void values(int k, int count, const double* tau, double* q) const;
+
   static constexpr int lanes_of = 8;
   int n_ = 0, degree_ = 0, elements_ = 0, batches_ = 0, unknowns_ = 0;
   double duration_ = 0;

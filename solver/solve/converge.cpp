@@ -29,11 +29,11 @@ std::string describe(StepResult result) {
 NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& tables,
                       const NewtonGoal& goal, const std::function<void()>& on_step) {
   NewtonReport report;
-  bool chord = false;
+  bool chord = goal.reuse;
   while (report.steps < goal.steps) {
     if (!chord) newton.set_scale(scales(path, tables).q);
     const double before = newton.norm();
-    const StepResult result = chord ? newton.chord_step(path) : newton.full_step(path);
+    const StepResult result = chord ? newton.chord_step(path) : newton.full_step(path, goal.remaining);
     ++report.steps;
     if (on_step) on_step();
     if (result != StepResult::ok) {
@@ -42,7 +42,7 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
     }
     const double rate = std::min(newton.contraction(), 1.0);
     const bool settled = newton.damping() == 1 && rate < 0.5;
-    report.remaining = settled ? newton.norm() * rate : newton.norm();
+    report.remaining = newton.remaining();
     const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
                           newton.norm() > 0.3 * before;
     if (report.remaining <= goal.remaining || roundoff) {

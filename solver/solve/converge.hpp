@@ -13,6 +13,7 @@ namespace extremal {
 struct NewtonGoal {
   double remaining = 1e-15;  ///< expected size of the next correction
   int steps = 50;
+  bool reuse = false;  ///< begins with the factors there are
 };
 
 struct NewtonReport {

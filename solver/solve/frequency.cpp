@@ -33,54 +33,12 @@ double squared_frequency(const Structure& s, double lightest, const double* hess
 
 }  // namespace
 
-void Frequency::clear() {
-  tau_.clear();
-  omega_.clear();
-  sum_ = 0;
-  finite_ = true;
-}
-
 void Frequency::add(double tau, double omega) {
   if (!std::isfinite(omega)) {
     finite_ = false;
-    omega = omega_.empty() ? 0 : omega_.back();
+    omega = density_.empty() ? 0 : density_.last();
   }
-  if (!tau_.empty()) {
-    if (tau <= tau_.back()) return;
-    sum_ += 0.5 * (omega + omega_.back()) * (tau - tau_.back());
-  }
-  least_ = tau_.empty() ? omega : std::min(least_, omega);
-  most_ = tau_.empty() ? omega : std::max(most_, omega);
-  tau_.push_back(tau);
-  omega_.push_back(omega);
-}
-
-double Frequency::grading(double floor) const {
-  const double base = floor * sum_;
-  return least_ + base > 0 ? (most_ + base) / (least_ + base) : 1;
-}
-
-std::vector<double> Frequency::mesh(int elements, double floor) const {
-  if (!(sum_ > 0)) return uniform_mesh(elements);
-  const double base = floor * sum_, total = sum_ + base;
-  std::vector<double> mesh(elements + 1);
-  double passed = 0;
-  std::size_t i = 0;
-  for (int k = 1; k < elements; ++k) {
-    const double wanted = total * k / elements;
-    double piece = 0;
-    for (; i + 2 < tau_.size(); ++i) {
-      piece = (0.5 * (omega_[i] + omega_[i + 1]) + base) * (tau_[i + 1] - tau_[i]);
-      if (passed + piece >= wanted) break;
-      passed += piece;
-    }
-    piece = (0.5 * (omega_[i] + omega_[i + 1]) + base) * (tau_[i + 1] - tau_[i]);
-    mesh[k] = tau_[i] + (tau_[i + 1] - tau_[i]) * std::clamp((wanted - passed) / piece, 0.0, 1.0);
-  }
-  mesh[elements] = 1;
-  for (int k = 0; k < elements; ++k)
-    if (!(mesh[k + 1] > mesh[k])) return uniform_mesh(elements);
-  return mesh;
+  density_.add(tau, omega);
 }
 
 void measure_frequency(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
@@ -100,22 +58,6 @@ void measure_frequency(const Problem& problem, DiscreteAction& action, const Ele
                       std::sqrt(squared_frequency(s, lightest, hessian + i * lanes + lane, stride)));
     }
   }
-}
-
-std::vector<double> uniform_mesh(int elements) {
-  std::vector<double> mesh(elements + 1);
-  for (int k = 0; k <= elements; ++k) mesh[k] = static_cast<double>(k) / elements;
-  return mesh;
-}
-
-std::vector<double> halved(const std::vector<double>& mesh) {
-  std::vector<double> result;
-  for (std::size_t k = 0; k + 1 < mesh.size(); ++k) {
-    result.push_back(mesh[k]);
-    result.push_back(0.5 * (mesh[k] + mesh[k + 1]));
-  }
-  result.push_back(mesh.back());
-  return result;
 }
 
 }  // namespace extremal

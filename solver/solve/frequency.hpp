@@ -4,6 +4,7 @@
 
 #include "action/discrete_action.hpp"
 #include "problem/problem.hpp"
+#include "solve/mesh.hpp"
 
 /// \file How fast a system may oscillate along a path, and a mesh that follows it.
 
@@ -12,25 +13,26 @@ namespace extremal {
 /// A local bound of the frequency, piecewise linear in τ = t/T.
 class Frequency {
  public:
-  void clear();
+  void clear() {
+    density_.clear();
+    finite_ = true;
+  }
   void add(double tau, double omega);
 
   /// Whether every ω was.
   bool finite() const { return finite_; }
 
   /// ∫ω dt; finite.
-  double phase() const { return sum_ * duration_; }
+  double phase() const { return density_.integral() * duration_; }
   void set_duration(double duration) { duration_ = duration; }
 
-  /// Longest against shortest element of such a mesh, at most.
-  double grading(double floor) const;
-
-  /// Elements of equal ∫(ω + floor·mean ω) dt.
-  std::vector<double> mesh(int elements, double floor) const;
+  /// See Density.
+  double grading(double floor) const { return density_.grading(floor); }
+  std::vector<double> mesh(int elements, double floor) const { return density_.mesh(elements, floor); }
 
  private:
-  std::vector<double> tau_, omega_;
-  double sum_ = 0, duration_ = 1, least_ = 0, most_ = 0;
+  Density density_;
+  double duration_ = 1;
   bool finite_ = true;
 };
 
@@ -38,8 +40,5 @@ class Frequency {
 /// `frequency`.
 void measure_frequency(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
                        const Path& path, Frequency& frequency);
-
-std::vector<double> uniform_mesh(int elements);
-std::vector<double> halved(const std::vector<double>& mesh);
 
 }  // namespace extremal

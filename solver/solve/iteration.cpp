@@ -14,6 +14,8 @@ constexpr double least_damping = 1e-3;
 constexpr double breakdown = 1e-11;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
 constexpr double amplified_roundoff = 1e-11;
+/// A step that is not tested may contract worse than any before by this factor; by so much it does.
+constexpr double worst_surprise = 30, surprise = 5;
 /// A simplified correction this much smaller than the step is worth taking.
 constexpr double worth_taking = 0.3;
 
@@ -96,7 +98,7 @@ bool NewtonIteration::factor(const Path& path) {
 
 /// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
 /// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
-StepResult NewtonIteration::full_step(Path& path) {
+StepResult NewtonIteration::full_step(Path& path, double enough) {
   ++count_;
   if (!factor(path)) return action_.finite() ? StepResult::singular : StepResult::not_finite;
   if (scale_ == 0) scale_ = solve_for_step(path);  // a path without extent: its first step is the scale
@@ -104,8 +106,16 @@ StepResult NewtonIteration::full_step(Path& path) {
   if (std::isnan(step)) return StepResult::singular;
   undamped_ = step;
   if (step == 0) {
-    norm_ = contraction_ = 0;
+    norm_ = contraction_ = remaining_ = 0;
     damping_ = 1;
+    return StepResult::ok;
+  }
+  const double expected = largest_curvature_ * step;
+  if (expected > 0 && worst_surprise * expected * step <= enough) {
+    contraction_ = surprise * expected;
+    norm_ = remaining_ = contraction_ * step;
+    damping_ = predicted_ = 1;
+    apply(path, 1, false);
     return StepResult::ok;
   }
   double factor = predicted_;
@@ -125,8 +135,16 @@ StepResult NewtonIteration::full_step(Path& path) {
     model_->evaluate_gradient(action_, path);
     solve_for_step(path);  // the step again
   }
+  if (damping_ == 1) {
+    curvature_ = contraction_ / step;
+    largest_curvature_ = std::max(largest_curvature_, curvature_);
+  }
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
-  if (damping_ == 1 && contraction_ < worth_taking) apply(path, 1, false);
+  remaining_ = norm_;
+  if (damping_ == 1 && contraction_ < worth_taking) {
+    apply(path, 1, false);
+    remaining_ = norm_ * contraction_;
+  }
   return StepResult::ok;
 }
 
@@ -138,6 +156,7 @@ StepResult NewtonIteration::chord_step(Path& path) {
   if (std::isnan(norm)) return StepResult::not_finite;
   norm_ = norm;
   contraction_ = before > 0 ? norm_ / before : 0;
+  remaining_ = norm_ * std::min(contraction_, 1.0);
   apply(path, 1, false);
   return StepResult::ok;
 }

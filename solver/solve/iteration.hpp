@@ -31,13 +31,23 @@ class NewtonIteration {
 
   /// Assembles at `path`, factors and takes a damped step; then, where the simplified step that tested it
   /// is much smaller, takes that as well. `norm` becomes the size of the last correction, `contraction` its
-  /// ratio to the one before.
-  StepResult full_step(Path& path);
+  /// ratio to the one before. A step so short that earlier contraction lets expect the next correction
+  /// below `enough` is not tested: `norm` is then what is expected.
+  StepResult full_step(Path& path, double enough);
+
+  /// What was learned of the curvature of δS no longer holds: another path.
+  void forget() { curvature_ = largest_curvature_ = 0; }
 
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
 
+  /// The error to be expected after a full step of this length and the simplified one, from the last that
+  /// was tested.
+  double expected(double step) const { return curvature_ * curvature_ * step * step * step; }
+
   double norm() const { return norm_; }
+  /// Expected size of the correction after it.
+  double remaining() const { return remaining_; }
   double contraction() const { return contraction_; }
   double damping() const { return damping_; }
   int count() const { return count_; }
@@ -64,7 +74,9 @@ class NewtonIteration {
   Step step_;
   ClosingEquation closing_;
   Path saved_;
-  double scale_ = 1, norm_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
+  double scale_ = 1, norm_ = 0, remaining_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
+  double curvature_ = 0;  ///< contraction of the last full step by its length; 0: not known
+  double largest_curvature_ = 0;
   int count_ = 0;
 };
 

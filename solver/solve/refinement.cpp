@@ -14,6 +14,8 @@ constexpr int highest_degree = 16;
 constexpr int most_elements = 1 << 16;
 /// Coarse elements have done their work when the path is known to this, relative to its range.
 constexpr double coarse_goal = 1e-3;
+/// A coarse element becomes at most so many at a time.
+constexpr double coarse_cut = 4;
 /// Steps allowed for one run of damped Newton.
 constexpr int coarse_steps = 25;
 constexpr int fine_steps = 12;
@@ -21,6 +23,10 @@ constexpr int fine_steps = 12;
 constexpr double roundoff = 1e-15;
 /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
 constexpr double loosest_newton = 1e-6;
+/// Times that elements are planned before all are halved.
+constexpr int most_plans = 6;
+/// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
+constexpr double spare = 0.1;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
 /// Errors below this (relative) may be roundoff.
@@ -34,6 +40,7 @@ Refinement::Refinement(const Problem& problem, const SolveOptions& options, Work
 
 void Refinement::open(const std::vector<double>& mesh) {
   longest_ = 0;
+  w_.iteration.forget();
   tables_ = &w_.levels.at(first_degree);
   w_.iteration.reset(problem_, *tables_, static_cast<int>(mesh.size()) - 1);
   w_.path.reset(*tables_, mesh, problem_.duration.value);
@@ -41,15 +48,15 @@ void Refinement::open(const std::vector<double>& mesh) {
 
 Refinement::Result Refinement::pursue() {
   Attempt result = attempt();
-  // Truncation this small that halving does not reduce is roundoff.
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
+    // Truncation this small that finer elements do not reduce is roundoff.
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
     if (hopeless || 2 * w_.path.elements() > most_elements) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
                                      w_.path.elements(), w_.path.degree(), options_.tolerance);
       return Result::unreachable;
     }
-    halve();
+    refine();
     result = attempt();
   }
   outcome_.tables = tables_;
@@ -85,11 +92,20 @@ double Refinement::excess(const Resolution::Error& error) const {
   return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
 }
 
-/// The least degree that resolves the path to the tolerance, or one above the highest.
-int Refinement::needed_degree() const {
-  const Resolution::Error allowed{options_.tolerance * scales_.q, 10 * options_.tolerance * scales_.v};
-  const int degree = w_.resolution.degree_for({0.5 * allowed.q, 0.5 * allowed.v}, highest_degree);
-  return degree > highest_degree ? w_.resolution.degree_for(allowed, highest_degree) : degree;
+/// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
+Plan Refinement::plan(double aim) {
+  const bool last = aim <= options_.tolerance;
+  const auto error = [&](double share) {
+    return Resolution::Error{share * scales_.q, last ? 10 * share * scales_.v : INFINITY};
+  };
+  return w_.planner.plan(w_.resolution, w_.path.mesh(), w_.path.coordinates(),
+                         {.aim = error(aim),
+                          .tolerated = error(std::max(aim, 0.7 * options_.tolerance)),
+                          .raised_degree = std::min(w_.path.degree() + 1, highest_degree),
+                          .least_degree = first_degree + 1,
+                          .highest_degree = highest_degree,
+                          .most_elements = 16 * w_.path.elements(),
+                          .strongest_cut = 16});
 }
 
 void Refinement::raise(int degree) {
@@ -101,7 +117,27 @@ void Refinement::raise(int degree) {
   w_.iteration.set_scale(scales_.q);
 }
 
-void Refinement::halve() {
+void Refinement::adopt(const Plan& plan) {
+  if (plan.mesh.empty()) {
+    if (plan.degree > w_.path.degree()) raise(plan.degree);
+    return;
+  }
+  tables_ = &w_.levels.at(plan.degree);
+  w_.other.resample_from(w_.path, *tables_, plan.mesh);
+  std::swap(w_.path, w_.other);
+  w_.iteration.reset(problem_, *tables_, w_.path.elements());
+  w_.iteration.set_scale(scales_.q);
+}
+
+/// Elements of the present degree that should know the path to a few digits, if those are more; else halves.
+void Refinement::refine() {
+  const int elements = w_.path.elements(), degree = w_.path.degree();
+  if (degree == first_degree) {
+    const Resolution::Error aim{coarse_goal * scales_.q, INFINITY};
+    const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), w_.path.coordinates(),
+                                       {aim, aim, degree, degree, degree, most_elements, coarse_cut});
+    if (static_cast<int>(finer.mesh.size()) > elements + 1) return adopt(finer);
+  }
   w_.other.split_from(w_.path, *tables_, w_.levels.halve(w_.path.degree()));
   std::swap(w_.path, w_.other);
   w_.iteration.reset(problem_, *tables_, w_.path.elements());
@@ -111,46 +147,54 @@ int Refinement::steps_left(int wanted) const {
   return std::max(0, std::min(wanted, most_steps_ - outcome_.iterations));
 }
 
+void Refinement::measure() {
+  scales_ = scales(w_.path, *tables_);
+  w_.resolution.measure(w_.path, *tables_);
+}
+
+NewtonReport Refinement::converge_to(double error, bool reuse) {
+  const NewtonGoal goal{std::clamp(0.5 * error, roundoff, loosest_newton), steps_left(fine_steps), reuse};
+  const NewtonReport report = converge(w_.iteration, w_.path, *tables_, goal, [this] { record(); });
+  measure();
+  return report;
+}
+
 Refinement::Attempt Refinement::attempt() {
-  const auto on_step = [this] { record(); };
-  const NewtonReport coarse =
-      converge(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)}, on_step);
-  outcome_.message = coarse.failure;
-  if (!coarse.reached) return Attempt::failed;
-  NodeError nodes;
-  for (bool again = false;;) {
-    scales_ = scales(w_.path, *tables_);
-    w_.resolution.measure(w_.path, *tables_);
-    // At least one more, which tells how far off the nodes are.
-    const int degree = std::max(needed_degree(), std::min(w_.path.degree() + 1, highest_degree));
-    if (degree > highest_degree) {
-      worst_ = INFINITY;  // not measured yet
-      return Attempt::refine;
-    }
-    nodes = {w_.resolution.at(w_.path.degree()).q, 0, again};
-    again = true;
-    if (degree > w_.path.degree()) raise(degree);
+  NewtonReport newton = converge(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)},
+                                 [this] { record(); });
+  outcome_.message = newton.failure;
+  if (!newton.reached) return Attempt::failed;
+  measure();
+  const double finest = spare * options_.tolerance;
+  for (int plans = 0;; ++plans) {
+    // Finer elements than one more step makes use of would be wasted.
+    NodeError nodes{w_.resolution.at(w_.path.degree()).q, 0, plans > 0};
+    const double known = nodes.truncation / scales_.q + newton.remaining;
+    const double aim = std::max(finest, std::min(w_.iteration.expected(known), 0.1 * known));
+    const Plan next = plan(aim);
+    if (next.degree == 0) worst_ = INFINITY;  // not measured yet
+    if (next.degree == 0 || plans == most_plans) return Attempt::refine;
+    const double unfinished = 2 * newton.remaining * scales_.q;
+    adopt(next);
     w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
-    const NewtonGoal goal{std::clamp(0.05 * options_.tolerance, roundoff, loosest_newton),
-                          steps_left(fine_steps)};
-    const NewtonReport fine = converge(w_.iteration, w_.path, *tables_, goal, on_step);
+    newton = converge_to(aim, false);
+    if (newton.reached && aim > finest && excess(w_.resolution.at(w_.path.degree())) <= 1)
+      newton = converge_to(finest, true);
     for (std::size_t k = 0; k < w_.before.size(); ++k)
       nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
     // What Newton's method had left to do is no error of the elements.
-    nodes.moved = std::max(0.0, nodes.moved - 2 * coarse.remaining * scales_.q);
-    const Attempt result = judge(fine, nodes);
-    if (result != Attempt::refine || w_.path.degree() == highest_degree) return result;
+    nodes.moved = std::max(0.0, nodes.moved - unfinished);
+    const Attempt result = judge(newton, aim, nodes);
+    if (result != Attempt::refine) return result;
   }
 }
 
 /// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
 /// which falls with the square of those (order 2s against s + 1) from what the nodes moved when the
 /// degree rose; corrections not made; roundoff, a random walk over the points.
-Refinement::Attempt Refinement::judge(const NewtonReport& newton, const NodeError& nodes) {
+Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {
   outcome_.message = newton.failure;
   if (!newton.reached) return Attempt::failed;
-  scales_ = scales(w_.path, *tables_);
-  w_.resolution.measure(w_.path, *tables_);
   Resolution::Error error = w_.resolution.at(w_.path.degree());
   const double fall = nodes.truncation > 0 ? std::min(1.0, error.q / nodes.truncation) : 0;
   const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
@@ -159,7 +203,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, const NodeErro
   error.q = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
   outcome_.error = error.q + newton.remaining * scales_.q;
-  if (newton.remaining > options_.tolerance) {
+  if (newton.remaining > std::max(options_.tolerance, aim)) {
     outcome_.message =
         fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
                     newton.remaining, options_.tolerance);

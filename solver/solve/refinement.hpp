@@ -49,12 +49,16 @@ class Refinement {
     bool from_converged = false;
   };
   Attempt attempt();
-  Attempt judge(const NewtonReport& newton, const NodeError& nodes);
+  Attempt judge(const NewtonReport& newton, double aim, const NodeError& nodes);
+  void measure();
+  /// Newton until what is left to do is below `error`, relative; `reuse`: with the factors there are.
+  NewtonReport converge_to(double error, bool reuse);
   int steps_left(int wanted) const;
-  int needed_degree() const;
+  Plan plan(double aim);
   double excess(const Resolution::Error& error) const;
   void raise(int degree);
-  void halve();
+  void adopt(const Plan& plan);
+  void refine();
   void record();
 
   const Problem& problem_;

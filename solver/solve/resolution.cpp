@@ -119,14 +119,9 @@ Resolution::Error Resolution::at(int degree) const {
 
 int Resolution::degree_for(const Error& allowed, int highest) const {
   int degree = degree_;
-  for (const Tail& tail : tails_) {
-    double size = tail.size * tail.fall;
-    for (int k = degree_; k < degree; ++k) size *= tail.fall;
-    while (degree <= highest &&
-           (size > allowed.q || size * (degree + 1) * (degree + 2) > allowed.v * tail.h)) {
-      size *= tail.fall;
-      ++degree;
-    }
+  for (; degree <= highest; ++degree) {
+    const Error error = at(degree);
+    if (error.q <= allowed.q && error.v <= allowed.v) break;
   }
   return degree;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "action/path.hpp"
 
 /// \file How well a path's elements resolve it, read off their Legendre coefficients.
@@ -19,6 +22,13 @@ class Resolution {
  public:
   void measure(const Path& path, const ElementTables& tables);
 
+  /// Of the coefficients of one element.
+  struct Tail {
+    double size, fall, h;  ///< of coefficient s; factor from one to the next; element length
+  };
+  int degree() const { return degree_; }
+  std::span<const Tail> tails() const { return tails_; }
+
   struct Error {
     double q = 0, v = 0;
   };
@@ -29,9 +39,6 @@ class Resolution {
   int degree_for(const Error& allowed, int highest) const;
 
  private:
-  struct Tail {
-    double size, fall, h;  ///< of coefficient s; factor from one to the next; element length
-  };
   int degree_ = 0;
   std::vector<Tail> tails_;
 };

@@ -7,7 +7,7 @@
 #include "solve/frequency.hpp"
 #include "solve/iteration.hpp"
 #include "solve/levels.hpp"
-#include "solve/resolution.hpp"
+#include "solve/plan.hpp"
 #include "solve/solve.hpp"
 
 /// \file What the stages of a solve hand to each other.
@@ -20,8 +20,9 @@ struct Workspace {
   NewtonIteration iteration;
   Path path, other;
   Resolution resolution;
+  Planner planner;
   Frequency frequency;
-  std::vector<double> before;  ///< mesh nodes before the degree rose
+  std::vector<double> before;  ///< mesh nodes when the present elements were opened
   std::unique_ptr<SchemeTables> pinned_scheme;
   ElementTables pinned;
   const ElementTables* final_tables = nullptr;

@@ -37,9 +37,9 @@ class Steps {
     path_.reset(tables_, mesh_, problem_.duration.value);
     start_path(problem_, starting_ends(problem_), tables_, path_);
     newton_.set_scale(1);
-    EXPECT_EQ(newton_.full_step(path_), StepResult::ok);
+    EXPECT_EQ(newton_.full_step(path_, 0), StepResult::ok);
     const long before = allocations;
-    for (int i = 1; i < full; ++i) EXPECT_EQ(newton_.full_step(path_), StepResult::ok);
+    for (int i = 1; i < full; ++i) EXPECT_EQ(newton_.full_step(path_, 0), StepResult::ok);
     for (int i = 0; i < chord; ++i) EXPECT_EQ(newton_.chord_step(path_), StepResult::ok);
     return allocations - before;
   }

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+/// \file Meshes over τ = t/T in [0, 1], as many elements as asked, short where they should be.
+
+namespace extremal {
+
+/// A positive density of elements, piecewise linear in τ. Keeps memory.
+class Density {
+ public:
+  void clear();
+  /// Ascending τ; a value not above the last is left out.
+  void add(double tau, double value);
+
+  bool empty() const { return tau_.empty(); }
+  double last() const { return value_.back(); }
+  double integral() const { return sum_; }
+
+  /// Longest against shortest element of mesh(·, floor), at most.
+  double grading(double floor) const;
+
+  /// Elements of equal ∫(density + floor·mean density) dτ.
+  std::vector<double> mesh(int elements, double floor) const;
+
+ private:
+  std::vector<double> tau_, value_;
+  double sum_ = 0, least_ = 0, most_ = 0;
+};
+
+std::vector<double> uniform_mesh(int elements);
+std::vector<double> halved(const std::vector<double>& mesh);
+
+}  // namespace extremal

@@ -1,0 +1,107 @@
+#include "solve/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "action/tables.hpp"
+#include "machine/simd.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Spare elements, since densities are estimates.
+constexpr double spare = 1.1;
+/// Another mesh must promise to be so much cheaper: the path has to be moved to it, and its distances are
+/// less certain than what the present elements show.
+constexpr double worth_moving = 0.75;
+
+/// A batch of elements up to this degree is not worth planning again.
+constexpr int cheap_degree = 10;
+
+/// Eight elements go together.
+double batches(double elements) { return std::ceil(elements / lanes); }
+
+}  // namespace
+
+double batch_cost(int m) {
+  if (m > most_dense_unknowns) return 1e3 * m;  // one sparse matrix
+  return 200.0 + m * m + m * m * m / 64.0;
+}
+
+/// Distances to singularities; neighbours see each other's.
+void Planner::locate(const Resolution& resolution) {
+  degree_ = resolution.degree();
+  places_.clear();
+  for (const Resolution::Tail& tail : resolution.tails()) {
+    const double distance = 0.25 * tail.h * (1 / tail.fall - tail.fall);
+    const double log_size =
+        tail.size > 0 ? std::log(tail.size) - resolution.degree() * std::log(tail.fall) : -INFINITY;
+    places_.push_back({tail.h, distance, log_size});
+  }
+  const auto limit = [&](std::size_t k, std::size_t neighbour) {
+    const double apart = 0.5 * (places_[k].h + places_[neighbour].h);
+    places_[k].distance = std::min(places_[k].distance, places_[neighbour].distance + apart);
+  };
+  for (std::size_t k = 1; k < places_.size(); ++k) limit(k, k - 1);
+  for (std::size_t k = places_.size() - 1; k-- > 0;) limit(k, k + 1);
+}
+
+/// h' with size·f'^(s+1) <= limits.aim.q, and its derivative at the end of the element, (s+1)(s+2)/h' times
+/// that, within limits.aim.v. It has no fewer nodes an interval of time than there are: those resolve the
+/// variations of the path too, whatever the path itself may need.
+double Planner::length(const Place& place, int degree, const PlanLimits& limits) const {
+  const double longest = place.h * degree / degree_, shortest = place.h / limits.strongest_cut;
+  if (std::isinf(place.log_size)) return longest;
+  const double slope = limits.aim.v * place.h / ((degree + 1) * (degree + 2));
+  const double log_fall = (std::log(std::min(limits.aim.q, slope)) - place.log_size) / (degree + 1);
+  if (log_fall >= 0) return longest;
+  const double fall = std::exp(log_fall);
+  return std::clamp(4 * place.distance * fall / (1 - fall * fall), shortest, longest);
+}
+
+double Planner::elements(int degree, const PlanLimits& limits) const {
+  double sum = 0;
+  for (const Place& place : places_) sum += place.h / length(place, degree, limits);
+  return spare * sum;
+}
+
+Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, int unknowns_per_degree,
+                   const PlanLimits& limits) {
+  const double present = static_cast<double>(mesh.size()) - 1;
+  const auto cost = [&](int degree, double elements) {
+    return batches(elements) * batch_cost((degree + 1) * unknowns_per_degree);
+  };
+  Plan best;
+  int keep = resolution.degree_for(limits.aim, limits.highest_degree);
+  if (keep > limits.highest_degree) keep = resolution.degree_for(limits.tolerated, limits.highest_degree);
+  keep = std::max(keep, limits.raised_degree);
+  double least = INFINITY;
+  if (keep <= limits.highest_degree) {
+    best.degree = keep;
+    least = worth_moving * cost(keep, present);
+  }
+  // One batch cannot become fewer, and a low degree not much lower.
+  if (least < INFINITY && present <= lanes && keep <= cheap_degree) return best;
+  locate(resolution);
+  int moved = 0;
+  double count = 0;
+  for (int degree = limits.least_degree; degree <= limits.highest_degree; ++degree) {
+    const double needed = elements(degree, limits);
+    if (needed > limits.most_elements || cost(degree, needed) >= least) continue;
+    least = cost(degree, needed);
+    count = needed;
+    moved = degree;
+  }
+  if (moved == 0) return best;
+  density_.clear();
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    const double density = 1 / length(places_[k], moved, limits);
+    if (k == 0) density_.add(0, density);
+    density_.add(0.5 * (mesh[k] + mesh[k + 1]), density);
+    if (k + 1 == places_.size()) density_.add(1, density);
+  }
+  return {moved, density_.mesh(lanes * static_cast<int>(batches(count)), 0)};
+}
+
+}  // namespace extremal

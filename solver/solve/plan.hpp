@@ -1,0 +1,57 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solve/mesh.hpp"
+#include "solve/resolution.hpp"
+
+/// \file The elements that a tolerance needs, from how well others resolve the path.
+
+namespace extremal {
+
+/// Elements of one degree on a mesh.
+struct Plan {
+  int degree = 0;            ///< 0: none within the limits
+  std::vector<double> mesh;  ///< empty: the one there is
+};
+
+/// What a plan aims at and may use.
+struct PlanLimits {
+  Resolution::Error aim;  ///< expected of the elements
+  Resolution::Error
+      tolerated;      ///< by a higher degree on the mesh there is, where the aim takes too high a one
+  int raised_degree;  ///< at least, on the mesh there is
+  int least_degree, highest_degree;  ///< on another mesh; the highest on any
+  int most_elements;
+  double strongest_cut;  ///< an element becomes at most so many
+};
+
+/// The cheapest elements whose expected error is aimed at. On an element of length h the coefficients fall by
+///   f = 1/(y + √(1 + y²)),   y = 2d/h,
+/// where d is the distance in complex time to the nearest singularity of the path (the sum of half-axes of
+/// the largest ellipse around the element without one). So a tail (size, f, h) gives d, which changes
+/// along the path by no more than t does, and d gives the h' that another degree needs.
+class Planner {
+ public:
+  /// `unknowns_per_degree` is n; `mesh` that of the path that was measured.
+  Plan plan(const Resolution& resolution, std::span<const double> mesh, int unknowns_per_degree,
+            const PlanLimits& limits);
+
+ private:
+  struct Place {
+    double h, distance, log_size;  ///< log of the coefficients extrapolated to k = 0
+  };
+  void locate(const Resolution& resolution);
+  double length(const Place& place, int degree, const PlanLimits& limits) const;
+  double elements(int degree, const PlanLimits& limits) const;
+
+  int degree_ = 0;  ///< of the elements that were measured
+  std::vector<Place> places_;
+  Density density_;
+};
+
+/// Nanoseconds, roughly, of one Newton step on eight elements with m unknowns each.
+double batch_cost(int m);
+
+}  // namespace extremal
