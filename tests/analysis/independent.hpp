@@ -97,7 +97,7 @@ inline void expect_windows(const Solution& solution, const std::shared_ptr<const
     EXPECT_LT(from, to);
     if (k > 0) EXPECT_EQ(from, solution.windows[k - 1][1]);
     if (!autonomous) continue;
-    const double inside = 1e-4 * (to - from);
+    const double inside = 1e-3 * (to - from);
     EXPECT_EQ(index(from, to - inside), 0) << from << " to " << to;
     // A neighbour that is almost empty would make the ends of the union almost conjugate.
     if (k > 0 && to - from > 1e-2 * (from - solution.windows[k - 1][0]))
