@@ -81,7 +81,7 @@ double Dop853::error_norm(std::span<const double> y, double h, const Integration
 /// A hundredth of the time in which a block would change by its own size; the control does the rest.
 double Dop853::first_step(double t, std::span<const double> y, double span,
                           const IntegrationOptions& options) {
-  double h = std::abs(span) / 10;
+  double h = std::abs(span);
   if (!slope_(t, y, stage_)) return std::copysign(h, span);
   const int size = controlled_size(options, size_), block = block_size(options, size);
   for (int begin = 0; begin < size; begin += block) {
@@ -94,14 +94,16 @@ double Dop853::first_step(double t, std::span<const double> y, double span,
 
 Integrated Dop853::accept_step(double& t, std::span<double> y, double end,
                                const IntegrationOptions& options) {
-  if (h_ == 0 || (end - t) * h_ < 0) h_ = first_step(t, y, end - t, options);
+  const double least = 4 * std::numeric_limits<double>::epsilon() * std::abs(t);
+  // Too short a step is what an end close by has left behind.
+  if (std::abs(h_) <= least || (end - t) * h_ < 0) h_ = first_step(t, y, end - t, options);
   for (bool after_rejection = false;; after_rejection = true) {
     const bool last = std::abs(end - t) <= std::abs(h_) * (1 + 1e-12);
     const double h = last ? end - t : h_;
-    if (std::abs(h_) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(t) || h_ == 0)
-      return Integrated::step_underflow;
+    if (!last && std::abs(h_) <= least) return Integrated::step_underflow;
     if (!step(t, y, h)) {
       h_ = h * retreat;
+      if (t + h_ == t) return Integrated::step_underflow;
       ++rejected_;
       continue;
     }

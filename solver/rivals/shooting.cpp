@@ -2,148 +2,142 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
-#include "rivals/dop853.hpp"
-#include "rivals/flow.hpp"
+#include "rivals/segments.hpp"
 
 namespace extremal {
 
 namespace {
 
-/// The integrator is asked for this much more than the ends.
+/// The integrator is asked for this much more than the corrections.
 constexpr double margin = 0.1;
+/// What integration far from the solution is good for, and the correction from which on it is near.
+constexpr double loose = 1e-5, near = 1e-3;
 constexpr double least_damping = 1.0 / 1024;
-/// Piece of [0, 1] over which the initial velocity of the guess is read.
-constexpr double initial_piece = 1e-6;
+/// Of the integrator where singular values must be told from zero.
+constexpr double precise = 1e-10;
+/// Corrections that fall by less per iteration call for new factors.
+constexpr double slow = 0.1;
 
-void check_ends(const Problem& problem) {
-  if (problem.ends.free > 0)
-    throw std::invalid_argument(
-        fmt::format("shooting needs both ends fixed; {} end coordinates are free", problem.ends.free));
-  if (problem.duration.free) throw std::invalid_argument("shooting needs a fixed duration");
-}
-
-/// One integration with variations, from q(0) and p(0) = `momentum`.
 class Shooter {
  public:
-  explicit Shooter(const Problem& problem)
-      : n_(problem.coordinates()),
-        duration_(problem.duration.value),
-        ends_(Eigen::Map<const Eigen::VectorXd>(problem.ends.offset.data(), 2 * n_)),
-        flow_(*problem.lagrangian),
-        y_(2 * n_ * (n_ + 1)) {
-    const Eigen::VectorXd velocity = initial_velocity(problem);
-    momentum_.resize(n_);
-    valid_ = flow_.momentum(start(), {velocity.data(), n_}, 0, {momentum_.data(), n_});
-    scale_ = std::max(ends_.cwiseAbs().maxCoeff(), (ends_.tail(n_) - ends_.head(n_)).cwiseAbs().maxCoeff());
-    if (scale_ == 0) scale_ = 1;
-  }
+  Shooter(const Problem& problem, const ShootingOptions& options)
+      : problem_(problem),
+        options_(options),
+        segments_(problem, options.segments),
+        final_(problem.periodic ? std::min(precise, margin * options.tolerance) : margin * options.tolerance),
+        tolerance_(problem.periodic ? final_ : std::max(final_, loose)) {}
 
-  bool valid() const { return valid_; }
-  double scale() const { return scale_; }
-  int steps() const { return steps_; }
-  std::span<const double> start() const { return {ends_.data(), n_}; }
-  const Eigen::VectorXd& momentum() const { return momentum_; }
-  Flow& flow() { return flow_; }
-
-  /// q(T) − wanted and ∂q(T)/∂p(0); false if the integration fails.
-  bool run(const Eigen::VectorXd& momentum, double tolerance, Eigen::VectorXd& miss,
-           Eigen::MatrixXd& jacobian) {
-    const int block = static_cast<int>(n_), size = static_cast<int>(y_.size());
-    std::fill(y_.begin(), y_.end(), 0.0);
-    std::copy_n(ends_.data(), n_, y_.begin());
-    std::copy_n(momentum.data(), n_, y_.begin() + n_);
-    for (std::size_t c = 0; c < n_; ++c) y_[2 * n_ * (c + 1) + n_ + c] = 1;
-    Dop853 integrator(
-        [this](double t, auto y, auto slope) { return flow_.slope_with_variations(t, y, slope); }, size);
-    double t = 0;
-    const Integrated outcome = integrator.advance(t, y_, duration_, {.tolerance = tolerance, .block = block});
-    steps_ += integrator.steps();
-    if (outcome != Integrated::done) return false;
-    const Eigen::Map<const Eigen::MatrixXd> columns(y_.data(), 2 * n_, n_ + 1);
-    miss = columns.col(0).head(n_) - ends_.tail(n_);
-    jacobian = columns.topRightCorner(n_, n_);
-    return true;
+  Shot run() {
+    if (!segments_.guess(course_)) return finish(Status::not_converged, "the guess cannot be evaluated");
+    if (!segments_.evaluate(course_, tolerance_, true))
+      return finish(Status::not_converged, "the motion from the guess cannot be integrated");
+    if (!renew()) return finish(Status::conjugate_ends, "the ends are conjugate along the guess");
+    while (shot_.iterations < options_.max_iterations) {
+      shot_.correction = correction_.size;
+      // What remains after this correction falls by the same factor.
+      if (tolerance_ == final_ && contraction_ * correction_.size <= options_.tolerance) {
+        course_ = moved(1);
+        return finish(Status::converged, "");
+      }
+      ++shot_.iterations;
+      if (!near_ && correction_.size <= near) {
+        near_ = true;
+        tolerance_ = final_;
+      }
+      if (!(near_ ? close_step() : damped_step()))
+        return finish(Status::not_converged,
+                      fmt::format("no step reduces the correction of {:.3g}", correction_.size));
+    }
+    return finish(Status::iteration_limit, "");
   }
 
  private:
-  Eigen::VectorXd initial_velocity(const Problem& problem) const {
-    if (!problem.guess.given()) return (ends_.tail(n_) - ends_.head(n_)) / duration_;
-    Eigen::VectorXd here(n_), there(n_);
-    problem.guess.at(0, {here.data(), n_});
-    problem.guess.at(initial_piece, {there.data(), n_});
-    return (there - here) / (initial_piece * duration_);
+  Course moved(double damping) const {
+    Course course = course_;
+    course.states += damping * correction_.states;
+    course.duration *= 1 + damping * correction_.duration;
+    return course;
   }
 
-  std::size_t n_;
-  double duration_, scale_ = 1;
-  bool valid_ = false;
-  int steps_ = 0;
-  Eigen::VectorXd ends_, momentum_;
-  Flow flow_;
-  std::vector<double> y_;
+  /// A step of Newton from the last variations.
+  bool renew() {
+    segments_.factor();
+    correction_ = segments_.correct();
+    return correction_.finite;
+  }
+
+  /// Takes the longest step whose simplified correction is shorter, by 1 − λ/2 (Deuflhard, Newton Methods for
+  /// Nonlinear Problems, 3.3); with new variations.
+  bool damped_step() {
+    for (double damping = 1; damping >= least_damping; damping /= 2) {
+      const Course trial = moved(damping);
+      if (!(trial.duration > 0.1 * course_.duration) || !segments_.evaluate(trial, tolerance_, true))
+        continue;
+      const Segments::Correction simplified = segments_.correct();
+      if (!(simplified.size <= (1 - damping / 2) * correction_.size) && !(simplified.size <= near)) continue;
+      course_ = trial;
+      return renew();
+    }
+    return false;
+  }
+
+  /// The full step with the factors at hand; with new ones where these do not serve.
+  bool close_step() {
+    const Course trial = moved(1);
+    if (!segments_.evaluate(trial, tolerance_, false)) return false;
+    const Segments::Correction simplified = segments_.correct();
+    const double ratio = simplified.size / correction_.size;
+    if (!(ratio < 1)) return refresh_and_retry();
+    contraction_ = ratio;
+    course_ = trial;
+    correction_ = simplified;
+    if (ratio <= slow) return true;
+    return segments_.evaluate(course_, tolerance_, true) && renew();
+  }
+
+  bool refresh_and_retry() {
+    if (!segments_.evaluate(course_, tolerance_, true) || !renew()) return false;
+    return damped_step();
+  }
+
+  Shot finish(Status status, std::string message) {
+    const int n = problem_.coordinates();
+    shot_.status = status;
+    shot_.steps = segments_.steps();
+    if (status == Status::converged)
+      message = fmt::format("{} segment{}, {} iterations", options_.segments,
+                            options_.segments > 1 ? "s" : "", shot_.iterations);
+    if (status == Status::iteration_limit)
+      message = fmt::format("a correction of {:.3g} is left after {} iterations", shot_.correction,
+                            shot_.iterations);
+    shot_.message = std::move(message);
+    if (status != Status::converged) return shot_;
+    for (int k = 0; k < options_.segments; ++k) {
+      const double t = course_.duration * k / options_.segments;
+      const Eigen::VectorXd state = course_.states.col(k), v = segments_.velocity(state, t);
+      shot_.times.push_back(t);
+      shot_.q.insert(shot_.q.end(), state.begin(), state.begin() + n);
+      shot_.v.insert(shot_.v.end(), v.begin(), v.end());
+    }
+    shot_.times.push_back(course_.duration);
+    return shot_;
+  }
+
+  const Problem& problem_;
+  const ShootingOptions& options_;
+  Segments segments_;
+  bool near_ = false;
+  double final_, tolerance_, contraction_ = 1;
+  Course course_;
+  Segments::Correction correction_;
+  Shot shot_;
 };
-
-/// Takes the longest step along `full` = −J⁻¹ F whose simplified correction is shorter, |J⁻¹ F(trial)| <= (1
-/// − λ/2) |J⁻¹ F| (Deuflhard, Newton Methods for Nonlinear Problems, 3.3). False if none is.
-bool damped_step(Shooter& shooter, double tolerance, const Eigen::VectorXd& full, Eigen::VectorXd& momentum,
-                 Eigen::VectorXd& miss, Eigen::MatrixXd& jacobian) {
-  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(jacobian);
-  Eigen::VectorXd trial_miss;
-  for (double damping = 1; damping >= least_damping; damping /= 2) {
-    const Eigen::VectorXd trial = momentum + damping * full;
-    if (!shooter.run(trial, tolerance, trial_miss, jacobian)) continue;
-    if (!(factors.solve(trial_miss).norm() <= (1 - damping / 2) * full.norm()) &&
-        !(trial_miss.cwiseAbs().maxCoeff() <= tolerance / margin * shooter.scale()))
-      continue;
-    momentum = trial;
-    miss = trial_miss;
-    return true;
-  }
-  return false;
-}
 
 }  // namespace
 
-Shot shoot(const Problem& problem, const ShootingOptions& options) {
-  check_ends(problem);
-  Shooter shooter(problem);
-  const double tolerance = margin * options.tolerance;
-  Eigen::VectorXd momentum = shooter.momentum(), miss;
-  Eigen::MatrixXd jacobian;
-  Shot shot;
-  const auto finish = [&](Status status, std::string message) {
-    shot.status = status;
-    shot.message = std::move(message);
-    shot.steps = shooter.steps();
-    return shot;
-  };
-  if (!shooter.valid() || !shooter.run(momentum, tolerance, miss, jacobian))
-    return finish(Status::not_converged, "the motion from the guess's initial velocity cannot be integrated");
-  while (shot.iterations < options.max_iterations) {
-    shot.miss = miss.cwiseAbs().maxCoeff();
-    if (shot.miss <= options.tolerance * shooter.scale()) {
-      shot.momentum_start.assign(momentum.begin(), momentum.end());
-      shot.velocity_start.resize(momentum.size());
-      if (!shooter.flow().velocity(shooter.start(), shot.momentum_start, 0, shot.velocity_start))
-        return finish(Status::not_converged, "no velocity belongs to the initial momentum found");
-      return finish(Status::converged, fmt::format("single shooting, {} iterations", shot.iterations));
-    }
-    const Eigen::VectorXd full = -jacobian.partialPivLu().solve(miss);
-    if (!full.allFinite())
-      return finish(Status::conjugate_ends, "the ends are conjugate along the motion tried");
-    if (!damped_step(shooter, tolerance, full, momentum, miss, jacobian))
-      return finish(Status::not_converged,
-                    fmt::format("no step reduces the miss of {} at the end, after {} iterations", shot.miss,
-                                shot.iterations));
-    ++shot.iterations;
-  }
-  return finish(Status::iteration_limit,
-                fmt::format("the end is missed by {} after {} iterations", shot.miss, shot.iterations));
-}
+Shot shoot(const Problem& problem, const ShootingOptions& options) { return Shooter(problem, options).run(); }
 
 }  // namespace extremal

@@ -7,8 +7,8 @@
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
 
-/// \file What integration forward in time can do: run from a state, and solve a problem with fixed ends by
-/// single shooting.
+/// \file What integration forward in time can do: run from a state, and solve a boundary problem by single or
+/// multiple shooting.
 
 namespace extremal {
 
@@ -25,7 +25,8 @@ Flight fly(const Lagrangian& lagrangian, std::span<const double> q, std::span<co
            std::span<const double> times, double tolerance = 1e-13);
 
 struct ShootingOptions {
-  double tolerance = 1e-9;  ///< error at the end, relative to the largest end value or distance
+  double tolerance = 1e-9;  ///< of the last correction of q, relative to the largest range or value
+  int segments = 1;         ///< 1: single shooting
   int max_iterations = 50;
 };
 
@@ -33,15 +34,24 @@ struct ShootingOptions {
 struct Shot {
   Status status = Status::not_converged;
   std::string message = "nothing has been solved";
-  std::vector<double> momentum_start, velocity_start;
-  double miss = 0;  ///< largest |q(T) − wanted|
+  std::vector<double> times;  ///< of the start of each segment, and T
+  std::vector<double> q, v;   ///< at the start of each segment, row by row: [k*n + a]
+  double correction = 0;      ///< the last one, relative as the tolerance
   int iterations = 0;
-  int steps = 0;  ///< of the integrator, in all
+  int steps = 0;  ///< of the integrator, eight lanes at once, in all
+
+  bool converged() const { return status == Status::converged; }
+  double duration() const { return times.empty() ? 0 : times.back(); }
 };
 
-/// Single shooting with the variational equations and a damped Newton iteration (natural monotonicity test),
-/// from the initial velocity of the guess. Throws std::invalid_argument unless both ends and the duration are
-/// fixed.
+/// DOP853 with variational equations, many segments side by side, and a damped Newton iteration (natural
+/// monotonicity test) from positions and velocities of the guess: far from the solution to a loose tolerance,
+/// near it to the one wanted and with factors that are kept as long as they serve. Any ends; the duration may
+/// be free. Throws std::invalid_argument for a singular constant mass or less than one segment.
 Shot shoot(const Problem& problem, const ShootingOptions& options = {});
+
+/// The motion found, at ascending times in [0, T]: each from the start of its segment.
+Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const double> times,
+              double tolerance = 1e-13);
 
 }  // namespace extremal

@@ -118,16 +118,16 @@ TEST(Flow, VariationsAreTheDerivativeOfTheSlope) {
   }
 }
 
-void expect_reference(const Problem& problem, const std::string& name, double bound) {
-  const Shot shot = shoot(problem, {.tolerance = 1e-12});
-  ASSERT_EQ(shot.status, Status::converged) << name << ": " << shot.message;
+/// Both kinds of shooting, against the rows of a reference solution.
+void expect_reference(Problem problem, const std::string& name, double bound, int segments) {
   const auto rows = reference(name);
-  ASSERT_EQ(rows.size(), 201u);
   const std::size_t n = problem.coordinates();
+  const Shot shot = shoot(problem, {.tolerance = 1e-12, .segments = segments});
+  ASSERT_EQ(shot.status, Status::converged) << name << ": " << shot.message;
+  ASSERT_EQ(shot.q.size(), n * segments);
   std::vector<double> times;
   for (const auto& row : rows) times.push_back(row[0]);
-  const std::span<const double> start(problem.ends.offset.data(), n);
-  const Flight flight = fly(*problem.lagrangian, start, shot.velocity_start, times);
+  const Flight flight = follow(*problem.lagrangian, shot, times, 1e-14);
   ASSERT_TRUE(flight.complete);
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (std::size_t a = 0; a < n; ++a) {
@@ -137,9 +137,32 @@ void expect_reference(const Problem& problem, const std::string& name, double bo
 }
 
 TEST(Shoot, ReferenceSolutions) {
-  expect_reference(fixed_ends(kepler(), {1, 0}, {-0.6, 0.9}, 2.5), "kepler-arc", 1e-11);
-  expect_reference(fixed_ends(pendulum(), {0}, {1.5}, 2), "pendulum-short", 1e-11);
-  expect_reference(fixed_ends(double_pendulum(), {0, 0}, {1, 2}, 1), "double-pendulum-1", 1e-11);
+  for (const int segments : {1, 8, 20})
+    expect_reference(fixed_ends(kepler(), {1, 0}, {-0.6, 0.9}, 2.5), "kepler-arc", 1e-11, segments);
+  for (const int segments : {1, 3, 8, 20}) {
+    expect_reference(fixed_ends(pendulum(), {0}, {1.5}, 2), "pendulum-short", 1e-11, segments);
+    expect_reference(fixed_ends(double_pendulum(), {0, 0}, {1, 2}, 1), "double-pendulum-1", 1e-11, segments);
+  }
+}
+
+/// Samples of a CSV of bench/data as a guess: t, then the coordinates, whatever follows.
+Guess guess_of(const std::string& name, int n) {
+  Guess guess;
+  const auto rows = reference(name);
+  for (const auto& row : rows) {
+    guess.tau.push_back(row[0] / rows.back()[0]);
+    guess.q.insert(guess.q.end(), row.begin() + 1, row.begin() + 1 + n);
+  }
+  guess.tau.back() = 1;
+  return guess;
+}
+
+TEST(Shoot, ChaoticMotionInSegments) {
+  const auto rows = reference("henon-heiles-60");
+  Problem problem =
+      fixed_ends(henon_heiles(), {rows.front()[1], rows.front()[2]}, {rows.back()[1], rows.back()[2]}, 60);
+  problem.guess = guess_of("henon-heiles-60-guess", 2);
+  expect_reference(problem, "henon-heiles-60", 1e-9, 16);
 }
 
 TEST(Shoot, StartsFromTheVelocityOfTheGuess) {
@@ -148,16 +171,86 @@ TEST(Shoot, StartsFromTheVelocityOfTheGuess) {
   swinging.guess = {{0, 0.2, 1}, {0, -1.1, 1}};
   past.guess = {{0, 0.1, 1}, {0, 1.05, 1}};
   const Shot a = shoot(swinging), b = shoot(past);
-  ASSERT_TRUE(a.status == Status::converged && b.status == Status::converged) << a.message << b.message;
-  EXPECT_LT(a.velocity_start[0], -1);
-  EXPECT_GT(b.velocity_start[0], 1.8);
+  ASSERT_TRUE(a.converged() && b.converged()) << a.message << b.message;
+  EXPECT_LT(a.v[0], -1);
+  EXPECT_GT(b.v[0], 1.8);
+}
+
+TEST(Shoot, NaturalEnds) {
+  // q'' = −q from 1 to where q' = 0: cos t + tan(T) sin t.
+  Problem problem;
+  problem.lagrangian = oscillator();
+  problem.boundary.coordinates = 1;
+  problem.boundary.fix(0, false, 1);
+  problem.duration.value = 3;
+  problem = make_problem(problem);
+  for (const int segments : {1, 4}) {
+    const Shot shot = shoot(problem, {.tolerance = 1e-12, .segments = segments});
+    ASSERT_TRUE(shot.converged()) << shot.message;
+    EXPECT_NEAR(shot.v[0], std::tan(3.0), 1e-11);
+  }
+}
+
+TEST(Shoot, FreeDurationClosedByWhere) {
+  // From the lowest point at rest on top of the swing: a quarter of the period 4 K(sin(1/2)) for q = 1.
+  Problem problem;
+  problem.lagrangian = pendulum();
+  problem.boundary.coordinates = 1;
+  problem.boundary.fix(0, false, 0);
+  problem.duration = {.value = 1.5, .free = true, .energy = {}, .where = [](auto, auto end, auto gradient) {
+                        gradient[0] = 0;
+                        gradient[1] = 1;
+                        return end[0] - 1;
+                      }};
+  problem.guess = {{0, 1}, {0, 0.8}};
+  problem = make_problem(problem);
+  for (const int segments : {1, 8}) {
+    const Shot shot = shoot(problem, {.tolerance = 1e-12, .segments = segments});
+    ASSERT_TRUE(shot.converged()) << shot.message;
+    EXPECT_NEAR(shot.duration(), std::comp_ellint_1(std::sin(0.5)), 1e-11);
+    EXPECT_NEAR(shot.v[0], 2 * std::sin(0.5), 1e-11);
+  }
+}
+
+TEST(Shoot, PeriodicOrbitOfGivenEnergy) {
+  // The pendulum that swings to 1: E = −cos 1, period 4 K(sin(1/2)).
+  Problem problem;
+  problem.lagrangian = pendulum();
+  problem.boundary.coordinates = 1;
+  const int row = problem.boundary.add_row(0);
+  problem.boundary.add(row, 0, 1);
+  problem.boundary.add(row, 1, -1);
+  problem.periodic = true;
+  problem.duration = {.value = 6.4, .free = true, .energy = -std::cos(1), .where = {}};
+  for (int k = 0; k <= 64; ++k) {
+    problem.guess.tau.push_back(k / 64.0);
+    problem.guess.q.push_back(1.1 * std::cos(2 * pi * k / 64 + 0.4));
+  }
+  problem = make_problem(problem);
+  for (const int segments : {1, 8}) {
+    const Shot shot = shoot(problem, {.tolerance = 1e-11, .segments = segments});
+    ASSERT_TRUE(shot.converged()) << shot.message;
+    EXPECT_NEAR(shot.duration(), 4 * std::comp_ellint_1(std::sin(0.5)), 1e-9);
+    const Flight flight = follow(*problem.lagrangian, shot, std::vector{0.0, shot.duration()});
+    EXPECT_NEAR(flight.q[0], flight.q[1], 1e-9);
+    EXPECT_NEAR(flight.v[0], flight.v[1], 1e-9);
+  }
+}
+
+TEST(Shoot, LargeTolerancesAreMetToo) {
+  const Problem problem = fixed_ends(pendulum(), {0}, {1.5}, 2);
+  const Shot rough = shoot(problem, {.tolerance = 1e-3}), fine = shoot(problem, {.tolerance = 1e-13});
+  ASSERT_TRUE(rough.converged() && fine.converged());
+  EXPECT_NEAR(rough.v[0], fine.v[0], 1e-3);
+  EXPECT_LT(rough.steps, fine.steps);
 }
 
 TEST(Shoot, RefusesWhatItCannotPose) {
-  Problem problem = fixed_ends(pendulum(), {0}, {1}, 1);
-  problem.boundary = {};
-  problem.boundary.coordinates = 1;
-  EXPECT_THROW(shoot(make_problem(problem)), std::invalid_argument);
+  EXPECT_THROW(shoot(fixed_ends(pendulum(), {0}, {1}, 1), {.segments = 0}), std::invalid_argument);
+  const auto singular = trace(2, [](auto q, auto v, auto) {
+    return (v[0] + v[1]) * (v[0] + v[1]) / 2.0 - q[0] * q[0] - q[1] * q[1];
+  });
+  EXPECT_THROW(shoot(fixed_ends(singular, {0, 0}, {1, 1}, 1)), std::invalid_argument);
 }
 
 TEST(Shoot, SaysThatItFailed) {
@@ -165,6 +258,21 @@ TEST(Shoot, SaysThatItFailed) {
   const Shot shot = shoot(fixed_ends(central, {1}, {-1}, 1));
   EXPECT_NE(shot.status, Status::converged);
   EXPECT_FALSE(shot.message.empty());
+  EXPECT_THROW(follow(*central, shot, std::vector{0.5}), std::invalid_argument);
+}
+
+TEST(Follow, TimesThatAllButCoincideWithTheEndsOfSegments) {
+  const Problem problem = fixed_ends(pendulum(), {0}, {1.5}, 2);
+  const Shot shot = shoot(problem, {.tolerance = 1e-12, .segments = 7});
+  ASSERT_TRUE(shot.converged());
+  std::vector<double> times;
+  for (int k = 0; k < 7; ++k)
+    for (const double end :
+         {std::nextafter(shot.times[k], -1), shot.times[k], std::nextafter(shot.times[k], 3)})
+      if (end >= 0) times.push_back(end);
+  const Flight flight = follow(*problem.lagrangian, shot, times);
+  ASSERT_TRUE(flight.complete);
+  for (std::size_t i = 1; i < times.size(); ++i) EXPECT_GE(flight.q[i], flight.q[i - 1] - 1e-11);
 }
 
 }  // namespace

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "machine/aligned.hpp"
+#include "rivals/dop853_tableau.hpp"
+#include "rivals/lane_flow.hpp"
+
+/// \file Many pieces of motion integrated by the method of Dormand and Prince, eight at a time.
+
+namespace extremal {
+
+/// A piece of motion.
+struct Leg {
+  double start = 0, end = 0;
+  const double* initial = nullptr;  ///< (q, p), then its variations, 2n each
+  double* final = nullptr;          ///< the same at the end
+  double first_step = 0;            ///< to begin with; as it was found fit, for the next time. 0: none known
+  double tolerance = 0;             ///< that first_step belongs to
+  bool complete = false;
+  int steps = 0;
+};
+
+/// Eight lanes, each with its own time, step length and error control; a lane that has finished takes the
+/// next leg. Error and step length are those of the state without its variations.
+class Convoy {
+ public:
+  /// `flow` must outlive it.
+  explicit Convoy(LaneFlow& flow);
+
+  /// Integrates every leg, with `columns` variations each, to an error of a step relative to the largest |q|
+  /// and |p|. False if one could not be completed. `most_steps` is for each leg.
+  bool run(std::span<Leg> legs, int columns, double tolerance, int most_steps);
+
+  int steps() const { return steps_; }  ///< of eight lanes together, in all
+
+ private:
+  struct Lane {
+    Leg* leg = nullptr;
+    double t = 0, h = 0;  ///< h: as planned
+    bool last = false;    ///< the step being taken ends the leg
+    bool rejected = false;
+  };
+  void resize(int columns);
+  void take_leg(int l);
+  void choose_first_steps();
+  void plan_steps();
+  void step(int columns);
+  void judge();
+  void judge_lane(int l, double error);
+  void accept(int l);
+  void fail();
+  bool under_way() const;
+  void list(const dop853::Row& row, std::vector<LaneStage>& stages) const;
+
+  LaneFlow& flow_;
+  const LaneKernels& kernels_;
+  Lane lane_[lanes];
+  std::vector<Leg*> waiting_;  ///< the next one last
+  AlignedDoubles y_, next_, k_, t_, h_, stage_t_, sums_;
+  std::vector<LaneStage> stages_, others_;
+  std::size_t rows_ = 0;
+  double tolerance_ = 0;
+  int most_steps_ = 0, steps_ = 0;
+  bool failed_ = false;
+};
+
+}  // namespace extremal

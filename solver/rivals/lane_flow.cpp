@@ -1,0 +1,200 @@
+#include "rivals/lane_flow.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace extremal {
+
+namespace {
+
+constexpr int most_iterations = 20;
+/// ∂L/∂q' agrees with p to roundoff; from below `near` the next step of Newton ends in it.
+constexpr double roundoff = 2e-15, near = 1e-8, acceptable = 1e-12;
+
+}  // namespace
+
+LaneKernels lane_kernels() {
+  switch (simd_level()) {
+    case SimdLevel::base:
+      return base::lane_kernels();
+    case SimdLevel::v3:
+      return v3::lane_kernels();
+    default:
+      return v4::lane_kernels();
+  }
+}
+
+LaneFlow::LaneFlow(const Lagrangian& lagrangian)
+    : lagrangian_(lagrangian),
+      structure_(lagrangian.structure()),
+      n_(structure_.coordinates),
+      kernels_(lane_kernels()),
+      gradient_q_(n_, -1),
+      gradient_v_(n_, -1),
+      v_(static_cast<std::size_t>(n_) * lanes),
+      out_(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * lanes),
+      work_(static_cast<std::size_t>(n_) * lanes) {
+  for (std::size_t k = 0; k < structure_.gradient.size(); ++k) {
+    const int z = structure_.gradient[k];
+    (z < n_ ? gradient_q_[z] : gradient_v_[z - n_]) = static_cast<int>(1 + k);
+  }
+  if (structure_.quadratic)
+    invert_mass();
+  else
+    factors_.resize(static_cast<std::size_t>(n_) * n_ * lanes);
+  list_entries();
+}
+
+void LaneFlow::invert_mass() {
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n_, n_);
+  for (const Triplet& m : structure_.mass) mass(m.row, m.column) += m.value;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(mass);
+  if (!(factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0))
+    throw std::invalid_argument("the mass matrix of the Lagrangian is singular");
+  const Eigen::MatrixXd inverse = factors.inverse();
+  std::vector<double> values;
+  for (int i = 0; i < n_; ++i)
+    for (int j = 0; j < n_; ++j)
+      if (inverse(i, j) != 0) {
+        mass_inverse_.push_back({i, j, nullptr});
+        values.push_back(inverse(i, j));
+      }
+  for (const Triplet& c : structure_.gyroscopic) {
+    vq_.push_back({c.row, c.column, nullptr});
+    values.push_back(c.value);
+  }
+  constants_.resize(values.size() * lanes);
+  for (std::size_t k = 0; k < values.size(); ++k)
+    std::fill_n(constants_.data() + k * lanes, lanes, values[k]);
+  const double* next = constants_.data();
+  for (std::vector<LaneEntry>* list : {&mass_inverse_, &vq_})
+    for (LaneEntry& entry : *list) {
+      entry.value = next;
+      next += lanes;
+    }
+}
+
+/// Second derivatives where the tape writes them; both triangles of ∂²L/∂q∂q, the lower one of ∂²L/∂q'∂q'.
+void LaneFlow::list_entries() {
+  const double* value = out_.data() + (1 + structure_.gradient.size()) * lanes;
+  for (const auto& [row, column] : structure_.hessian) {
+    if (row < n_) {
+      qq_.push_back({row, column, value});
+      if (row != column) qq_.push_back({column, row, value});
+    } else if (column < n_) {
+      vq_.push_back({row - n_, column, value});
+    } else {
+      vv_.push_back({row - n_, column - n_, value});
+    }
+    value += lanes;
+  }
+}
+
+void LaneFlow::evaluate(const double* t, const double* y, Order order) {
+  lagrangian_.evaluate({lanes, lanes, y, v_.data(), t}, order, out_.data(), scratch_);
+}
+
+/// q' from p, left in v_; and in out_ the derivatives up to `order` there.
+void LaneFlow::solve_velocity(const double* t, const double* y, Order order) {
+  const double* const p = y + static_cast<std::size_t>(n_) * lanes;
+  if (structure_.quadratic) {
+    std::copy_n(p, n_ * lanes, work_.data());
+    kernels_.add_products(vq_.data(), static_cast<int>(structure_.gyroscopic.size()), -1, y, work_.data(), 1,
+                          0, 0);
+    for (std::size_t a = 0; a < structure_.linear.size(); ++a)
+      for (int lane = 0; lane < lanes; ++lane) work_[a * lanes + lane] -= structure_.linear[a];
+    std::fill(v_.begin(), v_.end(), 0.0);
+    kernels_.add_products(mass_inverse_.data(), static_cast<int>(mass_inverse_.size()), 1, work_.data(),
+                          v_.data(), 1, 0, 0);
+    evaluate(t, y, order);
+    return;
+  }
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_iterations; ++i) {
+    evaluate(t, y, Order::hessian);
+    if (!correct_velocity(p, before)) break;
+  }
+}
+
+/// Factors ∂²L/∂q'∂q' and takes a step of Newton, unless v_ belongs to p already: then false. The worst lane
+/// counts; lanes that are not finite do not.
+bool LaneFlow::correct_velocity(const double* p, double& before) {
+  double size[lanes] = {}, worst = 0;
+  residual_.fill(0);
+  for (int a = 0; a < n_; ++a)
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double momentum = gradient_v_[a] < 0 ? 0 : out_[gradient_v_[a] * lanes + lane];
+      const double r = p[a * lanes + lane] - momentum;
+      work_[a * lanes + lane] = r;
+      residual_[lane] = std::abs(r) <= residual_[lane] ? residual_[lane] : std::abs(r);
+      size[lane] = std::max({size[lane], std::abs(p[a * lanes + lane]), std::abs(momentum)});
+    }
+  for (int lane = 0; lane < lanes; ++lane) {
+    if (size[lane] > 0) residual_[lane] /= size[lane];
+    if (std::isfinite(residual_[lane])) worst = std::max(worst, residual_[lane]);
+  }
+  std::fill(factors_.begin(), factors_.end(), 0.0);
+  for (const LaneEntry& e : vv_)
+    std::copy_n(e.value, lanes, factors_.data() + static_cast<std::size_t>(e.row * n_ + e.column) * lanes);
+  kernels_.factor(factors_.data(), n_);
+  if (worst <= roundoff || (before <= near && worst <= acceptable)) return false;
+  before = worst;
+  kernels_.solve(factors_.data(), n_, work_.data(), 1, 0);
+  for (int i = 0; i < n_ * lanes; ++i) {
+    v_[i] += work_[i];
+    // A lane that has been lost starts anew.
+    if (!std::isfinite(v_[i])) v_[i] = 0;
+  }
+  return true;
+}
+
+/// ∂L/∂q.
+void LaneFlow::write_force(double* force) {
+  for (int a = 0; a < n_; ++a) {
+    double* const to = force + a * lanes;
+    if (gradient_q_[a] < 0)
+      std::fill_n(to, lanes, 0.0);
+    else
+      std::copy_n(out_.data() + gradient_q_[a] * lanes, lanes, to);
+  }
+  kernels_.add_transposed(vq_.data(), static_cast<int>(structure_.gyroscopic.size()), v_.data(), force, 1, 0,
+                          0);
+}
+
+/// L_vv δq' = δp − L_vq δq,  δp' = L_qq δq + L_vqᵀ δq'.
+void LaneFlow::vary(const double* y, int columns, double* slope) {
+  const std::size_t half = static_cast<std::size_t>(n_) * lanes;
+  const long stride = 2L * n_;
+  const auto count = [](const std::vector<LaneEntry>& entries) { return static_cast<int>(entries.size()); };
+  double* const right = structure_.quadratic ? work_.data() : slope;
+  const long right_stride = structure_.quadratic ? n_ : stride;
+  for (int c = 0; c < columns; ++c) {
+    std::copy_n(y + c * 2 * half + half, half, right + c * right_stride * lanes);
+    std::fill_n(slope + c * 2 * half + half, half, 0.0);
+    if (structure_.quadratic) std::fill_n(slope + c * 2 * half, half, 0.0);
+  }
+  kernels_.add_products(vq_.data(), count(vq_), -1, y, right, columns, stride, right_stride);
+  if (structure_.quadratic)
+    kernels_.add_products(mass_inverse_.data(), count(mass_inverse_), 1, right, slope, columns, right_stride,
+                          stride);
+  else
+    kernels_.solve(factors_.data(), n_, slope, columns, stride);
+  kernels_.add_products(qq_.data(), count(qq_), 1, y, slope + half, columns, stride, stride);
+  kernels_.add_transposed(vq_.data(), count(vq_), slope, slope + half, columns, stride, stride);
+}
+
+void LaneFlow::slope(const double* t, const double* y, int columns, double* slope) {
+  const std::size_t half = static_cast<std::size_t>(n_) * lanes;
+  work_.resize(std::max(work_.size(), half * columns));
+  solve_velocity(t, y, columns > 0 ? Order::hessian : Order::gradient);
+  std::copy_n(v_.data(), half, slope);
+  for (int lane = 0; lane < lanes && !structure_.quadratic; ++lane)
+    if (!(residual_[lane] <= acceptable)) slope[lane] = std::numeric_limits<double>::quiet_NaN();
+  write_force(slope + half);
+  if (columns > 0) vary(y + 2 * half, columns, slope + 2 * half);
+}
+
+}  // namespace extremal
