@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <string>
@@ -24,12 +25,13 @@ const std::string folder = EXTREMAL_SOURCE_DIR "/bench/";
 
 struct BenchmarkScene {
   std::string name;
-  bool slow = false;  ///< only every fourth decade
+  bool slow = false;     ///< only every fourth decade
+  bool boundary = true;  ///< a boundary problem whose time is compared
 };
 const std::vector<BenchmarkScene> all_scenes{
     {"pendulum-short"},  {"pendulum-long"},      {"kepler-arc"},        {"kepler-eccentric"},
     {"henon-heiles-10"}, {"henon-heiles-60"},    {"double-pendulum-1"}, {"double-pendulum-3"},
-    {"halo-half"},       {"lyapunov-half"},      {"nrho-half"},         {"fpu-32"},
+    {"halo-half"},       {"lyapunov-half"},      {"nrho-half"},         {"fpu-32", false, false},
     {"fpu-32-modes"},    {"fpu-256-modes", true}};
 
 struct Options {
@@ -50,13 +52,14 @@ std::vector<double> decades(bool slow) {
 SceneRecord measure_scene(const BenchmarkScene& scene, const Options& options) {
   SceneRecord record;
   record.name = scene.name;
+  record.boundary = scene.boundary;
   const std::string path = folder + "data/" + scene.name;
   try {
     const extremal::Study study = extremal::load(path + ".toml");
     const Reference reference = read_reference(path + ".csv", study.problem.names);
     for (double tolerance : options.tolerances.empty() ? decades(scene.slow) : options.tolerances)
       record.cells.push_back(measure(study, tolerance, reference, options.budget));
-    if (!options.alone) record.shooting = measure_shooting(study.problem, reference, options.budget / 2);
+    if (!options.alone) measure_shooting(study.problem, reference, options.budget / 4, record);
   } catch (const std::exception& e) {
     record.refusal = e.what();
   }
@@ -66,7 +69,11 @@ SceneRecord measure_scene(const BenchmarkScene& scene, const Options& options) {
 std::vector<BenchmarkScene> chosen_scenes(const Options& options) {
   if (options.scenes.empty()) return all_scenes;
   std::vector<BenchmarkScene> chosen;
-  for (const std::string& name : options.scenes) chosen.push_back({name});
+  for (const std::string& name : options.scenes) {
+    const auto known = std::find_if(all_scenes.begin(), all_scenes.end(),
+                                    [&](const BenchmarkScene& scene) { return scene.name == name; });
+    chosen.push_back(known == all_scenes.end() ? BenchmarkScene{name, false, false} : *known);
+  }
   return chosen;
 }
 
@@ -90,6 +97,7 @@ void compare_programs(const Options& options) {
   }
   for (const SceneRecord& record : records) print_scene(record);
   print_summary(records, peers);
+  print_means(records, peers);
   print_honesty(records);
   if (!options.json.empty()) write_record(options.json, machine, records);
   if (!options.plot.empty()) draw_chart(options.plot, records, peers);

@@ -30,12 +30,26 @@ extremal::Solution solve_often(const extremal::Study& study, double budget, int&
   return more > repeats ? extremal::run(study, repeats = more) : solution;
 }
 
-/// Components of the state with all its variations above which single shooting is hopelessly slow.
-constexpr int most_components = 10000;
-/// The integrator of a shot is asked for this much more than the ends (see ShootingOptions).
-constexpr double integrator_margin = 0.1;
+/// Coordinates above which the variations of many segments take too long, and those of one.
+constexpr int most_multiple = 40, most_single = 1000;
+/// Tried, so that the best can be chosen in hindsight.
+constexpr int segment_counts[] = {4, 8, 16, 32};
 
-Run shoot_often(const extremal::Problem& problem, double tolerance, const Reference& reference,
+/// Largest error of the motion found, followed from segment to segment.
+void measure_error(const extremal::Problem& problem, const extremal::Shot& shot, const Reference& reference,
+                   Run& run) {
+  std::vector<double> times = reference.t;
+  for (double& t : times) t = std::min(t, shot.duration());
+  extremal::Flight flight = extremal::follow(*problem.lagrangian, shot, times);
+  run.failure = flight.complete ? "" : "the trajectory found cannot be followed";
+  if (!flight.complete) return;
+  const std::size_t n = problem.coordinates();
+  for (std::size_t i = 0; i < flight.q.size(); ++i)
+    flight.q[i] += (reference.t[i / n] - times[i / n]) * flight.v[i];
+  run.error = difference(flight.q, flight.v, reference).q;
+}
+
+Run shoot_often(const extremal::Problem& problem, double tolerance, int segments, const Reference& reference,
                 double budget) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> seconds;
@@ -43,18 +57,16 @@ Run shoot_often(const extremal::Problem& problem, double tolerance, const Refere
   double spent = 0;
   do {
     const auto start = Clock::now();
-    shot = extremal::shoot(problem, {.tolerance = tolerance});
+    shot = extremal::shoot(problem, {.tolerance = tolerance, .segments = segments});
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
     spent += seconds.back();
   } while (spent < budget && seconds.size() < most_repeats);
   std::nth_element(seconds.begin(), seconds.begin() + seconds.size() / 2, seconds.end());
-  Run run{.tolerance = tolerance, .failure = shot.message, .seconds = seconds[seconds.size() / 2]};
-  if (shot.status != extremal::Status::converged) return run;
-  const std::span<const double> start(problem.ends.offset.data(), problem.coordinates());
-  const extremal::Flight flight = extremal::fly(*problem.lagrangian, start, shot.velocity_start, reference.t,
-                                                integrator_margin * tolerance);
-  run.failure = flight.complete ? "" : "the trajectory found cannot be integrated";
-  run.error = difference(flight.q, flight.v, reference).q;
+  Run run{.tolerance = tolerance,
+          .failure = shot.message,
+          .segments = segments,
+          .seconds = seconds[seconds.size() / 2]};
+  if (shot.converged()) measure_error(problem, shot, reference, run);
   return run;
 }
 
@@ -80,17 +92,20 @@ Cell measure(extremal::Study study, double tolerance, const Reference& reference
   return cell;
 }
 
-Rival measure_shooting(const extremal::Problem& problem, const Reference& reference, double budget) {
-  Rival rival;
-  const int n = problem.coordinates(), components = 2 * n * (n + 1);
-  if (problem.ends.free > 0 || problem.duration.free)
-    rival.absence = "needs both ends and the duration fixed";
-  else if (components > most_components)
-    rival.absence = fmt::format("would integrate {} components", components);
-  if (!rival.absence.empty()) return rival;
-  for (int digits = 4; digits <= 12; ++digits)
-    rival.runs.push_back(shoot_often(problem, std::pow(10.0, -digits), reference, budget));
-  return rival;
+void measure_shooting(const extremal::Problem& problem, const Reference& reference, double budget,
+                      SceneRecord& record) {
+  const int n = problem.coordinates();
+  const auto refuse = [n](Rival& rival) { rival.absence = fmt::format("not tried with {} coordinates", n); };
+  if (n > most_single) refuse(record.single);
+  if (n > most_multiple) refuse(record.multiple);
+  for (int digits = 3; digits <= 13; ++digits) {
+    const double tolerance = std::pow(10.0, -digits);
+    if (record.single.absence.empty())
+      record.single.runs.push_back(shoot_often(problem, tolerance, 1, reference, budget));
+    if (!record.multiple.absence.empty()) continue;
+    for (const int segments : segment_counts)
+      record.multiple.runs.push_back(shoot_often(problem, tolerance, segments, reference, budget));
+  }
 }
 
 }  // namespace bench

@@ -11,7 +11,9 @@ namespace bench {
 /// Solves at this tolerance, all else as the study says, as often as `budget` seconds allow.
 Cell measure(extremal::Study study, double tolerance, const Reference& reference, double budget);
 
-/// Single shooting on the same problem from the same guess, or why it cannot be tried.
-Rival measure_shooting(const extremal::Problem& problem, const Reference& reference, double budget);
+/// Single and multiple shooting on the same problem from the same guess, at one tolerance a decade and with
+/// several numbers of segments; why, where that would take too long.
+void measure_shooting(const extremal::Problem& problem, const Reference& reference, double budget,
+                      SceneRecord& record);
 
 }  // namespace bench

@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Json object(const Run& run) {
   Json result{{"tolerance", run.tolerance}, {"seconds", run.seconds}};
+  if (run.segments > 0) result["segments"] = run.segments;
   if (run.converged())
     result["error"] = run.error;
   else
@@ -56,7 +57,8 @@ Json object(const SceneRecord& scene) {
   for (double error : compared_errors)
     if (const auto seconds = time_at_error(scene.cells, error))
       result["seconds_at_error"][fmt::format("{:.0e}", error)] = *seconds;
-  result["shooting"] = object(scene.shooting);
+  result["single_shooting"] = object(scene.single);
+  result["multiple_shooting"] = object(scene.multiple);
   result["scipy"] = object(scene.scipy);
   return result;
 }

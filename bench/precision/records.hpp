@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ inline constexpr std::array<double, 4> compared_errors{1e-4, 1e-8, 1e-11, 1e-14}
 struct Run {
   double tolerance = 0;
   std::string failure = "not run";  ///< empty where it converged
+  int segments = 0;                 ///< of shooting
   double seconds = 0;               ///< median
   double error = 0;                 ///< of q, in its units: largest over coordinates and reference times
   bool converged() const { return failure.empty(); }
@@ -33,15 +35,17 @@ struct Cell : Run {
 
 /// Runs of another program on a scene, or why there are none.
 struct Rival {
+  std::string name;
   std::string absence;
   std::vector<Run> runs;
 };
 
 struct SceneRecord {
   std::string name;
-  std::string refusal;  ///< why it was not solved; empty where it was
+  std::string refusal;   ///< why it was not solved; empty where it was
+  bool boundary = true;  ///< counts in the means over boundary problems
   std::vector<Cell> cells;
-  Rival shooting, scipy;
+  Rival single{.name = "single shooting"}, multiple{.name = "multiple shooting"}, scipy{.name = "scipy"};
 };
 
 /// Seconds of the fastest run whose true error is at most `error`.
@@ -50,6 +54,14 @@ std::optional<double> time_at_error(const Runs& runs, double error) {
   std::optional<double> best;
   for (const auto& run : runs)
     if (run.converged() && run.error <= error) best = std::min(run.seconds, best.value_or(run.seconds));
+  return best;
+}
+
+/// The fastest of several, where there is one.
+inline std::optional<double> least(std::initializer_list<std::optional<double>> times) {
+  std::optional<double> best;
+  for (const auto& time : times)
+    if (time) best = std::min(*time, best.value_or(*time));
   return best;
 }
 

@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 
 namespace bench {
 namespace {
+
+/// Errors that the means are taken over.
+constexpr double mean_errors[] = {1e-8, 1e-11};
 
 std::string microseconds(std::optional<double> seconds) {
   if (!seconds) return "-";
@@ -22,63 +27,84 @@ std::string honesty_text(const Cell& cell) {
 
 class GeometricMean {
  public:
-  void add(double x) { sum_ += std::log(x), ++count_, better_ += x > 1; }
+  /// Another's time over ours, where both are known.
+  void add(std::optional<double> other, std::optional<double> ours) {
+    if (!other || !ours) return;
+    sum_ += std::log(*other / *ours), ++count_, slower_ += *other < *ours;
+  }
   std::string text() const {
     if (count_ == 0) return "none";
-    return fmt::format("{:.2f} over {} cells, above 1 in {}", std::exp(sum_ / count_), count_, better_);
+    return fmt::format("{:.2f} over {} cells, below 1 in {}", std::exp(sum_ / count_), count_, slower_);
   }
 
  private:
   double sum_ = 0;
-  int count_ = 0, better_ = 0;
+  int count_ = 0, slower_ = 0;
 };
 
-/// Another program's time over ours; adds it to the means.
-std::string ratio(std::optional<double> other, std::optional<double> ours,
-                  std::initializer_list<GeometricMean*> means) {
-  if (!other || !ours) return "-";
-  for (GeometricMean* mean : means) mean->add(*other / *ours);
-  return fmt::format("{:.2f}", *other / *ours);
+std::string ratio(std::optional<double> other, std::optional<double> ours) {
+  return other && ours ? fmt::format("{:.2f}", *other / *ours) : "-";
 }
 
-/// Of one comparison: for one error, and for all.
-struct Means {
-  GeometricMean peers, shooting, scipy;
-};
-
-void print_error(const std::vector<SceneRecord>& scenes, const Peers& peers, double error, Means& all) {
-  fmt::print("\nTime at error {:.0e}, microseconds\n{:<20}{:>9} |{:>9}{:>9} |", error, "", "extremal",
-             "shooting", "scipy");
-  for (const std::string& name : peers.names) fmt::print("{:>10}", name);
-  fmt::print(" |{:>10}{:>10}\n", "best peer", "shooting");
-  Means here;
-  int reached = 0, solved = 0;
-  for (const SceneRecord& scene : scenes) {
-    if (!scene.refusal.empty()) continue;
-    const auto ours = time_at_error(scene.cells, error), shot = time_at_error(scene.shooting.runs, error),
-               scipy = time_at_error(scene.scipy.runs, error), best = best_peer(peers, scene.name, error);
-    ++solved;
-    reached += ours.has_value();
-    fmt::print("{:<20}{:>9} |{:>9}{:>9} |", scene.name, microseconds(ours), microseconds(shot),
-               microseconds(scipy));
-    for (std::size_t k = 0; k < peers.names.size(); ++k)
-      fmt::print("{:>10}", microseconds(peer_time(peers, scene.name, k, error)));
-    fmt::print(" |{:>10}{:>10}\n", ratio(best, ours, {&here.peers, &all.peers}),
-               ratio(shot, ours, {&here.shooting, &all.shooting}));
-    ratio(scipy, ours, {&here.scipy, &all.scipy});
-  }
-  fmt::print("reached in {} of {} scenes; best peer / extremal, geometric mean: {}\n", reached, solved,
-             here.peers.text());
-}
-
-}  // namespace
-
+/// Of the peers measured apart; nothing where none has a time.
 std::optional<double> best_peer(const Peers& peers, const std::string& scene, double error) {
   std::optional<double> best;
   for (std::size_t k = 0; k < peers.names.size(); ++k)
     if (const auto time = peer_time(peers, scene, k, error)) best = std::min(*time, best.value_or(*time));
   return best;
 }
+
+/// What the programs need for one error.
+struct Times {
+  Times(const SceneRecord& scene, const Peers& peers, double error)
+      : ours(time_at_error(scene.cells, error)),
+        single(time_at_error(scene.single.runs, error)),
+        multiple(time_at_error(scene.multiple.runs, error)),
+        scipy(time_at_error(scene.scipy.runs, error)),
+        peer(best_peer(peers, scene.name, error)) {}
+  std::optional<double> shooting() const { return least({single, multiple}); }
+  std::optional<double> best() const { return least({single, multiple, scipy, peer}); }
+
+  std::optional<double> ours, single, multiple, scipy, peer;
+};
+
+void print_error(const std::vector<SceneRecord>& scenes, const Peers& peers, double error) {
+  fmt::print("\nTime at error {:.0e}, microseconds\n{:<20}{:>9} |{:>9}{:>9}{:>9} |", error, "", "extremal",
+             "single", "multiple", "scipy");
+  for (const std::string& name : peers.names) fmt::print("{:>10}", name);
+  fmt::print(" |{:>10}{:>10}\n", "best peer", "shooting");
+  int reached = 0, solved = 0;
+  for (const SceneRecord& scene : scenes) {
+    if (!scene.refusal.empty()) continue;
+    const Times times(scene, peers, error);
+    ++solved;
+    reached += times.ours.has_value();
+    fmt::print("{:<20}{:>9} |{:>9}{:>9}{:>9} |", scene.name, microseconds(times.ours),
+               microseconds(times.single), microseconds(times.multiple), microseconds(times.scipy));
+    for (std::size_t k = 0; k < peers.names.size(); ++k)
+      fmt::print("{:>10}", microseconds(peer_time(peers, scene.name, k, error)));
+    fmt::print(" |{:>10}{:>10}\n", ratio(times.peer, times.ours), ratio(times.shooting(), times.ours));
+  }
+  fmt::print("reached in {} of {} scenes\n", reached, solved);
+}
+
+/// Runs of a rival, the fastest for each tolerance.
+void print_runs(const Rival& rival) {
+  if (!rival.absence.empty()) fmt::print("{}: {}\n", rival.name, rival.absence);
+  if (rival.runs.empty()) return;
+  fmt::print("{} (µs at true error):", rival.name);
+  std::map<double, const Run*, std::greater<>> fastest;
+  for (const Run& run : rival.runs) {
+    const Run*& best = fastest[run.tolerance];
+    if (!best || !best->converged() || (run.converged() && run.seconds < best->seconds)) best = &run;
+  }
+  for (const auto& [tolerance, run] : fastest)
+    fmt::print("  {}", run->converged() ? fmt::format("{} at {:.0e}", microseconds(run->seconds), run->error)
+                                        : fmt::format("failed at tolerance {:.0e}", tolerance));
+  fmt::print("\n");
+}
+
+}  // namespace
 
 void print_scene(const SceneRecord& scene) {
   fmt::print("\n{}\n", scene.name);
@@ -98,34 +124,51 @@ void print_scene(const SceneRecord& scene) {
                cell.elements, cell.degree, cell.iterations, microseconds(cell.seconds), cell.error,
                cell.error / cell.allowed, cell.estimate, honesty_text(cell), cell.velocity_error);
   }
-  for (const auto& [name, rival] : {std::pair("shooting", &scene.shooting), {"scipy", &scene.scipy}}) {
-    if (!rival->absence.empty()) fmt::print("{}: {}\n", name, rival->absence);
-    if (rival->runs.empty()) continue;
-    fmt::print("{} (µs at true error):", name);
-    for (const Run& run : rival->runs)
-      fmt::print("  {}", run.converged() ? fmt::format("{} at {:.0e}", microseconds(run.seconds), run.error)
-                                         : fmt::format("failed at tolerance {:.0e}", run.tolerance));
-    fmt::print("\n");
-  }
+  for (const Rival* rival : {&scene.single, &scene.multiple, &scene.scipy}) print_runs(*rival);
 }
 
 void print_summary(const std::vector<SceneRecord>& scenes, const Peers& peers) {
   fmt::print(
       "\nTime at error E: the fastest of all runs whose true error is at most E.\n"
-      "Left, in this run: single shooting, general, that plays the same tapes point by point, and scipy's "
-      "solve_bvp.\nRight: programs with equations coded by hand, measured separately on the same kind of "
-      "machine,\neach with the setting that is best in hindsight (bench/data/README.md).\n"
+      "Left, in this run: single and multiple shooting, general, on the same tapes, and scipy's solve_bvp.\n"
+      "Right: programs with equations coded by hand, measured separately on the same kind of machine.\n"
+      "All with the setting that is best in hindsight (bench/data/README.md).\n"
       "Last two columns: their time over ours.\n");
-  Means all;
-  for (double error : compared_errors) print_error(scenes, peers, error, all);
-  fmt::print("\nAll errors, geometric means of another's time over ours\n");
-  fmt::print("  best peer measured apart: {}\n  single shooting in this run: {}\n", all.peers.text(),
-             all.shooting.text());
-  fmt::print("  scipy in this run: {}\n", all.scipy.text());
+  for (double error : compared_errors) print_error(scenes, peers, error);
+}
+
+void print_means(const std::vector<SceneRecord>& scenes, const Peers& peers) {
+  GeometricMean peer, single, multiple, shooting, scipy, best;
+  int problems = 0, cells = 0, reached = 0;
+  for (const SceneRecord& scene : scenes) {
+    if (!scene.boundary || !scene.refusal.empty()) continue;
+    ++problems;
+    for (double error : mean_errors) {
+      const Times times(scene, peers, error);
+      ++cells;
+      reached += times.ours.has_value();
+      peer.add(times.peer, times.ours);
+      single.add(times.single, times.ours);
+      multiple.add(times.multiple, times.ours);
+      shooting.add(times.shooting(), times.ours);
+      scipy.add(times.scipy, times.ours);
+      best.add(times.best(), times.ours);
+    }
+  }
+  fmt::print("\nErrors 1e-08 and 1e-11, {} boundary problems: {} of {} cells reached\n", problems, reached,
+             cells);
+  fmt::print("Geometric means of another's time over ours\n");
+  for (const auto& [name, mean] : {std::pair("best peer measured apart", &peer),
+                                   {"single shooting, this run", &single},
+                                   {"multiple shooting, this run", &multiple},
+                                   {"better shooting, this run", &shooting},
+                                   {"scipy, this run", &scipy},
+                                   {"best of all of these", &best}})
+    fmt::print("  {:<28} {}\n", name, mean->text());
 }
 
 void print_honesty(const std::vector<SceneRecord>& scenes) {
-  int converged = 0, within[2] = {0, 0}, cells = 0, met = 0;
+  int converged = 0, within = 0, below = 0, above = 0, cells = 0, met = 0;
   fmt::print("\nError estimate / true error, from the loosest tolerance on; x: not converged\n");
   for (const SceneRecord& scene : scenes) {
     if (scene.cells.empty()) continue;
@@ -136,16 +179,18 @@ void print_honesty(const std::vector<SceneRecord>& scenes) {
       if (!cell.converged()) continue;
       ++converged;
       met += cell.error <= cell.allowed;
-      const double decades = std::abs(std::log10(cell.honesty()));
-      within[0] += decades <= 1;
-      within[1] += decades <= 2;
+      within += std::abs(std::log10(cell.honesty())) <= 1;
+      below += cell.honesty() < 0.01;
+      above += cell.honesty() > 100;
     }
     fmt::print("\n");
   }
+  const double share = converged > 0 ? 100.0 * within / converged : 0;
   fmt::print(
-      "{} of {} runs converged; of these {} meet the tolerance, {} estimates are within [0.1, 10] and "
-      "{} within [0.01, 100]\nof the true error\n",
-      converged, cells, met, within[0], within[1]);
+      "{} of {} runs converged; of these {} meet the tolerance, {} ({:.0f} %) estimates are within a factor "
+      "10 "
+      "of the true error,\n{} below a hundredth of it, {} above a hundred times\n",
+      converged, cells, met, within, share, below, above);
 }
 
 }  // namespace bench
