@@ -154,7 +154,7 @@ void ElementTables::bind(const SchemeTables& scheme, const Lagrangian& lagrangia
 
 /// In the order in which the kernel `hessian` makes its contributions.
 void ElementTables::list_places() {
-  const int n = shape_.n, count = shape_.functions, m = unknowns();
+  const int n = shape_.n, count = shape_.functions;
   places_.clear();
   const auto add = [&](int row, int column, bool mirrored) {
     places_.push_back({std::max(row, column), std::min(row, column), mirrored && row == column});
@@ -187,8 +187,13 @@ void ElementTables::list_places() {
   }
   entries_ = {};
   dense_.clear();
-  if (m > most_dense_unknowns) return;
-  for (const Place& p : places_) dense_.push_back(p.twice ? ~(p.row * m + p.column) : p.row * m + p.column);
+}
+
+const int* ElementTables::dense_slots() const {
+  const int m = unknowns();
+  if (dense_.empty())
+    for (const Place& p : places_) dense_.push_back(p.twice ? ~(p.row * m + p.column) : p.row * m + p.column);
+  return dense_.data();
 }
 
 const ElementTables::Entries& ElementTables::entries() const {

@@ -37,7 +37,7 @@ struct SchemeTables {
   explicit SchemeTables(const Scheme& scheme, int exact_points = 0);
 };
 
-/// Above this many unknowns in an element its Hessian is only ever held as a list of entries.
+/// Above this many unknowns in an element Newton's method holds its Hessian as a list of entries.
 inline constexpr int most_dense_unknowns = 800;
 
 /// Tables bound to a Lagrangian: what the kernels take.
@@ -52,8 +52,9 @@ class ElementTables {
   int inner() const { return (shape_.functions - 2) * shape_.n; }
   int unknowns() const { return shape_.functions * shape_.n; }
 
-  /// Where each contribution to the Hessian goes in a lower triangle, m × m row-major.
-  const int* dense_slots() const { return dense_.data(); }
+  /// Where each contribution to the Hessian goes in a lower triangle, m × m row-major; made when first asked
+  /// for.
+  const int* dense_slots() const;
 
   /// The same for a list of the entries that may differ from zero; made when first asked for.
   struct Entries {
@@ -73,8 +74,8 @@ class ElementTables {
   std::vector<EntryView> mass_, gyroscopic_, hessian_;
   std::vector<double> linear_;
   ElementShape shape_{};
-  std::vector<int> dense_;
   std::vector<Place> places_;
+  mutable std::vector<int> dense_;
   mutable Entries entries_;
 };
 

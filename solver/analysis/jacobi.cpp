@@ -138,7 +138,13 @@ MatrixXd JacobiFields::orthonormal(const VectorXd& unit) const {
 }
 
 double JacobiFields::distance(SecondVariation& variation, int k) {
-  constexpr double step = 0.01;
+  constexpr double step = 0.01, far = 0.05;
+  if (normalised_) {
+    const Piece piece = variation.piece(k);
+    const VectorXd inverse = units(piece).cwiseInverse();
+    const MatrixXd scaled = inverse.asDiagonal() * (p_ + piece.a) * inverse.asDiagonal();
+    if (eigenvalues(scaled).cwiseAbs().minCoeff() > far) return INFINITY;
+  }
   split(variation.piece(k));
   const VectorXd last = eigenvalues(form(variation, k, 1)),
                  before = eigenvalues(form(variation, k, 1 - step));
@@ -180,19 +186,32 @@ MatrixXd JacobiFields::form(SecondVariation& variation, int k, double tau) {
   return share_ + range_.transpose() * even(inverse.asDiagonal() * a * inverse.asDiagonal()) * range_;
 }
 
+/// Eigenvalues times tau, which at first is about the form A of the piece.
 void JacobiFields::find(SecondVariation& variation, int k, int count) {
   if (count == 0) return;
-  // A(t) is about A·length/(t − start) at first.
-  const VectorXd first = eigenvalues(whole_ - share_);
-  for (int i = 0; i < count; ++i)
-    times_.push_back(crossing(variation, k, i, std::max(first[0], at_end), eigenvalues_[i]));
+  const double first = std::max(eigenvalues(whole_ - share_)[0], at_end);
+  samples_.clear();
+  samples_.push_back({0, VectorXd::Constant(eigenvalues_.size(), first)});
+  samples_.push_back({1, eigenvalues_});
+  for (int i = 0; i < count; ++i) times_.push_back(crossing(variation, k, i));
   std::sort(times_.begin(), times_.end());
 }
 
-/// Where eigenvalue `index` times tau, positive at 0 and negative at 1, is zero.
-double JacobiFields::crossing(SecondVariation& variation, int k, int index, double first, double last) {
-  const auto value = [&](double tau) { return tau * eigenvalues(form(variation, k, tau))[index]; };
-  return zero(value, 0, first, 1, last, resolution);
+/// Where eigenvalue `index` is zero; what is evaluated on the way brackets those that follow.
+double JacobiFields::crossing(SecondVariation& variation, int k, int index) {
+  const Sample *low = &samples_.front(), *high = &samples_[1];
+  for (const Sample& sample : samples_) {
+    const bool before = sample.values[index] > 0;
+    if (before && sample.tau > low->tau) low = &sample;
+    if (!before && sample.tau < high->tau) high = &sample;
+  }
+  const double from = low->tau, to = high->tau, value_from = low->values[index],
+               value_to = high->values[index];
+  const auto value = [&](double tau) {
+    samples_.push_back({tau, tau * eigenvalues(form(variation, k, tau))});
+    return samples_.back().values[index];
+  };
+  return zero(value, from, value_from, to, value_to, resolution);
 }
 
 /// The fields at the end: B⁻ᵀ(P + A X) = −X there.

@@ -30,7 +30,8 @@ class JacobiFields {
   const std::vector<double>& advance(SecondVariation& variation, int k, bool first_only = false);
 
   /// From the end of piece k, which follows the last one passed, to the nearest conjugate time before or
-  /// after it, as a fraction of the piece: by extrapolation, so good where it is small.
+  /// after it, as a fraction of the piece: by extrapolation, so good where it is small; infinite where it
+  /// surely is not.
   double distance(SecondVariation& variation, int k);
 
  private:
@@ -39,13 +40,18 @@ class JacobiFields {
   Eigen::MatrixXd orthonormal(const Eigen::VectorXd& unit) const;
   Eigen::MatrixXd form(SecondVariation& variation, int k, double tau);
   void find(SecondVariation& variation, int k, int count);
-  double crossing(SecondVariation& variation, int k, int index, double first, double last);
+  double crossing(SecondVariation& variation, int k, int index);
   void carry(const Piece& piece);
 
   bool normalised_ = false;
   Eigen::MatrixXd x_, p_;  // normalised: p_ is W and x_ is not used
   int vanishing_ = 0;      // directions in which X counts as zero
   std::vector<double> times_;
+  struct Sample {
+    double tau;
+    Eigen::VectorXd values;
+  };
+  std::vector<Sample> samples_;  ///< of the eigenvalues in a piece
 
   // On the way through a piece, in units of unit_, X = U Σ Vᵀ: U √Σ, and √Σ UᵀP V √Σ⁻¹.
   Eigen::VectorXd unit_, eigenvalues_;

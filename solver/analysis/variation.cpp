@@ -13,14 +13,16 @@ namespace extremal {
 
 namespace {
 
-/// Of the polynomials. The higher, the fewer pieces; with many coordinates an element must stay small.
-constexpr int usual_degree = 12, middle_degree = 8, low_degree = 4, highest_degree = 20;
-constexpr int few_coordinates = 16;
+/// Of the polynomials. The higher, the fewer pieces; with many coordinates they must stay small.
+constexpr int usual_degree = 12, middle_degree = 8, highest_degree = 20;
+constexpr int few_coordinates = 16, many_coordinates = 60;
 /// The two highest Legendre coefficients of a Jacobi field, relative to its largest. The error of the field
 /// is some two orders below, that of A, B, D its square.
-constexpr double allowed_tail = 1e-9;
+constexpr double allowed_tail = 1e-7;
 /// Pivots this small against the entry they came from: the ends of a piece are nearly conjugate.
 constexpr double least_pivot = 1e-3;
+/// Doubles kept of inner fields.
+constexpr std::size_t most_kept = 1 << 23;
 /// Of an element, halved again and again.
 constexpr double shortest_part = 0x1p-12;
 
@@ -42,9 +44,7 @@ void interpolate(const Barycentric& at, double tau, const double* nodes, int n, 
 
 int degree_for(int n, int trajectory_degree) {
   if (n <= few_coordinates) return std::max(usual_degree, std::min(trajectory_degree + 3, highest_degree));
-  for (int degree : {usual_degree, middle_degree})
-    if ((degree + 1) * n <= most_dense_unknowns) return degree;
-  return low_degree;
+  return n <= many_coordinates ? usual_degree : middle_degree;
 }
 
 }  // namespace
@@ -62,10 +62,11 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
   pieces_.clear();
   forms_.clear();
-  loaded_ = -1;
-  if (cut()) return true;
-  pieces_.clear();
-  return false;
+  const bool regular = cut();
+  if (!regular) pieces_.clear();
+  evaluated_ = regular ? pieces_.back().first : -1;
+  forget();
+  return regular;
 }
 
 Piece SecondVariation::piece(int k) const {
@@ -166,45 +167,47 @@ void SecondVariation::keep(std::span<const Part> parts) {
   }
 }
 
-/// Makes the inner fields of piece k, and of those that were evaluated with it, ready.
-void SecondVariation::load(int k) {
-  const int begin = pieces_[k].first, n = coordinates();
-  if (loaded_ == begin) return;
-  batch_.clear();
-  for (int i = begin; i < this->count() && pieces_[i].first == begin; ++i) batch_.push_back(pieces_[i].part);
-  const int count = static_cast<int>(batch_.size());
-  evaluate(batch_);
-  const int inner = tables_.inner();
-  unfolded_.assign(count, Eigen::MatrixXd(inner, 2 * n));
-  steps_.assign(static_cast<std::size_t>(count + 1) * n, 0);
-  action_.expand_step(steps_, 0, rest_);
-  // The start of one piece is the end of the one before: every second node at a time.
-  for (int parity = 0; parity < 2; ++parity)
-    for (int a = 0; a < n; ++a) {
-      for (int node = parity; node <= count; node += 2) steps_[node * n + a] = 1;
-      action_.expand_step(steps_, 0, inner_);
-      for (int node = parity; node <= count; node += 2) steps_[node * n + a] = 0;
-      for (int lane = 0; lane < count; ++lane) {
-        const int column = a + (lane % 2 == parity ? 0 : n);
-        for (int u = 0; u < inner; ++u) {
-          const std::size_t at = static_cast<std::size_t>(u) * lanes + lane;
-          unfolded_[lane](u, column) = inner_[at] - rest_[at];
-        }
-      }
-    }
-  loaded_ = begin;
+/// Makes the inner fields of piece k: −L⁻ᵀ L_eᵀ from the factor that eliminated the inner unknowns.
+const Eigen::MatrixXd& SecondVariation::unfold(int k) {
+  Eigen::MatrixXd& unfolded = unfolded_[k];
+  if (unfolded.size() > 0) return unfolded;
+  if (evaluated_ != pieces_[k].first) {
+    batch_.clear();
+    for (int i = pieces_[k].first; i < count() && pieces_[i].first == pieces_[k].first; ++i)
+      batch_.push_back(pieces_[i].part);
+    evaluate(batch_);
+    evaluated_ = pieces_[k].first;
+  }
+  const int inner = tables_.inner(), n = coordinates(), element = k - pieces_[k].first;
+  factor_.resize(inner + 2 * n, inner);
+  for (int i = 0; i < inner + 2 * n; ++i)
+    for (int j = 0; j < std::min(i, inner); ++j) factor_(i, j) = action_.eliminated(element, i, j);
+  if (kept_ + inner * 2 * n > most_kept) forget();
+  kept_ += inner * 2 * n;
+  unfolded = -factor_.bottomRows(2 * n).transpose();
+  factor_.topRows(inner).triangularView<Eigen::UnitLower>().transpose().solveInPlace(unfolded);
+  return unfolded;
+}
+
+void SecondVariation::forget() {
+  unfolded_.assign(pieces_.size(), {});
+  kept_ = 0;
 }
 
 void SecondVariation::fields(int k, double tau, Eigen::MatrixXd& from_start, Eigen::MatrixXd& from_end) {
-  load(k);
   const int n = coordinates();
-  const Basis basis = lobatto_basis(scheme_->degree, {&tau, 1});
+  const Eigen::MatrixXd& unfolded = unfold(k);
   from_start = (1 - tau) * Eigen::MatrixXd::Identity(n, n);
   from_end = tau * Eigen::MatrixXd::Identity(n, n);
-  const Eigen::MatrixXd& unfolded = unfolded_[k - loaded_];
+  const Barycentric& at = lobatto_barycentric(scheme_->degree);
+  const auto node = std::find(at.nodes.begin(), at.nodes.end(), tau);
+  double sum = 0;
+  for (std::size_t j = 0; j < at.nodes.size(); ++j) sum += at.weights[j] / (tau - at.nodes[j]);
   for (int j = 1; j < scheme_->degree; ++j) {
-    from_start += basis.value[j] * unfolded.block((j - 1) * n, 0, n, n);
-    from_end += basis.value[j] * unfolded.block((j - 1) * n, n, n, n);
+    const double value =
+        node == at.nodes.end() ? at.weights[j] / (tau - at.nodes[j]) / sum : tau == at.nodes[j];
+    from_start += value * unfolded.middleRows((j - 1) * n, n).leftCols(n);
+    from_end += value * unfolded.middleRows((j - 1) * n, n).rightCols(n);
   }
 }
 

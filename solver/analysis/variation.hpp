@@ -24,7 +24,7 @@ struct Piece {
 class SecondVariation {
  public:
   /// Beyond this many coordinates the forms are not made.
-  static constexpr int most_coordinates = most_dense_unknowns / 5;
+  static constexpr int most_coordinates = 128;
 
   /// The trajectory must outlive it. False where no piece is short enough: L_vv is not positive definite
   /// somewhere (Legendre's condition), or the second derivatives of L are not finite; there are no pieces
@@ -56,7 +56,8 @@ class SecondVariation {
   void evaluate(std::span<const Part> parts);
   bool resolved(int count);
   void keep(std::span<const Part> parts);
-  void load(int k);
+  const Eigen::MatrixXd& unfold(int k);
+  void forget();
 
   std::shared_ptr<const Lagrangian> lagrangian_;
   const Trajectory* trajectory_ = nullptr;
@@ -72,8 +73,11 @@ class SecondVariation {
   std::vector<Part> waiting_, batch_;
   std::vector<double> mesh_, values_, steps_;
   AlignedDoubles inner_, rest_;
-  int loaded_ = -1;                        ///< first piece of those whose fields are ready
-  std::vector<Eigen::MatrixXd> unfolded_;  ///< of each of them: inner unknowns, (s − 1) n × 2n, by x_a, x_b
+  int evaluated_ = -1;  ///< first piece of those
+  Eigen::MatrixXd factor_;
+  std::size_t kept_ = 0;
+  std::vector<Eigen::MatrixXd>
+      unfolded_;  ///< of each piece, or empty: inner unknowns, (s − 1) n × 2n, by x_a, x_b
 };
 
 }  // namespace extremal
