@@ -156,7 +156,8 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     if (!solution.converged()) solution = without_path(std::move(solution));
   } else if (const std::string reason = irregularity(problem); !reason.empty()) {
     solution.message = reason;
-  } else if (failed_at_conjugate_ends(problem, trajectory_of(w.path), memory_->variation)) {
+  } else if (outcome.status != Status::conjugate_ends &&
+             failed_at_conjugate_ends(problem, trajectory_of(w.path), memory_->variation)) {
     solution.status = Status::conjugate_ends;
     solution.message =
         "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
