@@ -27,6 +27,13 @@ struct SolveArguments {
 };
 int solve(const SolveArguments& arguments);
 
+struct CompareArguments {
+  std::string scene;
+  std::vector<std::string> sets;
+  std::string output, plot;  ///< paths; empty: not asked for
+};
+int compare(const CompareArguments& arguments);
+
 struct CheckArguments {
   std::string scene;
   std::vector<std::string> sets;

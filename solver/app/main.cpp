@@ -39,12 +39,22 @@ void add_solve(CLI::App& app, SolveArguments& a, std::function<int()>& chosen) {
   });
 }
 
+void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& chosen) {
+  CLI::App& command = *app.add_subcommand("compare", "speed against error on a scene, beside shooting");
+  add_scene(command, a.scene, a.sets);
+  command.add_option("--output", a.output, "write the comparison as JSON")->type_name("C.json");
+  command.add_option("--plot", a.plot, "draw time against error")->type_name("P.svg|P.png");
+  command.callback([&a, &chosen] { chosen = [&a] { return compare(a); }; });
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Trajectories of Lagrangian systems as stationary points of the discrete action", "extremal");
   app.require_subcommand(1);
   std::function<int()> chosen;
   SolveArguments solve_arguments;
   add_solve(app, solve_arguments, chosen);
+  CompareArguments compare_arguments;
+  add_compare(app, compare_arguments, chosen);
 
   CheckArguments check_arguments;
   CLI::App& checking =

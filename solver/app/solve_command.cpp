@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
 
 #include "app/commands.hpp"
+#include "app/paths.hpp"
 #include "app/sampling.hpp"
 #include "report/csv.hpp"
 #include "report/json.hpp"
@@ -15,24 +13,9 @@
 #include "study/study.hpp"
 
 namespace extremal::app {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr int csv_samples = 201, plot_samples = 801, most_samples = 10'000'000;
-
-/// Refuses, before anything is solved, a path that cannot be written.
-void check_writable(const char* option, const std::string& path) {
-  if (path.empty()) return;
-  const auto refuse = [&](const std::string& why) {
-    throw OptionError(fmt::format("{} {}: {}", option, path, why));
-  };
-  std::error_code error;
-  if (fs::is_directory(path, error)) refuse("is a directory");
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  const bool exists = fs::exists(path, error);
-  if (!exists && !fs::is_directory(folder, error)) refuse("there is no such folder");
-  if (::access(exists ? path.c_str() : folder.c_str(), W_OK) != 0) refuse(std::strerror(errno));
-}
 
 void check_options(const SolveArguments& a) {
   if (a.samples && !a.at.empty()) throw OptionError("--samples and --at exclude each other");

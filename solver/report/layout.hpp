@@ -23,6 +23,10 @@ std::vector<Family> families(const std::vector<std::string>& names);
 /// The figure that write_plot describes.
 Figure layout(const Picture& picture);
 
+/// Time against error of a comparison, powers of ten. Throws std::invalid_argument if no error is known.
+struct Comparison;
+Figure layout(const Comparison& comparison);
+
 /// Curves against time, a panel each below the other.
 struct TimePanel {
   std::string label;

@@ -58,12 +58,16 @@ void check(const Picture& picture) {
 
 void check_plot_path(const std::string& path) { format_of(path); }
 
-void write_plot(const std::string& path, const Picture& picture) {
-  const Format format = format_of(path);
-  check(picture);
-  const std::string image = draw(layout(picture), format);
+void write_figure(const std::string& path, const Figure& figure) {
+  const std::string image = draw(figure, format_of(path));
   write_file(path,
              [&](std::ostream& out) { out.write(image.data(), static_cast<std::streamsize>(image.size())); });
+}
+
+void write_plot(const std::string& path, const Picture& picture) {
+  format_of(path);
+  check(picture);
+  write_figure(path, layout(picture));
 }
 
 }  // namespace extremal

@@ -32,4 +32,8 @@ void check_plot_path(const std::string& path);
 /// missing or fails or the path cannot be written.
 void write_plot(const std::string& path, const Picture& picture);
 
+struct Figure;
+/// Draws a figure; throws in the same way.
+void write_figure(const std::string& path, const Figure& figure);
+
 }  // namespace extremal

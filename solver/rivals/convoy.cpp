@@ -11,6 +11,8 @@ namespace {
 constexpr double safety = 0.9, most_growth = 6, most_shrinking = 1.0 / 3;
 /// Shortening where the slope cannot be evaluated.
 constexpr double retreat = 0.25;
+/// Of the time ahead, for the first step: q or p may be all but zero.
+constexpr double shortest_start = 1e-6;
 /// The error of a step is of this order in its length.
 constexpr double order = 8;
 /// So many steps before the end of a leg, what is left is divided evenly.
@@ -95,6 +97,7 @@ void Convoy::choose_first_steps() {
       if (value > 0 && slope > 0)
         lane.h = std::min(lane.h, 2 * std::pow(tolerance_, 1 / order) * value / slope);
     }
+    lane.h = std::max(lane.h, shortest_start * (lane.leg->end - lane.t));
   }
 }
 

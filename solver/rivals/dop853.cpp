@@ -15,6 +15,8 @@ constexpr double safety = 0.9;
 constexpr double most_growth = 6, most_shrinking = 1.0 / 3;
 /// Shortening where the right-hand side cannot be evaluated.
 constexpr double retreat = 0.25;
+/// Of the time ahead, for the first step.
+constexpr double shortest_start = 1e-6;
 
 int controlled_size(const IntegrationOptions& options, int size) {
   return options.controlled > 0 ? std::min(options.controlled, size) : size;
@@ -78,7 +80,8 @@ double Dop853::error_norm(std::span<const double> y, double h, const Integration
   return sum5 == 0 ? 0 : std::abs(h) * sum5 / std::sqrt((sum5 + 0.01 * sum3) * size);
 }
 
-/// A hundredth of the time in which a block would change by its own size; the control does the rest.
+/// A hundredth of the time in which a block would change by its own size, but where that is all but zero, as
+/// at rest; the control does the rest.
 double Dop853::first_step(double t, std::span<const double> y, double span,
                           const IntegrationOptions& options) {
   double h = std::abs(span);
@@ -89,6 +92,7 @@ double Dop853::first_step(double t, std::span<const double> y, double span,
     const double value = largest(y, begin, end), slope = largest(stage_, begin, end);
     if (value > 0 && slope > 0) h = std::min(h, 0.01 * value / slope);
   }
+  h = std::max(h, shortest_start * std::abs(span));
   return std::copysign(h, span);
 }
 

@@ -74,6 +74,13 @@ TEST(Fly, ChainInItsNormalMode) {
   for (int i = 0; i < n; ++i) EXPECT_NEAR(flight.q[i], q[i] * std::cos(50 * omega), 1e-12);
 }
 
+TEST(Fly, FromAllButRest) {
+  // p is roundoff where the motion turns: its size tells nothing of the step.
+  const Flight flight = fly(*oscillator(), std::vector{1.0}, std::vector{1e-17}, std::vector{1.0});
+  ASSERT_TRUE(flight.complete);
+  EXPECT_NEAR(flight.q[0], std::cos(1), 1e-12);
+}
+
 TEST(Fly, StopsAtACollision) {
   const auto central = trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + 1.0 / abs(q[0]); });
   // Free fall from 1 reaches the centre after π/(2√2).

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "app/commands.hpp"
+#include "app/paths.hpp"
+#include "report/comparison.hpp"
+#include "report/plot.hpp"
+#include "study/compare.hpp"
+
+namespace extremal::app {
+namespace {
+
+/// One line that is written over, on a terminal.
+void show(const ComparisonRow& row) {
+  fmt::print(stderr, "\r\x1b[K{} at tolerance {:.0e}", row.method, row.tolerance);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+int compare(const CompareArguments& a) {
+  check_writable("--output", a.output);
+  check_writable("--plot", a.plot);
+  if (!a.plot.empty()) check_plot_path(a.plot);
+  const Study study = load(a.scene, a.sets);
+  CompareOptions options;
+  const bool terminal = ::isatty(STDERR_FILENO);
+  if (terminal) options.progress = show;
+  const Comparison found = extremal::compare(study, options);
+  if (terminal) fmt::print(stderr, "\r\x1b[K");
+  if (!a.output.empty()) write_json(a.output, found);
+  if (!a.plot.empty() && found.any()) write_plot(a.plot, found);
+  fmt::print("{}", summary(found));
+  if (found.any()) return Exit::done;
+  fmt::print(stderr, "error: {}: {}\n", a.scene, found.message);
+  return Exit::not_converged;
+}
+
+}  // namespace extremal::app

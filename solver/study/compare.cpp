@@ -1,0 +1,153 @@
+#include "study/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "rivals/shooting.hpp"
+#include "rivals/verify.hpp"
+#include "solution/observe.hpp"
+#include "study/deviation.hpp"
+
+namespace extremal {
+namespace {
+
+/// Tolerances tried for the reference, from the tightest on, powers of ten.
+constexpr int tightest = -14, loosest = -6;
+constexpr int most_repeats = 1001;
+/// A method whose last run took so many seconds is not run at tighter tolerances.
+constexpr double patience = 60;
+
+struct ShootingMethod {
+  const char* name;
+  int segments;
+  int most_coordinates;  ///< beyond, its variations take too long
+};
+constexpr ShootingMethod shooting_methods[] = {{"single shooting", 1, 500},
+                                               {"multiple shooting, 8 segments", 8, 40},
+                                               {"multiple shooting, 32 segments", 32, 40}};
+
+int repeats(double budget, double seconds) {
+  return seconds > 0 ? static_cast<int>(std::clamp(budget / seconds, 1.0, double(most_repeats))) : 1;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+class Comparer {
+ public:
+  Comparer(const Study& study, const CompareOptions& options)
+      : study_(study),
+        options_(options),
+        shifts_(study.problem.periodic && study.problem.lagrangian->structure().autonomous) {
+    study_.options.elements = 0;
+    study_.options.progress = nullptr;
+    result_.title = study.title;
+  }
+
+  Comparison run() {
+    find_reference();
+    run_method([this](double tolerance) { return solve(tolerance); });
+    for (const ShootingMethod& method : shooting_methods)
+      if (study_.problem.coordinates() <= method.most_coordinates)
+        run_method([&](double tolerance) { return shoot_row(method, tolerance); });
+    return result_;
+  }
+
+ private:
+  void find_reference() {
+    Study study = study_;
+    study.options.scheme.reset();
+    for (int power = tightest; power <= loosest; ++power) {
+      study.options.tolerance = std::pow(10.0, power);
+      Solution solution = extremal::run(study);
+      result_.message = solution.message;
+      if (!solution.converged()) continue;
+      const Verification found =
+          verify(study.problem, solution.trajectory, {.tolerance = study.options.tolerance});
+      result_.message = found.message;
+      if (!found.verified) continue;
+      reference_ = std::move(solution.trajectory);
+      const Survey survey = extremal::survey(*study.problem.lagrangian, reference_);
+      result_.reference = {study.options.tolerance, solution.error_estimate,
+                           *std::max_element(survey.q.begin(), survey.q.end())};
+      result_.message = fmt::format("solved at tolerance {:.0e}, verified by integration in {} pieces",
+                                    study.options.tolerance, found.pieces);
+      return;
+    }
+    result_.message = "no reference: " + result_.message;
+  }
+
+  template <class Run>
+  void run_method(const Run& run) {
+    for (const double tolerance : options_.tolerances) {
+      result_.rows.push_back(run(tolerance));
+      if (options_.progress) options_.progress(result_.rows.back());
+      if (result_.rows.back().seconds > patience) return;
+    }
+  }
+
+  ComparisonRow solve(double tolerance) {
+    study_.options.tolerance = tolerance;
+    Solution solution = extremal::run(study_);
+    if (const int more = repeats(options_.budget, solution.seconds_solve + solution.seconds_analyse);
+        more > 1)
+      solution = extremal::run(study_, more);
+    const std::string scheme = study_.options.scheme ? ", " + study_.options.scheme->name : "";
+    ComparisonRow row{"extremal" + scheme, tolerance, solution.seconds_solve, std::nullopt, solution.status};
+    if (solution.converged() && result_.reference) row.error = error(motion_of(solution.trajectory));
+    return row;
+  }
+
+  ComparisonRow shoot_row(const ShootingMethod& method, double tolerance) {
+    using Clock = std::chrono::steady_clock;
+    std::vector<double> seconds;
+    Shot shot;
+    double spent = 0;
+    do {
+      const auto start = Clock::now();
+      shot = shoot(study_.problem, {.tolerance = tolerance, .segments = method.segments});
+      seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      spent += seconds.back();
+    } while (spent < options_.budget && seconds.size() < most_repeats);
+    ComparisonRow row{method.name, tolerance, median(std::move(seconds)), std::nullopt, shot.status};
+    if (shot.converged() && result_.reference)
+      row.error = error({shot.duration(), [&](const std::vector<double>& times) {
+                           Flight flight = follow(*study_.problem.lagrangian, shot, times);
+                           return MotionSamples{std::move(flight.q), std::move(flight.v)};
+                         }});
+    if (shot.converged() && result_.reference && !row.error) row.status = Status::not_converged;
+    return row;
+  }
+
+  /// Never below what the reference can tell; nothing where the motion cannot be followed to its end.
+  std::optional<double> error(const Motion& motion) const {
+    const double apart = deviation(motion, motion_of(reference_), study_.problem.coordinates(), shifts_);
+    if (!std::isfinite(apart)) return std::nullopt;
+    return std::max(apart, result_.reference->error_estimate);
+  }
+
+  Study study_;
+  const CompareOptions& options_;
+  bool shifts_;
+  Trajectory reference_;
+  Comparison result_;
+};
+
+}  // namespace
+
+bool Comparison::any() const {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const ComparisonRow& row) { return row.error.has_value(); });
+}
+
+Comparison compare(const Study& study, const CompareOptions& options) {
+  return Comparer(study, options).run();
+}
+
+}  // namespace extremal

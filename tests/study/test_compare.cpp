@@ -1,0 +1,74 @@
+#include "study/compare.hpp"
+
+#include <cmath>
+
+#include "study/deviation.hpp"
+#include "study/scenes.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+namespace {
+
+/// size · sin(t + phase) for `duration`.
+Motion wave(double duration, double phase, double size = 1) {
+  return {duration, [=](const std::vector<double>& times) {
+            MotionSamples samples;
+            for (const double t : times) {
+              samples.q.push_back(size * std::sin(t + phase));
+              samples.v.push_back(size * std::cos(t + phase));
+            }
+            return samples;
+          }};
+}
+
+const std::string oscillator =
+    "[system]\ncoordinates = [\"q\"]\nlagrangian = \"(q'^2 - q^2)/2\"\n"
+    "[boundary]\nstart = { q = 0.0 }\nend = { q = 1.0 }\nduration = \"pi/2\"\n";
+
+}  // namespace
+
+TEST(Deviation, IsTheLargestDifference) {
+  EXPECT_NEAR(deviation(wave(4, 0, 1.25), wave(4, 0), 1, false), 0.25, 1e-5);
+  // A motion that ends earlier goes on uniformly: by δ²/2 at most off.
+  EXPECT_NEAR(deviation(wave(1.5, 0), wave(1.51, 0), 1, false), 1e-4 / 2, 1e-6);
+}
+
+TEST(Deviation, OfPhases) {
+  EXPECT_NEAR(deviation(wave(6, 0.3), wave(6, 0), 1, false), 2 * std::sin(0.15), 1e-4);
+  EXPECT_LT(deviation(wave(6, 0.3), wave(6, 0), 1, true), 1e-8);
+  EXPECT_NEAR(deviation(wave(6, 0.3, 1.001), wave(6, 0), 1, true), 0.001, 1e-5);
+}
+
+TEST(Deviation, OfWhatBreaksOff) {
+  const Motion broken{4, [](const std::vector<double>&) { return MotionSamples{}; }};
+  EXPECT_EQ(deviation(broken, wave(4, 0), 1, false), INFINITY);
+}
+
+using Comparing = Scenes;
+
+TEST_F(Comparing, ErrorsFollowTolerances) {
+  CompareOptions options{.tolerances = {1e-4, 1e-8}, .budget = 0, .progress = nullptr};
+  int shown = 0;
+  options.progress = [&](const ComparisonRow&) { ++shown; };
+  const Comparison found = compare(study(oscillator), options);
+  ASSERT_TRUE(found.reference) << found.message;
+  EXPECT_NEAR(found.reference->range, 1, 1e-9);
+  EXPECT_TRUE(found.any());
+  ASSERT_EQ(found.rows.size(), 8u);
+  EXPECT_EQ(shown, 8);
+  for (const ComparisonRow& row : found.rows) {
+    EXPECT_EQ(row.status, Status::converged) << row.method;
+    ASSERT_TRUE(row.error) << row.method;
+    EXPECT_LE(*row.error, 10 * row.tolerance) << row.method;
+    EXPECT_GE(*row.error, found.reference->error_estimate);
+  }
+}
+
+TEST_F(Comparing, NothingWithoutAReference) {
+  const Comparison found = compare(study(oscillator, {"boundary.duration=pi"}),
+                                   {.tolerances = {1e-6}, .budget = 0, .progress = {}});
+  EXPECT_FALSE(found.reference);
+  EXPECT_FALSE(found.any());
+  EXPECT_EQ(found.rows.front().status, Status::conjugate_ends);
+}
