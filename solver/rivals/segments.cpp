@@ -231,11 +231,4 @@ Segments::Correction Segments::correct() const {
   return step;
 }
 
-double Segments::gap() const {
-  double largest = right_.back().size() > 0 ? right_.back().cwiseAbs().maxCoeff() : 0;
-  for (int k = 0; k + 1 < segments_; ++k)
-    largest = std::max(largest, right_[k].head(n_).cwiseAbs().maxCoeff());
-  return largest / scale_;
-}
-
 }  // namespace extremal

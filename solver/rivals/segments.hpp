@@ -43,10 +43,7 @@ class Segments {
     bool finite = false;
   };
   Correction correct() const;
-  /// Largest gap between segments and largest miss at the end, in q, by its scale.
-  double gap() const;
 
-  double scale() const { return scale_; }
   int steps() const { return convoy_.steps(); }
   Eigen::VectorXd velocity(const Eigen::VectorXd& state, double t);
 
