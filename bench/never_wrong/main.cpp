@@ -1,0 +1,100 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "tally.hpp"
+#include "workers.hpp"
+
+// Random scenes over all systems, solved as the command line would and every result checked.
+
+namespace bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  Campaign campaign;
+  std::string save, log;
+  std::vector<std::string> tally;
+  bool print = false;
+};
+
+void tell(const Verdict& v) {
+  for (const Fault& fault : v.faults)
+    fmt::print("scene {} of seed {} ({}, {} ends): {}: {}\n", v.index, v.seed, v.scene.system, v.scene.kind,
+               fault.kind, fault.detail);
+  std::fflush(stdout);
+}
+
+/// Each with what is wrong on top, to be solved as it is.
+void save(const std::string& folder, const Verdict& v) {
+  std::string text;
+  for (const Fault& fault : v.faults) text += fmt::format("# {}: {}\n", fault.kind, fault.detail);
+  write_text(fs::path(folder) / fmt::format("{}-{}-{}.toml", v.scene.system, v.seed, v.index),
+             text + v.scene.text);
+}
+
+void add_log(const std::string& path, Tally& tally) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(fmt::format("{} cannot be read", path));
+  for (std::string line; std::getline(file, line);) tally.add(from_line(line));
+}
+
+int run(const Options& options) {
+  if (options.print) {
+    const std::string scratch = fs::temp_directory_path() / "never-wrong-print.toml";
+    fmt::print(
+        "{}",
+        random_scene(options.campaign.seed, options.campaign.first, options.campaign.only, scratch).text);
+    fs::remove(scratch);
+    return 0;
+  }
+  Tally tally;
+  for (const std::string& path : options.tally) add_log(path, tally);
+  if (options.tally.empty()) {
+    if (!options.save.empty()) fs::create_directories(options.save);
+    std::ofstream log;
+    if (!options.log.empty()) log.open(options.log, std::ios::app);
+    run_campaign(options.campaign, [&](const Verdict& verdict) {
+      tally.add(verdict);
+      if (log.is_open()) log << to_line(verdict) << std::endl;
+      if (verdict.faults.empty()) return;
+      tell(verdict);
+      if (!options.save.empty()) save(options.save, verdict);
+    });
+  }
+  tally.print();
+  return tally.faultless() ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace bench
+
+int main(int argc, char** argv) {
+  bench::Options options;
+  bench::Campaign& campaign = options.campaign;
+  CLI::App app("Random scenes over all systems: no crash, no hang, no false convergence");
+  app.add_option("--scenes", campaign.scenes, "how many");
+  app.add_option("--seed", campaign.seed, "of all that is random");
+  app.add_option("--first", campaign.first, "number of the first scene");
+  app.add_option("--only", campaign.only, "only this system");
+  app.add_option("--jobs", campaign.jobs, "processes")->check(CLI::Range(1, 1024));
+  app.add_option("--limit", campaign.limit, "seconds of processor time for one scene")
+      ->check(CLI::Range(1, 1000000));
+  app.add_option("--save", options.save, "folder for the scenes that went wrong");
+  app.add_option("--log", options.log, "file that every verdict is added to, a line of JSON each");
+  app.add_option("--tally", options.tally, "only count what is in such files")->allow_extra_args(false);
+  app.add_flag("--print", options.print, "only write the scene with the number --first");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return bench::run(options);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+    return 1;
+  }
+}

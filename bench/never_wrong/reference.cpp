@@ -1,0 +1,117 @@
+#include "reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rivals/verify.hpp"
+#include "solution/observe.hpp"
+#include "study/phase.hpp"
+
+namespace bench {
+namespace {
+
+constexpr double tightest = 1e-13;
+constexpr int most_reference_coordinates = 40;
+
+/// Times within every element, ends included.
+std::vector<double> times_within(const extremal::Trajectory& trajectory, int points) {
+  std::vector<double> times{0};
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (int i = 1; i <= points; ++i)
+      times.push_back(i == points ? trajectory.times[k + 1]
+                                  : trajectory.times[k] +
+                                        (trajectory.times[k + 1] - trajectory.times[k]) * i / points);
+  return times;
+}
+
+extremal::Guess as_guess(const extremal::Trajectory& trajectory) {
+  extremal::Guess guess;
+  std::vector<double> q(trajectory.coordinates), v(trajectory.coordinates);
+  const double duration = trajectory.duration();
+  for (const double t : times_within(trajectory, 4 * trajectory.degree)) {
+    trajectory.at(t, q, v);
+    guess.tau.push_back(t / duration);
+    guess.q.insert(guess.q.end(), q.begin(), q.end());
+  }
+  return guess;
+}
+
+/// Phase points of a trajectory at times relative to its duration.
+struct Points {
+  std::vector<double> q, v, p;
+};
+
+Points points_at(const extremal::Problem& problem, const extremal::Trajectory& trajectory,
+                 const std::vector<double>& tau) {
+  const std::size_t n = problem.coordinates();
+  Points points{std::vector<double>(tau.size() * n), std::vector<double>(tau.size() * n),
+                std::vector<double>(tau.size() * n)};
+  extremal::Scratch scratch;
+  for (std::size_t k = 0; k < tau.size(); ++k) {
+    const auto row = [&](std::vector<double>& x) { return std::span(x).subspan(k * n, n); };
+    phase_point(problem, trajectory, std::min(tau[k] * trajectory.duration(), trajectory.duration()),
+                row(points.q), row(points.v), row(points.p), scratch);
+  }
+  return points;
+}
+
+double largest_difference(const std::vector<double>& x, const std::vector<double>& y) {
+  double largest = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, std::abs(x[i] - y[i]));
+  return largest;
+}
+
+double largest_of(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+double size_of(const extremal::Study& study, const extremal::Trajectory& trajectory) {
+  constexpr double negligible = 1e-12;
+  const double range = largest_of(survey(*study.problem.lagrangian, trajectory).q);
+  double magnitude = 0;
+  for (const double q : trajectory.nodes) magnitude = std::max(magnitude, std::abs(q));
+  return range > negligible * magnitude ? range : magnitude;
+}
+
+std::optional<TrueError> error_by_reference(const extremal::Study& study,
+                                            const extremal::Solution& solution) {
+  if (study.problem.periodic || solution.nullity.value_or(1) != 0) return std::nullopt;
+  if (study.problem.coordinates() > most_reference_coordinates) return std::nullopt;
+  extremal::Study again = study;
+  again.problem.guess = as_guess(solution.trajectory);
+  if (again.problem.duration.free) again.problem.duration.value = solution.duration();
+  again.options = {};
+  extremal::Solution reference;
+  for (double tolerance = tightest; tolerance < 1e-10; tolerance *= 10) {
+    again.options.tolerance = tolerance;
+    reference = run(again);
+    if (reference.converged()) break;
+  }
+  if (!reference.converged() || reference.strategy != "newton from the guess") return std::nullopt;
+
+  std::vector<double> tau = times_within(solution.trajectory, 2 * solution.trajectory.degree);
+  for (double& t : tau) t /= solution.duration();
+  const Points found = points_at(study.problem, solution.trajectory, tau),
+               right = points_at(study.problem, reference.trajectory, tau);
+  const extremal::Survey ranges = survey(*study.problem.lagrangian, reference.trajectory);
+  return TrueError{.q = largest_difference(found.q, right.q),
+                   .v = largest_difference(found.v, right.v),
+                   .p = largest_difference(found.p, right.p),
+                   .q_unknown = reference.error_estimate,
+                   .q_range = largest_of(ranges.q),
+                   .v_range = largest_of(ranges.v),
+                   .p_range = largest_of(ranges.p)};
+}
+
+std::optional<double> error_by_shooting(const extremal::Study& study, const extremal::Solution& solution) {
+  const extremal::Verification found =
+      verify(study.problem, solution.trajectory,
+             {.tolerance = tightest, .margin = std::numeric_limits<double>::max()});
+  if (!found.distance) return std::nullopt;
+  return *found.distance * tightest * size_of(study, solution.trajectory);
+}
+
+}  // namespace bench

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "study/study.hpp"
+
+/// \file The true error of a solution, as far as it can be told.
+
+namespace bench {
+
+/// Suprema over [0, T] and coordinates.
+struct TrueError {
+  double q = 0, v = 0, p = 0;
+  double q_unknown = 0;  ///< error of the reference itself
+  double q_range = 0, v_range = 0, p_range = 0;
+};
+
+/// Against a solution for the tightest tolerance that is reached from this one. Absent where there is none,
+/// and where extremals come in families, so that they would differ by more than errors.
+std::optional<TrueError> error_by_reference(const extremal::Study& study, const extremal::Solution& solution);
+
+/// Error of q in units of q by one step of multiple shooting, integrated as precisely as can be.
+std::optional<double> error_by_shooting(const extremal::Study& study, const extremal::Solution& solution);
+
+/// The size that a tolerance is relative to.
+double size_of(const extremal::Study& study, const extremal::Trajectory& trajectory);
+
+}  // namespace bench
