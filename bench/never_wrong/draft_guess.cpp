@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "action/scheme.hpp"
 #include "draft.hpp"
 
 namespace bench {
@@ -48,11 +49,16 @@ void guess_state(Draft& draft) {
   draft.guess.emplace_back("state", inline_table(state));
 }
 
-std::string scheme_text(Random& random) {
-  constexpr std::array fixed{"rectangle", "rectangle-right", "midpoint", "trapezoid",
-                             "simpson",   "linear",          "quadratic"};
-  if (random.chance(0.4)) return random.pick(fixed);
-  return fmt::format("{}({})", random.chance(0.5) ? "lobatto" : "gauss", random.between(1, 24));
+/// One by name, or of a family with its degree.
+extremal::Scheme random_scheme(Random& random) {
+  if (random.chance(0.4)) return random.pick(extremal::schemes());
+  const int degree = random.between(1, extremal::max_degree);
+  return random.chance(0.5) ? extremal::lobatto(degree) : extremal::gauss(degree);
+}
+
+/// What some 10⁴ elements reach: more would try patience alone.
+double tightest_for(const extremal::Scheme& scheme) {
+  return std::pow(1e-4, std::min(scheme.order, scheme.degree + 1));
 }
 
 }  // namespace
@@ -69,15 +75,18 @@ void draw_guess(Draft& draft) {
 
 void draw_solve(Draft& draft) {
   Random& random = draft.random;
+  double tightest = 1e-13;
   if (random.chance(0.12)) {
-    draft.solve.emplace_back("scheme", quoted(scheme_text(random)));
+    const extremal::Scheme scheme = random_scheme(random);
+    draft.solve.emplace_back("scheme", quoted(scheme.name));
     if (random.chance(0.4)) {
       draft.solve.emplace_back("elements", std::to_string(static_cast<int>(random.log_uniform(1, 200))));
       return;
     }
+    tightest = std::max(tightest, tightest_for(scheme));
   }
-  if (!random.chance(0.1))
-    draft.solve.emplace_back("tolerance", fmt::format("{:.1e}", std::pow(10.0, random.uniform(-13, -3))));
+  if (tightest > 1e-9 || !random.chance(0.1))
+    draft.solve.emplace_back("tolerance", fmt::format("{:.1e}", random.log_uniform(tightest, 1e-3)));
 }
 
 }  // namespace bench

@@ -5,7 +5,7 @@
 namespace bench {
 namespace {
 
-constexpr double own_parameters = 0.6, as_the_file_says = 0.4;
+constexpr double own_parameters = 0.5;
 
 double value_in(const Span& span, Random& random) {
   return span.low > 0 ? random.log_uniform(span.low, span.high) : random.uniform(span.low, span.high);
@@ -36,8 +36,7 @@ void draw_system(Draft& draft) {
   }
   const bool own = random.chance(own_parameters);
   for (const Span& span : recipe.parameters)
-    if (span.list || (own && !random.chance(as_the_file_says)))
-      parameters.emplace_back(span.name, parameter_text(span, size, random));
+    if (span.list || own) parameters.emplace_back(span.name, parameter_text(span, size, random));
   draft.system.emplace_back("use", quoted(recipe.system));
   if (!parameters.empty()) draft.system.emplace_back("parameters", inline_table(parameters));
   for (const Span& span : recipe.positions)
