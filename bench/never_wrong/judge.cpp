@@ -100,7 +100,9 @@ class Judge {
         blame("invalid", fmt::format("conjugate time {} after {}, duration {}", time, before, duration));
       before = time;
     }
-    if (verdict_.scene.kind != "fixed" || solution_.windows.empty() || !solution_.morse_index) return;
+    if (verdict_.scene.kind != "fixed" || study_.options.scheme || solution_.windows.empty() ||
+        !solution_.morse_index)
+      return;
     const auto conjugate = static_cast<int>(solution_.conjugate_times.size());
     if (conjugate != *solution_.morse_index && solution_.nullity == 0)
       blame("index", fmt::format("index {} with {} conjugate times", *solution_.morse_index, conjugate));

@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -45,7 +47,18 @@ void add_log(const std::string& path, Tally& tally) {
   for (std::string line; std::getline(file, line);) tally.add(from_line(line));
 }
 
+/// A system without a recipe would never be tried.
+void check_catalogue() {
+  for (const auto& file : fs::directory_iterator(EXTREMAL_SOURCE_DIR "/problems/systems")) {
+    const std::string system = file.path().stem();
+    const auto named = [&](const Recipe& recipe) { return recipe.system == system; };
+    if (!std::any_of(catalogue().begin(), catalogue().end(), named))
+      throw std::runtime_error(fmt::format("the system {} has no recipe in the catalogue", system));
+  }
+}
+
 int run(const Options& options) {
+  check_catalogue();
   if (options.print) {
     const std::string scratch = fs::temp_directory_path() / "never-wrong-print.toml";
     fmt::print(

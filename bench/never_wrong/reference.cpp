@@ -12,6 +12,8 @@ namespace bench {
 namespace {
 
 constexpr double tightest = 1e-13;
+/// A range below this part of the values is none.
+constexpr double negligible = 1e-12;
 constexpr int most_reference_coordinates = 40;
 
 /// Times within every element, ends included.
@@ -62,23 +64,33 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
   return largest;
 }
 
-double largest_of(const std::vector<double>& values) {
-  return *std::max_element(values.begin(), values.end());
-}
-
 }  // namespace
 
+double largest_of(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double x : values) largest = std::max(largest, std::abs(x));
+  return largest;
+}
+
+double magnitude(const extremal::Problem& problem, const extremal::Trajectory& trajectory) {
+  return std::max(
+      {largest_of(trajectory.nodes), largest_of(problem.guess.q), largest_of(problem.ends.offset)});
+}
+
+bool rests(const extremal::Problem& problem, const extremal::Trajectory& trajectory) {
+  return largest_of(survey(*problem.lagrangian, trajectory).q) <= negligible * magnitude(problem, trajectory);
+}
+
 double size_of(const extremal::Study& study, const extremal::Trajectory& trajectory) {
-  constexpr double negligible = 1e-12;
-  const double range = largest_of(survey(*study.problem.lagrangian, trajectory).q);
-  double magnitude = 0;
-  for (const double q : trajectory.nodes) magnitude = std::max(magnitude, std::abs(q));
+  const double range = largest_of(survey(*study.problem.lagrangian, trajectory).q),
+               magnitude = largest_of(trajectory.nodes);
   return range > negligible * magnitude ? range : magnitude;
 }
 
 std::optional<TrueError> error_by_reference(const extremal::Study& study,
                                             const extremal::Solution& solution) {
   if (study.problem.periodic || solution.nullity.value_or(1) != 0) return std::nullopt;
+  if (rests(study.problem, solution.trajectory)) return std::nullopt;
   if (study.problem.coordinates() > most_reference_coordinates) return std::nullopt;
   extremal::Study again = study;
   again.problem.guess = as_guess(solution.trajectory);

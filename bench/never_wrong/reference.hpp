@@ -22,6 +22,12 @@ std::optional<TrueError> error_by_reference(const extremal::Study& study, const 
 /// Error of q in units of q by one step of multiple shooting, integrated as precisely as can be.
 std::optional<double> error_by_shooting(const extremal::Study& study, const extremal::Solution& solution);
 
+double largest_of(const std::vector<double>& values);  ///< in modulus; 0 without values
+/// Largest value of path, ends and guess.
+double magnitude(const extremal::Problem& problem, const extremal::Trajectory& trajectory);
+/// Whether ranges are nothing beside these values.
+bool rests(const extremal::Problem& problem, const extremal::Trajectory& trajectory);
+
 /// The size that a tolerance is relative to.
 double size_of(const extremal::Study& study, const extremal::Trajectory& trajectory);
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "rivals/flow.hpp"
 #include "rivals/verify.hpp"
 #include "solution/observe.hpp"
 
@@ -16,16 +16,6 @@ namespace {
 constexpr double margin = 10;
 /// No more can be asked of an integrator in double precision.
 constexpr double tightest = 1e-12;
-/// A range below this part of the values of path and guess is rest.
-constexpr double rest = 1e-12;
-/// Of lower degree q' is O(h^s) off, and with it every motion that starts from it: the distance is judged.
-constexpr int least_degree = 4;
-
-double largest_of(const std::vector<double>& values) {
-  double largest = 0;
-  for (const double x : values) largest = std::max(largest, std::abs(x));
-  return largest;
-}
 
 class Refutation {
  public:
@@ -34,14 +24,15 @@ class Refutation {
       : problem_(study.problem),
         trajectory_(solution.trajectory),
         reference_(reference),
+        by_distance_(study.options.scheme.has_value()),
         tolerance_(study.options.tolerance),
         ranges_(survey(*problem_.lagrangian, trajectory_)),
-        magnitude_(std::max(largest_of(trajectory_.nodes), largest_of(problem_.guess.q))),
+        magnitude_(magnitude(problem_, trajectory_)),
         size_(size_of(study, trajectory_)),
         fast_(std::max(largest_of(ranges_.v), size_ / trajectory_.duration())) {}
 
   std::vector<Fault> run() {
-    if (largest_of(ranges_.q) <= rest * magnitude_) return at_rest();
+    if (rests(problem_, trajectory_)) return at_rest();
     const std::string doubt = judge(tolerance_);
     if (doubt.empty()) return {};
     // What is refuted must be so with the integrator a hundred times more precise as well.
@@ -51,20 +42,20 @@ class Refutation {
   }
 
  private:
-  /// The motion must have no reason to leave: |q''| T²/2 below what is allowed.
+  /// The motion must have no reason to leave: |q''| T²/2 below what is allowed, q'' = L_vv⁻¹ L_q at rest.
   std::vector<Fault> at_rest() {
     const std::size_t n = problem_.coordinates();
-    extremal::Flow flow(*problem_.lagrangian);
-    std::vector<double> y(2 * n), slope(2 * n), v(n);
-    trajectory_.at(0, std::span(y).first(n), v);
+    std::vector<double> q(n), v(n);
+    trajectory_.at(0, q, v);
     std::fill(v.begin(), v.end(), 0.0);
-    if (!flow.momentum(std::span(y).first(n), v, 0, std::span(y).subspan(n)))
-      return {{"false", "L is not finite"}};
-    const double step = std::sqrt(std::numeric_limits<double>::epsilon()) * trajectory_.duration();
-    if (!flow.slope(0, y, slope)) return {{"false", "L is not finite"}};
-    for (std::size_t i = 0; i < 2 * n; ++i) y[i] += step * slope[i];
-    if (!flow.velocity(std::span(y).first(n), std::span(y).subspan(n), step, v)) return {};
-    const double moved = largest_of(v) / step * std::pow(trajectory_.duration(), 2) / 2;
+    extremal::Scratch scratch;
+    const extremal::PointValues at =
+        evaluate_at(*problem_.lagrangian, q, v, 0, extremal::Order::hessian, scratch);
+    const auto size = static_cast<Eigen::Index>(n);
+    const Eigen::VectorXd acceleration = Eigen::Map<const Eigen::MatrixXd>(at.vv.data(), size, size)
+                                             .fullPivLu()
+                                             .solve(Eigen::Map<const Eigen::VectorXd>(at.dq.data(), size));
+    const double moved = acceleration.cwiseAbs().maxCoeff() * std::pow(trajectory_.duration(), 2) / 2;
     if (moved <= margin * std::max(tolerance_, 1e-13) * magnitude_) return {};
     return {{"false", fmt::format("at rest where the motion would leave by {:.3g}", moved)}};
   }
@@ -84,7 +75,7 @@ class Refutation {
       if (found.message.find("steps of the integrator") != std::string::npos) kind_ = "unverified";
       return found.message;
     }
-    if (trajectory_.degree >= least_degree) {
+    if (!by_distance_) {
       if (found.defect * unit > margin + excuse_q)
         return fmt::format("a defect of {:.3g} tolerances in q at t = {:.6g}", found.defect * unit,
                            found.worst_time);
@@ -97,7 +88,7 @@ class Refutation {
     if (far > margin + excuse_q && !excused())
       return fmt::format("the extremal is {:.3g} tolerances away", far);
     kind_ = "velocity";
-    if (trajectory_.degree >= least_degree && found.velocity_defect * unit * slow > margin + excuse * slow)
+    if (!by_distance_ && found.velocity_defect * unit * slow > margin + excuse * slow)
       return fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}",
                          found.velocity_defect * unit * slow, found.worst_time);
     return {};
@@ -110,6 +101,8 @@ class Refutation {
   const extremal::Problem& problem_;
   const extremal::Trajectory& trajectory_;
   const std::optional<TrueError>& reference_;
+  const bool
+      by_distance_;  ///< a scheme of low degree has q' O(h^s) off, and every motion that starts from it
   const double tolerance_;
   const extremal::Survey ranges_;
   const double magnitude_, size_;
