@@ -14,8 +14,9 @@ constexpr double least_damping = 1e-3;
 constexpr double breakdown = 1e-11;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
 constexpr double amplified_roundoff = 1e-11;
-/// A step that is not tested may contract worse than any before by this factor; by so much it does.
-constexpr double worst_surprise = 30, surprise = 5;
+/// A step that is not tested may contract worse than any before by this factor; by so much it does. Steps of
+/// another kind, as after finer elements, may be worse still: δS is taken to bend at least so much.
+constexpr double worst_surprise = 30, surprise = 5, least_curvature = 1e3;
 /// A simplified correction this much smaller than the step is worth taking.
 constexpr double worth_taking = 0.3;
 
@@ -111,7 +112,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     return StepResult::ok;
   }
   const double expected = largest_curvature_ * step;
-  if (expected > 0 && worst_surprise * expected * step <= enough) {
+  if (expected > 0 && std::max(worst_surprise * expected, least_curvature * step) * step <= enough) {
     contraction_ = surprise * expected;
     norm_ = remaining_ = contraction_ * step;
     damping_ = predicted_ = 1;

@@ -133,7 +133,7 @@ void Refinement::adopt(const Plan& plan) {
 void Refinement::refine() {
   const int elements = w_.path.elements(), degree = w_.path.degree();
   if (degree == first_degree) {
-    const Resolution::Error aim{coarse_goal * scales_.q, INFINITY};
+    const Resolution::Error aim{coarse_goal * scales_.q, INFINITY, INFINITY};
     const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), w_.path.coordinates(),
                                        {aim, aim, degree, degree, degree, most_elements, coarse_cut});
     if (static_cast<int>(finer.mesh.size()) > elements + 1) return adopt(finer);
@@ -168,8 +168,8 @@ Refinement::Attempt Refinement::attempt() {
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {
     // Finer elements than one more step makes use of would be wasted.
-    NodeError nodes{w_.resolution.at(w_.path.degree()).q, 0, plans > 0};
-    const double known = nodes.truncation / scales_.q + newton.remaining;
+    NodeError nodes{w_.resolution.at(w_.path.degree()), 0, plans > 0};
+    const double known = nodes.left_out.q / scales_.q + newton.remaining;
     const double aim = std::max(finest, std::min(w_.iteration.expected(known), 0.1 * known));
     const Plan next = plan(aim);
     if (next.degree == 0) worst_ = INFINITY;  // not measured yet
@@ -190,16 +190,17 @@ Refinement::Attempt Refinement::attempt() {
 }
 
 /// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
-/// which falls with the square of those (order 2s against s + 1) from what the nodes moved when the
-/// degree rose; corrections not made; roundoff, a random walk over the points.
+/// which comes from the forces and velocities left out and falls with their product (order 2s) from what
+/// the nodes moved when the elements changed; corrections not made; roundoff, a random walk over the points.
 Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {
   outcome_.message = newton.failure;
   if (!newton.reached) return Attempt::failed;
   Resolution::Error error = w_.resolution.at(w_.path.degree());
-  const double fall = nodes.truncation > 0 ? std::min(1.0, error.q / nodes.truncation) : 0;
+  const Resolution::Error& before = nodes.left_out;
+  const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
   const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
   const double truncation = error.q + 0x1p-53 * scales_.magnitude * std::sqrt(points);
-  const double at_nodes = nodes.moved * fall * fall;
+  const double at_nodes = nodes.moved * std::min(1.0, fall);
   error.q = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
   outcome_.error = error.q + newton.remaining * scales_.q;
@@ -212,7 +213,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   worst_ = excess(error);
   if (!(worst_ <= 1)) return Attempt::refine;
   // Much movement may have been Newton's, not the elements': from this converged path it is not.
-  if (at_nodes > 3 * truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
+  if (at_nodes > truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
     return Attempt::refine;
   outcome_.message = "converged";
   return Attempt::converged;

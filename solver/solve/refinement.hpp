@@ -42,10 +42,11 @@ class Refinement {
 
  private:
   enum class Attempt { converged, refine, failed, unreachable };
-  /// Before the degree rose: expected truncation; how far the mesh nodes moved since; whether Newton's
-  /// method had gone to the end before.
+  /// Before the elements changed: what they left out; how far the mesh nodes moved since;
+  /// whether Newton's method had gone to the end before.
   struct NodeError {
-    double truncation = 0, moved = 0;
+    Resolution::Error left_out;
+    double moved = 0;
     bool from_converged = false;
   };
   Attempt attempt();

@@ -112,7 +112,9 @@ Resolution::Error Resolution::at(int degree) const {
     double size = tail.size * tail.fall;
     for (int k = degree_; k < degree; ++k) size *= tail.fall;
     error.q = std::max(error.q, size);
-    error.v = std::max(error.v, size * (degree + 1) * (degree + 2) / tail.h);
+    const double slope = size * (degree + 1) * (degree + 2) / tail.h;
+    error.v = std::max(error.v, slope);
+    error.a = std::max(error.a, slope * degree * (degree + 3) / (2 * tail.h));
   }
   return error;
 }

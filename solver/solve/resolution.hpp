@@ -16,8 +16,8 @@ struct Scales {
 Scales scales(const Path& path, const ElementTables& tables);
 
 /// Coefficients of P_k fall like ρ^−k where q is analytic about an element. The sizes of the last two and of
-/// the two before give each element's rate; the error of q is the first coefficient left out, that
-/// of q' its derivative at the end of the element, k(k + 1)/h.
+/// the two before give each element's rate; the error of q is the first coefficient left out, those
+/// of q' and q'' its derivatives at the end of the element, k(k + 1)/h and (k − 1)k(k + 1)(k + 2)/2h².
 class Resolution {
  public:
   void measure(const Path& path, const ElementTables& tables);
@@ -29,8 +29,9 @@ class Resolution {
   int degree() const { return degree_; }
   std::span<const Tail> tails() const { return tails_; }
 
+  /// Of q, of q' and of q''.
   struct Error {
-    double q = 0, v = 0;
+    double q = 0, v = 0, a = 0;
   };
   /// Expected truncation error with elements of `degree`, worst over elements and coordinates.
   Error at(int degree) const;
