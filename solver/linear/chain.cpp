@@ -112,7 +112,10 @@ bool Chain::factor(double smallest) {
   const double calm = std::min(1e6, 1 / std::sqrt(smallest));
   std::vector<std::pair<int, double>> saved;
   double suspicion;
-  while ((suspicion = factor_once(smallest)) > calm && int(saved.size()) < order()) {
+  // As a second variation between fixed ends A has no more than n null directions; with many more it is
+  // noise.
+  const int most = std::min(order(), std::max(2 * size_, 16));
+  while ((suspicion = factor_once(smallest)) > calm && int(saved.size()) < most) {
     const int row = null_row(smallest);
     if (row < 0) break;
     const double amount = 1 / (scale_[row] * scale_[row]);

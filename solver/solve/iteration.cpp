@@ -86,6 +86,29 @@ void NewtonIteration::apply(Path& path, double factor, bool keep) {
   path.load_ends();
 }
 
+double NewtonIteration::residual() const {
+  const EndMap& ends = problem_->ends;
+  const int n = problem_->coordinates();
+  free_.assign(ends.free, 0);
+  for (const Triplet& z : ends.z)
+    free_[z.column] +=
+        z.value * (z.row < n ? action_.start_gradient()[z.row] : action_.end_gradient()[z.row - n]);
+  double largest = action_.residual();
+  for (double g : free_) largest = std::max(largest, std::abs(g));
+  return largest;
+}
+
+double NewtonIteration::stiffness() const {
+  double most = 0;
+  for (double x : action_.nodes.first) most = std::max(most, std::abs(x));
+  return most;
+}
+
+double NewtonIteration::residual_at(const Path& path) {
+  action_.evaluate_plain(path);
+  return residual();
+}
+
 /// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
 /// element, all unknowns are factored at once with pivoting.
 bool NewtonIteration::factor(const Path& path) {

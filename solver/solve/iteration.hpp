@@ -58,6 +58,12 @@ class NewtonIteration {
   const DiscreteAction& action() const { return action_; }
   /// The second variation that was factored last.
   QuadraticModel& model() { return *model_; }
+  /// The largest component of δS under the boundary relation, where the action was evaluated last.
+  double residual() const;
+  /// The same at `path`.
+  double residual_at(const Path& path);
+  /// Largest second derivative of S_h by q(0).
+  double stiffness() const;
   /// The equation that closes the duration, at the path's ends; null where it is fixed.
   const ClosingEquation* closing(const Path& path);
 
@@ -74,6 +80,7 @@ class NewtonIteration {
   Step step_;
   ClosingEquation closing_;
   Path saved_;
+  mutable std::vector<double> free_;
   double scale_ = 1, norm_ = 0, remaining_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
   double curvature_ = 0;  ///< contraction of the last full step by its length; 0: not known
   double largest_curvature_ = 0;

@@ -33,7 +33,7 @@ bool PinnedSolve::solve_discrete(int elements) {
   std::vector<double> mesh(elements + 1);
   for (int k = 0; k <= elements; ++k) mesh[k] = static_cast<double>(k) / elements;
   bool again = false;
-  for (int points = scheme_.points; points <= most_points; points = points < 8 ? points + 2 : points + 4) {
+  for (int points = scheme_.points;; points = std::min(points < 8 ? points + 2 : points + 4, most_points)) {
     bind(points);
     w_.iteration.reset(problem_, w_.pinned, elements);
     for (unsigned seed = 0; !again && seed <= most_bends; ++seed) {
@@ -49,9 +49,9 @@ bool PinnedSolve::solve_discrete(int elements) {
     outcome_.message = report.failure;
     if (!report.reached) return false;
     again = true;
-    if (scheme_.quadrature != Quadrature::exact || exact_quadrature_settled()) break;
+    const bool more = scheme_.quadrature == Quadrature::exact && points < most_points;
+    if (!more || exact_quadrature_settled()) return true;
   }
-  return true;
 }
 
 /// Whether two more points leave S_h as it is.
@@ -68,13 +68,18 @@ bool PinnedSolve::exact_quadrature_settled() {
   return std::abs(check.action() - action) <= 1e-15 * std::abs(action);
 }
 
-/// Largest distance of the path from the extremal of elements of higher degree on the same mesh, started
-/// from it; the companion's own truncation is added. Infinite if it does not converge.
+/// Largest distance of the path from the extremal of elements of higher degree on the same mesh, or of halved
+/// elements where there is no higher degree, started from it; the companion's own truncation is added.
+/// Infinite if it does not converge.
 double PinnedSolve::distance_to_companion() {
   const int n = problem_.coordinates();
-  const int degree = std::min(std::max(scheme_.degree + 3, 6), max_degree);
+  const bool halved = scheme_.degree + 3 > max_degree;
+  const int degree = halved ? scheme_.degree : std::max(scheme_.degree + 3, 6);
   const ElementTables& tables = w_.levels.at(degree);
-  w_.other.interpolate_from(w_.path, tables, w_.levels.raise(w_.path.degree(), degree));
+  if (halved)
+    w_.other.split_from(w_.path, tables, w_.levels.halve(degree));
+  else
+    w_.other.interpolate_from(w_.path, tables, w_.levels.raise(w_.path.degree(), degree));
   const Path start = w_.other;
   w_.iteration.reset(problem_, tables, w_.other.elements());
   const NewtonReport report = converge(w_.iteration, w_.other, tables, {1e-12, steps}, {});

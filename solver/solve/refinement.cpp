@@ -11,7 +11,8 @@ namespace {
 
 constexpr int first_degree = 4;
 constexpr int highest_degree = 16;
-constexpr int most_elements = 1 << 16;
+/// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.
+constexpr int most_elements = 1 << 12, most_cuts = 64;
 /// Coarse elements have done their work when the path is known to this, relative to its range.
 constexpr double coarse_goal = 1e-3;
 /// A coarse element becomes at most so many at a time.
@@ -29,6 +30,13 @@ constexpr int most_plans = 6;
 constexpr double spare = 0.1;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
+/// A residual below the first, relative, may be roundoff; one above the second is not what Newton's method
+/// leaves.
+constexpr double least_residual = 1e-10, largest_residual = 1e-6;
+/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh.
+constexpr double most_cost = 1e9, most_first_steps = 200;
+/// A step takes so much longer where the nodes are factored with pivoting, and again for each null direction.
+constexpr double pivoting = 100;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
@@ -44,14 +52,19 @@ void Refinement::open(const std::vector<double>& mesh) {
   tables_ = &w_.levels.at(first_degree);
   w_.iteration.reset(problem_, *tables_, static_cast<int>(mesh.size()) - 1);
   w_.path.reset(*tables_, mesh, problem_.duration.value);
+  most_elements_ = std::max(most_elements, most_cuts * w_.path.elements());
+  most_cost_ = std::max({most_cost_, most_cost, most_first_steps * step_cost()});
 }
 
+double Refinement::step_cost() const { return w_.path.batches() * batch_cost(tables_->unknowns()); }
+
 Refinement::Result Refinement::pursue() {
+  first_residual_ = problem_.ends.free > 0 ? w_.iteration.residual_at(w_.path) : 0;
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
-    if (hopeless || 2 * w_.path.elements() > most_elements) {
+    if (hopeless || 2 * w_.path.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
                                      w_.path.elements(), w_.path.degree(), options_.tolerance);
       return Result::unreachable;
@@ -83,6 +96,9 @@ bool Refinement::confirmed() {
 
 void Refinement::record() {
   longest_ = std::max(longest_, w_.iteration.undamped());
+  const Chain& chain = w_.iteration.action().nodes.chain;
+  cost_ +=
+      step_cost() * (chain.pivoted() ? pivoting * (1 + static_cast<double>(chain.deflated().size())) : 1);
   outcome_.record(w_, options_);
 }
 
@@ -104,7 +120,7 @@ Plan Refinement::plan(double aim) {
                           .raised_degree = std::min(w_.path.degree() + 1, highest_degree),
                           .least_degree = first_degree + 1,
                           .highest_degree = highest_degree,
-                          .most_elements = 16 * w_.path.elements(),
+                          .most_elements = std::min(16 * w_.path.elements(), most_elements_),
                           .strongest_cut = 16});
 }
 
@@ -135,7 +151,7 @@ void Refinement::refine() {
   if (degree == first_degree) {
     const Resolution::Error aim{coarse_goal * scales_.q, INFINITY, INFINITY};
     const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), w_.path.coordinates(),
-                                       {aim, aim, degree, degree, degree, most_elements, coarse_cut});
+                                       {aim, aim, degree, degree, degree, most_elements_, coarse_cut});
     if (static_cast<int>(finer.mesh.size()) > elements + 1) return adopt(finer);
   }
   w_.other.split_from(w_.path, *tables_, w_.levels.halve(w_.path.degree()));
@@ -144,7 +160,8 @@ void Refinement::refine() {
 }
 
 int Refinement::steps_left(int wanted) const {
-  return std::max(0, std::min(wanted, most_steps_ - outcome_.iterations));
+  const double affordable = std::min((most_cost_ - cost_) / step_cost(), 1e6);
+  return std::max(0, std::min({wanted, most_steps_ - outcome_.iterations, static_cast<int>(affordable)}));
 }
 
 void Refinement::measure() {
@@ -167,10 +184,12 @@ Refinement::Attempt Refinement::attempt() {
   measure();
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {
-    // Finer elements than one more step makes use of would be wasted.
+    // Finer elements than one more step makes use of would be wasted; but on coarse ones the directions of
+    // symmetries, which a period leaves free, are not yet null and mislead.
     NodeError nodes{w_.resolution.at(w_.path.degree()), 0, plans > 0};
     const double known = nodes.left_out.q / scales_.q + newton.remaining;
-    const double aim = std::max(finest, std::min(w_.iteration.expected(known), 0.1 * known));
+    const double reach = std::min(w_.iteration.expected(known), 0.1 * known);
+    const double aim = problem_.periodic ? finest : std::max(finest, reach);
     const Plan next = plan(aim);
     if (next.degree == 0) worst_ = INFINITY;  // not measured yet
     if (next.degree == 0 || plans == most_plans) return Attempt::refine;
@@ -185,8 +204,24 @@ Refinement::Attempt Refinement::attempt() {
     // What Newton's method had left to do is no error of the elements.
     nodes.moved = std::max(0.0, nodes.moved - unfinished);
     const Attempt result = judge(newton, aim, nodes);
+    if (result == Attempt::converged && !solved()) return Attempt::failed;
     if (result != Attempt::refine) return result;
   }
+}
+
+/// Where the ends are not fixed, a second variation that is nearly singular lets steps become short although
+/// δS does not vanish: neither against the momenta, nor, at rest, against what it was.
+bool Refinement::solved() {
+  if (problem_.ends.free == 0) return true;
+  const double left = w_.iteration.residual_at(w_.path), momentum = w_.iteration.action().momentum_scale();
+  const double allowed = std::clamp(10 * options_.tolerance, least_residual, largest_residual);
+  const double at_rest = 10 * roundoff * w_.iteration.stiffness() * scales_.magnitude;
+  if (left <= std::max({allowed * momentum, least_residual * first_residual_, at_rest})) return true;
+  outcome_.message = fmt::format(
+      "the iteration came to rest where a residual of {:.1e} of the largest momentum is left: there is no "
+      "extremal near, or the second variation is nearly singular; try another guess",
+      left / momentum);
+  return false;
 }
 
 /// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,

@@ -24,7 +24,7 @@ class Refinement {
 
   /// Steps that all paths together may take.
   void allow(int steps) { most_steps_ = steps; }
-  bool exhausted() const { return outcome_.iterations >= most_steps_; }
+  bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= most_cost_; }
 
   /// Puts an empty path of coarse elements on `mesh` into the workspace, to be filled by the caller.
   void open(const std::vector<double>& mesh);
@@ -61,15 +61,19 @@ class Refinement {
   void adopt(const Plan& plan);
   void refine();
   void record();
+  bool solved();
+  double step_cost() const;
 
   const Problem& problem_;
   const SolveOptions& options_;
   Workspace& w_;
   Outcome& outcome_;
   Scales scales_;
-  int most_steps_ = 0;
-  double longest_ = 0;  ///< undamped step so far, relative
-  double worst_ = 0;    ///< error in units of the tolerance, when elements were last judged
+  int most_steps_ = 0, most_elements_ = 0;
+  double cost_ = 0, most_cost_ = 0;
+  double first_residual_ = 0;  ///< of the path that is pursued
+  double longest_ = 0;         ///< undamped step so far, relative
+  double worst_ = 0;           ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 

@@ -52,15 +52,8 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
     solution.momentum_start[a] = -action.start_gradient()[a];
     solution.momentum_end[a] = action.end_gradient()[a];
   }
-  double residual = action.residual(), scale = action.momentum_scale();
-  std::vector<double> free(problem.ends.free, 0);
-  for (const Triplet& z : problem.ends.z) {
-    const int n = problem.coordinates();
-    free[z.column] +=
-        z.value * (z.row < n ? action.start_gradient()[z.row] : action.end_gradient()[z.row - n]);
-  }
-  for (double g : free) residual = std::max(residual, std::abs(g));
-  solution.residual = scale > 0 ? residual / scale : residual;
+  const double momentum = action.momentum_scale();
+  solution.residual = newton.residual() / (momentum > 0 ? momentum : 1);
   if (!factored) return;
   const double size = scales(w.path, *outcome.tables).q;
   const Inertia inertia = newton.model().inertia(null_threshold(outcome.error, size));
