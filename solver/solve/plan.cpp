@@ -88,7 +88,7 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, i
   double count = 0;
   for (int degree = limits.least_degree; degree <= limits.highest_degree; ++degree) {
     const double needed = elements(degree, limits);
-    if (needed > limits.most_elements || cost(degree, needed) >= least) continue;
+    if (!(needed <= limits.most_elements && cost(degree, needed) < least)) continue;  // not NaN either
     least = cost(degree, needed);
     count = needed;
     moved = degree;

@@ -30,6 +30,8 @@ constexpr int most_plans = 6;
 constexpr double spare = 0.1;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
+/// Of the size of the path that was started from: a path smaller than this is at rest.
+constexpr double rest = 1e-12;
 /// A residual below the first, relative, may be roundoff; one above the second is not what Newton's method
 /// leaves.
 constexpr double least_residual = 1e-10, largest_residual = 1e-6;
@@ -59,6 +61,7 @@ void Refinement::open(const std::vector<double>& mesh) {
 double Refinement::step_cost() const { return w_.path.batches() * batch_cost(tables_->unknowns()); }
 
 Refinement::Result Refinement::pursue() {
+  first_magnitude_ = scales(w_.path, *tables_).magnitude;
   first_residual_ = problem_.ends.free > 0 ? w_.iteration.residual_at(w_.path) : 0;
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
@@ -166,6 +169,8 @@ int Refinement::steps_left(int wanted) const {
 
 void Refinement::measure() {
   scales_ = scales(w_.path, *tables_);
+  scales_.q = std::max(scales_.q, rest * first_magnitude_);
+  scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
   w_.resolution.measure(w_.path, *tables_);
 }
 

@@ -71,9 +71,9 @@ class Refinement {
   Scales scales_;
   int most_steps_ = 0, most_elements_ = 0;
   double cost_ = 0, most_cost_ = 0;
-  double first_residual_ = 0;  ///< of the path that is pursued
-  double longest_ = 0;         ///< undamped step so far, relative
-  double worst_ = 0;           ///< error in units of the tolerance, when elements were last judged
+  double first_residual_ = 0, first_magnitude_ = 0;  ///< of the path that is pursued
+  double longest_ = 0;                               ///< undamped step so far, relative
+  double worst_ = 0;  ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 

@@ -10,6 +10,10 @@ namespace extremal {
 namespace {
 
 constexpr double noise = 0x1p-50;
+/// A range this much smaller than the coordinates is roundoff.
+constexpr double negligible = 1e-12;
+/// Velocities are not asked for more digits than this share of the mean speed gives.
+constexpr double nearly_uniform = 1e-3;
 
 /// Legendre coefficient k of coordinate a over the eight elements of a batch.
 void coefficient(const double* x, const SchemeTables& tables, int n, int a, int k, double* out) {
@@ -55,14 +59,14 @@ Scales scales(const Path& path, const ElementTables& tables) {
       }
     }
     const double least = *std::min_element(low, low + lanes), most = *std::max_element(high, high + lanes);
-    const double magnitude = std::max(std::abs(most), std::abs(least));
-    result.magnitude = std::max(result.magnitude, magnitude);
-    result.q = std::max(result.q, most - least > 1e-12 * magnitude ? most - least : magnitude);
+    result.magnitude = std::max({result.magnitude, std::abs(most), std::abs(least)});
+    result.q = std::max(result.q, most - least);
     result.v =
         std::max(result.v, *std::max_element(fast, fast + lanes) - *std::min_element(slow, slow + lanes));
   }
-  // A uniform motion has no range of velocity: then its own size.
-  result.v = std::max(result.v, path.duration() > 0 ? result.q / path.duration() : 0.0);
+  if (result.q <= negligible * result.magnitude) result.q = result.magnitude;
+  // A motion that is nearly uniform has hardly a range of velocity.
+  if (path.duration() > 0) result.v = std::max(result.v, nearly_uniform * result.q / path.duration());
   return result;
 }
 
