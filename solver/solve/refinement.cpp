@@ -206,8 +206,8 @@ Refinement::Attempt Refinement::attempt() {
       newton = converge_to(finest, true);
     for (std::size_t k = 0; k < w_.before.size(); ++k)
       nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
-    // What Newton's method had left to do is no error of the elements.
-    nodes.moved = std::max(0.0, nodes.moved - unfinished);
+    // What Newton's method had left to do is no error of the elements, or not all of it.
+    nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
     const Attempt result = judge(newton, aim, nodes);
     if (result == Attempt::converged && !solved()) return Attempt::failed;
     if (result != Attempt::refine) return result;
