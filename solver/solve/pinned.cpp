@@ -43,11 +43,17 @@ bool PinnedSolve::solve_discrete(int elements) {
       w_.iteration.action().evaluate_plain(w_.path);
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
+    ResidualTest test;
+    test.begin(problem_, w_.iteration, w_.path);
     const NewtonReport report =
         converge(w_.iteration, w_.path, w_.pinned, {roundoff, std::min(steps, options_.max_iterations)},
                  [this] { outcome_.record(w_, options_); });
     outcome_.message = report.failure;
     if (!report.reached) return false;
+    if (!test.passed(problem_, w_.iteration, w_.path, 0, scales(w_.path, w_.pinned).magnitude)) {
+      outcome_.message = test.message();
+      return false;
+    }
     again = true;
     const bool more = scheme_.quadrature == Quadrature::exact && points < most_points;
     if (!more || exact_quadrature_settled()) return true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solve/converge.hpp"
+#include "solve/residual_test.hpp"
 #include "solve/workspace.hpp"
 
 /// \file A scheme that the user names: exactly so many equal elements, or as many as the tolerance needs.

@@ -32,9 +32,6 @@ constexpr double spare = 0.1;
 constexpr double suspicious_step = 1e6;
 /// Of the size of the path that was started from: a path smaller than this is at rest.
 constexpr double rest = 1e-12;
-/// A residual below the first, relative, may be roundoff; one above the second is not what Newton's method
-/// leaves.
-constexpr double least_residual = 1e-10, largest_residual = 1e-6;
 /// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh.
 constexpr double most_cost = 1e9, most_first_steps = 200;
 /// A step takes so much longer where the nodes are factored with pivoting, and again for each null direction.
@@ -62,7 +59,7 @@ double Refinement::step_cost() const { return w_.path.batches() * batch_cost(tab
 
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
-  first_residual_ = problem_.ends.free > 0 ? w_.iteration.residual_at(w_.path) : 0;
+  test_.begin(problem_, w_.iteration, w_.path);
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
@@ -214,18 +211,9 @@ Refinement::Attempt Refinement::attempt() {
   }
 }
 
-/// Where the ends are not fixed, a second variation that is nearly singular lets steps become short although
-/// δS does not vanish: neither against the momenta, nor, at rest, against what it was.
 bool Refinement::solved() {
-  if (problem_.ends.free == 0) return true;
-  const double left = w_.iteration.residual_at(w_.path), momentum = w_.iteration.action().momentum_scale();
-  const double allowed = std::clamp(10 * options_.tolerance, least_residual, largest_residual);
-  const double at_rest = 10 * roundoff * w_.iteration.stiffness() * scales_.magnitude;
-  if (left <= std::max({allowed * momentum, least_residual * first_residual_, at_rest})) return true;
-  outcome_.message = fmt::format(
-      "the iteration came to rest where a residual of {:.1e} of the largest momentum is left: there is no "
-      "extremal near, or the second variation is nearly singular; try another guess",
-      left / momentum);
+  if (test_.passed(problem_, w_.iteration, w_.path, 10 * options_.tolerance, scales_.magnitude)) return true;
+  outcome_.message = test_.message();
   return false;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "solve/converge.hpp"
+#include "solve/residual_test.hpp"
 #include "solve/workspace.hpp"
 
 /// \file Mesh and degree chosen for a tolerance, while Newton converges.
@@ -71,9 +72,10 @@ class Refinement {
   Scales scales_;
   int most_steps_ = 0, most_elements_ = 0;
   double cost_ = 0, most_cost_ = 0;
-  double first_residual_ = 0, first_magnitude_ = 0;  ///< of the path that is pursued
-  double longest_ = 0;                               ///< undamped step so far, relative
-  double worst_ = 0;  ///< error in units of the tolerance, when elements were last judged
+  double first_magnitude_ = 0;  ///< of the path that is pursued
+  ResidualTest test_;
+  double longest_ = 0;  ///< undamped step so far, relative
+  double worst_ = 0;    ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 
