@@ -21,6 +21,9 @@ constexpr double largest_distance = 1e-5;
 constexpr double near = 1e-2;
 /// Of a path that did not converge, so near a conjugate time is no accident.
 constexpr double suspicious = 1e-6;
+/// A path that failed on more elements is not resolved: its second variation would take long and tell
+/// nothing.
+constexpr int most_elements = 512;
 /// Roundoff of the elements' lengths, which acts as one of T.
 constexpr double roundoff = 0.25 * std::numeric_limits<double>::epsilon();
 
@@ -76,6 +79,7 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, d
 
 bool failed_at_conjugate_ends(const Problem& problem, const Trajectory& last, SecondVariation& memory) {
   if (!fixed(problem) || problem.coordinates() > SecondVariation::most_coordinates) return false;
+  if (last.elements() > most_elements) return false;
   if (!memory.assemble(problem.lagrangian, last)) return false;
   return minimality(memory).distance <= suspicious * last.duration();
 }

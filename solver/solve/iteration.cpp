@@ -12,6 +12,8 @@ namespace {
 constexpr double least_damping = 1e-3;
 /// Pivots this much smaller than the entry they came from are not trusted.
 constexpr double breakdown = 1e-11;
+/// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
+constexpr double pivoted_burden = 100, sparse_burden = 1000;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
 constexpr double amplified_roundoff = 1e-11;
 /// A step that is not tested may contract worse than any before by this factor; by so much it does. Steps of
@@ -96,6 +98,12 @@ double NewtonIteration::residual() const {
   double largest = action_.residual();
   for (double g : free_) largest = std::max(largest, std::abs(g));
   return largest;
+}
+
+double NewtonIteration::burden() const {
+  if (model_ == sparse_.get()) return tables_->unknowns() > most_dense_unknowns ? 1 : sparse_burden;
+  const Chain& chain = action_.nodes.chain;
+  return chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1;
 }
 
 double NewtonIteration::stiffness() const {

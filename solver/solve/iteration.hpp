@@ -62,6 +62,8 @@ class NewtonIteration {
   double residual() const;
   /// The same at `path`.
   double residual_at(const Path& path);
+  /// How many times longer than without pivoting a step takes, roughly.
+  double burden() const;
   /// Largest second derivative of S_h by q(0).
   double stiffness() const;
   /// The equation that closes the duration, at the path's ends; null where it is fixed.

@@ -34,8 +34,6 @@ constexpr double suspicious_step = 1e6;
 constexpr double rest = 1e-12;
 /// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh.
 constexpr double most_cost = 1e9, most_first_steps = 200;
-/// A step takes so much longer where the nodes are factored with pivoting, and again for each null direction.
-constexpr double pivoting = 100;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
@@ -96,9 +94,7 @@ bool Refinement::confirmed() {
 
 void Refinement::record() {
   longest_ = std::max(longest_, w_.iteration.undamped());
-  const Chain& chain = w_.iteration.action().nodes.chain;
-  cost_ +=
-      step_cost() * (chain.pivoted() ? pivoting * (1 + static_cast<double>(chain.deflated().size())) : 1);
+  cost_ += step_cost() * w_.iteration.burden();
   outcome_.record(w_, options_);
 }
 
