@@ -162,6 +162,7 @@ void judge(Verdict& verdict, const std::string& scratch, const std::function<voi
     verdict.seconds = processor_seconds() - start;
     verdict.status = name(solution.status);
     verdict.message = solution.message;
+    verdict.residual = solution.residual;
     verdict.tolerance = study.options.elements > 0 ? 0 : study.options.tolerance;
     solved();
     Judge(verdict, study, solution).run();

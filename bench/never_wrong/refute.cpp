@@ -14,6 +14,10 @@ namespace bench {
 namespace {
 
 constexpr double margin = 10;
+/// The integrator stays three digits below what is asked; one is enough where it cannot follow.
+constexpr double looser = 100;
+constexpr int usual_steps = 100000, patience = 1000000;
+constexpr const char* unverified = "unverified";
 /// No more can be asked of an integrator in double precision.
 constexpr double tightest = 1e-12;
 
@@ -28,17 +32,20 @@ class Refutation {
         tolerance_(study.options.tolerance),
         ranges_(survey(*problem_.lagrangian, trajectory_)),
         magnitude_(magnitude(problem_, trajectory_)),
-        size_(size_of(study, trajectory_)),
-        fast_(std::max(largest_of(ranges_.v), size_ / trajectory_.duration())) {}
+        size_(size_of(study, trajectory_)) {}
 
   std::vector<Fault> run() {
     if (rests(problem_, trajectory_)) return at_rest();
-    const std::string doubt = judge(tolerance_);
-    if (doubt.empty()) return {};
-    // What is refuted must be so with the integrator a hundred times more precise as well.
-    const std::string confirmed = judge(std::min(tolerance_, std::max(tolerance_ / 100, tightest)));
-    if (confirmed.empty()) return {};
-    return {{kind_, confirmed}};
+    const Fault doubt = judge(tolerance_);
+    if (doubt.kind.empty()) return {};
+    if (doubt.kind == unverified) {
+      const Fault patient = judge(looser * tolerance_);
+      return patient.kind.empty() ? std::vector<Fault>{} : std::vector<Fault>{patient};
+    }
+    // What is refuted must be so with the integrator a hundred times more precise, if it gets through.
+    const Fault confirmed = judge(std::min(tolerance_, std::max(tolerance_ / 100, tightest)));
+    if (confirmed.kind.empty()) return {};
+    return {confirmed.kind == unverified ? doubt : confirmed};
   }
 
  private:
@@ -60,38 +67,46 @@ class Refutation {
     return {{"false", fmt::format("at rest where the motion would leave by {:.3g}", moved)}};
   }
 
-  /// What is wrong, or nothing; all in units of what `tolerance_` allows.
-  std::string judge(double integrated) {
-    const extremal::Verification found = verify(
-        problem_, trajectory_, {.tolerance = integrated, .margin = std::numeric_limits<double>::max()});
-    const double unit = integrated / tolerance_;
-    const double roundoff = velocity_roundoff(trajectory_),
-                 excuse = roundoff / (10 * tolerance_ * largest_of(ranges_.v)),
-                 slow = largest_of(ranges_.v) / fast_,
-                 excuse_q =
-                     roundoff * trajectory_.duration() / std::max(1, found.pieces) / (tolerance_ * size_);
-    kind_ = "false";
+  /// What is wrong, integrated as for the tolerance `integrated`; of no kind where nothing is.
+  Fault judge(double integrated) {
+    const extremal::Verification found =
+        verify(problem_, trajectory_,
+               {.tolerance = integrated,
+                .margin = std::numeric_limits<double>::max(),
+                .max_steps = integrated > tolerance_ ? patience : usual_steps});
     if (!found.verified) {
-      if (found.message.find("steps of the integrator") != std::string::npos) kind_ = "unverified";
-      return found.message;
+      const bool slow = found.message.find("steps of the integrator") != std::string::npos;
+      return {slow ? unverified : "false", found.message};
     }
+    const double unit = integrated / tolerance_, roundoff = velocity_roundoff(trajectory_);
+    const double unknown_q = roundoff * trajectory_.duration() / found.pieces / (tolerance_ * size_);
     if (!by_distance_) {
-      if (found.defect * unit > margin + excuse_q)
-        return fmt::format("a defect of {:.3g} tolerances in q at t = {:.6g}", found.defect * unit,
-                           found.worst_time);
-      if (found.conditions * unit > margin + excuse)
-        return fmt::format("a natural or closing condition is missed by {:.3g} tolerances",
-                           found.conditions * unit);
+      if (found.defect * unit > margin + unknown_q)
+        return {"false", fmt::format("a defect of {:.3g} tolerances in q at t = {:.6g}", found.defect * unit,
+                                     found.worst_time)};
+      const double unknown_p = roundoff * largest_mass() / (10 * tolerance_ * largest_of(ranges_.p));
+      if (found.conditions * unit > margin + unknown_p)
+        return {"false", fmt::format("a natural or closing condition is missed by {:.3g} tolerances",
+                                     found.conditions * unit)};
     }
     const double far = found.distance.value_or(0) * unit;
-    kind_ = "error";
-    if (far > margin + excuse_q && !excused())
-      return fmt::format("the extremal is {:.3g} tolerances away", far);
-    kind_ = "velocity";
-    if (!by_distance_ && found.velocity_defect * unit * slow > margin + excuse * slow)
-      return fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}",
-                         found.velocity_defect * unit * slow, found.worst_time);
+    if (far > margin + unknown_q && !excused())
+      return {"error", fmt::format("the extremal is {:.3g} tolerances away", far)};
+    // In units of ten tolerances of what q' is on average: a uniform motion has no range.
+    const double average = std::max(largest_of(ranges_.v), size_ / trajectory_.duration());
+    const double fast = found.velocity_defect * unit * largest_of(ranges_.v) / average;
+    if (!by_distance_ && fast > margin + roundoff / (10 * tolerance_ * average))
+      return {"velocity", fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}", fast,
+                                      found.worst_time)};
     return {};
+  }
+
+  /// The largest entry of L_vv at the start: momentum by velocity.
+  double largest_mass() const {
+    std::vector<double> q(problem_.coordinates()), v(q.size());
+    trajectory_.at(0, q, v);
+    extremal::Scratch scratch;
+    return largest_of(evaluate_at(*problem_.lagrangian, q, v, 0, extremal::Order::hessian, scratch).vv);
   }
 
   bool excused() const {
@@ -101,13 +116,10 @@ class Refutation {
   const extremal::Problem& problem_;
   const extremal::Trajectory& trajectory_;
   const std::optional<TrueError>& reference_;
-  const bool
-      by_distance_;  ///< a scheme of low degree has q' O(h^s) off, and every motion that starts from it
+  const bool by_distance_;  ///< q' of a pinned scheme is O(h^s) off, and every motion that starts from it
   const double tolerance_;
   const extremal::Survey ranges_;
   const double magnitude_, size_;
-  const double fast_;  ///< range of q', or what it is on average: a uniform motion has no range
-  std::string kind_;
 };
 
 }  // namespace

@@ -19,10 +19,11 @@ void get(const Json& json, const char* key, std::optional<double>& value) {
 }  // namespace
 
 std::string to_line(const Verdict& v) {
-  Json json{{"seed", v.seed},       {"index", v.index},       {"system", v.scene.system},
-            {"kind", v.scene.kind}, {"known", v.scene.known}, {"text", v.scene.text},
-            {"status", v.status},   {"message", v.message},   {"tolerance", v.tolerance},
-            {"seconds", v.seconds}, {"referred", v.referred}, {"faults", Json::array()}};
+  Json json{{"seed", v.seed},         {"index", v.index},       {"system", v.scene.system},
+            {"kind", v.scene.kind},   {"known", v.scene.known}, {"text", v.scene.text},
+            {"status", v.status},     {"message", v.message},   {"tolerance", v.tolerance},
+            {"seconds", v.seconds},   {"residual", v.residual}, {"referred", v.referred},
+            {"faults", Json::array()}};
   for (const Fault& fault : v.faults) json["faults"].push_back({fault.kind, fault.detail});
   put(json, "error", v.error);
   put(json, "estimate_over", v.estimate_over);
@@ -39,6 +40,7 @@ Verdict from_line(const std::string& line) {
             .status = json.at("status"),
             .message = json.at("message"),
             .tolerance = json.at("tolerance"),
+            .residual = json.at("residual").is_number() ? json.at("residual").get<double>() : -1,
             .seconds = json.at("seconds"),
             .referred = json.at("referred")};
   for (const Json& fault : json.at("faults")) v.faults.push_back({fault.at(0), fault.at(1)});

@@ -25,7 +25,8 @@ struct Verdict {
   std::string message = {};  ///< of the refusal or the failure
   std::vector<Fault> faults = {};
   double tolerance = 0;  ///< 0 where the elements are pinned
-  double seconds = 0;    ///< of processor time: read, solve and analysis
+  double residual = 0;
+  double seconds = 0;  ///< of processor time: read, solve and analysis
   /// Found against a reference, where there is one.
   std::optional<double> error = {};                    ///< in tolerances
   std::optional<double> estimate_over = {};            ///< error_estimate over the true error
