@@ -100,8 +100,8 @@ class Judge {
         blame("invalid", fmt::format("conjugate time {} after {}, duration {}", time, before, duration));
       before = time;
     }
-    if (verdict_.scene.kind != "fixed" || study_.options.scheme || solution_.windows.empty() ||
-        !solution_.morse_index)
+    if (study_.problem.ends.free > 0 || study_.problem.duration.free || study_.options.scheme ||
+        solution_.windows.empty() || !solution_.morse_index)
       return;
     const auto conjugate = static_cast<int>(solution_.conjugate_times.size());
     if (conjugate != *solution_.morse_index && solution_.nullity == 0)

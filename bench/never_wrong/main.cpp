@@ -28,7 +28,7 @@ struct Options {
 
 void tell(const Verdict& v) {
   for (const Fault& fault : v.faults)
-    fmt::print("scene {} of seed {} ({}, {} ends): {}: {}\n", v.index, v.seed, v.scene.system, v.scene.kind,
+    fmt::print("scene {} of seed {} ({}, {}): {}: {}\n", v.index, v.seed, v.scene.system, v.scene.kind,
                fault.kind, fault.detail);
   std::fflush(stdout);
 }
@@ -99,11 +99,16 @@ int main(int argc, char** argv) {
   app.add_option("--jobs", campaign.jobs, "processes")->check(CLI::Range(1, 1024));
   app.add_option("--limit", campaign.limit, "seconds of processor time for one scene")
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--again", campaign.kept, "only solve and check these scenes, as they were saved");
   app.add_option("--save", options.save, "folder for the scenes that went wrong");
   app.add_option("--log", options.log, "file that every verdict is added to, a line of JSON each");
   app.add_option("--tally", options.tally, "only count what is in such files")->allow_extra_args(false);
   app.add_flag("--print", options.print, "only write the scene with the number --first");
   CLI11_PARSE(app, argc, argv);
+  if (!campaign.kept.empty()) {
+    campaign.first = 0;
+    campaign.scenes = campaign.kept.size();
+  }
   try {
     return bench::run(options);
   } catch (const std::exception& e) {

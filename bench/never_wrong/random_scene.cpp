@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "draft.hpp"
@@ -55,6 +57,14 @@ void write_text(const std::string& path, const std::string& text) {
   std::ofstream file(path);
   file << text;
   if (!file.flush()) throw std::runtime_error(fmt::format("{} cannot be written", path));
+}
+
+RandomScene read_scene_file(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error(fmt::format("{} cannot be read", path));
+  std::ostringstream text;
+  text << file.rdbuf();
+  return {.system = std::filesystem::path(path).stem(), .kind = "kept", .text = text.str()};
 }
 
 RandomScene random_scene(std::uint64_t seed, std::uint64_t index, const std::string& only,

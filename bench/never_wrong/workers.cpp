@@ -48,7 +48,8 @@ void set_limit(int seconds) {
     Verdict verdict{.seed = campaign.seed, .index = index};
     set_limit(campaign.limit);
     try {
-      verdict.scene = random_scene(campaign.seed, index, campaign.only, scratch);
+      verdict.scene = campaign.kept.empty() ? random_scene(campaign.seed, index, campaign.only, scratch)
+                                            : read_scene_file(campaign.kept[index]);
       send(pipe, drawn, verdict);
       judge(verdict, scratch, [&] { send(pipe, solved, verdict); });
     } catch (const std::exception& e) {

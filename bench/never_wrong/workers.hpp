@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "verdict.hpp"
 
@@ -12,7 +13,8 @@ namespace bench {
 
 struct Campaign {
   std::uint64_t seed = 1, first = 0, scenes = 1000;
-  std::string only;  ///< a system; empty: all
+  std::vector<std::string> kept;  ///< scene files, instead of random scenes: `first` counts among them
+  std::string only;               ///< a system; empty: all
   int jobs = 1;
   int limit = 60;  ///< seconds of processor time for one scene, verification included
 };
