@@ -19,13 +19,14 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   batches_ = (elements + lanes - 1) / lanes;
   inner_ = tables.inner();
   unknowns_ = tables.unknowns();
-  const std::size_t m = unknowns_;
-  sizes_ = {m * (m + 2) * lanes, m * lanes, static_cast<std::size_t>(tables.shape().points) * lanes};
+  condensation_ = condense ? &tables.condensation() : nullptr;
+  const std::size_t m = unknowns_, groups = condense ? condensation_->fronts.groups() : 0;
+  sizes_ = {groups * lanes, m * lanes, static_cast<std::size_t>(tables.shape().points) * lanes};
   q_.resize(n_ * sizes_.points);
   v_.resize(tables.shape().velocity_free ? 0 : n_ * sizes_.points);
   t_.resize(sizes_.points);
   rows_.resize(lagrangian.rows(Order::hessian) * sizes_.points);
-  matrices_.resize(condense ? batches_ * sizes_.matrix : 0);
+  matrices_.resize(condense ? batches_ * batch_size() : 0);
   inverses_.resize(condense ? batches_ * sizes_.vector : 0);
   gradients_.resize(batches_ * 3 * lanes);
   work_.resize(2 * sizes_.vector + 4 * lanes);
@@ -94,27 +95,38 @@ void DiscreteAction::gather(const Path& path, int b, const double* gradient) {
 }
 
 void DiscreteAction::gather_gradient(int b) {
-  const double* gradient = matrix(b) + unknowns_ * sizes_.vector;
+  const double* gradient = reduced(b);
   const int first = b * lanes, last = std::min(elements_, first + lanes);
   for (int k = first; k < last; ++k) {
     double* node = nodes.gradient.data() + static_cast<std::size_t>(k) * n_;
     for (int a = 0; a < 2 * n_; ++a) node[a] += gradient[(inner_ + a) * lanes + k - first];
   }
   if (!border_) return;
-  const double *row = gradient + sizes_.vector, *inverse = inverses_.data() + b * sizes_.vector;
-  for (int u = 0; u < inner_; ++u)
-    for (int k = first; k < last; ++k) {
-      const int at = u * lanes + k - first;
-      nodes.border_gradient -= gradient[at] * row[at] * inverse[at];
+  for (int k = first; k < last; ++k)
+    nodes.border_gradient -= eliminated(b, k - first, gradient, gradient + sizes_.vector);
+}
+
+/// Σ x_j y_j / d_j: what elimination takes from the product of two vectors.
+double DiscreteAction::eliminated(int b, int lane, const double* x, const double* y) const {
+  const Fronts& fronts = condensation_->fronts;
+  const double* inverse = inverses_.data() + b * sizes_.vector + lane;
+  double sum = 0;
+  for (int f = 0; f < fronts.count(); ++f) {
+    const FrontView& front = fronts.data()[f];
+    for (int j = 0; j < front.pivots; ++j) {
+      const int u = front.unknown[j] * lanes + lane;
+      sum += x[u] * y[u] * inverse[(front.first + j) * lanes];
     }
+  }
+  return sum;
 }
 
 /// The Schur complements of a batch, to the blocks of the nodes they couple.
 void DiscreteAction::gather_schur(int b) {
-  const double* schur = matrix(b);
+  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes;
   const int first = b * lanes, last = std::min(elements_, first + lanes), n = n_;
   const auto entry = [&](int i, int j, int lane) {
-    return schur[(static_cast<std::size_t>(inner_ + i) * unknowns_ + inner_ + j) * lanes + lane];
+    return schur[(static_cast<std::size_t>(i) * 2 * n + j) * lanes + lane];
   };
   const auto add_symmetric = [&](double* block, int offset, int lane) {
     for (int i = 0; i < n; ++i)
@@ -135,18 +147,13 @@ void DiscreteAction::gather_schur(int b) {
       for (int j = 0; j < n; ++j) lower[i * n + j] = entry(n + i, j, lane);
   }
   if (!border_) return;
-  const double *row = schur + (unknowns_ + 1) * sizes_.vector,
-               *inverse = inverses_.data() + b * sizes_.vector;
+  const double* row = reduced(b) + sizes_.vector;
   const double* corner = gradients_.data() + (b * 3 + 2) * lanes;
   for (int k = first; k < last; ++k) {
     const int lane = k - first;
     double* node = nodes.border.data() + static_cast<std::size_t>(k) * n;
     for (int a = 0; a < 2 * n; ++a) node[a] += row[(inner_ + a) * lanes + lane];
-    nodes.corner += corner[lane];
-    for (int u = 0; u < inner_; ++u) {
-      const double y = row[u * lanes + lane];
-      nodes.corner -= y * y * inverse[u * lanes + lane];
-    }
+    nodes.corner += corner[lane] - eliminated(b, lane, row, row);
   }
 }
 
@@ -176,14 +183,16 @@ void DiscreteAction::evaluate_plain(const Path& path) {
 }
 
 void DiscreteAction::evaluate_gradient(const Path& path) {
+  const Fronts& fronts = condensation_->fronts;
   clear_sums();
   for (int b = 0; b < batches_; ++b) {
     const ElementBatch elements = batch(path, b);
     play(elements, Order::gradient);
-    double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
+    double *sums = gradients_.data() + b * 3 * lanes, *gradient = reduced(b);
     assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
-    elimination_->reduce(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient);
+    elimination_->reduce(fronts.data(), fronts.count(), matrix(b), inverses_.data() + b * sizes_.vector,
+                         gradient, work_.data());
     gather_gradient(b);
   }
   finish_sums();
@@ -224,6 +233,7 @@ void DiscreteAction::visit(const Path& path, bool hessian,
 }
 
 void DiscreteAction::evaluate(const Path& path) {
+  const Fronts& fronts = condensation_->fronts;
   clear_sums();
   std::fill_n(nodes.chain.diagonal(0), static_cast<std::size_t>(nodes.chain.blocks()) * n_ * n_, 0.0);
   for (auto* block : {&nodes.first, &nodes.last, &nodes.border}) std::fill(block->begin(), block->end(), 0.0);
@@ -233,14 +243,14 @@ void DiscreteAction::evaluate(const Path& path) {
   for (int b = 0; b < batches_; ++b) {
     const ElementBatch elements = batch(path, b);
     play(elements, Order::hessian);
-    double *sums = gradients_.data() + b * 3 * lanes, *gradient = matrix(b) + unknowns_ * sizes_.vector;
+    double *sums = gradients_.data() + b * 3 * lanes, *gradient = reduced(b);
     assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
-    assembly_->clear(unknowns_, matrix(b));
-    assembly_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix(b));
+    std::fill_n(matrix(b), sizes_.matrix, 0.0);
+    assembly_->hessian(tables_->shape(), elements, condensation_->slots.data(), matrix(b));
     if (border_) evaluate_border(path, elements, gradient, gradient + sizes_.vector, sums + 2 * lanes);
     double *negative = work_.data() + 2 * sizes_.vector, *ratio = negative + lanes;
-    elimination_->condense(inner_, unknowns_, unknowns_ + 1 + border_, matrix(b),
+    elimination_->condense(fronts.data(), fronts.count(), unknowns_, matrix(b), gradient, 1 + border_,
                            inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
     for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {
       nodes.negative += static_cast<int>(negative[lane]);
@@ -254,6 +264,7 @@ void DiscreteAction::evaluate(const Path& path) {
 
 void DiscreteAction::expand_step(std::span<const double> node_step, double duration_step,
                                  AlignedDoubles& step) const {
+  const Fronts& fronts = condensation_->fronts;
   step.resize(batches_ * sizes_.vector);
   alignas(64) double step_h[lanes];
   std::fill_n(step_h, lanes, duration_step);
@@ -263,9 +274,9 @@ void DiscreteAction::expand_step(std::span<const double> node_step, double durat
       const std::size_t k = std::min(b * lanes + lane, elements_ - 1);
       for (int a = 0; a < 2 * n_; ++a) ends[a * lanes + lane] = node_step[k * n_ + a];
     }
-    const double* gradient = matrix(b) + unknowns_ * sizes_.vector;
-    elimination_->expand_step(inner_, unknowns_, matrix(b), inverses_.data() + b * sizes_.vector, gradient,
-                              border_ ? gradient + sizes_.vector : nullptr, step_h, x);
+    const double* gradient = reduced(b);
+    elimination_->expand_step(fronts.data(), fronts.count(), matrix(b), inverses_.data() + b * sizes_.vector,
+                              gradient, border_ ? gradient + sizes_.vector : nullptr, step_h, x);
   }
 }
 
@@ -274,16 +285,15 @@ void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> 
   const int b = k / lanes, lane = k % lanes;
   const ElementBatch elements = batch(path, b);
   play(elements, Order::hessian);
-  AlignedDoubles matrix(sizes_.matrix), sums(3 * lanes);
-  assembly_->gradient(tables_->shape(), elements, sums.data(), matrix.data() + unknowns_ * sizes_.vector,
-                      nullptr);
-  assembly_->clear(unknowns_, matrix.data());
-  assembly_->hessian(tables_->shape(), elements, tables_->dense_slots(), matrix.data());
-  for (int i = 0; i < unknowns_; ++i) {
-    gradient[i] = matrix[(static_cast<std::size_t>(unknowns_) * unknowns_ + i) * lanes + lane];
-    for (int j = 0; j <= i; ++j)
-      hessian[i * unknowns_ + j] = matrix[(static_cast<std::size_t>(i) * unknowns_ + j) * lanes + lane];
-  }
+  const ElementTables::Entries& entries = tables_->entries();
+  AlignedDoubles values(entries.row.size() * lanes), sums(3 * lanes);
+  assembly_->gradient(tables_->shape(), elements, sums.data(), work_.data(), nullptr);
+  assembly_->hessian(tables_->shape(), elements, entries.slots.data(), values.data());
+  for (int i = 0; i < unknowns_; ++i) gradient[i] = work_[i * lanes + lane];
+  std::fill(hessian.begin(), hessian.end(), 0.0);
+  for (std::size_t e = 0; e < entries.row.size(); ++e)
+    hessian[static_cast<std::size_t>(entries.row[e]) * unknowns_ + entries.column[e]] =
+        values[e * lanes + lane];
 }
 
 /// M, C and a do not depend on active parameters: what does is a Lagrangian of its own, ∂R/∂p.

@@ -94,6 +94,7 @@ class DiscreteAction {
   const double* rows(const Path& path, int batch, Order order);
 
  private:
+  /// In doubles: what elimination works on, the gradient and the border after it; a vector; a row of points.
   struct Sizes {
     std::size_t matrix, vector, points;
   };
@@ -104,15 +105,20 @@ class DiscreteAction {
   void gather(const Path& path, int b, const double* gradient);
   void gather_schur(int b);
   void gather_gradient(int b);
+  double eliminated(int b, int lane, const double* x, const double* y) const;
   void clear_sums();
   void finish_sums();
-  double* matrix(int b) { return matrices_.data() + b * sizes_.matrix; }
-  const double* matrix(int b) const { return matrices_.data() + b * sizes_.matrix; }
+  std::size_t batch_size() const { return sizes_.matrix + 2 * sizes_.vector; }
+  double* matrix(int b) { return matrices_.data() + b * batch_size(); }
+  const double* matrix(int b) const { return matrices_.data() + b * batch_size(); }
+  double* reduced(int b) { return matrix(b) + sizes_.matrix; }
+  const double* reduced(int b) const { return matrix(b) + sizes_.matrix; }
 
   const Lagrangian* lagrangian_ = nullptr;
   const ElementTables* tables_ = nullptr;
   const Assembly* assembly_ = nullptr;
   const Elimination* elimination_ = nullptr;
+  const ElementTables::Condensation* condensation_ = nullptr;
   int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
   bool border_ = false, finite_ = false;
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;

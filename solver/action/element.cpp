@@ -1,5 +1,6 @@
 #include "action/element.hpp"
 
+#include "action/elimination.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {

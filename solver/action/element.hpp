@@ -66,17 +66,13 @@ struct ElementBatch {
   const double* rows;   ///< rows of the remainder × points: value, gradient, Hessian
 };
 
-/// Points, gradient and Hessian of a batch. `matrix` is row-major with m columns: rows 0 … m − 1 hold the
-/// lower triangle of the Hessian, row m the gradient, row m + 1, where a border is asked for, ∂²L_d/∂x∂h.
-/// Each entry is a group of eight.
+/// Points, gradient and Hessian of a batch. Each entry is a group of eight.
 struct Assembly {
   /// x -> q, q', t at the quadrature points.
   void (*expand)(const ElementShape&, const ElementBatch&);
   /// L_d, its gradient (m) and, where slope_h is not null, ∂L_d/∂h.
   void (*gradient)(const ElementShape&, const ElementBatch&, double* action, double* gradient,
                    double* slope_h);
-  /// Zeros the lower triangle of an m × m matrix.
-  void (*clear)(int m, double* matrix);
   /// Adds the lower triangle of the Hessian: contribution by contribution to the places `slots` (tables.hpp).
   void (*hessian)(const ElementShape&, const ElementBatch&, const int* slots, double* matrix);
   /// ∂²L_d/∂x∂h (m) and ∂²L_d/∂h². `gradient` is what `gradient` returned.
@@ -84,24 +80,7 @@ struct Assembly {
                  double* corner);
 };
 
-/// Elimination of the inner unknowns.
-struct Elimination {
-  /// Eliminates the first `inner` unknowns of `rows` rows and m columns: LDLᵀ in place, where column
-  /// j < inner keeps the unscaled y_ij = L_ij d_j and the rest becomes the Schur complement.
-  /// `inverse` receives 1/d_j; `negative` the number of negative pivots; `ratio` the least |d_j| against the
-  /// diagonal entry it came from.
-  void (*condense)(int inner, int m, int rows, double* matrix, double* inverse, double* negative,
-                   double* ratio, double* work);
-  /// The gradient row alone, with a factor from before.
-  void (*reduce)(int inner, int m, const double* matrix, const double* inverse, double* gradient);
-  /// Inner steps from the steps of the ends (2n, q_a then q_b) and of the border (weight of row m + 1):
-  /// x_j = −(y_gj + y_hj·δh + Σ_{i>j} y_ij x_i)/d_j. x has m entries, the last 2n given.
-  void (*expand_step)(int inner, int m, const double* matrix, const double* inverse, const double* gradient,
-                      const double* border, const double* step_h, double* x);
-};
-
-/// Those of the instruction set in use.
+/// That of the instruction set in use.
 const Assembly& assembly();
-const Elimination& elimination();
 
 }  // namespace extremal

@@ -1,3 +1,4 @@
+#include "action/element.hpp"
 #include "action/element_kernels.hpp"
 #include "machine/lanes.hpp"
 
@@ -140,11 +141,6 @@ void gradient(const ElementShape& s, const ElementBatch& b, double* action, doub
   if (slope_h) at(slope_h) = potential - momentum - energy * rate * rate;
 }
 
-void clear(int m, double* matrix) {
-  for (int row = 0; row < m; ++row)
-    for (int column = 0; column <= row; ++column) group(matrix, row * m + column) = broadcast(0);
-}
-
 /// Adds to the next place; an entry on the diagonal that stands for itself and its mirror image is marked
 /// by the complement of its place, and counts twice.
 inline void place(double* matrix, const int*& slot, const Vec& value) {
@@ -239,6 +235,6 @@ void border(const ElementShape& s, const ElementBatch& b, const double*, double*
 }  // namespace
 
 extern const Assembly assembly;
-const Assembly assembly = {expand, gradient, clear, hessian, border};
+const Assembly assembly = {expand, gradient, hessian, border};
 
 }  // namespace extremal::EXTREMAL_LEVEL

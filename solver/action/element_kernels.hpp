@@ -1,6 +1,5 @@
 #pragma once
 
-#include "action/element.hpp"
 #include "machine/lanes.hpp"
 
 /// \file What the kernels of elements share.

@@ -186,14 +186,17 @@ void ElementTables::list_places() {
       }
   }
   entries_ = {};
-  dense_.clear();
+  condensation_.reset();
 }
 
-const int* ElementTables::dense_slots() const {
-  const int m = unknowns();
-  if (dense_.empty())
-    for (const Place& p : places_) dense_.push_back(p.twice ? ~(p.row * m + p.column) : p.row * m + p.column);
-  return dense_.data();
+const ElementTables::Condensation& ElementTables::condensation() const {
+  if (condensation_) return *condensation_;
+  condensation_.emplace(Fronts(shape_), std::vector<int>());
+  for (const Place& p : places_) {
+    const int at = condensation_->fronts.place(p.row, p.column);
+    condensation_->slots.push_back(p.twice ? ~at : at);
+  }
+  return *condensation_;
 }
 
 const ElementTables::Entries& ElementTables::entries() const {

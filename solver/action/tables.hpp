@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "action/element.hpp"
+#include "action/fronts.hpp"
 #include "action/rule.hpp"
 #include "action/scheme.hpp"
 #include "system/lagrangian.hpp"
@@ -52,11 +54,15 @@ class ElementTables {
   int inner() const { return (shape_.functions - 2) * shape_.n; }
   int unknowns() const { return shape_.functions * shape_.n; }
 
-  /// Where each contribution to the Hessian goes in a lower triangle, m × m row-major; made when first asked
-  /// for.
-  const int* dense_slots() const;
+  /// The fronts of the elimination, and where each contribution to the Hessian goes in their matrix; made
+  /// when first asked for.
+  struct Condensation {
+    Fronts fronts;
+    std::vector<int> slots;
+  };
+  const Condensation& condensation() const;
 
-  /// The same for a list of the entries that may differ from zero; made when first asked for.
+  /// The entries that may differ from zero, and where each contribution goes in their list; likewise.
   struct Entries {
     std::vector<int> row, column;  ///< local numbers, row >= column
     std::vector<int> slots;
@@ -75,7 +81,7 @@ class ElementTables {
   std::vector<double> linear_;
   ElementShape shape_{};
   std::vector<Place> places_;
-  mutable std::vector<int> dense_;
+  mutable std::optional<Condensation> condensation_;
   mutable Entries entries_;
 };
 
