@@ -33,13 +33,36 @@ ChainKernels kernels(int size) {
 /// Roundoff in a pivot relative to the terms it is the sum of, for `order` unknowns.
 double roundoff(int order) { return 64 * std::numeric_limits<double>::epsilon() * std::sqrt(double(order)); }
 
-/// to += M from, or Mᵀ from, with M row-major n × n, `columns` columns.
-void add_product(const double* m, bool transposed, const double* from, double* to, int n, int columns) {
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      const double entry = transposed ? m[j * n + i] : m[i * n + j];
-      for (int c = 0; c < columns; ++c) to[i * columns + c] += entry * from[j * columns + c];
+double dot(const double* a, const double* b, int count) {
+  double part[4] = {}, rest = 0;
+  int i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (int k = 0; k < 4; ++k) part[k] += a[i + k] * b[i + k];
+  for (; i < count; ++i) rest += a[i] * b[i];
+  return (part[0] + part[1]) + (part[2] + part[3]) + rest;
+}
+
+/// to += M from, with M row-major n × n, `columns` columns.
+void add_product(const double* m, const double* from, double* to, int n, int columns) {
+  for (int i = 0; i < n; ++i, m += n, to += columns) {
+    if (columns == 1) {
+      *to += dot(m, from, n);
+      continue;
     }
+    for (int j = 0; j < n; ++j)
+      for (int c = 0; c < columns; ++c) to[c] += m[j] * from[j * columns + c];
+  }
+}
+
+/// to += Mᵀ from.
+void add_transposed(const double* m, const double* from, double* to, int n, int columns) {
+  for (int j = 0; j < n; ++j, m += n, from += columns) {
+    if (columns == 1)
+      for (int i = 0; i < n; ++i) to[i] += m[i] * *from;
+    else
+      for (int i = 0; i < n; ++i)
+        for (int c = 0; c < columns; ++c) to[i * columns + c] += m[i] * from[c];
+  }
 }
 
 }  // namespace
@@ -165,10 +188,10 @@ void Chain::multiply(const double* x, double* y, int columns) const {
   const std::size_t step = std::size_t(size_) * columns;
   std::fill_n(y, blocks_ * step, 0.0);
   for (int k = 0; k < blocks_; ++k) {
-    add_product(diagonal(k), false, x + k * step, y + k * step, size_, columns);
+    add_product(diagonal(k), x + k * step, y + k * step, size_, columns);
     if (k + 1 == blocks_) break;
-    add_product(lower(k), false, x + k * step, y + (k + 1) * step, size_, columns);
-    add_product(lower(k), true, x + (k + 1) * step, y + k * step, size_, columns);
+    add_product(lower(k), x + k * step, y + (k + 1) * step, size_, columns);
+    add_transposed(lower(k), x + (k + 1) * step, y + k * step, size_, columns);
   }
 }
 
