@@ -102,23 +102,23 @@ void DiscreteAction::gather_gradient(int b) {
     for (int a = 0; a < 2 * n_; ++a) node[a] += gradient[(inner_ + a) * lanes + k - first];
   }
   if (!border_) return;
-  for (int k = first; k < last; ++k)
-    nodes.border_gradient -= eliminated(b, k - first, gradient, gradient + sizes_.vector);
+  double taken[lanes];
+  eliminated(b, gradient, gradient + sizes_.vector, taken);
+  for (int k = first; k < last; ++k) nodes.border_gradient -= taken[k - first];
 }
 
-/// Σ x_j y_j / d_j: what elimination takes from the product of two vectors.
-double DiscreteAction::eliminated(int b, int lane, const double* x, const double* y) const {
+/// Σ x_j y_j / d_j of each lane: what elimination takes from the product of two vectors.
+void DiscreteAction::eliminated(int b, const double* x, const double* y, double* sum) const {
   const Fronts& fronts = condensation_->fronts;
-  const double* inverse = inverses_.data() + b * sizes_.vector + lane;
-  double sum = 0;
+  const double* inverse = inverses_.data() + b * sizes_.vector;
+  std::fill_n(sum, lanes, 0.0);
   for (int f = 0; f < fronts.count(); ++f) {
     const FrontView& front = fronts.data()[f];
-    for (int j = 0; j < front.pivots; ++j) {
-      const int u = front.unknown[j] * lanes + lane;
-      sum += x[u] * y[u] * inverse[(front.first + j) * lanes];
+    for (int j = 0; j < front.pivots; ++j, inverse += lanes) {
+      const int u = front.unknown[j] * lanes;
+      for (int lane = 0; lane < lanes; ++lane) sum[lane] += x[u + lane] * y[u + lane] * inverse[lane];
     }
   }
-  return sum;
 }
 
 /// The Schur complements of a batch, to the blocks of the nodes they couple.
@@ -149,11 +149,13 @@ void DiscreteAction::gather_schur(int b) {
   if (!border_) return;
   const double* row = reduced(b) + sizes_.vector;
   const double* corner = gradients_.data() + (b * 3 + 2) * lanes;
+  double taken[lanes];
+  eliminated(b, row, row, taken);
   for (int k = first; k < last; ++k) {
     const int lane = k - first;
     double* node = nodes.border.data() + static_cast<std::size_t>(k) * n;
     for (int a = 0; a < 2 * n; ++a) node[a] += row[(inner_ + a) * lanes + lane];
-    nodes.corner += corner[lane] - eliminated(b, lane, row, row);
+    nodes.corner += corner[lane] - taken[lane];
   }
 }
 

@@ -105,7 +105,7 @@ class DiscreteAction {
   void gather(const Path& path, int b, const double* gradient);
   void gather_schur(int b);
   void gather_gradient(int b);
-  double eliminated(int b, int lane, const double* x, const double* y) const;
+  void eliminated(int b, const double* x, const double* y, double* sum) const;
   void clear_sums();
   void finish_sums();
   std::size_t batch_size() const { return sizes_.matrix + 2 * sizes_.vector; }
