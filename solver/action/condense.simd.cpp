@@ -212,15 +212,27 @@ void reduce(const FrontView* fronts, int front_count, const double* matrix, cons
   }
 }
 
-/// Adds Σ y_rk x_r of some rows to what the pivots' places in x hold.
-template <int rows>
-inline void add_rows(const double* y, int p, int from, const int* pivot, const int* unknown, double* x) {
-  Vec value[rows];
-  for (int r = 0; r < rows; ++r) value[r] = group(x, unknown[r]);
-  for (int k = from; k < p; ++k) {
-    Vec sum = group(x, pivot[k]);
-    for (int r = 0; r < rows; ++r) sum += group(y, static_cast<long>(r) * p + k) * value[r];
-    group(x, pivot[k]) = sum;
+/// The steps of pivots j … j + count − 1 of a front, from those of the rows below. The latest x last, so that
+/// the chain of dependent sums is short.
+template <int count>
+inline void expand_pivots(const FrontView& f, int j, const double* panel, const double* inverse,
+                          const double* gradient, const double* border, const Vec& step_h, double* x) {
+  const double* y = panel + static_cast<long>(j) * lanes;
+  const long stride = static_cast<long>(f.pivots) * lanes;
+  Vec sum[count];
+  for (int k = 0; k < count; ++k) {
+    sum[k] = group(gradient, f.unknown[j + k]);
+    if (border) sum[k] += group(border, f.unknown[j + k]) * step_h;
+  }
+  for (int i = f.rows - 1; i >= j + count; --i) {
+    if (i >= f.pivots && f.start[i] >= j + count) continue;
+    const Vec value = group(x, f.unknown[i]);
+    for (int k = 0; k < count; ++k) sum[k] += group(y + i * stride, k) * value;
+  }
+  for (int k = count - 1; k >= 0; --k) {
+    const Vec value = -group(inverse, j + k) * sum[k];
+    group(x, f.unknown[j + k]) = value;
+    for (int q = 0; q < k; ++q) sum[q] += group(y + (j + k) * stride, q) * value;
   }
 }
 
@@ -228,27 +240,13 @@ void expand_step(const FrontView* fronts, int front_count, const double* matrix,
                  const double* gradient, const double* border, const double* step_h, double* x) {
   for (int k = front_count - 1; k >= 0; --k) {
     const FrontView& f = fronts[k];
-    const int p = f.pivots;
     const double* panel = matrix + static_cast<long>(f.panel) * lanes;
-    for (int j = 0; j < p; ++j) {
-      const int u = f.unknown[j];
-      group(x, u) = border ? group(gradient, u) + group(border, u) * at(step_h) : group(gradient, u);
-    }
-    for (int i = p; i < f.rows; i += 4) {
-      const double* y = panel + static_cast<long>(i) * p * lanes;
-      const int left = f.rows - i, from = f.start[i];
-      const int* unknown = f.unknown + i;
-      left >= 4   ? add_rows<4>(y, p, from, f.unknown, unknown, x)
-      : left == 3 ? add_rows<3>(y, p, from, f.unknown, unknown, x)
-      : left == 2 ? add_rows<2>(y, p, from, f.unknown, unknown, x)
-                  : add_rows<1>(y, p, from, f.unknown, unknown, x);
-    }
-    for (int j = p - 1; j >= 0; --j) {
-      const double* row = panel + static_cast<long>(j) * p * lanes;
-      const Vec value = -group(inverse, f.first + j) * group(x, f.unknown[j]);
-      group(x, f.unknown[j]) = value;
-      for (int i = 0; i < j; ++i) group(x, f.unknown[i]) += group(row, i) * value;
-    }
+    const double* own = inverse + static_cast<long>(f.first) * lanes;
+    int j = f.pivots;
+    for (; j >= 4; j -= 4) expand_pivots<4>(f, j - 4, panel, own, gradient, border, at(step_h), x);
+    if (j == 3) expand_pivots<3>(f, 0, panel, own, gradient, border, at(step_h), x);
+    if (j == 2) expand_pivots<2>(f, 0, panel, own, gradient, border, at(step_h), x);
+    if (j == 1) expand_pivots<1>(f, 0, panel, own, gradient, border, at(step_h), x);
   }
 }
 

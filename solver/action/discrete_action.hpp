@@ -79,8 +79,8 @@ class DiscreteAction {
 
   /// Entry (i, j), i >= j, of the Hessian of element k in (q_a, q_b), 2n × 2n, as evaluate() condensed it.
   double condensed(int k, int i, int j) const {
-    const std::size_t row = inner_ + i, column = inner_ + j;
-    return matrix(k / lanes)[(row * unknowns_ + column) * lanes + k % lanes];
+    const std::size_t place = condensation_->fronts.ends() + std::size_t(i) * 2 * n_ + j;
+    return matrix(k / lanes)[place * lanes + k % lanes];
   }
 
   /// L_ij, i > j, of the elimination H = L D Lᵀ of the inner unknowns j of element k, as evaluate() left it.
