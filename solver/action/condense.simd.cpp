@@ -8,50 +8,60 @@ namespace extremal::EXTREMAL_LEVEL {
 
 namespace {
 
-/// Σ_{from <= k < to} y_rk l_ck of some rows r and one or two columns c.
-template <int rows, int columns>
-inline void products(const double* y, long stride, int from, int to, const double* const* l,
-                     Vec (*sum)[columns]) {
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) sum[r][c] = broadcast(0);
+/// Σ_{from <= k < to} y_rk l_k of some rows.
+template <int rows>
+inline void products(const double* y, long stride, int from, int to, const double* l, Vec* sum) {
+  for (int r = 0; r < rows; ++r) sum[r] = broadcast(0);
   for (int k = from; k < to; ++k) {
-    Vec factor[columns];
-    for (int c = 0; c < columns; ++c) factor[c] = group(l[c], k);
+    const Vec factor = group(l, k);
+    for (int r = 0; r < rows; ++r) sum[r] += group(y + r * stride * lanes, k) * factor;
+  }
+}
+
+/// The same with the factors of two columns.
+template <int rows>
+inline void products(const double* y, long stride, int from, int to, const double* l0, const double* l1,
+                     Vec* s0, Vec* s1) {
+  for (int r = 0; r < rows; ++r) s0[r] = s1[r] = broadcast(0);
+  for (int k = from; k < to; ++k) {
+    const Vec a = group(l0, k), c = group(l1, k);
     for (int r = 0; r < rows; ++r) {
-      const Vec x = group(y, r * stride + k);
-      for (int c = 0; c < columns; ++c) sum[r][c] += x * factor[c];
+      const Vec x = group(y + r * stride * lanes, k);
+      s0[r] += x * a;
+      s1[r] += x * c;
     }
   }
 }
 
 /// Columns j and j + 1 of some rows below them, in the panel.
 template <int rows>
-inline void column_pair(double* y, int stride, int from, int j, const Vec& l10, const double* const* l) {
-  Vec sum[rows][2];
-  products<rows, 2>(y, stride, from, j, l, sum);
+inline void column_pair(double* y, int stride, int from, int j, const Vec& l10, const double* l0,
+                        const double* l1) {
+  Vec s0[rows], s1[rows];
+  products<rows>(y, stride, from, j, l0, l1, s0, s1);
   for (int r = 0; r < rows; ++r) {
-    const Vec first = group(y, r * stride + j) - sum[r][0];
-    group(y, r * stride + j) = first;
-    group(y, r * stride + j + 1) -= sum[r][1] + first * l10;
+    double* row = y + static_cast<long>(r) * stride * lanes;
+    const Vec first = group(row, j) - s0[r];
+    group(row, j) = first;
+    group(row, j + 1) -= s1[r] + first * l10;
   }
 }
 
 template <int rows>
-inline void single_column(double* y, int stride, int from, int j, const double* const* l) {
-  Vec sum[rows][1];
-  products<rows, 1>(y, stride, from, j, l, sum);
-  for (int r = 0; r < rows; ++r) group(y, r * stride + j) -= sum[r][0];
+inline void single_column(double* y, int stride, int from, int j, const double* l) {
+  Vec sum[rows];
+  products<rows>(y, stride, from, j, l, sum);
+  for (int r = 0; r < rows; ++r) group(y + static_cast<long>(r) * stride * lanes, j) -= sum[r];
 }
 
 struct Monitor {
-  Vec negative, least;
+  Vec negative, shrunk;  ///< shrunk: largest ratio of a diagonal entry to the pivot that it became
   /// 1/d; `inverse` held the diagonal entry that d came from.
   void pivot(double* inverse, const Vec& d) {
-    const Vec before = at(inverse);
-    at(inverse) = 1.0 / d;
-    const Vec relative = (d < 0 ? -d : d) / (before < 0 ? -before : before);
+    const Vec reciprocal = 1.0 / d, ratio = at(inverse) * reciprocal, size = ratio < 0 ? -ratio : ratio;
+    at(inverse) = reciprocal;
     negative += d < 0 ? broadcast(1) : broadcast(0);
-    least = relative < least ? relative : least;
+    shrunk = size > shrunk ? size : shrunk;
   }
 };
 
@@ -60,7 +70,6 @@ void factor_panel(const FrontView& f, int rows, double* panel, double* inverse, 
                   double* work) {
   const int p = f.pivots;
   double *l0 = work, *l1 = work + static_cast<long>(p) * lanes;
-  const double* const l[2] = {l0, l1};
   for (int j = 0; j < p; j += 2) {
     const bool pair = j + 1 < p;
     double* row0 = panel + static_cast<long>(j) * p * lanes;
@@ -85,100 +94,132 @@ void factor_panel(const FrontView& f, int rows, double* panel, double* inverse, 
       group(row1, j + 1) -= s11 + y10 * l10;
       monitor.pivot(inverse + (j + 1) * lanes, group(row1, j + 1));
     }
-    for (int i = j + 1 + pair; i < rows; i += 4) {
-      const int from = i < p ? 0 : f.start[i];
-      if (from > j + 1) continue;
-      double* y = panel + static_cast<long>(i) * p * lanes;
-      const int left = rows - i;
-      if (!pair)
-        left >= 4   ? single_column<4>(y, p, from, j, l)
-        : left == 3 ? single_column<3>(y, p, from, j, l)
-        : left == 2 ? single_column<2>(y, p, from, j, l)
-                    : single_column<1>(y, p, from, j, l);
-      else
-        left >= 4   ? column_pair<4>(y, p, from, j, l10, l)
-        : left == 3 ? column_pair<3>(y, p, from, j, l10, l)
-        : left == 2 ? column_pair<2>(y, p, from, j, l10, l)
-                    : column_pair<1>(y, p, from, j, l10, l);
+    int i = j + 1 + pair;
+    double* y = panel + static_cast<long>(i) * p * lanes;
+    const auto from = [&] { return i < p ? 0 : f.start[i]; };
+    if (!pair) {
+      for (; i < rows; ++i, y += static_cast<long>(p) * lanes) single_column<1>(y, p, from(), j, l0);
+      break;
     }
+    for (; i + 4 <= rows; i += 4, y += 4L * p * lanes)
+      if (from() <= j + 1) column_pair<4>(y, p, from(), j, l10, l0, l1);
+    if (rows - i == 3) column_pair<3>(y, p, from(), j, l10, l0, l1);
+    if (rows - i == 2) column_pair<2>(y, p, from(), j, l10, l0, l1);
+    if (rows - i == 1) column_pair<1>(y, p, from(), j, l10, l0, l1);
   }
 }
 
-/// Takes rows i … i + rows − 1 times columns c (and c + 1) from where they go.
-template <int rows, int columns>
+/// Takes rows i … i + rows − 1 times columns c and c + 1 from where they go.
+template <int rows>
 inline void take(const FrontView& f, const FrontTarget& t, const double* panel, int i, int c, int from,
-                 const double* const* l, double* matrix) {
-  Vec sum[rows][columns];
-  products<rows, columns>(panel + static_cast<long>(i) * f.pivots * lanes, f.pivots, from, f.pivots, l, sum);
-  for (int r = 0; r < rows; ++r)
-    for (int k = 0; k < columns; ++k)
-      group(matrix, t.row[i + r - t.begin] + t.column[c + k - t.begin]) -= sum[r][k];
-}
-
-template <int columns>
-inline void take_columns(const FrontView& f, const FrontTarget& t, const double* panel, const double* inverse,
-                         int c, double* matrix, double* vectors, int count, int m, double* work) {
-  const int p = f.pivots;
-  const double* l[columns];
-  const int start = f.start[c];
-  for (int k = 0; k < columns; ++k) {
-    const double* y = panel + static_cast<long>(c + k) * p * lanes;
-    double* scaled = work + static_cast<long>(k) * p * lanes;
-    for (int j = start; j < p; ++j) group(scaled, j) = group(y, j) * group(inverse, j);
-    l[k] = scaled;
-  }
-  if (columns == 2) take<1, 1>(f, t, panel, c, c, start, l, matrix);
-  for (int i = c + columns - 1; i < f.rows; i += 4) {
-    const int from = start > f.start[i] ? start : f.start[i], left = f.rows - i;
-    left >= 4   ? take<4, columns>(f, t, panel, i, c, from, l, matrix)
-    : left == 3 ? take<3, columns>(f, t, panel, i, c, from, l, matrix)
-    : left == 2 ? take<2, columns>(f, t, panel, i, c, from, l, matrix)
-                : take<1, columns>(f, t, panel, i, c, from, l, matrix);
-  }
-  for (int v = 0; v < count; ++v) {
-    Vec sum[1][columns];
-    products<1, columns>(panel + static_cast<long>(f.rows + v) * p * lanes, p, start, p, l, sum);
-    for (int k = 0; k < columns; ++k) group(vectors, v * m + f.unknown[c + k]) -= sum[0][k];
+                 const double* l0, const double* l1, double* matrix) {
+  Vec s0[rows], s1[rows];
+  products<rows>(panel + static_cast<long>(i) * f.pivots * lanes, f.pivots, from, f.pivots, l0, l1, s0, s1);
+  const int *row = t.row + (i - t.begin), *column = t.column + (c - t.begin);
+  for (int r = 0; r < rows; ++r) {
+    group(matrix, row[r] + column[0]) -= s0[r];
+    group(matrix, row[r] + column[1]) -= s1[r];
   }
 }
 
-void condense(const FrontView* fronts, int front_count, int m, double* matrix, double* vectors, int count,
-              double* inverse, double* negative, double* ratio, double* work) {
+/// What columns c and c + 1 of the rows below the pivots take from rows c … rows − 1.
+void take_pair(const FrontView& f, const FrontTarget& t, int rows, const double* panel, const double* inverse,
+               int c, double* matrix, double* work) {
+  const int p = f.pivots, start = f.start[c];
+  const double* const y = panel + static_cast<long>(c) * p * lanes;
+  double *l0 = work, *l1 = work + static_cast<long>(p) * lanes;
+  Vec s00 = broadcast(0), s10 = broadcast(0), s11 = broadcast(0);
+  for (int k = start; k < p; ++k) {
+    const Vec y0 = group(y, k), y1 = group(y, p + k), scale = group(inverse, k);
+    const Vec a = y0 * scale, b = y1 * scale;
+    group(l0, k) = a;
+    group(l1, k) = b;
+    s00 += y0 * a;
+    s10 += y1 * a;
+    s11 += y1 * b;
+  }
+  const int *row = t.row + (c - t.begin), *column = t.column + (c - t.begin);
+  group(matrix, row[0] + column[0]) -= s00;
+  group(matrix, row[1] + column[0]) -= s10;
+  group(matrix, row[1] + column[1]) -= s11;
+  int i = c + 2;
+  const auto from = [&] { return start > f.start[i] ? start : f.start[i]; };
+  for (; i + 4 <= rows; i += 4) take<4>(f, t, panel, i, c, from(), l0, l1, matrix);
+  if (rows - i == 3) take<3>(f, t, panel, i, c, from(), l0, l1, matrix);
+  if (rows - i == 2) take<2>(f, t, panel, i, c, from(), l0, l1, matrix);
+  if (rows - i == 1) take<1>(f, t, panel, i, c, from(), l0, l1, matrix);
+}
+
+void take_single(const FrontView& f, const FrontTarget& t, int rows, const double* panel,
+                 const double* inverse, int c, double* matrix, double* work) {
+  const int p = f.pivots, start = f.start[c];
+  for (int k = start; k < p; ++k)
+    group(work, k) = group(panel, static_cast<long>(c) * p + k) * group(inverse, k);
+  const int column = t.column[c - t.begin];
+  for (int i = c; i < rows; ++i) {
+    Vec sum[1];
+    products<1>(panel + static_cast<long>(i) * p * lanes, p, start, p, work, sum);
+    group(matrix, t.row[i - t.begin] + column) -= sum[0];
+  }
+}
+
+/// Rows too short for the memset that the compiler would make of them.
+__attribute__((optimize("no-tree-loop-distribute-patterns"))) void clear_triangle(double* matrix, int size,
+                                                                                  int rows) {
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < (i < size ? i + 1 : size); ++j)
+      group(matrix, static_cast<long>(i) * size + j) = Vec{};
+}
+
+void clear(const FrontView* fronts, int front_count, double* matrix, int ends, int end_count) {
+  for (int k = 0; k < front_count; ++k)
+    clear_triangle(matrix + static_cast<long>(fronts[k].panel) * lanes, fronts[k].pivots, fronts[k].rows + 2);
+  clear_triangle(matrix + static_cast<long>(ends) * lanes, end_count, end_count + 2);
+}
+
+void condense(const FrontView* fronts, int front_count, double* matrix, int ends, int end_count,
+              double* vectors, int count, double* inverse, double* negative, double* ratio, double* work) {
   Monitor monitor{broadcast(0), broadcast(1)};
+  int inner = 0;
   for (int k = 0; k < front_count; ++k) {
     const FrontView& f = fronts[k];
+    inner += f.pivots;
     for (int j = 0; j < f.pivots; ++j)
       group(inverse, f.first + j) = group(matrix, f.panel + j * (f.pivots + 1));
   }
+  const int m = inner + end_count;
   for (int k = 0; k < front_count; ++k) {
     const FrontView& f = fronts[k];
     double* panel = matrix + static_cast<long>(f.panel) * lanes;
     double* own = inverse + static_cast<long>(f.first) * lanes;
     double* last = panel + static_cast<long>(f.rows) * f.pivots * lanes;
     for (int v = 0; v < count; ++v)
-      for (int j = 0; j < f.pivots; ++j) group(last, v * f.pivots + j) = group(vectors, v * m + f.unknown[j]);
+      for (int j = 0; j < f.pivots; ++j)
+        group(last, v * f.pivots + j) += group(vectors, v * m + f.unknown[j]);
     factor_panel(f, f.rows + count, panel, own, monitor, work);
     for (int v = 0; v < count; ++v)
       for (int j = 0; j < f.pivots; ++j) group(vectors, v * m + f.unknown[j]) = group(last, v * f.pivots + j);
     for (int t = 0; t < f.targets; ++t) {
       const FrontTarget& target = f.target[t];
       int c = target.begin;
-      for (; c + 1 < target.end; c += 2)
-        take_columns<2>(f, target, panel, own, c, matrix, vectors, count, m, work);
-      if (c < target.end) take_columns<1>(f, target, panel, own, c, matrix, vectors, count, m, work);
+      for (; c + 1 < target.end; c += 2) take_pair(f, target, f.rows + count, panel, own, c, matrix, work);
+      if (c < target.end) take_single(f, target, f.rows + count, panel, own, c, matrix, work);
     }
   }
+  const double* last = matrix + (ends + static_cast<long>(end_count) * end_count) * lanes;
+  for (int v = 0; v < count; ++v)
+    for (int e = 0; e < end_count; ++e) group(vectors, v * m + inner + e) += group(last, v * end_count + e);
   at(negative) = monitor.negative;
-  at(ratio) = monitor.least;
+  at(ratio) = 1.0 / monitor.shrunk;
 }
 
 /// g_i −= Σ y_ik t_k of some rows.
 template <int rows>
 inline void reduce_rows(const double* y, int p, int from, const int* unknown, const double* scaled,
                         double* gradient) {
-  Vec sum[rows][1];
-  products<rows, 1>(y, p, from, p, &scaled, sum);
-  for (int r = 0; r < rows; ++r) group(gradient, unknown[r]) -= sum[r][0];
+  Vec sum[rows];
+  products<rows>(y, p, from, p, scaled, sum);
+  for (int r = 0; r < rows; ++r) group(gradient, unknown[r]) -= sum[r];
 }
 
 void reduce(const FrontView* fronts, int front_count, const double* matrix, const double* inverse,
@@ -253,6 +294,6 @@ void expand_step(const FrontView* fronts, int front_count, const double* matrix,
 }  // namespace
 
 extern const Elimination elimination;
-const Elimination elimination = {condense, reduce, expand_step};
+const Elimination elimination = {clear, condense, reduce, expand_step};
 
 }  // namespace extremal::EXTREMAL_LEVEL

@@ -248,12 +248,12 @@ void DiscreteAction::evaluate(const Path& path) {
     double *sums = gradients_.data() + b * 3 * lanes, *gradient = reduced(b);
     assembly_->gradient(tables_->shape(), elements, sums, gradient, border_ ? sums + lanes : nullptr);
     gather(path, b, gradient);
-    std::fill_n(matrix(b), sizes_.matrix, 0.0);
+    elimination_->clear(fronts.data(), fronts.count(), matrix(b), fronts.ends(), 2 * n_);
     assembly_->hessian(tables_->shape(), elements, condensation_->slots.data(), matrix(b));
     if (border_) evaluate_border(path, elements, gradient, gradient + sizes_.vector, sums + 2 * lanes);
     double *negative = work_.data() + 2 * sizes_.vector, *ratio = negative + lanes;
-    elimination_->condense(fronts.data(), fronts.count(), unknowns_, matrix(b), gradient, 1 + border_,
-                           inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
+    elimination_->condense(fronts.data(), fronts.count(), matrix(b), fronts.ends(), 2 * n_, gradient,
+                           1 + border_, inverses_.data() + b * sizes_.vector, negative, ratio, work_.data());
     for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {
       nodes.negative += static_cast<int>(negative[lane]);
       if (!(ratio[lane] >= nodes.pivot_ratio)) nodes.pivot_ratio = ratio[lane];

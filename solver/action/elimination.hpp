@@ -15,7 +15,7 @@ namespace extremal {
 /// ends. All places are numbers of groups of eight.
 struct FrontTarget {
   int begin, end;     ///< of the front's rows
-  const int* row;     ///< where row `begin`, begin + 1, … goes; up to the front's last
+  const int* row;     ///< where row `begin`, begin + 1, … goes; up to the front's last, and two for vectors
   const int* column;  ///< and column `begin` … end − 1; the two add up
 };
 
@@ -30,13 +30,16 @@ struct FrontView {
 };
 
 struct Elimination {
-  /// Eliminates the inner unknowns of `matrix` (fronts.hpp) and at the same time of `vectors`: the gradient
-  /// and, where count is 2, the border, m groups each, one after the other. In these, inner entries become
-  /// y_gj, those of the ends become reduced. `inverse` receives 1/d_j; `negative` the number of negative
-  /// pivots; `ratio` the least |d_j| against the diagonal entry it came from. `work` has room for twice the
-  /// most pivots.
-  void (*condense)(const FrontView* fronts, int front_count, int m, double* matrix, double* vectors,
-                   int count, double* inverse, double* negative, double* ratio, double* work);
+  /// Zeros what counts of `matrix` (fronts.hpp), whose ends start at place `ends`.
+  void (*clear)(const FrontView* fronts, int front_count, double* matrix, int ends, int end_count);
+  /// Eliminates the inner unknowns of `matrix` (fronts.hpp), whose ends start at place `ends`, and at the
+  /// same time of `vectors`: the gradient and, where count is 2, the border, one after the other. In these,
+  /// inner entries become y_gj, those of the ends become reduced. `inverse` receives 1/d_j; `negative` the
+  /// number of negative pivots; `ratio` the least |d_j| against the diagonal entry it came from. `work` has
+  /// room for twice the most pivots.
+  void (*condense)(const FrontView* fronts, int front_count, double* matrix, int ends, int end_count,
+                   double* vectors, int count, double* inverse, double* negative, double* ratio,
+                   double* work);
   /// The gradient alone, with a factor from before.
   void (*reduce)(const FrontView* fronts, int front_count, const double* matrix, const double* inverse,
                  double* gradient, double* work);

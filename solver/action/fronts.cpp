@@ -89,13 +89,16 @@ void Fronts::aim(int f) {
     for (int i = begin; i < view.rows; ++i)
       front.offsets.push_back(g == count() ? (front.unknown[i] - inner) * 2 * n_
                                            : row_of(g, front.unknown[i]) * views_[g].pivots);
+    for (int vector = 0; vector < 2; ++vector)
+      front.offsets.push_back(g == count() ? (2 * n_ + vector) * 2 * n_
+                                           : (views_[g].rows + vector) * views_[g].pivots);
     for (int i = begin; i < end; ++i)
       front.offsets.push_back(g == count() ? ends_ + front.unknown[i] - inner
                                            : views_[g].panel + row_of(g, front.unknown[i]));
   }
   for (std::size_t t = 0; t < at.size(); ++t) {
     front.target[t].row = front.offsets.data() + at[t];
-    front.target[t].column = front.target[t].row + (view.rows - front.target[t].begin);
+    front.target[t].column = front.target[t].row + (view.rows + 2 - front.target[t].begin);
   }
   view.targets = static_cast<int>(front.target.size());
   view.target = front.target.data();

@@ -10,8 +10,8 @@
 namespace extremal {
 
 /// The fronts of one scheme and structure. The matrix of an element, a number of groups of eight: the panels
-/// of the fronts one after the other, then that of the ends, 2n × 2n row-major, of which the lower triangle
-/// is used.
+/// of the fronts one after the other, then that of the ends, 2n columns row-major, of whose first 2n rows the
+/// lower triangle is used and whose last two are for vectors.
 class Fronts {
  public:
   Fronts() = default;
@@ -22,8 +22,8 @@ class Fronts {
 
   int count() const { return static_cast<int>(views_.size()); }
   const FrontView* data() const { return views_.data(); }
-  int groups() const { return ends_ + 4 * n_ * n_; }  ///< of the whole matrix
-  int ends() const { return ends_; }                  ///< place of the matrix of the ends
+  int groups() const { return ends_ + 2 * n_ * (2 * n_ + 2); }  ///< of the whole matrix
+  int ends() const { return ends_; }                            ///< place of the matrix of the ends
   int most_pivots() const { return most_pivots_; }
   double work() const { return work_; }  ///< multiplications to eliminate all inner unknowns of an element
 
