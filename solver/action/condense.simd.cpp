@@ -261,14 +261,15 @@ inline void expand_pivots(const FrontView& f, int j, const double* panel, const 
   const double* y = panel + static_cast<long>(j) * lanes;
   const long stride = static_cast<long>(f.pivots) * lanes;
   Vec sum[count];
-  for (int k = 0; k < count; ++k) {
-    sum[k] = group(gradient, f.unknown[j + k]);
-    if (border) sum[k] += group(border, f.unknown[j + k]) * step_h;
-  }
+  for (int k = 0; k < count; ++k) sum[k] = broadcast(0);
   for (int i = f.rows - 1; i >= j + count; --i) {
     if (i >= f.pivots && f.start[i] >= j + count) continue;
     const Vec value = group(x, f.unknown[i]);
     for (int k = 0; k < count; ++k) sum[k] += group(y + i * stride, k) * value;
+  }
+  for (int k = 0; k < count; ++k) {
+    sum[k] += group(gradient, f.unknown[j + k]);
+    if (border) sum[k] += group(border, f.unknown[j + k]) * step_h;
   }
   for (int k = count - 1; k >= 0; --k) {
     const Vec value = -group(inverse, j + k) * sum[k];

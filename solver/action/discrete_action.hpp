@@ -83,12 +83,9 @@ class DiscreteAction {
     return matrix(k / lanes)[place * lanes + k % lanes];
   }
 
-  /// L_ij, i > j, of the elimination H = L D Lᵀ of the inner unknowns j of element k, as evaluate() left it.
-  double eliminated(int k, int i, int j) const {
-    const std::size_t batch = k / lanes, lane = k % lanes, row = i, column = j;
-    const double inverse = inverses_[batch * sizes_.vector + column * lanes + lane];
-    return matrix(k / lanes)[(row * unknowns_ + column) * lanes + lane] * inverse;
-  }
+  /// ∂x_u/∂x_e of inner unknown u of element k by the ends e (q_a, then q_b), at fields[u*2n + e], by the
+  /// elimination that evaluate() made.
+  void unfold(int k, std::span<double> fields) const;
 
   /// Rows of the remainder at the quadrature points of a batch, as Lagrangian::evaluate returns them.
   const double* rows(const Path& path, int batch, Order order);

@@ -167,7 +167,7 @@ void SecondVariation::keep(std::span<const Part> parts) {
   }
 }
 
-/// Makes the inner fields of piece k: −L⁻ᵀ L_eᵀ from the factor that eliminated the inner unknowns.
+/// Makes the inner fields of piece k, from the factor that eliminated the inner unknowns.
 const Eigen::MatrixXd& SecondVariation::unfold(int k) {
   Eigen::MatrixXd& unfolded = unfolded_[k];
   if (unfolded.size() > 0) return unfolded;
@@ -179,13 +179,11 @@ const Eigen::MatrixXd& SecondVariation::unfold(int k) {
     evaluated_ = pieces_[k].first;
   }
   const int inner = tables_.inner(), n = coordinates(), element = k - pieces_[k].first;
-  factor_.resize(inner + 2 * n, inner);
-  for (int i = 0; i < inner + 2 * n; ++i)
-    for (int j = 0; j < std::min(i, inner); ++j) factor_(i, j) = action_.eliminated(element, i, j);
   if (kept_ + inner * 2 * n > most_kept) forget();
   kept_ += inner * 2 * n;
-  unfolded = -factor_.bottomRows(2 * n).transpose();
-  factor_.topRows(inner).triangularView<Eigen::UnitLower>().transpose().solveInPlace(unfolded);
+  fields_.resize(inner, 2 * n);
+  action_.unfold(element, {fields_.data(), static_cast<std::size_t>(fields_.size())});
+  unfolded = fields_;
   return unfolded;
 }
 

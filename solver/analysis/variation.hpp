@@ -74,7 +74,7 @@ class SecondVariation {
   std::vector<double> mesh_, values_, steps_;
   AlignedDoubles inner_, rest_;
   int evaluated_ = -1;  ///< first piece of those
-  Eigen::MatrixXd factor_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> fields_;
   std::size_t kept_ = 0;
   std::vector<Eigen::MatrixXd>
       unfolded_;  ///< of each piece, or empty: inner unknowns, (s − 1) n × 2n, by x_a, x_b

@@ -182,6 +182,16 @@ TEST_P(Elimination, IsThatOfTheDenseMatrix) {
       }
       EXPECT_EQ(d.action.nodes.negative, negative) << what;
 
+      for (int k : {0, 7, 10}) {
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> fields(inner, 2 * n);
+        d.action.unfold(k, {fields.data(), std::size_t(fields.size())});
+        const Eigen::MatrixXd lower = before[k].hessian.bottomLeftCorner(2 * n, inner);
+        const Eigen::MatrixXd expected = -factors[k].solve(lower.transpose());
+        EXPECT_LE((fields - expected).cwiseAbs().maxCoeff(),
+                  1e-13 * amplified / d.action.nodes.pivot_ratio * (1 + expected.cwiseAbs().maxCoeff()))
+            << what << " element " << k;
+      }
+
       // A step, from another gradient, with the factors of before.
       d.scatter();
       const std::vector<Dense> after = d.dense();
