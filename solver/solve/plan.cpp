@@ -24,9 +24,12 @@ double batches(double elements) { return std::ceil(elements / lanes); }
 
 }  // namespace
 
-double batch_cost(int m) {
-  if (m > most_dense_unknowns) return 1e3 * m;  // one sparse matrix
-  return 200.0 + m * m + m * m * m / 64.0;
+double batch_cost(const ElementTables& tables, int degree) {
+  const double n = tables.coordinates(), s = tables.scheme().degree;
+  if (tables.unknowns() > most_dense_unknowns) return 1e3 * n * (degree + 1);  // one sparse matrix
+  const double assembly = std::min(n, 3.0) * n * (degree + 1) * (degree + 1);
+  const double elimination = tables.condensation().fronts.work() * std::pow((degree - 1) / (s - 1), 3) / 12;
+  return 200 + assembly + elimination + 1.7 * n * n * n;
 }
 
 /// Distances to singularities; neighbours see each other's.
@@ -66,11 +69,11 @@ double Planner::elements(int degree, const PlanLimits& limits) const {
   return spare * sum;
 }
 
-Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, int unknowns_per_degree,
+Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, const ElementTables& tables,
                    const PlanLimits& limits) {
   const double present = static_cast<double>(mesh.size()) - 1;
   const auto cost = [&](int degree, double elements) {
-    return batches(elements) * batch_cost((degree + 1) * unknowns_per_degree);
+    return batches(elements) * batch_cost(tables, degree);
   };
   Plan best;
   int keep = resolution.degree_for(limits.aim, limits.highest_degree);

@@ -34,8 +34,8 @@ struct PlanLimits {
 /// along the path by no more than t does, and d gives the h' that another degree needs.
 class Planner {
  public:
-  /// `unknowns_per_degree` is n; `mesh` that of the path that was measured.
-  Plan plan(const Resolution& resolution, std::span<const double> mesh, int unknowns_per_degree,
+  /// `mesh` and `tables` are those of the path that was measured.
+  Plan plan(const Resolution& resolution, std::span<const double> mesh, const ElementTables& tables,
             const PlanLimits& limits);
 
  private:
@@ -51,7 +51,9 @@ class Planner {
   Density density_;
 };
 
-/// Nanoseconds, roughly, of one Newton step on eight elements with m unknowns each.
-double batch_cost(int m);
+/// Nanoseconds, roughly, of one Newton step on eight elements of `degree`, from tables of any degree:
+/// assembly, elimination of the inner unknowns, whose work grows with the cube of the degree, and the nodes
+/// between.
+double batch_cost(const ElementTables& tables, int degree);
 
 }  // namespace extremal

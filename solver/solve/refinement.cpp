@@ -53,7 +53,7 @@ void Refinement::open(const std::vector<double>& mesh) {
   most_cost_ = std::max({most_cost_, most_cost, most_first_steps * step_cost()});
 }
 
-double Refinement::step_cost() const { return w_.path.batches() * batch_cost(tables_->unknowns()); }
+double Refinement::step_cost() const { return w_.path.batches() * batch_cost(*tables_, w_.path.degree()); }
 
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
@@ -110,7 +110,7 @@ Plan Refinement::plan(double aim) {
   const auto error = [&](double share) {
     return Resolution::Error{share * scales_.q, last ? 10 * share * scales_.v : INFINITY};
   };
-  return w_.planner.plan(w_.resolution, w_.path.mesh(), w_.path.coordinates(),
+  return w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
                          {.aim = error(aim),
                           .tolerated = error(std::max(aim, 0.7 * options_.tolerance)),
                           .raised_degree = std::min(w_.path.degree() + 1, highest_degree),
@@ -146,7 +146,7 @@ void Refinement::refine() {
   const int elements = w_.path.elements(), degree = w_.path.degree();
   if (degree == first_degree) {
     const Resolution::Error aim{coarse_goal * scales_.q, INFINITY, INFINITY};
-    const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), w_.path.coordinates(),
+    const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
                                        {aim, aim, degree, degree, degree, most_elements_, coarse_cut});
     if (static_cast<int>(finer.mesh.size()) > elements + 1) return adopt(finer);
   }
