@@ -14,6 +14,8 @@ namespace {
 constexpr double tightest = 1e-13;
 /// A range below this part of the values is none.
 constexpr double negligible = 1e-12;
+/// A path this small beside guess and ends has come to rest at zero.
+constexpr double vanished = 1e-9;
 constexpr int most_reference_coordinates = 40;
 
 /// Times within every element, ends included.
@@ -78,7 +80,9 @@ double magnitude(const extremal::Problem& problem, const extremal::Trajectory& t
 }
 
 bool rests(const extremal::Problem& problem, const extremal::Trajectory& trajectory) {
-  return largest_of(survey(*problem.lagrangian, trajectory).q) <= negligible * magnitude(problem, trajectory);
+  const double given = std::max(largest_of(problem.guess.q), largest_of(problem.ends.offset));
+  const double range = largest_of(survey(*problem.lagrangian, trajectory).q);
+  return range <= std::max(negligible * largest_of(trajectory.nodes), vanished * given);
 }
 
 double size_of(const extremal::Study& study, const extremal::Trajectory& trajectory) {

@@ -25,7 +25,7 @@ std::optional<double> error_by_shooting(const extremal::Study& study, const extr
 double largest_of(const std::vector<double>& values);  ///< in modulus; 0 without values
 /// Largest value of path, ends and guess.
 double magnitude(const extremal::Problem& problem, const extremal::Trajectory& trajectory);
-/// Whether ranges are nothing beside these values.
+/// Whether ranges are nothing beside the values of the path, or what is left of guess and ends.
 bool rests(const extremal::Problem& problem, const extremal::Trajectory& trajectory);
 
 /// The size that a tolerance is relative to.
