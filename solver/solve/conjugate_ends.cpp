@@ -54,7 +54,8 @@ void refuse(Solution& solution, Status status, std::string message) {
 void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, double distance, Workspace& w,
                           Solution& solution) {
   const double T = solution.duration(), size = scales(w.path, *w.final_tables).q;
-  if (!fixed(problem) || distance > near * T) return;
+  // Where conjugate times are many, one of them is never far.
+  if (!fixed(problem) || distance > near * T / (1.0 + solution.conjugate_times.size())) return;
   const double known = size > 0 ? solution.error_estimate / size : 0;
   if (distance <= T * std::clamp(known, least_distance, largest_distance))
     return refuse(
