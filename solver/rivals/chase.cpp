@@ -234,6 +234,8 @@ std::string Chase::run(Verification& result) {
   const IntegrationOptions integration{
       .tolerance = std::clamp(tighter * options_.tolerance * reach_, tightest, loosest),
       .block = static_cast<int>(n_),
+      // At rest or at the origin p or q all but vanishes, and is known only to roundoff of what makes it up.
+      .least = {scales_.q, scales_.p},
       .controlled = static_cast<int>(2 * n_)};
   auto end = options_.ends.begin();
   for (double t = 0; t < duration;) {

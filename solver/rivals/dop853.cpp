@@ -65,7 +65,9 @@ double Dop853::error_norm(std::span<const double> y, double h, const Integration
   double sum5 = 0, sum3 = 0;
   for (int begin = 0; begin < size; begin += block) {
     const int end = std::min(begin + block, size);
-    const double scale = std::max(largest(y, begin, end), largest(next_, begin, end)) * options.tolerance;
+    const double least = options.least[(begin / block) % 2];
+    const double scale =
+        std::max({largest(y, begin, end), largest(next_, begin, end), least}) * options.tolerance;
     if (scale == 0) continue;
     for (int m = begin; m < end; ++m) {
       double e5 = 0, e3 = 0;

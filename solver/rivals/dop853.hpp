@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -16,7 +17,9 @@ enum class Integrated { done, step_underflow, step_limit };
 struct IntegrationOptions {
   double tolerance = 1e-12;  ///< error of a step relative to the largest component of a block
   int block = 0;             ///< components that share a unit stand in blocks of so many; 0: all in one
-  int controlled = 0;        ///< the first components, whose error sets the step; 0: all
+  /// Blocks that are smaller than these, in turn, count as so large.
+  std::array<double, 2> least = {0, 0};
+  int controlled = 0;  ///< the first components, whose error sets the step; 0: all
   int max_steps = 1000000;
 };
 

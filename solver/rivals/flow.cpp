@@ -44,7 +44,12 @@ bool Flow::momentum(std::span<const double> q, std::span<const double> v, double
 /// Either leaves q' in v_, and in point_ the derivatives of L there up to `order`.
 bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, double t, Order order) {
   if (structure_.quadratic) return solve_linear(q, p, t, order);
-  if (!solve_newton(q, p, t)) return false;
+  // A state far off the motion must not spoil what the next search begins from.
+  last_v_ = v_;
+  if (!solve_newton(q, p, t)) {
+    v_ = last_v_;
+    return false;
+  }
   return order != Order::hessian || (point_.evaluate(q, v_, t, order) && mass_.factor(point_.vv()));
 }
 

@@ -40,7 +40,7 @@ class Flow {
   const Structure& structure_;
   PointEvaluator point_;
   MassMatrix mass_;
-  std::vector<double> v_, residual_;
+  std::vector<double> v_, last_v_, residual_;
 };
 
 }  // namespace extremal
