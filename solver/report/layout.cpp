@@ -93,10 +93,10 @@ Figure map_figure(const Picture& picture, const std::string& name, const std::st
 }
 
 /// One body for each element of arrays that have one length.
-std::vector<Path> bodies(const Picture& picture, const std::vector<Family>& groups) {
+std::vector<BodyPath> bodies(const Picture& picture, const std::vector<Family>& groups) {
   const std::size_t count = groups[0].members.size();
   const std::vector<Colour> colours = distinct_colours(count);
-  std::vector<Path> paths(count);
+  std::vector<BodyPath> paths(count);
   for (std::size_t i = 0; i < count; ++i) {
     for (const Family& family : groups) paths[i].axes.push_back(&picture.samples.q[family.members[i]]);
     if (!groups[0].indices.empty()) paths[i].name = groups[0].indices[i];
@@ -127,7 +127,7 @@ Figure layout(const Picture& picture) {
   std::vector<Family> groups = families(picture.names);
   if (count == 1) return lone_figure(picture);
   if (count == 2 || count == 3) {
-    Path path{.axes = {}, .name = "", .colour = first_colour};
+    BodyPath path{.axes = {}, .name = "", .colour = first_colour};
     for (const Column& column : picture.samples.q) path.axes.push_back(&column);
     return count == 2 ? plane_figure(picture, {path}, picture.names)
                       : space_figure(picture, {path}, picture.names);

@@ -44,14 +44,14 @@ double number_width(const Axis& axis);
 double top_of_panels(const std::string& title);
 
 /// The path of one body, two or three columns.
-struct Path {
+struct BodyPath {
   std::vector<const Column*> axes;
   std::string name;
   Colour colour = 0;
 };
-Figure plane_figure(const Picture& picture, const std::vector<Path>& paths,
+Figure plane_figure(const Picture& picture, const std::vector<BodyPath>& paths,
                     const std::vector<std::string>& labels);
-Figure space_figure(const Picture& picture, const std::vector<Path>& paths,
+Figure space_figure(const Picture& picture, const std::vector<BodyPath>& paths,
                     const std::vector<std::string>& labels);
 
 /// Colours to tell curves apart, also for the colour-blind: six that differ, or shades in a row.

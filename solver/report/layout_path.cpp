@@ -18,12 +18,12 @@ Extent resized(const Extent& range, double size) {
 
 /// Of each axis. Where the paths do not move at all, or by roundoff, the extent is that of the axis where
 /// they move most.
-std::vector<Extent> path_extents(const std::vector<Path>& paths) {
+std::vector<Extent> path_extents(const std::vector<BodyPath>& paths) {
   std::vector<Extent> ranges;
   double greatest = 0;
   for (std::size_t axis = 0; axis < paths[0].axes.size(); ++axis) {
     std::vector<const Column*> columns;
-    for (const Path& path : paths) columns.push_back(path.axes[axis]);
+    for (const BodyPath& path : paths) columns.push_back(path.axes[axis]);
     ranges.push_back(extent(columns, margin));
     if (!ranges.back().constant) greatest = std::max(greatest, ranges.back().size());
   }
@@ -43,7 +43,7 @@ bool comparable(const std::vector<Extent>& ranges) {
 }
 
 /// Ends that agree to what can be seen.
-bool closed(const Path& path, const std::vector<Extent>& ranges) {
+bool closed(const BodyPath& path, const std::vector<Extent>& ranges) {
   for (std::size_t axis = 0; axis < ranges.size(); ++axis) {
     const Column& values = *path.axes[axis];
     if (std::abs(values.back() - values.front()) > 1e-3 * ranges[axis].size()) return false;
@@ -54,11 +54,11 @@ bool closed(const Path& path, const std::vector<Extent>& ranges) {
 /// Calls draw(path, from, to) for short slices of the paths in the order of time: where several bodies take
 /// one path the last to pass is seen.
 template <class Draw>
-void paint_in_time(const std::vector<Path>& paths, Draw draw) {
+void paint_in_time(const std::vector<BodyPath>& paths, Draw draw) {
   const std::size_t last = paths[0].axes[0]->size() - 1;
   const std::size_t slices = std::min(last, paths.size() == 1 ? 1 : 1 + 120 / paths.size());
   for (std::size_t slice = 0; slice < slices; ++slice) {
-    for (const Path& path : paths) draw(path, slice * last / slices, (slice + 1) * last / slices + 1);
+    for (const BodyPath& path : paths) draw(path, slice * last / slices, (slice + 1) * last / slices + 1);
   }
 }
 
@@ -67,25 +67,25 @@ Column part(const Column& values, std::size_t from, std::size_t to) {
 }
 
 /// Paths in the plane of two of their axes. A closed path has one mark, an open one two.
-void add_paths(Panel& panel, const std::vector<Path>& paths, std::size_t across, std::size_t up,
+void add_paths(Panel& panel, const std::vector<BodyPath>& paths, std::size_t across, std::size_t up,
                const std::vector<Extent>& ranges) {
-  paint_in_time(paths, [&](const Path& path, std::size_t from, std::size_t to) {
+  paint_in_time(paths, [&](const BodyPath& path, std::size_t from, std::size_t to) {
     panel.curves.push_back({part(*path.axes[across], from, to), part(*path.axes[up], from, to), path.colour});
   });
-  for (const Path& path : paths) {
+  for (const BodyPath& path : paths) {
     const Column &x = *path.axes[across], &y = *path.axes[up];
     if (!closed(path, ranges)) panel.marks.push_back({x.front(), y.front(), path.colour, Shape::ring});
     panel.marks.push_back({x.back(), y.back(), path.colour, Shape::disc});
   }
 }
 
-std::vector<LegendEntry> path_legend(const std::vector<Path>& paths, const std::vector<Extent>& ranges) {
+std::vector<LegendEntry> path_legend(const std::vector<BodyPath>& paths, const std::vector<Extent>& ranges) {
   std::vector<LegendEntry> entries;
   if (paths.size() > 1 && paths.size() <= longest_legend) {
-    for (const Path& path : paths) entries.push_back({path.name, path.colour, Shape::line});
+    for (const BodyPath& path : paths) entries.push_back({path.name, path.colour, Shape::line});
   }
   const bool open =
-      std::any_of(paths.begin(), paths.end(), [&](const Path& p) { return !closed(p, ranges); });
+      std::any_of(paths.begin(), paths.end(), [&](const BodyPath& p) { return !closed(p, ranges); });
   if (open) {
     const Colour colour = paths.size() == 1 ? paths[0].colour : 0x5A606B;
     entries.push_back({"start", colour, Shape::ring});
@@ -128,21 +128,21 @@ void add_room(Panel& panel, const View& view, const Extent& x, const Extent& y, 
 }
 
 /// All ranges have been brought to one scale already.
-Panel space_panel(const std::vector<Path>& paths, const std::vector<Extent>& ranges,
+Panel space_panel(const std::vector<BodyPath>& paths, const std::vector<Extent>& ranges,
                   const std::vector<std::string>& labels, const Box& box) {
   const Extent &x = ranges[0], &y = ranges[1], &z = ranges[2];
   const View view;
   Panel panel{.box = box, .x = {}, .y = {}, .axes = false};
   add_room(panel, view, x, y, z);
-  for (const Path& path : paths) {
+  for (const BodyPath& path : paths) {
     const Column floor(path.axes[0]->size(), z.low);
     panel.curves.push_back(view.curve(*path.axes[0], *path.axes[1], floor, shadow, 1.2));
   }
-  paint_in_time(paths, [&](const Path& path, std::size_t from, std::size_t to) {
+  paint_in_time(paths, [&](const BodyPath& path, std::size_t from, std::size_t to) {
     panel.curves.push_back(view.curve(part(*path.axes[0], from, to), part(*path.axes[1], from, to),
                                       part(*path.axes[2], from, to), path.colour, 1.6));
   });
-  for (const Path& path : paths) {
+  for (const BodyPath& path : paths) {
     const Column &xs = *path.axes[0], &ys = *path.axes[1], &zs = *path.axes[2];
     Mark start = view.at(xs.front(), ys.front(), zs.front()), end = view.at(xs.back(), ys.back(), zs.back());
     start.colour = end.colour = path.colour;
@@ -176,7 +176,7 @@ struct Sides {
 
 }  // namespace
 
-Figure plane_figure(const Picture& picture, const std::vector<Path>& paths,
+Figure plane_figure(const Picture& picture, const std::vector<BodyPath>& paths,
                     const std::vector<std::string>& labels) {
   const double top = top_of_panels(picture.title), height = 460;
   const bool beside = paths.size() == 1;  // room for both coordinates against time
@@ -208,7 +208,7 @@ Figure plane_figure(const Picture& picture, const std::vector<Path>& paths,
   return figure;
 }
 
-Figure space_figure(const Picture& picture, const std::vector<Path>& paths,
+Figure space_figure(const Picture& picture, const std::vector<BodyPath>& paths,
                     const std::vector<std::string>& labels) {
   std::vector<Extent> ranges = path_extents(paths);
   const double greatest = std::max({ranges[0].size(), ranges[1].size(), ranges[2].size()});

@@ -16,8 +16,8 @@ constexpr std::size_t most_complete = 40, probes = 8;
 constexpr double longer = 10;
 /// The integrator's own error stays this much below what is allowed, within its reach.
 constexpr double tighter = 1e-3, tightest = 1e-15, loosest = 1e-10;
-/// Numbers kept in marks, at most.
-constexpr std::size_t most_marked = 4'000'000;
+/// Numbers kept in waypoints, at most.
+constexpr std::size_t most_kept = 4'000'000;
 /// A range below this part of the values is none.
 constexpr double negligible = 1e-12;
 
@@ -164,17 +164,17 @@ bool Chase::compare_step(double before, double now, Verification& result) {
 }
 
 /// For the distance between the ends of pieces.
-void Chase::mark(double t) {
+void Chase::keep_waypoint(double t) {
   const auto n = static_cast<Eigen::Index>(n_);
-  if (!complete_ || marked_ > most_marked) return;
+  if (!complete_ || kept_ > most_kept) return;
   trajectory_.at(t, std::span(next_).first(n_), v_);
-  Mark mark{.transition = Eigen::MatrixXd(n, 2 * n), .defect = Eigen::VectorXd(n)};
+  Waypoint waypoint{.transition = Eigen::MatrixXd(n, 2 * n), .defect = Eigen::VectorXd(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
-    mark.defect[i] = (y_[i] - next_[i]) / scales_.q;
-    for (Eigen::Index c = 0; c < 2 * n; ++c) mark.transition(i, c) = y_[2 * n * (c + 1) + i] / scales_.q;
+    waypoint.defect[i] = (y_[i] - next_[i]) / scales_.q;
+    for (Eigen::Index c = 0; c < 2 * n; ++c) waypoint.transition(i, c) = y_[2 * n * (c + 1) + i] / scales_.q;
   }
-  marked_ += static_cast<std::size_t>(mark.transition.size());
-  marks_.push_back(std::move(mark));
+  kept_ += static_cast<std::size_t>(waypoint.transition.size());
+  waypoints_.push_back(std::move(waypoint));
 }
 
 bool Chase::end_piece(double start, double end, Verification& result) {
@@ -187,12 +187,12 @@ bool Chase::end_piece(double start, double end, Verification& result) {
   const auto size = static_cast<Eigen::Index>(2 * n_);
   Eigen::VectorXd unit(size);
   unit << Eigen::VectorXd::Constant(size / 2, scales_.q), Eigen::VectorXd::Constant(size / 2, scales_.p);
-  Piece piece{.start = start,
+  MotionPiece piece{.start = start,
               .end = end,
               .transition = {},
               .defect = {},
               .by_duration = {},
-              .marks = std::exchange(marks_, {})};
+              .waypoints = std::exchange(waypoints_, {})};
   piece.transition =
       unit.cwiseInverse().asDiagonal() * Eigen::Map<const Eigen::MatrixXd>(y_.data() + size, size, size);
   piece.defect = (vector(y.first(2 * n_)) - vector(next_)).cwiseQuotient(unit);
@@ -223,7 +223,7 @@ std::string Chase::run_piece(double& t, double limit, const IntegrationOptions& 
       y_ = saved_;
       continue;
     }
-    mark(t);
+    keep_waypoint(t);
     if (!compare_step(before, t, result)) return fmt::format("L is not finite near t = {:.9g}", t);
   }
   return end_piece(start, t, result) ? "" : fmt::format("L is not finite near t = {:.9g}", t);

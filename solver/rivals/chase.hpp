@@ -30,7 +30,7 @@ class Chase {
   double allowed_q() const { return allowed_q_; }
   const EndStates& ends() const { return ends_; }
   /// Empty where there are too many coordinates.
-  const std::vector<Piece>& pieces() const { return pieces_; }
+  const std::vector<MotionPiece>& pieces() const { return pieces_; }
 
  private:
   /// (q, p) of the trajectory at time t; its velocity is left in v_. False if L is not finite there.
@@ -42,7 +42,7 @@ class Chase {
   double growth() const;
   double growth_limit() const;
   std::string run_piece(double& t, double limit, const IntegrationOptions& integration, Verification& result);
-  void mark(double t);
+  void keep_waypoint(double t);
   bool end_piece(double start, double end, Verification& result);
 
   const Problem& problem_;
@@ -60,9 +60,9 @@ class Chase {
   std::vector<double> y_, v_, motion_v_, interpolated_, next_, saved_;
   std::vector<double> t_samples_, q_samples_, v_samples_;
   std::size_t compared_ = 0;  ///< samples
-  std::vector<Piece> pieces_;
-  std::vector<Mark> marks_;  ///< of the piece that is being integrated
-  std::size_t marked_ = 0;   ///< numbers kept in marks
+  std::vector<MotionPiece> pieces_;
+  std::vector<Waypoint> waypoints_;  ///< of the piece that is being integrated
+  std::size_t kept_ = 0;             ///< numbers kept in waypoints
 };
 
 }  // namespace extremal

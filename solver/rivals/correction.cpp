@@ -24,7 +24,7 @@ struct LinearSystem {
   Eigen::VectorXd right;
 };
 
-LinearSystem assemble(const std::vector<Piece>& pieces, const EndConditions::Values& conditions,
+LinearSystem assemble(const std::vector<MotionPiece>& pieces, const EndConditions::Values& conditions,
                       const PhaseScales& scales) {
   const Eigen::Index size = pieces.front().transition.rows(), n = size / 2;
   const auto count = static_cast<Eigen::Index>(pieces.size());
@@ -56,7 +56,7 @@ LinearSystem assemble(const std::vector<Piece>& pieces, const EndConditions::Val
 }  // namespace
 
 /// Iterated Tikhonov regularisation, x += (AᵀA + μ²)⁻¹ Aᵀ (b − A x).
-Eigen::VectorXd correction(const std::vector<Piece>& pieces, const EndConditions::Values& conditions,
+Eigen::VectorXd correction(const std::vector<MotionPiece>& pieces, const EndConditions::Values& conditions,
                            const PhaseScales& scales) {
   const LinearSystem system = assemble(pieces, conditions, scales);
   const Eigen::SparseMatrix<double> transposed = system.matrix.transpose();
@@ -72,15 +72,16 @@ Eigen::VectorXd correction(const std::vector<Piece>& pieces, const EndConditions
   return x.head((static_cast<Eigen::Index>(pieces.size()) + 1) * pieces.front().transition.rows());
 }
 
-double largest_change(const std::vector<Piece>& pieces, const Eigen::VectorXd& correction) {
+double largest_change(const std::vector<MotionPiece>& pieces, const Eigen::VectorXd& correction) {
   const Eigen::Index size = pieces.front().transition.rows(), n = size / 2;
   double largest = 0;
   for (Eigen::Index k = 0; k * size < correction.size(); ++k)
     largest = std::max(largest, correction.segment(k * size, n).cwiseAbs().maxCoeff());
   for (std::size_t k = 0; k < pieces.size(); ++k)
-    for (const Mark& mark : pieces[k].marks) {
+    for (const Waypoint& waypoint : pieces[k].waypoints) {
       const Eigen::VectorXd change =
-          mark.transition * correction.segment(static_cast<Eigen::Index>(k) * size, size) + mark.defect;
+          waypoint.transition * correction.segment(static_cast<Eigen::Index>(k) * size, size) +
+          waypoint.defect;
       largest = std::max(largest, change.cwiseAbs().maxCoeff());
     }
   return largest;

@@ -11,29 +11,29 @@
 namespace extremal {
 
 /// q in between: how it spreads from the state at the start of its piece (n × 2n), and its defect.
-struct Mark {
+struct Waypoint {
   Eigen::MatrixXd transition;
   Eigen::VectorXd defect;
 };
 
 /// A piece from x_k to x_{k+1}, all in units of the scales (q, p).
-struct Piece {
+struct MotionPiece {
   double start = 0, end = 0;
   Eigen::MatrixXd transition;   ///< ∂(state at the end)/∂(state at the start), 2n × 2n
   Eigen::VectorXd defect;       ///< state at the end, integrated, less x_{k+1}
   Eigen::VectorXd by_duration;  ///< of that state, times stretched with the duration; empty where it is fixed
-  std::vector<Mark> marks;      ///< in between
+  std::vector<Waypoint> waypoints;  ///< in between
 };
 
 /// One step of multiple shooting: the changes δx_0 … δx_m, 2n each, with
 ///   transition_k δx_k − δx_{k+1} + by_duration_k δT = −defect_k,   derivatives · (δx_0, δx_m) = −residual.
 /// Directions that these leave all but free, as symmetries do, are not moved along. Empty where that cannot
 /// be computed.
-Eigen::VectorXd correction(const std::vector<Piece>& pieces, const EndConditions::Values& conditions,
+Eigen::VectorXd correction(const std::vector<MotionPiece>& pieces, const EndConditions::Values& conditions,
                            const PhaseScales& scales);
 
-/// Largest change of q that a correction makes, at the ends of pieces and at their marks. (Marks see a change
-/// of the duration only through those ends.)
-double largest_change(const std::vector<Piece>& pieces, const Eigen::VectorXd& correction);
+/// Largest change of q that a correction makes, at the ends of pieces and at their waypoints. (Waypoints see
+/// a change of the duration only through those ends.)
+double largest_change(const std::vector<MotionPiece>& pieces, const Eigen::VectorXd& correction);
 
 }  // namespace extremal

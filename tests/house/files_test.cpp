@@ -42,4 +42,23 @@ TEST(Files, HeadersGuardThemselves) {
   }
 }
 
+/// Two types of one name in one namespace would be one to the linker, and to no compiler an error.
+TEST(Files, DefineEachTypeOnce) {
+  static const std::regex space(R"(^namespace ([\w:]+) \{)"),
+      type(R"(^(?:struct|class|enum class) (\w+)[^;]*$)");
+  std::map<std::string, fs::path> seen;
+  for (const fs::path& file : sources("solver")) {
+    if (file.extension() != ".hpp") continue;
+    std::string scope;
+    for (const std::string& line : lines(file)) {
+      std::smatch match;
+      if (std::regex_search(line, match, space)) scope = match[1];
+      if (!std::regex_search(line, match, type)) continue;
+      const auto [place, first] = seen.emplace(scope + "::" + match[1].str(), file);
+      EXPECT_TRUE(first) << file << " and " << place->second << " both define " << place->first;
+    }
+  }
+  EXPECT_GT(seen.size(), 50u);
+}
+
 }  // namespace
