@@ -209,4 +209,17 @@ void Path::element(int k, double* q) const {
   }
 }
 
+void Path::element_slopes(int k, std::span<const double> derivative, double* v) const {
+  const double* x = this->x(k / lanes) + k % lanes;
+  const double* delta = x + static_cast<std::size_t>(unknowns_ - n_) * lanes;
+  const double length = h(k / lanes)[k % lanes];
+  for (int j = 0; j <= degree_; ++j)
+    for (int a = 0; a < n_; ++a) {
+      double slope = delta[a * lanes];
+      for (int i = 1; i < degree_; ++i)
+        slope += derivative[j * (degree_ + 1) + i] * x[((i - 1) * n_ + a) * lanes];
+      v[j * n_ + a] = slope / length;
+    }
+}
+
 }  // namespace extremal

@@ -66,6 +66,8 @@ class Path {
 
   /// q at the s + 1 Lobatto nodes of element k.
   void element(int k, double* q) const;
+  /// q' there. `derivative` is that of lobatto_basis(degree(), Lobatto nodes).
+  void element_slopes(int k, std::span<const double> derivative, double* v) const;
 
  private:
   void values(int k, int count, const double* tau, double* q) const;

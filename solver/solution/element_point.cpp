@@ -12,19 +12,22 @@ void element_point(const Trajectory& trajectory, int k, const Basis& basis, int 
   const int s = trajectory.degree, n = trajectory.coordinates;
   const double* const value = basis.value.data() + point * (s + 1);
   const double* const derivative = basis.derivative.data() + point * (s + 1);
-  const double* const nodes = trajectory.nodes.data() + static_cast<std::ptrdiff_t>(k) * (s + 1) * n;
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(k) * (s + 1) * n;
+  const double* const nodes = trajectory.nodes.data() + first;
+  const double* const slopes = trajectory.slopes.empty() ? nullptr : trajectory.slopes.data() + first;
   const auto smaller = [](double x, double y) { return std::abs(x) < std::abs(y); };
-  const double* const reference = nodes + (std::max_element(value, value + s + 1, smaller) - value) * n;
+  const std::ptrdiff_t reference = (std::max_element(value, value + s + 1, smaller) - value) * n;
   const double h = trajectory.times[k + 1] - trajectory.times[k];
   for (int a = 0; a < n; ++a) {
+    const double q0 = nodes[reference + a], v0 = slopes ? slopes[reference + a] : 0;
     double change = 0, slope = 0;
     for (int j = 0; j <= s; ++j) {
-      const double difference = nodes[j * n + a] - reference[a];
+      const double difference = nodes[j * n + a] - q0;
       change += value[j] * difference;
-      slope += derivative[j] * difference;
+      slope += slopes ? value[j] * (slopes[j * n + a] - v0) : derivative[j] * difference / h;
     }
-    q[a * stride] = reference[a] + change;
-    v[a * stride] = slope / h;
+    q[a * stride] = q0 + change;
+    v[a * stride] = v0 + slope;
   }
 }
 

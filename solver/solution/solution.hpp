@@ -39,6 +39,8 @@ struct Trajectory {
   int degree = 0;             ///< s of every element
   std::vector<double> times;  ///< N + 1 ends of elements, 0 … T
   std::vector<double> nodes;  ///< (s + 1) values an element at its Lobatto points: [(k*(s+1) + j)*n + a]
+  /// q' likewise: values rounded to double tell derivatives only to ε|q|s²/h. Empty: taken from the values.
+  std::vector<double> slopes = {};
 
   int elements() const { return static_cast<int>(times.size()) - 1; }
   double duration() const { return times.empty() ? 0 : times.back(); }

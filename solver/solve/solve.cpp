@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "action/rule.hpp"
 #include "solution/observe.hpp"
 #include "solve/conjugate_ends.hpp"
 #include "solve/minimality.hpp"
@@ -33,9 +34,14 @@ Trajectory trajectory_of(const Path& path) {
   t.coordinates = path.coordinates();
   t.degree = path.degree();
   for (double tau : path.mesh()) t.times.push_back(tau * path.duration());
-  t.nodes.resize(static_cast<std::size_t>(path.elements()) * (path.degree() + 1) * path.coordinates());
-  for (int k = 0; k < path.elements(); ++k)
-    path.element(k, t.nodes.data() + static_cast<std::size_t>(k) * (path.degree() + 1) * path.coordinates());
+  const std::size_t size = static_cast<std::size_t>(path.degree() + 1) * path.coordinates();
+  t.nodes.resize(path.elements() * size);
+  t.slopes.resize(path.elements() * size);
+  const Basis basis = lobatto_basis(path.degree(), lobatto_barycentric(path.degree()).nodes);
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, t.nodes.data() + k * size);
+    path.element_slopes(k, basis.derivative, t.slopes.data() + k * size);
+  }
   return t;
 }
 
