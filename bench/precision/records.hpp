@@ -36,8 +36,8 @@ struct Cell : Run {
 /// Runs of another program on a scene, or why there are none.
 struct Rival {
   std::string name;
-  std::string absence;
-  std::vector<Run> runs;
+  std::string absence = {};
+  std::vector<Run> runs = {};
 };
 
 struct SceneRecord {
