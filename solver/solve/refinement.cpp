@@ -9,7 +9,6 @@ namespace extremal {
 
 namespace {
 
-constexpr int first_degree = 4;
 constexpr int highest_degree = 16;
 /// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.
 constexpr int most_elements = 1 << 12, most_cuts = 64;
@@ -43,10 +42,17 @@ Refinement::Refinement(const Problem& problem, const SolveOptions& options, Work
                        Outcome& outcome)
     : problem_(problem), options_(options), w_(workspace), outcome_(outcome) {}
 
-void Refinement::open(const std::vector<double>& mesh) {
+void Refinement::rebind() { w_.iteration.reset(problem_, *tables_, w_.path.elements()); }
+
+bool Refinement::count_step() {
+  record();
+  return !exhausted();
+}
+
+void Refinement::open(const std::vector<double>& mesh, int degree) {
   longest_ = 0;
   w_.iteration.forget();
-  tables_ = &w_.levels.at(first_degree);
+  tables_ = &w_.levels.at(degree);
   w_.iteration.reset(problem_, *tables_, static_cast<int>(mesh.size()) - 1);
   w_.path.reset(*tables_, mesh, problem_.duration.value);
   most_elements_ = std::max(most_elements, most_cuts * w_.path.elements());
@@ -65,7 +71,7 @@ Refinement::Result Refinement::pursue() {
     if (hopeless || 2 * w_.path.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
                                      w_.path.elements(), w_.path.degree(), options_.tolerance);
-      return Result::unreachable;
+      return hopeless ? Result::unreachable : Result::failed;
     }
     refine();
     result = attempt();

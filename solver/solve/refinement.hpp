@@ -27,8 +27,13 @@ class Refinement {
   void allow(int steps) { most_steps_ = steps; }
   bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= most_cost_; }
 
-  /// Puts an empty path of coarse elements on `mesh` into the workspace, to be filled by the caller.
-  void open(const std::vector<double>& mesh);
+  static constexpr int first_degree = 4;
+  /// Puts an empty path on `mesh` into the workspace, to be filled by the caller.
+  void open(const std::vector<double>& mesh, int degree = first_degree);
+  /// Binds the workspace's iteration to the problem again, after it was used for another.
+  void rebind();
+  /// Counts a step that the caller takes; false if there may be no more.
+  bool count_step();
   /// Of the path that was opened last.
   const ElementTables& tables() const { return *tables_; }
 

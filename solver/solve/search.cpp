@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/homotopy.hpp"
 
 namespace extremal {
 
@@ -13,14 +14,18 @@ namespace {
 
 /// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.
 constexpr double longest_element = 2.0;
+/// Coarse elements may not follow a family of extremals as it grows.
+constexpr int homotopy_degree = 8;
 constexpr int most_first_elements = 1 << 12;
 /// A mesh whose elements differ less than this is not worth starting again for.
 constexpr double mild_grading = 3;
 /// Newton steps in all, times unknowns of the first mesh: what other guesses may cost.
-constexpr double most_work = 1e6;
+constexpr double most_work = 4e6;
 constexpr double least_steps = 100;
 /// Tries to move the default guess to where L is finite.
 constexpr unsigned most_bends = 8;
+/// Starts with noise that are cheaper than other durations are; and at most.
+constexpr unsigned first_noises = 8, most_noises = 10000;
 /// Of the guess's extent, in turn.
 constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 
@@ -33,69 +38,115 @@ int first_elements(const Frequency& frequency) {
 
 Search::Search(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem),
+      guess_(&problem),
       options_(options),
       w_(workspace),
       refinement_(problem, options, workspace, outcome_) {}
 
-void Search::start(const std::vector<double>& mesh, const Bend& bend) {
-  refinement_.open(mesh);
-  start_path(problem_, ends_, refinement_.tables(), w_.path);
+void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree) {
+  refinement_.open(mesh, degree);
+  start_path(*guess_, ends_, refinement_.tables(), w_.path);
   bend_path(bend, refinement_.tables(), w_.path);
 }
 
 /// Puts the guess on a mesh that follows the frequency along it. The default guess is moved aside until L
 /// is finite on it; false if it never is.
-bool Search::begin(std::vector<double>& mesh, Bend& bend) {
-  mesh = uniform_mesh(lanes);
+bool Search::begin() {
+  ends_ = starting_ends(*guess_);
+  mesh_ = uniform_mesh(lanes);
   for (unsigned seed = 0; seed <= most_bends; ++seed) {
-    bend = {0.1 * seed, seed};
-    start(mesh, bend);
+    bend_ = {0.1 * seed, seed};
+    start(mesh_, bend_);
     measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), w_.path, w_.frequency);
     if (w_.frequency.finite()) break;
-    if (problem_.guess.given() || seed == most_bends) return false;
+    if (guess_->guess.given() || seed == most_bends) return false;
   }
   const int elements = first_elements(w_.frequency);
-  const double floor = problem_.guess.given() ? 0.25 : 1.0;
+  const double floor = guess_->guess.given() ? 0.25 : 1.0;
   if (elements == lanes && w_.frequency.grading(floor) < mild_grading) return true;
-  mesh = w_.frequency.mesh(elements, floor);
-  start(mesh, bend);
+  mesh_ = w_.frequency.mesh(elements, floor);
+  start(mesh_, bend_);
   return true;
 }
 
-/// Finer elements first, then the guess with noise, while the steps allowed last.
-Refinement::Result Search::from_other_guesses(const std::vector<double>& mesh, const Bend& bend) {
-  const std::string first_failure = outcome_.message;
-  start(halved(mesh), bend);
-  Refinement::Result result = refinement_.pursue();
-  for (unsigned k = 0; result == Refinement::Result::failed && !refinement_.exhausted(); ++k) {
-    outcome_.strategy = "newton from the guess plus smooth noise";
-    start(mesh, {noise_sizes[k % std::size(noise_sizes)], k});
-    result = refinement_.pursue();
+/// Pursues the path in the workspace.
+Refinement::Result Search::pursue(const char* strategy) {
+  outcome_.strategy = strategy;
+  const Refinement::Result result = refinement_.pursue();
+  const bool converged = result == Refinement::Result::converged;
+  doubtful_ = converged ? !refinement_.confirmed() : refinement_.suspicious();
+  return converged && doubtful_ ? Refinement::Result::unreachable : result;
+}
+
+bool Search::found(const char* strategy) { return pursue(strategy) == Refinement::Result::converged; }
+
+/// From durations in which the guess is nearly a motion, through extremals of all durations between.
+bool Search::through_other_durations() {
+  if (problem_.duration.free || !problem_.lagrangian->structure().autonomous) return false;
+  const auto count = [this] { return refinement_.count_step(); };
+  start(mesh_, bend_, homotopy_degree);
+  DurationHomotopy homotopy(problem_, w_, count);
+  for (const double duration : natural_durations(problem_, w_, refinement_.tables())) {
+    start(mesh_, bend_, homotopy_degree);
+    w_.path.set_duration(duration);
+    if (!homotopy.follow(refinement_.tables())) continue;
+    refinement_.rebind();
+    if (found("homotopy in the duration")) return true;
   }
-  if (result == Refinement::Result::failed) {
-    outcome_.status = Status::iteration_limit;
-    outcome_.message = fmt::format(
-        "{} Newton steps from the guess and others found no extremal (from the guess: {}); "
-        "try a better guess or a shorter duration",
-        outcome_.iterations, first_failure);
+  return false;
+}
+
+bool Search::from_noise(unsigned tries) {
+  for (const unsigned last = seed_ + tries; seed_ < last && !refinement_.exhausted(); ++seed_) {
+    start(mesh_, {noise_sizes[seed_ % std::size(noise_sizes)], seed_});
+    if (found("newton from the guess plus smooth noise")) return true;
   }
+  return false;
+}
+
+/// The default guess, where the user's leads nowhere.
+bool Search::from_line() {
+  if (!problem_.guess.given() || problem_.periodic || problem_.duration.free) return false;
+  Problem line = problem_;
+  line.guess = {};
+  guess_ = &line;
+  const bool result = begin() && found("newton from the straight line");
+  guess_ = &problem_;
   return result;
 }
 
+/// Cheapest first; but where the user has given a guess, what stays near it before noise.
+bool Search::from_other_guesses() {
+  start(halved(mesh_), bend_);
+  if (found("newton from the guess on finer elements")) return true;
+  if (!problem_.guess.given() && from_noise(first_noises)) return true;
+  if (through_other_durations() || from_line()) return true;
+  begin();
+  return from_noise(most_noises);
+}
+
 Outcome Search::run() {
-  ends_ = starting_ends(problem_);
   outcome_.message = "the action is not finite along the guess";
-  std::vector<double> mesh;
-  Bend bend;
-  if (!begin(mesh, bend)) return outcome_;
+  if (!begin()) return outcome_;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * w_.path.elements();
   refinement_.allow(
       std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns))));
-  Refinement::Result result = refinement_.pursue();
-  if (result == Refinement::Result::failed) result = from_other_guesses(mesh, bend);
-  const bool converged = result == Refinement::Result::converged;
-  if (converged) outcome_.status = Status::converged;
-  if (converged ? !refinement_.confirmed() : refinement_.suspicious()) {
+  Refinement::Result result = pursue("newton from the guess");
+  const bool doubtful = doubtful_;
+  if (result == Refinement::Result::failed) {
+    const std::string failure = outcome_.message;
+    if (from_other_guesses()) {
+      result = Refinement::Result::converged;
+    } else {
+      outcome_.status = Status::iteration_limit;
+      outcome_.message = fmt::format(
+          "{} Newton steps from the guess ({}), through other durations and from smooth noise "
+          "found no extremal; try a better guess or a shorter duration",
+          outcome_.iterations, failure);
+    }
+  }
+  if (result == Refinement::Result::converged) outcome_.status = Status::converged;
+  if (result != Refinement::Result::converged && doubtful) {
     outcome_.status = Status::conjugate_ends;
     outcome_.message =
         "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "

@@ -16,16 +16,25 @@ class Search {
   Outcome run();
 
  private:
-  void start(const std::vector<double>& mesh, const Bend& bend);
-  bool begin(std::vector<double>& mesh, Bend& bend);
-  Refinement::Result from_other_guesses(const std::vector<double>& mesh, const Bend& bend);
+  void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
+  bool begin();
+  Refinement::Result pursue(const char* strategy);
+  bool found(const char* strategy);
+  bool from_other_guesses();
+  bool through_other_durations();
+  bool from_line();
+  bool from_noise(unsigned tries);
 
   const Problem& problem_;
+  const Problem* guess_;  ///< whose guess is started from
   const SolveOptions& options_;
   Workspace& w_;
   Outcome outcome_;
   Refinement refinement_;
-  std::vector<double> ends_;
+  std::vector<double> ends_, mesh_;
+  Bend bend_;  ///< of the default guess, where L is not finite on it
+  unsigned seed_ = 0;
+  bool doubtful_ = false;  ///< the equations of the last path were nearly singular
 };
 
 }  // namespace extremal

@@ -16,7 +16,7 @@ struct SolveOptions {
   double tolerance = 1e-9;       ///< of q(t), relative to the largest range of a coordinate
   std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
   int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
-  int max_iterations = 1000;     ///< Newton steps in all, restarts from other guesses included
+  int max_iterations = 4000;     ///< Newton steps in all, restarts from other guesses included
   std::function<void(const Iteration&)> progress;
 };
 

@@ -1,15 +1,16 @@
 #include "solve/start.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "solve/resolution.hpp"
-
 namespace extremal {
 
 namespace {
+
+constexpr double negligible_extent = 0.01;
 
 /// The point x of the affine set { offset + Z y } nearest to `target`; ends that no general row couples
 /// are handled one by one, so that only the coupled ones are ever dense.
@@ -38,6 +39,23 @@ std::vector<double> nearest(const EndMap& ends, const std::vector<double>& targe
   for (std::size_t e = 0; e < x.size(); ++e)
     if (right[e] != 0 || moved[e] != 0) x[e] = ends.offset[e] + moved[e];
   return x;
+}
+
+/// Of each coordinate: its range, or its largest absolute value if that is more; where that is next to
+/// nothing, that of the coordinate which has most.
+std::vector<double> extents(const Path& path) {
+  const std::size_t n = path.coordinates();
+  std::vector<double> low(path.node(0), path.node(0) + n), high = low, extent(n);
+  for (std::size_t k = 0; k < path.nodes().size(); ++k) {
+    low[k % n] = std::min(low[k % n], path.nodes()[k]);
+    high[k % n] = std::max(high[k % n], path.nodes()[k]);
+  }
+  for (std::size_t a = 0; a < n; ++a)
+    extent[a] = std::max({high[a] - low[a], std::abs(low[a]), std::abs(high[a])});
+  const double most = *std::max_element(extent.begin(), extent.end());
+  for (double& x : extent)
+    if (x < negligible_extent * most || most == 0) x = most > 0 ? most : 1;
+  return extent;
 }
 
 }  // namespace
@@ -92,7 +110,7 @@ void start_path(const Problem& problem, const std::vector<double>& ends, const E
 void bend_path(const Bend& bend, const ElementTables& tables, Path& path) {
   if (bend.size == 0) return;
   const int n = path.coordinates(), degree = path.degree(), elements = path.elements();
-  const double extent = scales(path, tables).q, size = bend.size * (extent > 0 ? extent : 1);
+  const std::vector<double> extent = extents(path);
   std::minstd_rand random(bend.seed + 1);
   random.discard(3);
   std::vector<double> amplitude(3 * static_cast<std::size_t>(n));
@@ -108,7 +126,8 @@ void bend_path(const Bend& bend, const ElementTables& tables, Path& path) {
       const double tau = path.mesh()[k] + tables.scheme().lobatto[j] * (path.mesh()[k + 1] - path.mesh()[k]);
       for (int m = 1; m <= 3; ++m)
         for (int a = 0; a < n; ++a)
-          q[j * n + a] += size / m * amplitude[(m - 1) * n + a] * std::sin(m * std::numbers::pi * tau);
+          q[j * n + a] +=
+              bend.size * extent[a] / m * amplitude[(m - 1) * n + a] * std::sin(m * std::numbers::pi * tau);
     }
     path.set_element(k, q.data());
   }

@@ -19,7 +19,7 @@ void start_path(const Problem& problem, const std::vector<double>& ends, const E
 
 /// Smooth deterministic noise, the same for the same seed: Σ_m c_m sin(mπ t/T) with m <= 3, the ends at rest.
 struct Bend {
-  double size = 0;  ///< in units of the path's extent
+  double size = 0;  ///< of each coordinate, in units of its extent
   unsigned seed = 0;
 };
 void bend_path(const Bend& bend, const ElementTables& tables, Path& path);
