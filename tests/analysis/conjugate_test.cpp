@@ -165,7 +165,7 @@ TEST(ConjugateTimes, AgreeWithTheJacobiEquation) {
     ASSERT_EQ(s.conjugate_times.size(), truth.size()) << m.name;
     EXPECT_LT(largest_difference(s.conjugate_times, truth), 1e-8 * s.duration()) << m.name;
   }
-  EXPECT_EQ(found, 16);
+  EXPECT_GE(found, 16);
 }
 
 }  // namespace

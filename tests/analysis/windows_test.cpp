@@ -81,7 +81,9 @@ TEST(Certificate, IsGlobalWhereCurvatureBoundsThePotential) {
   EXPECT_EQ(s.windows.size(), 7);
   for (std::size_t k = 0; k < s.windows.size(); ++k) {
     EXPECT_LT(s.windows[k][1] - s.windows[k][0], pi);
-    if (k > 0) EXPECT_GT(s.windows[k][1] - s.windows[k - 1][0], pi);
+    if (k > 0) {
+      EXPECT_GT(s.windows[k][1] - s.windows[k - 1][0], pi);
+    }
   }
   EXPECT_LT(solve(problem, within(1e-9)).windows.size(), 7);
   const Solution short_one =
