@@ -25,6 +25,7 @@ class Refinement {
 
   /// Steps that all paths together may take.
   void allow(int steps) { most_steps_ = steps; }
+  int steps_left() const { return most_steps_ - outcome_.iterations; }
   bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= most_cost_; }
 
   static constexpr int first_degree = 4;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/descent.hpp"
 #include "solve/homotopy.hpp"
 
 namespace extremal {
@@ -80,6 +81,15 @@ Refinement::Result Search::pursue(const char* strategy) {
 
 bool Search::found(const char* strategy) { return pursue(strategy) == Refinement::Result::converged; }
 
+/// Downhill in windows.
+bool Search::by_descent() {
+  start(halved(mesh_), bend_);
+  if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
+  int steps = refinement_.steps_left() / 2;  // others may need fewer
+  Descent descent(problem_, w_, [&] { return refinement_.count_step() && --steps > 0; });
+  return descent.run(refinement_.tables()) && found("minimisation in windows");
+}
+
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.
 bool Search::through_other_durations() {
   if (problem_.duration.free || !problem_.lagrangian->structure().autonomous) return false;
@@ -110,7 +120,7 @@ bool Search::from_line() {
   Problem line = problem_;
   line.guess = {};
   guess_ = &line;
-  const bool result = begin() && found("newton from the straight line");
+  const bool result = begin() && (found("newton from the straight line") || by_descent());
   guess_ = &problem_;
   return result;
 }
@@ -119,6 +129,7 @@ bool Search::from_line() {
 bool Search::from_other_guesses() {
   start(halved(mesh_), bend_);
   if (found("newton from the guess on finer elements")) return true;
+  if (by_descent()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;
   begin();

@@ -22,6 +22,7 @@ class Search {
   bool found(const char* strategy);
   bool from_other_guesses();
   bool through_other_durations();
+  bool by_descent();
   bool from_line();
   bool from_noise(unsigned tries);
 

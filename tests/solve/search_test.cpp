@@ -153,7 +153,7 @@ TEST(Search, ConvexActionFromAnyGuess) {
     for (double duration : {0.5, 3.0}) {
       const Problem problem = fixed_ends(lagrangian, {1}, {-0.5}, duration);
       const Solution from_line = solve(problem, within(1e-10));
-      for (double size : {1.0, 20.0}) {
+      for (double size : {1.0, 20.0, 60.0}) {
         const double c[] = {draw(), draw(), draw()};
         const Problem guess = guessed(problem, [&](double tau) {
           double q = 1 - 1.5 * tau;
