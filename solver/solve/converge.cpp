@@ -43,9 +43,11 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
     const double rate = std::min(newton.contraction(), 1.0);
     const bool settled = newton.damping() == 1 && rate < 0.5;
     report.remaining = newton.remaining();
+    report.most_remaining = newton.most_remaining();
     const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
                           newton.norm() > 0.3 * before;
-    if (report.remaining <= goal.remaining || roundoff) {
+    const bool enough = report.remaining <= goal.remaining && report.most_remaining <= goal.most_remaining;
+    if (enough || roundoff) {
       report.reached = true;
       return report;
     }

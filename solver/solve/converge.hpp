@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "solve/iteration.hpp"
@@ -13,12 +14,14 @@ namespace extremal {
 struct NewtonGoal {
   double remaining = 1e-15;  ///< expected size of the next correction
   int steps = 50;
-  bool reuse = false;  ///< begins with the factors there are
+  bool reuse = false;                                               ///< begins with the factors there are
+  double most_remaining = std::numeric_limits<double>::infinity();  ///< and, at worst
 };
 
 struct NewtonReport {
   bool reached = false;
-  double remaining = 1;  ///< expected error that iterating further would remove, roundoff included
+  double remaining = 1;       ///< expected error that iterating further would remove, roundoff included
+  double most_remaining = 1;  ///< at worst
   int steps = 0;
   std::string failure;  ///< why it was not reached
 };

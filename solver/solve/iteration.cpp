@@ -169,7 +169,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
   }
   if (damping_ == 1) {
     curvature_ = contraction_ / step;
-    largest_curvature_ = std::max(largest_curvature_, curvature_);
+    if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, curvature_);
   }
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
   remaining_ = norm_;
@@ -188,6 +188,7 @@ StepResult NewtonIteration::chord_step(Path& path) {
   if (std::isnan(norm)) return StepResult::not_finite;
   norm_ = norm;
   contraction_ = before > 0 ? norm_ / before : 0;
+  if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);
   remaining_ = norm_ * std::min(contraction_, 1.0);
   apply(path, 1, false);
   return StepResult::ok;

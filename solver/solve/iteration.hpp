@@ -48,6 +48,10 @@ class NewtonIteration {
   double norm() const { return norm_; }
   /// Expected size of the correction after it.
   double remaining() const { return remaining_; }
+  /// The same where what is left points to where the equations bend most, not to where the last step did.
+  double most_remaining() const {
+    return std::max(remaining_, norm_ * std::min(1.0, largest_curvature_ * undamped_));
+  }
   double contraction() const { return contraction_; }
   double damping() const { return damping_; }
   int count() const { return count_; }

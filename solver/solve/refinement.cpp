@@ -163,7 +163,7 @@ void Refinement::refine() {
 
 int Refinement::steps_left(int wanted) const {
   const double affordable = std::min((most_cost_ - cost_) / step_cost(), 1e6);
-  return std::max(0, std::min({wanted, most_steps_ - outcome_.iterations, static_cast<int>(affordable)}));
+  return std::max(0, std::min({wanted, steps_left(), static_cast<int>(affordable)}));
 }
 
 void Refinement::measure() {
@@ -174,7 +174,8 @@ void Refinement::measure() {
 }
 
 NewtonReport Refinement::converge_to(double error, bool reuse) {
-  const NewtonGoal goal{std::clamp(0.5 * error, roundoff, loosest_newton), steps_left(fine_steps), reuse};
+  const NewtonGoal goal{std::clamp(0.5 * error, roundoff, loosest_newton), steps_left(fine_steps), reuse,
+                        std::max(options_.tolerance, error)};
   const NewtonReport report = converge(w_.iteration, w_.path, *tables_, goal, [this] { record(); });
   measure();
   return report;
@@ -233,7 +234,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   const double at_nodes = nodes.moved * std::min(1.0, fall);
   error.q = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
-  outcome_.error = error.q + newton.remaining * scales_.q;
+  outcome_.error = error.q + newton.most_remaining * scales_.q;
   if (newton.remaining > std::max(options_.tolerance, aim)) {
     outcome_.message =
         fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",

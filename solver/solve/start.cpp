@@ -10,7 +10,8 @@ namespace extremal {
 
 namespace {
 
-constexpr double negligible_extent = 0.01;
+/// Of the largest extent. Every other seed takes coordinates to be of one kind: a line has no extent across.
+constexpr double negligible_extent[] = {0.01, 0.5};
 
 /// The point x of the affine set { offset + Z y } nearest to `target`; ends that no general row couples
 /// are handled one by one, so that only the coupled ones are ever dense.
@@ -43,7 +44,7 @@ std::vector<double> nearest(const EndMap& ends, const std::vector<double>& targe
 
 /// Of each coordinate: its range, or its largest absolute value if that is more; where that is next to
 /// nothing, that of the coordinate which has most.
-std::vector<double> extents(const Path& path) {
+std::vector<double> extents(const Path& path, double negligible) {
   const std::size_t n = path.coordinates();
   std::vector<double> low(path.node(0), path.node(0) + n), high = low, extent(n);
   for (std::size_t k = 0; k < path.nodes().size(); ++k) {
@@ -54,7 +55,7 @@ std::vector<double> extents(const Path& path) {
     extent[a] = std::max({high[a] - low[a], std::abs(low[a]), std::abs(high[a])});
   const double most = *std::max_element(extent.begin(), extent.end());
   for (double& x : extent)
-    if (x < negligible_extent * most || most == 0) x = most > 0 ? most : 1;
+    if (x < negligible * most || most == 0) x = most > 0 ? most : 1;
   return extent;
 }
 
@@ -110,7 +111,7 @@ void start_path(const Problem& problem, const std::vector<double>& ends, const E
 void bend_path(const Bend& bend, const ElementTables& tables, Path& path) {
   if (bend.size == 0) return;
   const int n = path.coordinates(), degree = path.degree(), elements = path.elements();
-  const std::vector<double> extent = extents(path);
+  const std::vector<double> extent = extents(path, negligible_extent[bend.seed % 2]);
   std::minstd_rand random(bend.seed + 1);
   random.discard(3);
   std::vector<double> amplitude(3 * static_cast<std::size_t>(n));
