@@ -230,7 +230,8 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   const Resolution::Error& before = nodes.left_out;
   const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
   const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
-  const double truncation = error.q + 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const double truncation = error.q + roundoff;
   const double at_nodes = nodes.moved * std::min(1.0, fall);
   error.q = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
@@ -241,6 +242,8 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
                     newton.remaining, options_.tolerance);
     return Attempt::unreachable;
   }
+  // Of so many walks the longest is expected to be this much longer than one.
+  error.q += roundoff * (std::sqrt(2 * std::log(points * w_.path.coordinates())) - 1);
   worst_ = excess(error);
   if (!(worst_ <= 1)) return Attempt::refine;
   // Much movement may have been Newton's, not the elements': from this converged path it is not.
