@@ -1,5 +1,5 @@
 #include "linear/chain_kernels.hpp"
-#include "machine/lanes.hpp"
+#include "linear/row_kernels.hpp"
 
 // Blocks of any size. Row j of W and V belongs to pivot j: W = D Lᵀ and V = Lᵀ over the columns of the
 // block, padded to whole vectors, and then those of the next block, padded too. So every sum runs over
@@ -8,18 +8,6 @@
 namespace extremal::EXTREMAL_LEVEL {
 
 namespace {
-
-constexpr int tile = 4;
-
-inline double magnitude(double x) { return __builtin_fabs(x); }
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline int padded(int n) { return (n + 7) & ~7; }
-
-inline double sum(const double* x, int count) {
-  double s = 0;
-  for (int i = 0; i < count; ++i) s += magnitude(x[i]);
-  return s;
-}
 
 /// The parts of the memory; `stride` doubles from row to row.
 struct Layout {
@@ -31,29 +19,6 @@ struct Layout {
   double* inverse(double* v) const { return v + half * stride; }
   const double* inverse(const double* v) const { return v + half * stride; }
 };
-
-/// Four rows of `to`, `vectors` × 8 columns: to −= Σ_{p < count} v[p][0..3] w[p].
-template <int vectors>
-inline void take(double* to, const double* v, const double* w, int count, int stride) {
-  Vec sum[tile][vectors];
-  for (int i = 0; i < tile; ++i)
-    for (int c = 0; c < vectors; ++c) sum[i][c] = at(to + i * stride + 8 * c);
-  for (int p = 0; p < count; ++p, v += stride, w += stride)
-    for (int c = 0; c < vectors; ++c) {
-      const Vec row = at(w + 8 * c);
-      for (int i = 0; i < tile; ++i) sum[i][c] -= v[i] * row;
-    }
-  for (int i = 0; i < tile; ++i)
-    for (int c = 0; c < vectors; ++c) at(to + i * stride + 8 * c) = sum[i][c];
-}
-
-/// The same over the columns from `begin` to `end`, multiples of 8.
-inline void take_rows(double* to, const double* v, const double* w, int count, int stride, int begin,
-                      int end) {
-  int c = begin;
-  for (; c + 16 <= end; c += 16) take<2>(to + c, v, w + c, count, stride);
-  if (c < end) take<1>(to + c, v, w + c, count, stride);
-}
 
 /// W := [D; B]ᵀ with zeros in the padding; returns Σ |entries| of D and B.
 double load(const Layout& l, const double* d, const double* b, double* w) {
@@ -88,7 +53,7 @@ void eliminate(const Layout& l, const double* diagonal, double* w, double* v, do
                ChainMonitor& m) {
   for (int first = 0; first < l.size; first += tile) {
     const int last = first + tile < l.size ? first + tile : l.size;
-    take_rows(w + first * l.stride, v + first, w, first, l.stride, first & ~7, l.stride);
+    take_rows(w + first * l.stride, l.stride, v + first, w, first, l.stride, first & ~7, l.stride);
     for (int j = first; j < last; ++j) {
       pivot(l, j, magnitude(diagonal[j * (l.size + 1)]), w, v, taken, m);
       for (int i = j + 1; i < last; ++i) {
@@ -121,31 +86,12 @@ void factor(const double* diagonal, const double* lower, int blocks, int size, d
     scale = sum(lower + k * nn, nn) +
             load(l, diagonal + (k + 1) * nn, k + 2 < blocks ? lower + (k + 1) * nn : nullptr, next);
     for (int j = 0; j < size; j += tile)
-      take_rows(next + j * l.stride, v + l.half + j, w + l.half, size, l.stride, j & ~7, l.half);
+      take_rows(next + j * l.stride, l.stride, v + l.half + j, w + l.half, size, l.stride, j & ~7, l.half);
     for (int c = 0; c < l.half; ++c) taken[c] = taken[l.half + c], taken[l.half + c] = 0;
     double* const swap = w;
     w = next, next = swap;
   }
   *monitor = m;
-}
-
-inline double dot(const double* a, const double* b, int count) {
-  Vec sums = {};
-  int i = 0;
-  for (; i + 8 <= count; i += 8) {
-    Vec x, y;
-    __builtin_memcpy(&x, a + i, sizeof x);
-    __builtin_memcpy(&y, b + i, sizeof y);
-    sums += x * y;
-  }
-  double s = 0;
-  for (; i < count; ++i) s += a[i] * b[i];
-  for (int j = 0; j < 8; ++j) s += sums[j];
-  return s;
-}
-
-inline void subtract(double* __restrict to, const double* __restrict v, double y, int count) {
-  for (int i = 0; i < count; ++i) to[i] -= y * v[i];
 }
 
 void solve_one(const Layout& l, const double* memory, int blocks, double* x) {

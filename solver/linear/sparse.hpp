@@ -10,9 +10,8 @@
 namespace extremal {
 
 /// A symmetric n × n matrix with a fixed pattern, factored again and again: ordering and symbolic analysis
-/// once (AMD), then CHOLMOD's simplicial LDLᵀ, which takes either sign of pivot but does not choose pivots.
-/// It is monitored like the chain; where it grows or meets a tiny pivot, UMFPACK's LU solves instead.
-/// Each object has its own cholmod_common, so different threads may use different objects.
+/// once, then LDLᵀ by dense fronts (supernodal.hpp), which chooses pivots within a front only. It is
+/// monitored like the chain; where it grows or meets a tiny pivot, UMFPACK's LU solves instead.
 class SparseSymmetric {
  public:
   SparseSymmetric();

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "machine/lanes.hpp"
+
+/// \file For kernels: sums over rows that are padded to whole vectors.
+
+namespace extremal::EXTREMAL_LEVEL {
+
+static constexpr int tile = 4;
+
+static inline double magnitude(double x) { return __builtin_fabs(x); }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+static inline int padded(int n) { return (n + 7) & ~7; }
+
+static inline double sum(const double* x, int count) {
+  double s = 0;
+  for (int i = 0; i < count; ++i) s += magnitude(x[i]);
+  return s;
+}
+
+/// Four rows of `to`, `across` doubles from row to row, `vectors` × 8 columns: to −= Σ_{p < count} v[p][0..3]
+/// w[p].
+template <int vectors>
+static inline void take(double* to, long across, const double* v, const double* w, int count, int stride) {
+  Vec sum[tile][vectors];
+  for (int i = 0; i < tile; ++i)
+    for (int c = 0; c < vectors; ++c) sum[i][c] = at(to + i * across + 8 * c);
+  for (int p = 0; p < count; ++p, v += stride, w += stride)
+    for (int c = 0; c < vectors; ++c) {
+      const Vec row = at(w + 8 * c);
+      for (int i = 0; i < tile; ++i) sum[i][c] -= v[i] * row;
+    }
+  for (int i = 0; i < tile; ++i)
+    for (int c = 0; c < vectors; ++c) at(to + i * across + 8 * c) = sum[i][c];
+}
+
+/// The same over the columns from `begin` to `end`, multiples of 8.
+static inline void take_rows(double* to, long across, const double* v, const double* w, int count, int stride,
+                             int begin, int end) {
+  int c = begin;
+  for (; c + 16 <= end; c += 16) take<2>(to + c, across, v, w + c, count, stride);
+  if (c < end) take<1>(to + c, across, v, w + c, count, stride);
+}
+
+static inline double dot(const double* a, const double* b, int count) {
+  Vec sums = {};
+  int i = 0;
+  for (; i + 8 <= count; i += 8) {
+    Vec x, y;
+    __builtin_memcpy(&x, a + i, sizeof x);
+    __builtin_memcpy(&y, b + i, sizeof y);
+    sums += x * y;
+  }
+  double s = 0;
+  for (; i < count; ++i) s += a[i] * b[i];
+  for (int j = 0; j < 8; ++j) s += sums[j];
+  return s;
+}
+
+static inline void subtract(double* __restrict to, const double* __restrict v, double y, int count) {
+  for (int i = 0; i < count; ++i) to[i] -= y * v[i];
+}
+
+}  // namespace extremal::EXTREMAL_LEVEL
