@@ -2,23 +2,46 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <utility>
+#include <numeric>
 
 namespace extremal {
 
+namespace {
+
+/// Indices of `keys` (0 … n − 1), taken in the order `given`, so that keys ascend; equal ones keep their order.
+std::vector<int> sorted_by(int n, const std::vector<int>& keys, const std::vector<int>& given) {
+  std::vector<int> next(n + 1, 0), result(given.size());
+  for (int key : keys) ++next[key + 1];
+  for (int i = 0; i < n; ++i) next[i + 1] += next[i];
+  for (int k : given) result[next[keys[k]]++] = k;
+  return result;
+}
+
+}  // namespace
+
 SparsePattern lower_triangle(int n, std::span<const int> rows, std::span<const int> columns) {
-  std::vector<std::pair<int, int>> places;  // column, row
-  for (std::size_t k = 0; k < rows.size(); ++k) places.emplace_back(std::minmax(rows[k], columns[k]));
-  std::vector<std::pair<int, int>> sorted = places;
-  for (int i = 0; i < n; ++i) sorted.emplace_back(i, i);
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  // The diagonal first, then the entries.
+  const std::size_t count = n + rows.size();
+  std::vector<int> row(count), column(count), order(count);
+  std::iota(order.begin(), order.end(), 0);
+  for (int i = 0; i < n; ++i) row[i] = column[i] = i;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    row[n + k] = std::max(rows[k], columns[k]);
+    column[n + k] = std::min(rows[k], columns[k]);
+  }
   SparsePattern lower;
   lower.begin.assign(n + 1, 0);
-  for (const auto& [column, row] : sorted) ++lower.begin[column + 1], lower.row.push_back(row);
+  lower.slot.resize(rows.size());
+  int before = -1;
+  for (int k : sorted_by(n, column, sorted_by(n, row, order))) {
+    if (before < 0 || row[k] != row[before] || column[k] != column[before]) {
+      lower.row.push_back(row[k]);
+      ++lower.begin[column[k] + 1];
+    }
+    if (k >= n) lower.slot[k - n] = int(lower.row.size()) - 1;
+    before = k;
+  }
   for (int j = 0; j < n; ++j) lower.begin[j + 1] += lower.begin[j];
-  for (const auto& place : places)
-    lower.slot.push_back(int(std::lower_bound(sorted.begin(), sorted.end(), place) - sorted.begin()));
   return lower;
 }
 
