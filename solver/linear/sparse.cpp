@@ -21,7 +21,7 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// Growth beyond which solutions are refined, and beyond which refinement is not trusted to bring back what
 /// it costs.
-constexpr double mild = 16, wild = 1e7;
+constexpr double mild = 16, wild = 1e5;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ struct SparseSymmetric::Work {
   SupernodalFactor plain;
   SparsePattern pattern, full;  // the lower triangle, and for UMFPACK both
   std::vector<double> entry, value, scale;
-  std::vector<double> full_value, x, b, r;
+  std::vector<double> full_value, x, b, r, first;
   void* symbolic = nullptr;
   void* numeric = nullptr;
 
@@ -166,8 +166,8 @@ void SparseSymmetric::solve(double* x, int columns) {
     w.solve_column(w.r.data());
     for (std::size_t i = 0; i < n; ++i) x[i * columns + c] = w.r[i] * w.scale[i];
     if (!w.refine || w.pivoted) continue;  // UMFPACK refines by itself
-    const std::vector<double> first = w.r;
-    w.multiply(first.data(), w.r.data());
+    w.first = w.r;
+    w.multiply(w.first.data(), w.r.data());
     for (std::size_t i = 0; i < n; ++i) w.r[i] = w.b[i] - w.r[i];
     w.solve_column(w.r.data());
     for (std::size_t i = 0; i < n; ++i) x[i * columns + c] += w.r[i] * w.scale[i];

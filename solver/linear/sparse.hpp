@@ -30,16 +30,17 @@ class SparseSymmetric {
   /// Numerical factorisation. False if singular to working precision or not finite.
   bool factor();
 
-  /// X := A⁻¹ X, row-major n × `columns`, refined once where the factorisation was not the plain one.
-  /// Throws std::logic_error unless factor() has returned true. Not for two threads at a time.
+  /// X := A⁻¹ X, row-major n × `columns`, refined once where the factors grew. Throws std::logic_error unless
+  /// factor() has returned true. Not for two threads at a time.
   void solve(double* x, int columns);
 
-  /// Signs of the eigenvalues of the last factor(), by Sylvester's law. After the plain factorisation exact
-  /// to roundoff. Otherwise from LDLᵀ of A + σI and A − σI (A scaled to entries of at most 1): the negative
-  /// eigenvalues of the first and the positive ones of the second are those of A beyond σ, and what is left
-  /// counts as zero. σ is the smallest power of ten for which roundoff times growth stays below σ on both
-  /// sides: a zero pivot becomes ±σ and lets the factors grow to 1/σ, so 1e-7 serves it. Where no σ below
-  /// 1e-3 serves, all eigenvalues count as zero.
+  /// Signs of the eigenvalues of the last factor(), by Sylvester's law. After the factorisation by fronts
+  /// those of a matrix that differs from A, scaled, by roundoff times growth, less than 1e-9. Otherwise from
+  /// LDLᵀ of A + σI and A − σI (A scaled to entries of at most 1): the negative eigenvalues of the first and
+  /// the positive ones of the second are those of A beyond σ, and what is left counts as zero. σ is the
+  /// smallest power of ten for which roundoff times growth stays below σ on both sides: a zero pivot becomes
+  /// ±σ and lets the factors grow to 1/σ, so 1e-7 serves it. Where no σ below 1e-3 serves, all eigenvalues
+  /// count as zero.
   Inertia inertia();
 
   bool pivoted() const;

@@ -8,7 +8,8 @@ namespace extremal {
 
 namespace {
 
-/// Indices of `keys` (0 … n − 1), taken in the order `given`, so that keys ascend; equal ones keep their order.
+/// Indices of `keys` (0 … n − 1), taken in the order `given`, so that keys ascend; equal ones keep their
+/// order.
 std::vector<int> sorted_by(int n, const std::vector<int>& keys, const std::vector<int>& given) {
   std::vector<int> next(n + 1, 0), result(given.size());
   for (int key : keys) ++next[key + 1];

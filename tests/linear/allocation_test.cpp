@@ -3,9 +3,11 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <vector>
 
 #include "dense.hpp"
 #include "linear/border.hpp"
+#include "linear/sparse.hpp"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -52,6 +54,30 @@ TEST(Allocation, NoneInFactorAndSolveOnceWarm) {
     EXPECT_GT(run(25), 0) << "the counter does not count";
     EXPECT_EQ(run(25), 0) << n;
   }
+}
+
+TEST(Allocation, NoneInSparseFactorAndSolveOnceWarm) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer counts instead";
+#endif
+  dense::Random random(2);
+  const int n = 400;
+  std::vector<int> rows, columns;
+  for (int i = 0; i < n; ++i)
+    for (int k : {0, 1, 20})
+      if (i + k < n) rows.push_back(i + k), columns.push_back(i);
+  SparseSymmetric a;
+  a.pattern(n, rows, columns);
+  std::vector<double> x(n, 1.0);
+  const auto run = [&] {
+    for (std::size_t k = 0; k < rows.size(); ++k) a.values()[k] = random();
+    const long before = allocations;
+    EXPECT_TRUE(a.factor());
+    a.solve(x.data(), 1);
+    return allocations - before;
+  };
+  EXPECT_GT(run(), 0) << "the counter does not count";
+  EXPECT_EQ(run(), 0);
 }
 
 }  // namespace

@@ -74,8 +74,8 @@ TEST(Sparse, LatticeAgreesWithDense) {
   }
 }
 
-// Zero diagonal: no pivot without choosing.
-TEST(Sparse, SaddleNeedsPivots) {
+// Zero diagonal: pivots come in pairs.
+TEST(Sparse, SaddleIsTakenInPairs) {
   dense::Random random(3);
   for (int n : {2, 10, 60}) {
     Entries e;
@@ -85,10 +85,53 @@ TEST(Sparse, SaddleNeedsPivots) {
     SparseSymmetric a;
     a.pattern(n, e.rows, e.columns);
     ASSERT_TRUE(e.factor(a));
-    EXPECT_TRUE(a.pivoted());
+    EXPECT_FALSE(a.pivoted());
     EXPECT_EQ(a.inertia(), (Inertia{n / 2, n / 2, 0}));
     expect_solves(a, e.dense(), near_roundoff);
   }
+}
+
+// Rows of a zero block meet nothing but distant others: in their fronts there is no pivot.
+TEST(Sparse, FrontsWithoutPivotsAreLeftToLu) {
+  dense::Random random(6);
+  for (int half : {40, 90}) {
+    Entries e;
+    e.n = 2 * half;
+    for (int i = 0; i < half; ++i) {
+      e.add(half + i, half + i, random());
+      for (int k : {0, 7, 19}) e.add(half + (i * 11 + k) % half, i, random());
+      for (int k : {1, 5, 13, 17}) e.add(half + i, half + (i + k) % half, random());
+    }
+    SparseSymmetric a;
+    a.pattern(e.n, e.rows, e.columns);
+    ASSERT_TRUE(e.factor(a));
+    EXPECT_TRUE(a.pivoted());
+    EXPECT_EQ(a.inertia(), dense::inertia(e.dense()));
+    expect_solves(a, e.dense(), near_roundoff);
+  }
+}
+
+// Indefinite lattices moved to within `distance` of singular, on either side: the index steps by one.
+TEST(Sparse, IndexNextToSingular) {
+  dense::Random random(7);
+  Entries e = lattice(12, 0, random);
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Matrix>(e.dense(), Eigen::EigenvaluesOnly).eigenvalues();
+  SparseSymmetric a;
+  a.pattern(e.n, e.rows, e.columns);
+  for (int negative : {20, 71, 72, 130})
+    for (double distance : {1e-2, 1e-4, 1e-6, 1e-8}) {
+      for (int side : {0, 1}) {
+        Entries moved = e;
+        for (std::size_t k = 0; k < e.values.size(); ++k)
+          if (e.rows[k] == e.columns[k])
+            moved.values[k] -= eigenvalues[negative] + (side == 0 ? -distance : distance);
+        ASSERT_TRUE(moved.factor(a));
+        const int expected = dense::inertia(moved.dense()).negative;
+        EXPECT_EQ(a.inertia(), (Inertia{e.n - expected, expected, 0})) << negative << ' ' << distance;
+        expect_solves(a, moved.dense(), near_roundoff);
+      }
+    }
 }
 
 TEST(Sparse, NearlySingularPivot) {
