@@ -29,7 +29,8 @@ struct SparseSymmetric::Work {
   int n = 0;
   bool factored = false, pivoted = false, refine = false;
   SupernodalFactor plain;
-  SparsePattern pattern, full;  // the lower triangle, and for UMFPACK both
+  SparsePattern pattern, full;     // the lower triangle, and for UMFPACK both
+  std::vector<int> rows, columns;  // as the pattern was given
   std::vector<double> entry, value, scale;
   std::vector<double> full_value, x, b, r, first;
   void* symbolic = nullptr;
@@ -127,8 +128,12 @@ void SparseSymmetric::pattern(int n, std::span<const int> rows, std::span<const 
       throw std::invalid_argument(
           fmt::format("sparse: entry {} at ({}, {}) of order {}", k, rows[k], columns[k], n));
   Work& w = *work_;
+  w.factored = false;
+  if (n == w.n && std::ranges::equal(rows, w.rows) && std::ranges::equal(columns, w.columns)) return;
   w.clear();
   w.n = n;
+  w.rows.assign(rows.begin(), rows.end());
+  w.columns.assign(columns.begin(), columns.end());
   w.pattern = lower_triangle(n, rows, columns);
   w.full = {};
   w.entry.assign(rows.size(), 0.0);

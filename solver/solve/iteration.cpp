@@ -19,6 +19,8 @@ constexpr double amplified_roundoff = 1e-11;
 /// A step that is not tested may contract worse than any before by this factor; by so much it does. Steps of
 /// another kind, as after finer elements, may be worse still: δS is taken to bend at least so much.
 constexpr double worst_surprise = 30, surprise = 5, least_curvature = 1e3;
+/// A model that is not the second variation must contract so much.
+constexpr double worst_approximate = 0.5;
 /// A simplified correction this much smaller than the step is worth taking.
 constexpr double worth_taking = 0.3;
 
@@ -42,18 +44,40 @@ double largest(std::span<const double> x) {
 
 }  // namespace
 
-void NewtonIteration::reset(const Problem& problem, const ElementTables& tables, int elements) {
+void NewtonIteration::reset(const Problem& problem, const ElementTables& tables, int elements,
+                            const ElementTables* low) {
   problem_ = &problem;
   tables_ = &tables;
   const bool sparse = tables.unknowns() > most_dense_unknowns;
-  auto& model = sparse ? sparse_ : condensed_;
-  if (!model) model = sparse ? make_sparse_model() : make_condensed_model();
-  model_ = model.get();
   action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
-  model_->reset(problem, tables, elements);
   norm_ = contraction_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
+  if (!sparse) {
+    if (!condensed_) condensed_ = make_condensed_model();
+    model_ = condensed_.get();
+    model_->reset(problem, tables, elements);
+  } else if (low && tables.scheme().degree >= low->scheme().degree && RaisedModel::suits(tables)) {
+    use_low(*low, elements);
+  } else {
+    use_sparse(elements);
+  }
+}
+
+void NewtonIteration::use_low(const ElementTables& low, int elements) {
+  if (!low_) low_.emplace();
+  model_ = &*low_;
+  low_->reset(*problem_, low, elements);
+  if (tables_ == &low) return;
+  if (!raised_ || &raised_->low_tables() != &low) raised_.emplace(*low_, low);
+  model_ = &*raised_;
+  raised_->reset(*problem_, *tables_, elements);
+}
+
+void NewtonIteration::use_sparse(int elements) {
+  if (!sparse_) sparse_.emplace();
+  model_ = &*sparse_;
+  sparse_->reset(*problem_, *tables_, elements);
 }
 
 const ClosingEquation* NewtonIteration::closing(const Path& path) {
@@ -101,7 +125,8 @@ double NewtonIteration::residual() const {
 }
 
 double NewtonIteration::burden() const {
-  if (model_ == sparse_.get()) return tables_->unknowns() > most_dense_unknowns ? 1 : sparse_burden;
+  if (tables_->unknowns() > most_dense_unknowns) return 1;
+  if (model_ != condensed_.get()) return sparse_burden;
   const Chain& chain = action_.nodes.chain;
   return chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1;
 }
@@ -121,10 +146,8 @@ double NewtonIteration::residual_at(const Path& path) {
 /// element, all unknowns are factored at once with pivoting.
 bool NewtonIteration::factor(const Path& path) {
   if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;
-  if (!action_.finite() || model_ == sparse_.get()) return false;
-  if (!sparse_) sparse_ = make_sparse_model();
-  model_ = sparse_.get();
-  model_->reset(*problem_, *tables_, path.elements());
+  if (!action_.finite() || !(model_ == condensed_.get() || approximate())) return false;
+  use_sparse(path.elements());
   return model_->evaluate(action_, path, closing(path));
 }
 
@@ -142,7 +165,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     damping_ = 1;
     return StepResult::ok;
   }
-  const double expected = largest_curvature_ * step;
+  const double expected = approximate() ? 0 : largest_curvature_ * step;
   if (expected > 0 && std::max(worst_surprise * expected, least_curvature * step) * step <= enough) {
     contraction_ = surprise * expected;
     norm_ = remaining_ = contraction_ * step;
@@ -157,6 +180,11 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     const bool positive = path.duration() > 0;
     if (positive) model_->evaluate_gradient(action_, path);
     const double simplified = positive ? solve_for_step(path) : NAN;
+    if (approximate() && !(simplified <= worst_approximate * step) && !(step < amplified_roundoff)) {
+      path.copy_values(saved_);
+      use_sparse(path.elements());
+      return full_step(path, enough);
+    }
     if (simplified <= (1 - factor / 4) * step || step < amplified_roundoff) {
       contraction_ = simplified / step;
       damping_ = factor;
@@ -167,7 +195,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     model_->evaluate_gradient(action_, path);
     solve_for_step(path);  // the step again
   }
-  if (damping_ == 1) {
+  if (damping_ == 1 && !approximate()) {
     curvature_ = contraction_ / step;
     if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, curvature_);
   }

@@ -1,13 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "action/discrete_action.hpp"
 #include "action/path.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
-#include "solve/model.hpp"
+#include "solve/raised_model.hpp"
 
 /// \file Newton's method for δS_h = 0 on one discretisation: full steps damped by natural monotonicity,
 /// and chord steps that reuse a factorisation.
@@ -25,8 +27,11 @@ enum class StepResult {
 /// Works on a path in place. Norms of steps are relative: largest change of q by `scale`, or of T by T.
 class NewtonIteration {
  public:
-  /// Binds to a problem and one discretisation; memory is kept.
-  void reset(const Problem& problem, const ElementTables& tables, int elements);
+  /// Binds to a problem and one discretisation; memory is kept. Where the Hessian would be a large sparse
+  /// matrix and `low` tables of a lower degree are given, steps come from factors of those (RaisedModel) as
+  /// long as they contract; model() is then no more than a model.
+  void reset(const Problem& problem, const ElementTables& tables, int elements,
+             const ElementTables* low = nullptr);
   void set_scale(double scale) { scale_ = scale; }
 
   /// Assembles at `path`, factors and takes a damped step; then, where the simplified step that tested it
@@ -75,13 +80,19 @@ class NewtonIteration {
 
  private:
   bool factor(const Path& path);
+  void use_low(const ElementTables& low, int elements);
+  void use_sparse(int elements);
+  /// Whether model() is not the second variation itself.
+  bool approximate() const { return raised_ && model_ == &*raised_; }
   double solve_for_step(const Path& path);
   void apply(Path& path, double factor, bool keep);
 
   const Problem* problem_ = nullptr;
   const ElementTables* tables_ = nullptr;
   DiscreteAction action_;
-  std::unique_ptr<QuadraticModel> condensed_, sparse_;
+  std::unique_ptr<QuadraticModel> condensed_;
+  std::optional<SparseModel> sparse_, low_;
+  std::optional<RaisedModel> raised_;
   QuadraticModel* model_ = nullptr;
   Step step_;
   ClosingEquation closing_;

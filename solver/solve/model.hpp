@@ -46,7 +46,4 @@ class QuadraticModel {
 /// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.
 std::unique_ptr<QuadraticModel> make_condensed_model();
 
-/// All unknowns at once in a sparse matrix: many coordinates, few of them coupled.
-std::unique_ptr<QuadraticModel> make_sparse_model();
-
 }  // namespace extremal

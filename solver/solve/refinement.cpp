@@ -42,7 +42,9 @@ Refinement::Refinement(const Problem& problem, const SolveOptions& options, Work
                        Outcome& outcome)
     : problem_(problem), options_(options), w_(workspace), outcome_(outcome) {}
 
-void Refinement::rebind() { w_.iteration.reset(problem_, *tables_, w_.path.elements()); }
+void Refinement::rebind() {
+  w_.iteration.reset(problem_, *tables_, w_.path.elements(), &w_.levels.at(first_degree));
+}
 
 bool Refinement::count_step() {
   record();
@@ -53,8 +55,8 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
   longest_ = 0;
   w_.iteration.forget();
   tables_ = &w_.levels.at(degree);
-  w_.iteration.reset(problem_, *tables_, static_cast<int>(mesh.size()) - 1);
   w_.path.reset(*tables_, mesh, problem_.duration.value);
+  rebind();
   most_elements_ = std::max(most_elements, most_cuts * w_.path.elements());
   most_cost_ = std::max({most_cost_, most_cost, most_first_steps * step_cost()});
 }
@@ -131,7 +133,7 @@ void Refinement::raise(int degree) {
   tables_ = &w_.levels.at(degree);
   w_.other.interpolate_from(w_.path, *tables_, matrix);
   std::swap(w_.path, w_.other);
-  w_.iteration.reset(problem_, *tables_, w_.path.elements());
+  rebind();
   w_.iteration.set_scale(scales_.q);
 }
 
@@ -143,7 +145,7 @@ void Refinement::adopt(const Plan& plan) {
   tables_ = &w_.levels.at(plan.degree);
   w_.other.resample_from(w_.path, *tables_, plan.mesh);
   std::swap(w_.path, w_.other);
-  w_.iteration.reset(problem_, *tables_, w_.path.elements());
+  rebind();
   w_.iteration.set_scale(scales_.q);
 }
 
@@ -158,7 +160,7 @@ void Refinement::refine() {
   }
   w_.other.split_from(w_.path, *tables_, w_.levels.halve(w_.path.degree()));
   std::swap(w_.path, w_.other);
-  w_.iteration.reset(problem_, *tables_, w_.path.elements());
+  rebind();
 }
 
 int Refinement::steps_left(int wanted) const {

@@ -1,51 +1,11 @@
+#include "solve/sparse_model.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "linear/sparse.hpp"
 #include "machine/simd.hpp"
-#include "solve/model.hpp"
 
 namespace extremal {
-
-namespace {
-
-/// Unknowns are numbered: nodes 1 … N − 1, then what the boundary relation leaves free of the ends, then
-/// the inner ones element by element.
-class SparseModel final : public QuadraticModel {
- public:
-  void reset(const Problem& problem, const ElementTables& tables, int elements) override;
-  bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;
-  void evaluate_gradient(DiscreteAction& action, const Path& path) override;
-  void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
-  Inertia inertia(double) override { return matrix_.inertia(); }
-
- private:
-  /// A share of an unknown: local unknowns at the ends may be combinations of free ones, or none.
-  struct Share {
-    int unknown;
-    double factor;
-  };
-  std::span<const Share> shares(int element, int local) const;
-  void build_pattern();
-  void gather(DiscreteAction& action, const Path& path, bool hessian);
-  void spread(std::vector<double>& to, int first, int last, const double* batch) const;
-
-  const ElementTables* tables_ = nullptr;
-  const EndMap* ends_ = nullptr;
-  int n_ = 0, elements_ = 0, inner_ = 0, unknowns_ = 0;
-  bool free_duration_ = false;
-  std::vector<Share> all_, end_shares_;
-  std::vector<int> end_start_;
-  struct Source {
-    int group;  ///< entry × lane in the batch of the element
-    double factor;
-  };
-  std::vector<int> source_start_;  ///< of each element
-  std::vector<Source> sources_;
-  SparseSymmetric matrix_;
-  std::vector<double> gradient_, border_, right_, solved_;
-  double corner_ = 0, slope_ = 0;
-};
 
 void SparseModel::reset(const Problem& problem, const ElementTables& tables, int elements) {
   tables_ = &tables;
@@ -106,15 +66,21 @@ void SparseModel::spread(std::vector<double>& to, int first, int last, const dou
         to[share.unknown] += share.factor * batch[u * lanes + k - first];
 }
 
+void SparseModel::clear_gradient() { std::fill(gradient_.begin(), gradient_.end(), 0.0); }
+
+void SparseModel::add_gradient(int batch, const double* gradient) {
+  spread(gradient_, batch * lanes, std::min(elements_, (batch + 1) * lanes), gradient);
+}
+
 void SparseModel::gather(DiscreteAction& action, const Path& path, bool hessian) {
-  std::fill(gradient_.begin(), gradient_.end(), 0.0);
+  clear_gradient();
   if (hessian) {
     std::fill(border_.begin(), border_.end(), 0.0);
     corner_ = 0;
   }
   action.visit(path, hessian, [&](int batch, const BatchValues& values) {
     const int first = batch * lanes, last = std::min(elements_, first + lanes);
-    spread(gradient_, first, last, values.gradient);
+    add_gradient(batch, values.gradient);
     if (!hessian) return;
     for (int k = first; k < last; ++k)
       for (int s = source_start_[k]; s < source_start_[k + 1]; ++s)
@@ -174,9 +140,5 @@ void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
       if (u >= inner_) step.nodes[static_cast<std::size_t>(k) * n_ + u - inner_] = value;
     }
 }
-
-}  // namespace
-
-std::unique_ptr<QuadraticModel> make_sparse_model() { return std::make_unique<SparseModel>(); }
 
 }  // namespace extremal
