@@ -94,21 +94,97 @@ void factor(const double* diagonal, const double* lower, int blocks, int size, d
   *monitor = m;
 }
 
-void solve_one(const Layout& l, const double* memory, int blocks, double* x) {
-  const int n = l.size;
-  for (int k = 0; k < blocks; ++k, x += n)
-    for (int j = 0; j < n; ++j) {
-      const double* const v = l.rows(memory, k) + j * l.stride;
-      subtract(x + j + 1, v + j + 1, x[j], n - j - 1);
-      if (k + 1 < blocks) subtract(x + n, v + l.half, x[j], n);
+inline Vec load_eight(const double* x) {
+  Vec value;
+  __builtin_memcpy(&value, x, sizeof value);
+  return value;
+}
+
+/// x −= Σ_{i < 8} y_i v_i, rows v_i of `count` columns.
+inline void subtract_eight(double* x, const double* v, const Vec& y, int stride, int count) {
+  int c = 0;
+  for (; c + 8 <= count; c += 8) {
+    Vec even = load_eight(x + c), odd = {};
+    for (int i = 0; i < 8; i += 2) {
+      even -= y[i] * at(v + i * stride + c);
+      odd += y[i + 1] * at(v + (i + 1) * stride + c);
     }
+    even -= odd;
+    __builtin_memcpy(x + c, &even, sizeof even);
+  }
+  for (; c < count; ++c)
+    for (int i = 0; i < 8; ++i) x[c] -= y[i] * v[i * stride + c];
+}
+
+/// sum_i += Σ_c v_i(c) x(c) lane by lane; what is left over of the columns goes to lane 0.
+inline void add_products(Vec* sum, const double* v, const double* x, int stride, int count) {
+  int c = 0;
+  for (; c + 8 <= count; c += 8) {
+    const Vec y = load_eight(x + c);
+    for (int i = 0; i < 8; ++i) sum[i] += at(v + i * stride + c) * y;
+  }
+  for (; c < count; ++c)
+    for (int i = 0; i < 8; ++i) sum[i][0] += v[i * stride + c] * x[c];
+}
+
+/// The sums over the lanes of eight vectors.
+inline Vec across(const Vec* s) {
+  Vec pair[4], four[2];
+  for (int i = 0; i < 4; ++i)
+    pair[i] = __builtin_shuffle(s[2 * i], s[2 * i + 1], Mask{0, 8, 2, 10, 4, 12, 6, 14}) +
+              __builtin_shuffle(s[2 * i], s[2 * i + 1], Mask{1, 9, 3, 11, 5, 13, 7, 15});
+  for (int i = 0; i < 2; ++i)
+    four[i] = __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{0, 1, 8, 9, 4, 5, 12, 13}) +
+              __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{2, 3, 10, 11, 6, 7, 14, 15});
+  return __builtin_shuffle(four[0], four[1], Mask{0, 1, 2, 3, 8, 9, 10, 11}) +
+         __builtin_shuffle(four[0], four[1], Mask{4, 5, 6, 7, 12, 13, 14, 15});
+}
+
+/// Rows j and after, fewer than eight, of L y = x.
+void forward_few(const Layout& l, const double* v, int j, double* x, bool more) {
+  for (; j < l.size; ++j) {
+    const double* const row = v + j * l.stride;
+    subtract(x + j + 1, row + j + 1, x[j], l.size - j - 1);
+    if (more) subtract(x + l.size, row + l.half, x[j], l.size);
+  }
+}
+
+void backward_few(const Layout& l, const double* v, int first, double* x, bool more) {
+  for (int j = l.size - 1; j >= first; --j) {
+    const double* const row = v + j * l.stride;
+    double s = x[j] * l.inverse(v)[j] - dot(row + j + 1, x + j + 1, l.size - j - 1);
+    if (more) s -= dot(row + l.half, x + l.size, l.size);
+    x[j] = s;
+  }
+}
+
+void solve_one(const Layout& l, const double* memory, int blocks, double* x) {
+  const int n = l.size, whole = n & ~7;
+  for (int k = 0; k < blocks; ++k, x += n) {
+    const double* const v = l.rows(memory, k);
+    for (int first = 0; first < whole; first += 8) {
+      const double* const rows = v + first * l.stride;
+      Vec y = load_eight(x + first);
+      for (int j = 0; j < 8; ++j) y -= y[j] * at(rows + j * l.stride + first);  // V is zero up to its pivot
+      __builtin_memcpy(x + first, &y, sizeof y);
+      subtract_eight(x + first + 8, rows + first + 8, y, l.stride, n - first - 8);
+      if (k + 1 < blocks) subtract_eight(x + n, rows + l.half, y, l.stride, n);
+    }
+    forward_few(l, v, whole, x, k + 1 < blocks);
+  }
   for (int k = blocks - 1; k >= 0; --k) {
     x -= n;
     const double* const v = l.rows(memory, k);
-    for (int j = n - 1; j >= 0; --j) {
-      double s = x[j] * l.inverse(v)[j] - dot(v + j * l.stride + j + 1, x + j + 1, n - j - 1);
-      if (k + 1 < blocks) s -= dot(v + j * l.stride + l.half, x + n, n);
-      x[j] = s;
+    backward_few(l, v, whole, x, k + 1 < blocks);
+    for (int first = whole - 8; first >= 0; first -= 8) {
+      const double* const rows = v + first * l.stride;
+      Vec sum[8] = {};
+      add_products(sum, rows + first + 8, x + first + 8, l.stride, n - first - 8);
+      if (k + 1 < blocks) add_products(sum, rows + l.half, x + n, l.stride, n);
+      Vec y = load_eight(x + first) * at(l.inverse(v) + first) - across(sum);
+      for (int i = 6; i >= 0; --i)
+        for (int j = 7; j > i; --j) y[i] -= rows[i * l.stride + first + j] * y[j];
+      __builtin_memcpy(x + first, &y, sizeof y);
     }
   }
 }

@@ -95,20 +95,19 @@ const ClosingEquation* NewtonIteration::closing(const Path& path) {
 }
 
 /// The correction from the gradient that was evaluated last; NaN if it is not finite.
-double NewtonIteration::solve_for_step(const Path& path) {
+double NewtonIteration::solve_for_step(const Path& path, Step& step) {
   if (!action_.finite()) return NAN;
-  model_->solve(action_, closing(path), step_);
-  const double nodes = largest(step_.nodes), inner = largest(step_.inner);
+  model_->solve(action_, closing(path), step);
+  const double nodes = largest(step.nodes), inner = largest(step.inner);
   if (std::isnan(nodes) || std::isnan(inner)) return NAN;
   double size = std::max(nodes, inner) / (scale_ > 0 ? scale_ : 1);
-  if (problem_->duration.free) size = std::max(size, std::abs(step_.duration) / path.duration());
+  if (problem_->duration.free) size = std::max(size, std::abs(step.duration) / path.duration());
   return std::isfinite(size) ? size : NAN;
 }
 
-void NewtonIteration::apply(Path& path, double factor, bool keep) {
-  if (keep) saved_.copy_values(path);
-  path.add(step_.nodes, step_.inner, factor);
-  if (problem_->duration.free) path.set_duration(path.duration() + factor * step_.duration);
+void NewtonIteration::apply(Path& path, const Step& step, double factor) {
+  path.add(step.nodes, step.inner, factor);
+  if (problem_->duration.free) path.set_duration(path.duration() + factor * step.duration);
   path.load_ends();
 }
 
@@ -156,8 +155,9 @@ bool NewtonIteration::factor(const Path& path) {
 StepResult NewtonIteration::full_step(Path& path, double enough) {
   ++count_;
   if (!factor(path)) return action_.finite() ? StepResult::singular : StepResult::not_finite;
-  if (scale_ == 0) scale_ = solve_for_step(path);  // a path without extent: its first step is the scale
-  const double step = solve_for_step(path);
+  if (scale_ == 0)
+    scale_ = solve_for_step(path, step_);  // a path without extent: its first step is the scale
+  const double step = solve_for_step(path, step_);
   if (std::isnan(step)) return StepResult::singular;
   undamped_ = step;
   if (step == 0) {
@@ -170,16 +170,20 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     contraction_ = surprise * expected;
     norm_ = remaining_ = contraction_ * step;
     damping_ = predicted_ = 1;
-    apply(path, 1, false);
+    apply(path, step_, 1);
     return StepResult::ok;
   }
   double factor = predicted_;
-  for (;; factor = std::max(factor / 2, 0.1 * factor)) {
-    if (factor < least_damping) return StepResult::stalled;
-    apply(path, factor, true);
+  saved_.copy_values(path);
+  for (;; factor /= 2) {
+    if (factor < least_damping) {
+      model_->evaluate_gradient(action_, path);
+      return StepResult::stalled;
+    }
+    apply(path, step_, factor);
     const bool positive = path.duration() > 0;
     if (positive) model_->evaluate_gradient(action_, path);
-    const double simplified = positive ? solve_for_step(path) : NAN;
+    const double simplified = positive ? solve_for_step(path, simplified_) : NAN;
     if (approximate() && !(simplified <= worst_approximate * step) && !(step < amplified_roundoff)) {
       path.copy_values(saved_);
       use_sparse(path.elements());
@@ -192,8 +196,6 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
       break;
     }
     path.copy_values(saved_);
-    model_->evaluate_gradient(action_, path);
-    solve_for_step(path);  // the step again
   }
   if (damping_ == 1 && !approximate()) {
     curvature_ = contraction_ / step;
@@ -202,7 +204,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
   remaining_ = norm_;
   if (damping_ == 1 && contraction_ < worth_taking) {
-    apply(path, 1, false);
+    apply(path, simplified_, 1);
     remaining_ = norm_ * contraction_;
   }
   return StepResult::ok;
@@ -212,13 +214,13 @@ StepResult NewtonIteration::chord_step(Path& path) {
   const double before = norm_;
   model_->evaluate_gradient(action_, path);
   ++count_;
-  const double norm = solve_for_step(path);
+  const double norm = solve_for_step(path, step_);
   if (std::isnan(norm)) return StepResult::not_finite;
   norm_ = norm;
   contraction_ = before > 0 ? norm_ / before : 0;
   if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);
   remaining_ = norm_ * std::min(contraction_, 1.0);
-  apply(path, 1, false);
+  apply(path, step_, 1);
   return StepResult::ok;
 }
 

@@ -84,8 +84,8 @@ class NewtonIteration {
   void use_sparse(int elements);
   /// Whether model() is not the second variation itself.
   bool approximate() const { return raised_ && model_ == &*raised_; }
-  double solve_for_step(const Path& path);
-  void apply(Path& path, double factor, bool keep);
+  double solve_for_step(const Path& path, Step& step);
+  void apply(Path& path, const Step& step, double factor);
 
   const Problem* problem_ = nullptr;
   const ElementTables* tables_ = nullptr;
@@ -94,7 +94,7 @@ class NewtonIteration {
   std::optional<SparseModel> sparse_, low_;
   std::optional<RaisedModel> raised_;
   QuadraticModel* model_ = nullptr;
-  Step step_;
+  Step step_, simplified_;
   ClosingEquation closing_;
   Path saved_;
   mutable std::vector<double> free_;
