@@ -295,6 +295,6 @@ void expand_step(const FrontView* fronts, int front_count, const double* matrix,
 }  // namespace
 
 extern const Elimination elimination;
-const Elimination elimination = {clear, condense, reduce, expand_step};
+const Elimination elimination = {clear, condense, reduce, expand_step, scatter};
 
 }  // namespace extremal::EXTREMAL_LEVEL

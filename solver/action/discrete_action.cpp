@@ -121,44 +121,6 @@ void DiscreteAction::eliminated(int b, const double* x, const double* y, double*
   }
 }
 
-/// The Schur complements of a batch, to the blocks of the nodes they couple.
-void DiscreteAction::gather_schur(int b) {
-  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes;
-  const int first = b * lanes, last = std::min(elements_, first + lanes), n = n_;
-  const auto entry = [&](int i, int j, int lane) {
-    return schur[(static_cast<std::size_t>(i) * 2 * n + j) * lanes + lane];
-  };
-  const auto add_symmetric = [&](double* block, int offset, int lane) {
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j <= i; ++j) {
-        const double value = entry(offset + i, offset + j, lane);
-        block[i * n + j] += value;
-        if (i != j) block[j * n + i] += value;
-      }
-  };
-  for (int k = first; k < last; ++k) {
-    const int lane = k - first;
-    add_symmetric(k == 0 ? nodes.first.data() : nodes.chain.diagonal(k - 1), 0, lane);
-    add_symmetric(k == elements_ - 1 ? nodes.last.data() : nodes.chain.diagonal(k), n, lane);
-    double* lower = k == 0              ? nodes.first_lower.data()
-                    : k < elements_ - 1 ? nodes.chain.lower(k - 1)
-                                        : nodes.last_lower.data();
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) lower[i * n + j] = entry(n + i, j, lane);
-  }
-  if (!border_) return;
-  const double* row = reduced(b) + sizes_.vector;
-  const double* corner = gradients_.data() + (b * 3 + 2) * lanes;
-  double taken[lanes];
-  eliminated(b, row, row, taken);
-  for (int k = first; k < last; ++k) {
-    const int lane = k - first;
-    double* node = nodes.border.data() + static_cast<std::size_t>(k) * n;
-    for (int a = 0; a < 2 * n; ++a) node[a] += row[(inner_ + a) * lanes + lane];
-    nodes.corner += corner[lane] - taken[lane];
-  }
-}
-
 void DiscreteAction::finish_sums() {
   for (int a = 0; a < n_; ++a) {
     start_gradient_[a] = raw_nodes_[a];
@@ -259,8 +221,10 @@ void DiscreteAction::evaluate(const Path& path) {
       if (!(ratio[lane] >= nodes.pivot_ratio)) nodes.pivot_ratio = ratio[lane];
     }
     gather_gradient(b);
-    gather_schur(b);
+    n_ < lanes ? gather_schur(b) : gather_large_schur(b);
+    if (border_) gather_border(b);
   }
+  if (n_ >= lanes) mirror_blocks();
   finish_sums();
 }
 

@@ -100,7 +100,14 @@ class DiscreteAction {
   void evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient, double* row,
                        double* corner);
   void gather(const Path& path, int b, const double* gradient);
+  struct Blocks {
+    double *start, *end, *lower;
+  };
+  Blocks blocks(int k);
   void gather_schur(int b);
+  void gather_large_schur(int b);
+  void mirror_blocks();
+  void gather_border(int b);
   void gather_gradient(int b);
   void eliminated(int b, const double* x, const double* y, double* sum) const;
   void clear_sums();

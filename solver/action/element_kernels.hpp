@@ -12,4 +12,7 @@ static constexpr int lanes = 8;
 static inline const Vec& group(const double* p, long k) { return at(p + lanes * k); }
 static inline Vec& group(double* p, long k) { return at(p + lanes * k); }
 
+/// Elimination::scatter (elimination.hpp).
+void scatter(const double* groups, int count, int used, bool add, double* const* to);
+
 }  // namespace extremal::EXTREMAL_LEVEL

@@ -47,6 +47,9 @@ struct Elimination {
   /// x_j = −(y_gj + y_hj·δh + Σ_{i>j} y_ij x_i)/d_j. x has m entries, the last 2n given.
   void (*expand_step)(const FrontView* fronts, int front_count, const double* matrix, const double* inverse,
                       const double* gradient, const double* border, const double* step_h, double* x);
+  /// Entry lane of group c goes to to[lane][c], added to what is there or in its place, for c < count and the
+  /// first `used` lanes.
+  void (*scatter)(const double* groups, int count, int used, bool add, double* const* to);
 };
 
 /// That of the instruction set in use.

@@ -184,6 +184,11 @@ void Chain::solve(double* x, int columns) const {
   for (std::size_t i = 0; i < entries; ++i) x[i] += r[i];
 }
 
+void Chain::solve_step(double* x) const {
+  if (pivoted_ || !factored_) return solve(x, 1);
+  if (blocks_ > 0) solve_factored(x, 1);
+}
+
 void Chain::multiply(const double* x, double* y, int columns) const {
   const std::size_t step = std::size_t(size_) * columns;
   std::fill_n(y, blocks_ * step, 0.0);

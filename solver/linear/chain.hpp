@@ -47,6 +47,9 @@ class Chain {
   /// Throws std::logic_error if there is no factorisation of finite blocks.
   void solve(double* x, int columns) const;
 
+  /// solve() of one column, to roundoff times growth: refined only where pivots were chosen.
+  void solve_step(double* x) const;
+
   /// Y := A X, both laid out as in solve().
   void multiply(const double* x, double* y, int columns) const;
 

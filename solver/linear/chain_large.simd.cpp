@@ -20,15 +20,27 @@ struct Layout {
   const double* inverse(const double* v) const { return v + half * stride; }
 };
 
+/// Rows of `to` are columns of b, n × n.
+void load_transposed(const double* b, int n, double* to, int stride) {
+  const int whole = n & ~7;
+  for (int i = 0; i < whole; i += 8)
+    for (int j = 0; j < whole; j += 8) {
+      Vec rows[8];
+      for (int k = 0; k < 8; ++k) rows[k] = load_eight(b + (i + k) * n + j);
+      transpose(rows);
+      for (int k = 0; k < 8; ++k) at(to + (j + k) * stride + i) = rows[k];
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = i < whole ? whole : 0; j < n; ++j) to[j * stride + i] = b[i * n + j];
+}
+
 /// W := [D; B]ᵀ with zeros in the padding; returns Σ |entries| of D and B.
 double load(const Layout& l, const double* d, const double* b, double* w) {
   const int n = l.size;
   for (int i = 0; i < l.half * l.stride; i += 8) at(w + i) = Vec{};
-  for (int j = 0; j < n; ++j) {
+  for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) w[j * l.stride + i] = d[j * n + i];
-    if (b)
-      for (int i = 0; i < n; ++i) w[j * l.stride + l.half + i] = b[i * n + j];
-  }
+  if (b) load_transposed(b, n, w + l.half, l.stride);
   return sum(d, n * n);
 }
 
@@ -94,12 +106,6 @@ void factor(const double* diagonal, const double* lower, int blocks, int size, d
   *monitor = m;
 }
 
-inline Vec load_eight(const double* x) {
-  Vec value;
-  __builtin_memcpy(&value, x, sizeof value);
-  return value;
-}
-
 /// x −= Σ_{i < 8} y_i v_i, rows v_i of `count` columns.
 inline void subtract_eight(double* x, const double* v, const Vec& y, int stride, int count) {
   int c = 0;
@@ -131,13 +137,10 @@ inline void add_products(Vec* sum, const double* v, const double* x, int stride,
 inline Vec across(const Vec* s) {
   Vec pair[4], four[2];
   for (int i = 0; i < 4; ++i)
-    pair[i] = __builtin_shuffle(s[2 * i], s[2 * i + 1], Mask{0, 8, 2, 10, 4, 12, 6, 14}) +
-              __builtin_shuffle(s[2 * i], s[2 * i + 1], Mask{1, 9, 3, 11, 5, 13, 7, 15});
+    pair[i] = even_entries(s[2 * i], s[2 * i + 1]) + odd_entries(s[2 * i], s[2 * i + 1]);
   for (int i = 0; i < 2; ++i)
-    four[i] = __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{0, 1, 8, 9, 4, 5, 12, 13}) +
-              __builtin_shuffle(pair[2 * i], pair[2 * i + 1], Mask{2, 3, 10, 11, 6, 7, 14, 15});
-  return __builtin_shuffle(four[0], four[1], Mask{0, 1, 2, 3, 8, 9, 10, 11}) +
-         __builtin_shuffle(four[0], four[1], Mask{4, 5, 6, 7, 12, 13, 14, 15});
+    four[i] = even_pairs(pair[2 * i], pair[2 * i + 1]) + odd_pairs(pair[2 * i], pair[2 * i + 1]);
+  return first_halves(four[0], four[1]) + last_halves(four[0], four[1]);
 }
 
 /// Rows j and after, fewer than eight, of L y = x.

@@ -12,9 +12,19 @@ static inline double magnitude(double x) { return __builtin_fabs(x); }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline int padded(int n) { return (n + 7) & ~7; }
 
+/// Σ |x_i|.
 static inline double sum(const double* x, int count) {
+  Vec part[2] = {};
+  int i = 0;
+  for (; i + 16 <= count; i += 16)
+    for (int k = 0; k < 2; ++k) {
+      const Vec y = load_eight(x + i + 8 * k);
+      part[k] += y < 0 ? -y : y;
+    }
   double s = 0;
-  for (int i = 0; i < count; ++i) s += magnitude(x[i]);
+  for (; i < count; ++i) s += magnitude(x[i]);
+  part[0] += part[1];
+  for (int k = 0; k < 8; ++k) s += part[0][k];
   return s;
 }
 
@@ -45,12 +55,7 @@ static inline void take_rows(double* to, long across, const double* v, const dou
 static inline double dot(const double* a, const double* b, int count) {
   Vec sums = {};
   int i = 0;
-  for (; i + 8 <= count; i += 8) {
-    Vec x, y;
-    __builtin_memcpy(&x, a + i, sizeof x);
-    __builtin_memcpy(&y, b + i, sizeof y);
-    sums += x * y;
-  }
+  for (; i + 8 <= count; i += 8) sums += load_eight(a + i) * load_eight(b + i);
   double s = 0;
   for (; i < count; ++i) s += a[i] * b[i];
   for (int j = 0; j < 8; ++j) s += sums[j];

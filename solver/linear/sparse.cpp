@@ -179,6 +179,14 @@ void SparseSymmetric::solve(double* x, int columns) {
   }
 }
 
+void SparseSymmetric::solve_step(double* x) {
+  Work& w = *work_;
+  if (!w.factored) throw std::logic_error("sparse: solve without a regular factorisation");
+  for (int i = 0; i < w.n; ++i) x[i] *= w.scale[i];
+  w.solve_column(x);
+  for (int i = 0; i < w.n; ++i) x[i] *= w.scale[i];
+}
+
 Inertia SparseSymmetric::inertia() {
   Work& w = *work_;
   if (!w.pivoted) return w.plain.growth().inertia;

@@ -34,6 +34,9 @@ class SparseSymmetric {
   /// factor() has returned true. Not for two threads at a time.
   void solve(double* x, int columns);
 
+  /// solve() of one column, to roundoff times growth: not refined.
+  void solve_step(double* x);
+
   /// Signs of the eigenvalues of the last factor(), by Sylvester's law. After the factorisation by fronts
   /// those of a matrix that differs from A, scaled, by roundoff times growth, less than 1e-9. Otherwise from
   /// LDLᵀ of A + σI and A − σI (A scaled to entries of at most 1): the negative eigenvalues of the first and

@@ -172,7 +172,7 @@ void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closin
 /// right_ and small_ become the solution.
 void NodeSystem::solve_schur(bool own_row) {
   const std::size_t inner = right_.size();
-  if (elements_ > 1) chain_->solve(right_.data(), 1);
+  if (elements_ > 1) chain_->solve_step(right_.data());
   if (border_ == 0) return;
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)

@@ -1,0 +1,95 @@
+#include <algorithm>
+
+#include "action/discrete_action.hpp"
+#include "machine/simd.hpp"
+
+/// \file What condensation left of the elements, gathered to the blocks of the nodes that they couple.
+
+namespace extremal {
+
+/// The blocks that take up the Schur complement of element k: the nodes at its ends, and what couples them.
+DiscreteAction::Blocks DiscreteAction::blocks(int k) {
+  const bool first = k == 0, last = k == elements_ - 1;
+  return {first ? nodes.first.data() : nodes.chain.diagonal(k - 1),
+          last ? nodes.last.data() : nodes.chain.diagonal(k),
+          first  ? nodes.first_lower.data()
+          : last ? nodes.last_lower.data()
+                 : nodes.chain.lower(k - 1)};
+}
+
+void DiscreteAction::gather_schur(int b) {
+  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes;
+  const int first = b * lanes, last = std::min(elements_, first + lanes), n = n_;
+  const auto entry = [&](int i, int j, int lane) {
+    return schur[(static_cast<std::size_t>(i) * 2 * n + j) * lanes + lane];
+  };
+  const auto add_symmetric = [&](double* block, int offset, int lane) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j <= i; ++j) {
+        const double value = entry(offset + i, offset + j, lane);
+        block[i * n + j] += value;
+        if (i != j) block[j * n + i] += value;
+      }
+  };
+  for (int k = first; k < last; ++k) {
+    const int lane = k - first;
+    const Blocks to = blocks(k);
+    add_symmetric(to.start, 0, lane);
+    add_symmetric(to.end, n, lane);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) to.lower[i * n + j] = entry(n + i, j, lane);
+  }
+}
+
+/// The same row by row, all lanes at once: blocks too large to be passed over for each lane. Their upper
+/// triangles are left to mirror_blocks(): rows are gathered in whole vectors, beyond the diagonal.
+void DiscreteAction::gather_large_schur(int b) {
+  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes;
+  const int first = b * lanes, used = std::min(elements_ - first, lanes);
+  const std::size_t row = static_cast<std::size_t>(2 * n_) * lanes;
+  double *start[lanes], *end[lanes], *lower[lanes];
+  for (int lane = 0; lane < used; ++lane) {
+    const Blocks to = blocks(first + lane);
+    start[lane] = to.start;
+    end[lane] = to.end;
+    lower[lane] = to.lower;
+  }
+  for (int i = 0; i < n_; ++i, schur += row) {
+    const int count = std::min(n_, (i / lanes + 1) * lanes);
+    const double* const second = schur + n_ * row;
+    elimination_->scatter(schur, count, used, true, start);
+    elimination_->scatter(second + n_ * lanes, count, used, true, end);
+    elimination_->scatter(second, n_, used, false, lower);
+    for (int lane = 0; lane < used; ++lane) {
+      start[lane] += n_;
+      end[lane] += n_;
+      lower[lane] += n_;
+    }
+  }
+}
+
+void DiscreteAction::mirror_blocks() {
+  const auto mirror = [n = n_](double* block) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < i; ++j) block[j * n + i] = block[i * n + j];
+  };
+  mirror(nodes.first.data());
+  mirror(nodes.last.data());
+  for (int k = 0; k < nodes.chain.blocks(); ++k) mirror(nodes.chain.diagonal(k));
+}
+
+void DiscreteAction::gather_border(int b) {
+  const double* row = reduced(b) + sizes_.vector;
+  const double* corner = gradients_.data() + (b * 3 + 2) * lanes;
+  double taken[lanes];
+  eliminated(b, row, row, taken);
+  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  for (int k = first; k < last; ++k) {
+    const int lane = k - first;
+    double* node = nodes.border.data() + static_cast<std::size_t>(k) * n_;
+    for (int a = 0; a < 2 * n_; ++a) node[a] += row[(inner_ + a) * lanes + lane];
+    nodes.corner += corner[lane] - taken[lane];
+  }
+}
+
+}  // namespace extremal
