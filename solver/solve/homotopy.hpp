@@ -1,9 +1,8 @@
 #pragma once
 
-#include <functional>
 #include <vector>
 
-#include "solve/workspace.hpp"
+#include "solve/family.hpp"
 
 /// \file Extremals of other durations lead to the one wanted.
 
@@ -16,38 +15,28 @@ namespace extremal {
 std::vector<double> natural_durations(const Problem& problem, Workspace& workspace,
                                       const ElementTables& tables);
 
-/// Follows the family of extremals of all durations, with the boundary relation given, past folds by
-/// pseudo-arclength (Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977). For
-/// L = q'ᵀM q'/2 − V this is the homotopy in λ of q'ᵀM q'/2 − λV, λ = (duration/T)², from the straight line.
-/// The Lagrangian must not depend on t.
-class DurationHomotopy {
+/// The family of extremals of all durations, with the boundary relation given; the parameter is what the
+/// duration exceeds the wanted one by. For L = q'ᵀM q'/2 − V this is the homotopy in λ of q'ᵀM q'/2 − λV,
+/// λ = (duration/T)², from the straight line. The Lagrangian must not depend on t.
+class DurationHomotopy : public ExtremalFamily {
  public:
-  /// `count` is called for each factorisation and says whether there may be more.
   DurationHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count);
 
   /// From the workspace's path with the duration it has onto the family, and along it to the problem's
   /// duration: nearly an extremal then. False if it does not lead there.
   bool follow(const ElementTables& tables);
+  /// From an extremal of the problem, to longer durations or to shorter ones. False if it cannot set out.
+  bool leave(const ElementTables& tables, bool longer);
 
  private:
-  bool linearise();
-  bool approach();
-  bool correct(double length);
-  bool turn();
-  bool land(double from, double& length);
-  double dot(const Step& a, const Step& b) const;
-  bool apply(const Step& step, double factor);
-  void restore();
+  bool solve_linearised(Move& correction, Move& direction) override;
+  const Problem& problem() const override { return problem_; }
+  double parameter() const override { return w_.path.duration() - wanted_; }
+  bool set_parameter(double value) override;
+  double onward(const Move& direction) const override;
 
   Problem problem_;
-  Workspace& w_;
-  std::function<bool()> count_;
-  double wanted_, scale_ = 1;
-  int steps_ = 0;
-  Step correction_, direction_;  ///< all solutions of the linearised equations: correction + α·direction
-  Step tangent_, next_;          ///< of length one
-  double cosine_ = 1;            ///< between the last two
-  Path saved_;
+  double wanted_, sense_ = 0;
 };
 
 }  // namespace extremal

@@ -52,10 +52,15 @@ bool Refinement::count_step() {
 }
 
 void Refinement::open(const std::vector<double>& mesh, int degree) {
+  const ElementTables& tables = w_.levels.at(degree);
+  w_.path.reset(tables, mesh, problem_.duration.value);
+  take(tables);
+}
+
+void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
   w_.iteration.forget();
-  tables_ = &w_.levels.at(degree);
-  w_.path.reset(*tables_, mesh, problem_.duration.value);
+  tables_ = &tables;
   rebind();
   most_elements_ = std::max(most_elements, most_cuts * w_.path.elements());
   most_cost_ = std::max({most_cost_, most_cost, most_first_steps * step_cost()});

@@ -23,14 +23,19 @@ class Refinement {
 
   Refinement(const Problem& problem, const SolveOptions& options, Workspace& workspace, Outcome& outcome);
 
-  /// Steps that all paths together may take.
-  void allow(int steps) { most_steps_ = steps; }
+  /// Steps that all paths from now on may take together.
+  void allow(int steps) {
+    most_steps_ = outcome_.iterations + steps;
+    cost_ = 0;
+  }
   int steps_left() const { return most_steps_ - outcome_.iterations; }
   bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= most_cost_; }
 
   static constexpr int first_degree = 4;
   /// Puts an empty path on `mesh` into the workspace, to be filled by the caller.
   void open(const std::vector<double>& mesh, int degree = first_degree);
+  /// The same for a path on elements of `tables` that the workspace holds already.
+  void take(const ElementTables& tables);
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
   /// Counts a step that the caller takes; false if there may be no more.

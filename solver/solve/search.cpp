@@ -125,6 +125,20 @@ bool Search::from_line() {
   return result;
 }
 
+const ElementTables& Search::open(const std::vector<double>& mesh, int degree) {
+  refinement_.open(mesh, degree);
+  return refinement_.tables();
+}
+
+bool Search::settle(const ElementTables& tables, const char* strategy) {
+  refinement_.take(tables);
+  const bool result = found(strategy);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
+void Search::renew() { refinement_.allow(allowance_); }
+
 /// Cheapest first; but where the user has given a guess, what stays near it before noise.
 bool Search::from_other_guesses() {
   start(halved(mesh_), bend_);
@@ -140,8 +154,9 @@ Outcome Search::run() {
   outcome_.message = "the action is not finite along the guess";
   if (!begin()) return outcome_;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * w_.path.elements();
-  refinement_.allow(
-      std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns))));
+  allowance_ =
+      std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns)));
+  refinement_.allow(allowance_);
   Refinement::Result result = pursue("newton from the guess");
   const bool doubtful = doubtful_;
   if (result == Refinement::Result::failed) {

@@ -15,6 +15,19 @@ class Search {
   Search(const Problem& problem, const SolveOptions& options, Workspace& workspace);
   Outcome run();
 
+  /// An empty path into the workspace, to be filled by the caller and settled.
+  const ElementTables& open(const std::vector<double>& mesh, int degree);
+  /// Pursues the path in the workspace, on elements of `tables`; whether an extremal was found.
+  bool settle(const ElementTables& tables, const char* strategy);
+  /// Steps that further paths may take together.
+  void renew();
+  /// Counts a step that the caller takes; false if there may be no more.
+  bool count_step() { return refinement_.count_step(); }
+  bool exhausted() const { return refinement_.exhausted(); }
+  const Outcome& outcome() const { return outcome_; }
+  const std::vector<double>& ends() const { return ends_; }
+  const std::vector<double>& mesh() const { return mesh_; }
+
  private:
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   bool begin();
@@ -33,7 +46,8 @@ class Search {
   Outcome outcome_;
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
-  Bend bend_;  ///< of the default guess, where L is not finite on it
+  int allowance_ = 0;  ///< of Newton steps
+  Bend bend_;          ///< of the default guess, where L is not finite on it
   unsigned seed_ = 0;
   bool doubtful_ = false;  ///< the equations of the last path were nearly singular
 };

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "action/scheme.hpp"
 #include "problem/problem.hpp"
@@ -29,6 +30,12 @@ class Solver {
   Solver& operator=(Solver&&) noexcept;
 
   Solution solve(const Problem& problem, const SolveOptions& options = {});
+
+  /// Up to `most` distinct extremals of one problem, sorted by action. Of a continuum, as of the time shifts
+  /// of a periodic orbit, one. Each one's iterations and seconds count from the beginning; if fewer are found
+  /// than asked for, the message of the first says so. Where none is found, one solution that has not
+  /// converged.
+  std::vector<Solution> solve_all(const Problem& problem, const SolveOptions& options, int most);
 
  private:
   struct Memory;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 namespace extremal {
 
@@ -59,6 +58,34 @@ std::vector<double> extents(const Path& path, double negligible) {
   return extent;
 }
 
+/// The path whose values are at(τ, q), and at the ends those of `ends`.
+template <class At>
+void fill_path(const std::vector<double>& ends, const ElementTables& tables, Path& path, const At& at) {
+  const std::size_t n = path.coordinates();
+  const int degree = path.degree();
+  std::vector<double> q((degree + 1) * n);
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, q.data());
+    const double from = path.mesh()[k], to = path.mesh()[k + 1];
+    // The first node of an element is already where the one before left it.
+    for (int j = k > 0; j <= degree; ++j)
+      at(j == degree ? to : from + tables.scheme().lobatto[j] * (to - from), q.data() + j * n);
+    path.set_element(k, q.data());
+  }
+  for (std::size_t a = 0; a < n; ++a) {
+    path.set_node(0, static_cast<int>(a), ends[a]);
+    path.set_node(path.elements(), static_cast<int>(a), ends[n + a]);
+  }
+  path.load_ends();
+}
+
+std::vector<double> ends_of(const Path& path) {
+  const std::size_t n = path.coordinates();
+  std::vector<double> ends(path.node(0), path.node(0) + n);
+  ends.insert(ends.end(), path.node(path.elements()), path.node(path.elements()) + n);
+  return ends;
+}
+
 }  // namespace
 
 std::vector<double> starting_ends(const Problem& problem) {
@@ -78,65 +105,88 @@ std::vector<double> starting_ends(const Problem& problem) {
   return nearest(problem.ends, target);
 }
 
+std::vector<double> moved_ends(const Problem& problem, std::vector<double> ends, double size, unsigned seed) {
+  double extent = 0;
+  for (double x : ends) extent = std::max(extent, std::abs(x));
+  Noise noise(seed);
+  std::vector<double> free(problem.ends.free);
+  for (double& y : free) y = size * (extent > 0 ? extent : 1) * noise();
+  for (const Triplet& z : problem.ends.z) ends[z.row] += z.value * free[z.column];
+  return ends;
+}
+
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path) {
   const std::size_t n = problem.coordinates();
-  const int degree = path.degree();
-  std::vector<double> q((degree + 1) * n), guess_ends = ends;
+  std::vector<double> guess_ends = ends;
   if (problem.guess.given()) {
     problem.guess.at(0, {guess_ends.data(), n});
     problem.guess.at(1, {guess_ends.data() + n, n});
   }
-  for (int k = 0; k < path.elements(); ++k) {
-    for (int j = 0; j <= degree; ++j) {
-      const double from = path.mesh()[k], to = path.mesh()[k + 1];
-      const double tau = j == degree ? to : from + tables.scheme().lobatto[j] * (to - from);
-      double* point = q.data() + j * n;
-      if (problem.guess.given())
-        problem.guess.at(tau, {point, n});
-      else
-        for (std::size_t a = 0; a < n; ++a) point[a] = ends[a] + tau * (ends[n + a] - ends[a]);
-      for (std::size_t a = 0; a < n; ++a)
-        point[a] += (1 - tau) * (ends[a] - guess_ends[a]) + tau * (ends[n + a] - guess_ends[n + a]);
-    }
-    path.set_element(k, q.data());
-  }
-  for (std::size_t a = 0; a < n; ++a) {
-    path.set_node(0, static_cast<int>(a), ends[a]);
-    path.set_node(path.elements(), static_cast<int>(a), ends[n + a]);
+  fill_path(ends, tables, path, [&](double tau, double* point) {
+    if (problem.guess.given())
+      problem.guess.at(tau, {point, n});
+    else
+      for (std::size_t a = 0; a < n; ++a) point[a] = ends[a] + tau * (ends[n + a] - ends[a]);
+    for (std::size_t a = 0; a < n; ++a)
+      point[a] += (1 - tau) * (ends[a] - guess_ends[a]) + tau * (ends[n + a] - guess_ends[n + a]);
+  });
+}
+
+void close_ends(const Problem& problem, Path& path) {
+  const int n = problem.coordinates();
+  const std::vector<double> ends =
+      problem.ends.free == 0 ? problem.ends.offset : nearest(problem.ends, ends_of(path));
+  for (int a = 0; a < n; ++a) {
+    path.set_node(0, a, ends[a]);
+    path.set_node(path.elements(), a, ends[n + a]);
   }
   path.load_ends();
 }
 
+std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, const ElementTables& tables,
+                             Path& path) {
+  using Eigen::VectorXd;
+  const auto n = static_cast<Eigen::Index>(path.coordinates());
+  const VectorXd centre = Eigen::Map<const VectorXd>(arc.centre.data(), n);
+  const VectorXd start = Eigen::Map<const VectorXd>(ends.data(), n) - centre;
+  const VectorXd end = Eigen::Map<const VectorXd>(ends.data() + n, n) - centre;
+  const VectorXd along = start.norm() > 0 ? VectorXd(start.normalized()) : VectorXd::Unit(n, 0);
+  VectorXd across = end - end.dot(along) * along;
+  const double angle = std::atan2(across.norm(), end.dot(along)) + 2 * std::numbers::pi * arc.turns;
+  if (!(across.norm() > 1e-6 * end.norm())) {
+    // Ends in line with the centre leave the plane open: any will do.
+    Eigen::Index least;
+    along.cwiseAbs().minCoeff(&least);
+    across = VectorXd::Unit(n, least) - along[least] * along;
+  }
+  across.normalize();
+  const double radius = (1 + arc.excess) * (start.norm() + end.norm()) / 2;
+  const auto at = [&](double tau, double* point) {
+    Eigen::Map<VectorXd>(point, n) =
+        centre + radius * (std::cos(angle * tau) * along + std::sin(angle * tau) * across);
+  };
+  std::vector<double> displacement(2 * static_cast<std::size_t>(n));
+  at(0, displacement.data());
+  at(1, displacement.data() + n);
+  fill_path(displacement, tables, path, at);
+  for (std::size_t e = 0; e < displacement.size(); ++e) displacement[e] -= ends[e];
+  return displacement;
+}
+
 void bend_path(const Bend& bend, const ElementTables& tables, Path& path) {
   if (bend.size == 0) return;
-  const int n = path.coordinates(), degree = path.degree(), elements = path.elements();
+  const std::size_t n = path.coordinates();
   const std::vector<double> extent = extents(path, negligible_extent[bend.seed % 2]);
-  std::minstd_rand random(bend.seed + 1);
-  random.discard(3);
-  std::vector<double> amplitude(3 * static_cast<std::size_t>(n));
-  for (double& c : amplitude) c = 2.0 * random() / std::minstd_rand::max() - 1;
-  std::vector<double> q((degree + 1) * static_cast<std::size_t>(n)), ends(2 * static_cast<std::size_t>(n));
-  std::copy_n(path.node(0), n, ends.begin());
-  std::copy_n(path.node(elements), n, ends.begin() + n);
-  for (int k = 0; k < elements; ++k) {
-    path.element(k, q.data());
-    for (int j = 0; j <= degree; ++j) {
-      // The first node of an element is already where the one before left it.
-      if (j == 0 && k > 0) continue;
-      const double tau = path.mesh()[k] + tables.scheme().lobatto[j] * (path.mesh()[k + 1] - path.mesh()[k]);
-      for (int m = 1; m <= 3; ++m)
-        for (int a = 0; a < n; ++a)
-          q[j * n + a] +=
-              bend.size * extent[a] / m * amplitude[(m - 1) * n + a] * std::sin(m * std::numbers::pi * tau);
-    }
-    path.set_element(k, q.data());
-  }
-  for (int a = 0; a < n; ++a) {
-    path.set_node(0, a, ends[a]);
-    path.set_node(elements, a, ends[n + a]);
-  }
-  path.load_ends();
+  Noise noise(bend.seed);
+  std::vector<double> amplitude(bend.modes * n);
+  for (double& c : amplitude) c = noise();
+  fill_path(ends_of(path), tables, path, [&](double tau, double* point) {
+    for (int m = 1; m <= bend.modes; ++m)
+      for (std::size_t a = 0; a < n; ++a)
+        point[a] +=
+            bend.size * extent[a] / m * amplitude[(m - 1) * n + a] * std::sin(m * std::numbers::pi * tau);
+  });
 }
 
 }  // namespace extremal

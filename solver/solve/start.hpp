@@ -1,5 +1,6 @@
 #pragma once
 
+#include <random>
 #include <vector>
 
 #include "action/path.hpp"
@@ -13,14 +14,57 @@ namespace extremal {
 /// the shortest line: a coordinate given at one end stays constant, coupled ends have least norm.
 std::vector<double> starting_ends(const Problem& problem);
 
+/// Those ends moved as the boundary relation allows: what it leaves free by noise of `size`, relative.
+std::vector<double> moved_ends(const Problem& problem, std::vector<double> ends, double size, unsigned seed);
+
 /// Fills `path` (already reset) from the guess, shifted linearly in t so that its ends are `ends`.
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path);
 
-/// Smooth deterministic noise, the same for the same seed: Σ_m c_m sin(mπ t/T) with m <= 3, the ends at rest.
+/// Moves the ends of a path, which are near it already, onto the boundary relation.
+void close_ends(const Problem& problem, Path& path);
+
+/// An arc of a circle about `centre` in the plane of it and the ends, through the angle between those and so
+/// many turns more; its radius is the mean distance of the ends from the centre, times 1 + `excess`. With one
+/// coordinate there is no plane.
+struct Arc {
+  std::vector<double> centre;
+  int turns = 0;
+  double excess = 0;
+};
+/// Fills `path` with it. Returns what its ends differ by from `ends` (2n).
+std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, const ElementTables& tables,
+                             Path& path);
+
+/// Moves the ends of a path, which are near it already, onto the boundary relation.
+void close_ends(const Problem& problem, Path& path);
+
+/// Fills `path` with a spiral about the point `centre`, from ends[0 … n − 1] to ends[n … 2n − 1] in the plane
+/// of the three, through the angle between the ends and so many turns more; beyond the mean of their
+/// distances from the centre by `bulge` times that in the middle. With one coordinate there is no plane.
+struct Spiral {
+  std::vector<double> centre;
+  int turns = 0;
+  double bulge = 0;
+};
+void spiral_path(const Spiral& spiral, const std::vector<double>& ends, const ElementTables& tables,
+                 Path& path);
+
+/// Numbers in [-1, 1], the same for the same seed.
+class Noise {
+ public:
+  explicit Noise(unsigned seed) : random_(seed + 1) { random_.discard(3); }
+  double operator()() { return 2.0 * random_() / std::minstd_rand::max() - 1; }
+
+ private:
+  std::minstd_rand random_;
+};
+
+/// Smooth deterministic noise, the same for the same seed: Σ_m c_m sin(mπ t/T), the ends at rest.
 struct Bend {
   double size = 0;  ///< of each coordinate, in units of its extent
   unsigned seed = 0;
+  int modes = 3;
 };
 void bend_path(const Bend& bend, const ElementTables& tables, Path& path);
 

@@ -1,0 +1,139 @@
+#include "solve/finish.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "action/rule.hpp"
+#include "solution/observe.hpp"
+#include "solve/conjugate_ends.hpp"
+#include "solve/minimality.hpp"
+
+namespace extremal {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Eigenvalues within the error of the discretisation of zero, relative, count in the nullity; it is taken to
+/// be that of the trajectory, and within these bounds.
+constexpr double least_null = 1e-8, largest_null = 1e-3;
+double null_threshold(double error, double size) {
+  return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
+}
+
+/// Momenta, residual, index and nullity from one evaluation at the path found.
+void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
+  NewtonIteration& newton = w.iteration;
+  newton.reset(problem, *outcome.tables, w.path.elements());
+  DiscreteAction& action = newton.action();
+  const bool factored = newton.model().evaluate(action, w.path, newton.closing(w.path));
+  solution.action = action.action();
+  solution.momentum_start.resize(problem.coordinates());
+  solution.momentum_end.resize(problem.coordinates());
+  for (int a = 0; a < problem.coordinates(); ++a) {
+    solution.momentum_start[a] = -action.start_gradient()[a];
+    solution.momentum_end[a] = action.end_gradient()[a];
+  }
+  const double momentum = action.momentum_scale();
+  solution.residual = newton.residual() / (momentum > 0 ? momentum : 1);
+  if (!factored) return;
+  const double size = scales(w.path, *outcome.tables).q;
+  const Inertia inertia = newton.model().inertia(null_threshold(outcome.error, size));
+  solution.morse_index = inertia.negative;
+  solution.nullity = inertia.zero;
+  solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
+}
+
+/// The closing equation must hold at what is returned: a duration that runs away can look like convergence.
+bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  const ClosingEquation* closing = w.iteration.closing(w.path);
+  if (!closing) return true;
+  const double slope = w.iteration.action().slope_duration();
+  const double size = closing->row.empty() ? std::abs(slope) + std::abs(closing->value)
+                                           : std::max(1.0, scales(w.path, *w.final_tables).magnitude);
+  const double value = closing->row.empty() ? slope + closing->value : closing->value;
+  const double allowed = std::max(10 * (options.elements > 0 ? 0 : options.tolerance), 1e-6);
+  return std::abs(value) <= allowed * size && w.path.duration() < 1e6 * problem.duration.value;
+}
+
+/// What is left of a solution that turned out to be none.
+Solution without_path(Solution solution) {
+  Solution failed;
+  failed.status = solution.status;
+  failed.message = std::move(solution.message);
+  failed.strategy = std::move(solution.strategy);
+  failed.iterations = solution.iterations;
+  return failed;
+}
+
+/// Why a solve may have failed before it began; empty if nothing is found.
+std::string irregularity(const Problem& problem) {
+  const int n = problem.coordinates();
+  if (n > 64) return {};
+  std::vector<double> q(n), v(n, 0.1);
+  problem.guess.given() ? problem.guess.at(0.5, q) : (void)std::fill(q.begin(), q.end(), 0.1);
+  Scratch scratch;
+  const PointValues at = evaluate_at(*problem.lagrangian, q, v, 0, Order::hessian, scratch);
+  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
+  if (!mass.allFinite() || mass.fullPivLu().rank() == n) return {};
+  return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
+}
+
+}  // namespace
+
+Trajectory trajectory_of(const Path& path) {
+  Trajectory t;
+  t.coordinates = path.coordinates();
+  t.degree = path.degree();
+  for (double tau : path.mesh()) t.times.push_back(tau * path.duration());
+  const std::size_t size = static_cast<std::size_t>(path.degree() + 1) * path.coordinates();
+  t.nodes.resize(path.elements() * size);
+  t.slopes.resize(path.elements() * size);
+  const Basis basis = lobatto_basis(path.degree(), lobatto_barycentric(path.degree()).nodes);
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, t.nodes.data() + k * size);
+    path.element_slopes(k, basis.derivative, t.slopes.data() + k * size);
+  }
+  return t;
+}
+
+Solution finish(const Problem& problem, const SolveOptions& options, const Outcome& outcome, Workspace& w,
+                SecondVariation& variation) {
+  const auto start = Clock::now();
+  Solution solution;
+  solution.status = outcome.status;
+  solution.message = outcome.message;
+  solution.strategy = outcome.strategy;
+  solution.iterations = outcome.iterations;
+  if (outcome.status == Status::converged) {
+    solution.error_estimate = outcome.error;
+    solution.trajectory = trajectory_of(w.path);
+    const int inner = (w.path.degree() - 1) * w.path.elements() + w.path.elements() - 1;
+    solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
+    read_off(problem, outcome, w, solution);
+    w.final_tables = outcome.tables;
+    if (closed(problem, options, w)) {
+      observe_energy(*problem.lagrangian, solution);
+      const double distance = read_minimality(problem, options, variation, solution);
+      judge_conjugate_ends(problem, options, distance, w, solution);
+    } else {
+      solution.status = Status::no_solution_near;
+      solution.message = "the duration ran away: no extremal near the guess meets what closes it";
+    }
+    if (!solution.converged()) solution = without_path(std::move(solution));
+  } else if (const std::string reason = irregularity(problem); !reason.empty()) {
+    solution.message = reason;
+  } else if (outcome.status != Status::conjugate_ends &&
+             failed_at_conjugate_ends(problem, trajectory_of(w.path), variation)) {
+    solution.status = Status::conjugate_ends;
+    solution.message =
+        "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
+        outcome.message + ")";
+  }
+  solution.seconds_analyse = std::chrono::duration<double>(Clock::now() - start).count();
+  return solution;
+}
+
+}  // namespace extremal

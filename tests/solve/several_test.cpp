@@ -1,0 +1,306 @@
+#include <numbers>
+
+#include "rivals/shooting.hpp"
+#include "rivals/verify.hpp"
+#include "solve/laws.hpp"
+
+/// \file Several extremals of one problem: all that exist where their number is known, each verified, none
+/// twice.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+std::shared_ptr<const Lagrangian> henon_heiles() {
+  return trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - q[1] * q[1]) / 2 - q[0] * q[0] * q[1] +
+           q[1] * q[1] * q[1] / 3;
+  });
+}
+
+std::shared_ptr<const Lagrangian> bratu(double lambda) {
+  return trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - lambda * exp(q[0]); });
+}
+
+Problem ends_of_motion(std::shared_ptr<const Lagrangian> lagrangian, const Values& q, const Values& v,
+                       double duration) {
+  const Flight flight = fly(*lagrangian, q, v, Values{duration});
+  return fixed_ends(std::move(lagrangian), q, flight.q, duration);
+}
+
+/// q(T) = q(0).
+Problem closed(std::shared_ptr<const Lagrangian> lagrangian, double duration) {
+  Problem problem = with_ends(std::move(lagrangian), duration, [](BoundaryRelation& r) {
+    for (int a = 0; a < r.coordinates; ++a) {
+      const int row = r.add_row(0);
+      r.add(row, a, 1);
+      r.add(row, r.coordinates + a, -1);
+    }
+  });
+  problem.periodic = true;
+  return problem;
+}
+
+/// Solves; every solution has converged, is verified by integration and differs from the others; they are
+/// sorted by action.
+std::vector<Solution> solve_all(const Problem& problem, int most) {
+  constexpr double tolerance = 1e-9;
+  Solver solver;
+  std::vector<Solution> found = solver.solve_all(problem, within(tolerance), most);
+  EXPECT_LE(static_cast<int>(found.size()), most);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_TRUE(found[k].converged()) << found[k].message;
+    if (!found[k].converged()) continue;
+    const Verification check = verify(problem, found[k].trajectory, {.tolerance = tolerance});
+    EXPECT_TRUE(check.verified) << found[k].strategy << ": " << check.message;
+    EXPECT_TRUE(found[k].morse_index);
+    EXPECT_FALSE(found[k].strategy.empty());
+    if (k > 0) {
+      EXPECT_GE(found[k].action, found[k - 1].action);
+    }
+    for (std::size_t j = 0; j < k; ++j) {
+      double apart = std::abs(found[k].duration() - found[j].duration());
+      for (int i = 0; i <= 100; ++i)
+        apart = std::max(apart, largest_difference(at(found[k].trajectory, found[k].duration() * i / 100).q,
+                                                   at(found[j].trajectory, found[j].duration() * i / 100).q));
+      EXPECT_GT(apart, 1e-4) << j << " and " << k;
+    }
+  }
+  return found;
+}
+
+/// The roots of f between neighbours of x where it changes its sign without a pole.
+template <class F>
+Values roots(const Values& x, const F& f) {
+  Values result;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    double a = x[k], b = x[k + 1];
+    const double fa = f(a);
+    if (!(fa * f(b) < 0)) continue;
+    for (int i = 0; i < 200; ++i) {
+      const double middle = 0.5 * (a + b);
+      (f(middle) * fa > 0 ? a : b) = middle;
+    }
+    result.push_back(a);
+  }
+  return result;
+}
+
+/// All actions of q'' = −sin q from 0 to `end` in (0, π) in a duration so long that no rotation is slow
+/// enough. With k the sine of half the amplitude and sin φ = sin(q/2)/k, the time from 0 to q upwards is F(φ,
+/// k), and ∫ q' dq = 4 (E(φ, k) − (1 − k²) F(φ, k)); S = ∫ q' dq − (2k² − 1) T.
+Values pendulum_actions(double end, double duration) {
+  const auto first = [&](double k) { return std::asin(std::min(1.0, std::sin(end / 2) / k)); };
+  const auto work = [](double k, double phi) {
+    return 4 * (std::ellint_2(k, phi) - (1 - k * k) * std::ellint_1(k, phi));
+  };
+  Values amplitudes;
+  const double least = std::sin(end / 2);
+  for (int i = 0; i <= 4000; ++i) amplitudes.push_back(1 - (1 - least) * std::exp(-i / 160.0));
+  Values actions;
+  // Passages of `end` in quarter swings: n ± φ, upwards and downwards.
+  for (int quarters = 0; quarters < 40; quarters += 2)
+    for (const double sign : {1.0, -1.0}) {
+      const auto time = [&](double k) {
+        return quarters * std::ellint_1(k, pi / 2) + sign * std::ellint_1(k, first(k)) - duration;
+      };
+      for (double k : roots(amplitudes, time))
+        actions.push_back(quarters * work(k, pi / 2) + sign * work(k, first(k)) - (2 * k * k - 1) * duration);
+    }
+  std::sort(actions.begin(), actions.end());
+  return actions;
+}
+
+TEST(Several, AllMotionsOfAPendulum) {
+  struct Case {
+    double end, duration;
+    std::size_t count;
+  };
+  for (const Case& c : {Case{1, 20, 11}, Case{1, 10, 5}, Case{2.5, 15, 5}, Case{0.2, 14, 9}}) {
+    const Values exact = pendulum_actions(c.end, c.duration);
+    EXPECT_EQ(exact.size(), c.count);
+    const std::vector<Solution> found =
+        solve_all(fixed_ends(systems::pendulum(), {0}, {c.end}, c.duration), 20);
+    ASSERT_EQ(found.size(), exact.size()) << c.end << ", " << c.duration;
+    for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k].action, exact[k], 1e-8);
+  }
+}
+
+/// Energies of all ellipses from r1 to r2 about a centre of strength 1, both ways round and with any number
+/// of revolutions, by Lagrange's equation for the duration (Izzo, Revisiting Lambert's problem, Celest. Mech.
+/// Dyn. Astron. 121, 2015, eq. 18 and 9): with λ² = 1 − c/s and y² = 1 − λ²(1 − x²),
+///   T √(2/s³) = (ψ + Nπ)/(1 − x²)^(3/2) − (x − λy)/(1 − x²),  cos ψ = xy + λ(1 − x²);  energy −(1 − x²)/s.
+Values lambert_energies(const Values& r1, const Values& r2, double duration) {
+  const double a = std::hypot(r1[0], r1[1]), b = std::hypot(r2[0], r2[1]);
+  const double chord = std::hypot(r2[0] - r1[0], r2[1] - r1[1]), s = (a + b + chord) / 2;
+  Values grid, energies;
+  for (int i = 1; i < 20000; ++i) grid.push_back(-std::cos(pi * i / 20000));
+  for (int revolutions = 0; revolutions < 20; ++revolutions)
+    for (const double side : {1.0, -1.0}) {
+      const double lambda = side * std::sqrt(1 - chord / s);
+      const auto time = [&](double x) {
+        const double u = 1 - x * x, y = std::sqrt(1 - lambda * lambda * u);
+        const double psi = std::acos(std::clamp(x * y + lambda * u, -1.0, 1.0));
+        return (psi + revolutions * pi) / std::pow(u, 1.5) - (x - lambda * y) / u -
+               duration * std::sqrt(2 / (s * s * s));
+      };
+      for (double x : roots(grid, time)) energies.push_back(-(1 - x * x) / s);
+    }
+  std::sort(energies.begin(), energies.end());
+  return energies;
+}
+
+TEST(Several, LambertWithUpToTwoRevolutions) {
+  struct Case {
+    Values end;
+    double duration;
+  };
+  for (const Case& c : {Case{{-0.6, 0.9}, 16}, Case{{0, -1.5}, 18}}) {
+    const Values start{1, 0}, exact = lambert_energies(start, c.end, c.duration);
+    EXPECT_EQ(exact.size(), 10u) << "both ways without a revolution, and twice with one and with two";
+    Values energies;
+    for (const Solution& s : solve_all(fixed_ends(systems::kepler(), start, c.end, c.duration), 20))
+      energies.push_back(s.energy.value());
+    std::sort(energies.begin(), energies.end());
+    ASSERT_EQ(energies.size(), exact.size()) << c.end[0] << ", " << c.duration;
+    EXPECT_LT(largest_difference(energies, exact), 1e-8);
+  }
+}
+
+/// Away from conjugate ends a linear system has one extremal.
+TEST(Several, OfAnOscillatorThereIsOne) {
+  const std::vector<Solution> found = solve_all(fixed_ends(systems::oscillator(1), {0}, {1}, 20), 4);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].action, std::cos(20) / (2 * std::sin(20)), 1e-8);
+  EXPECT_NE(found[0].message.find("1 of up to 4 extremals found"), std::string::npos) << found[0].message;
+}
+
+/// q'' = −λ eᑫ between zeros: 2 ln cosh(√(λ e^θ/8)) = θ for the maximum θ of each.
+TEST(Several, BothSolutionsOfBratu) {
+  for (double lambda : {1.0, 2.0, 3.3}) {
+    const std::vector<Solution> found = solve_all(fixed_ends(bratu(lambda), {0}, {0}, 1), 5);
+    ASSERT_EQ(found.size(), 2u);
+    Values grid;
+    for (int i = 0; i <= 2000; ++i) grid.push_back(0.01 * i);
+    const Values peaks = roots(grid, [&](double theta) {
+      return 2 * std::log(std::cosh(std::sqrt(lambda * std::exp(theta) / 8))) - theta;
+    });
+    ASSERT_EQ(peaks.size(), 2u);
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(at(found[k].trajectory, 0.5).q[0], peaks[k], 1e-7);
+  }
+}
+
+TEST(Several, WhereThereIsNone) {
+  Solver solver;
+  const std::vector<Solution> found = solver.solve_all(fixed_ends(bratu(4), {0}, {0}, 1), within(1e-9), 3);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_FALSE(found[0].converged());
+  EXPECT_TRUE(found[0].trajectory.nodes.empty());
+}
+
+TEST(Several, AsManyAsAreWanted) {
+  const Problem problem = fixed_ends(systems::pendulum(), {0}, {1}, 20);
+  for (int most : {1, 3}) {
+    const std::vector<Solution> found = solve_all(problem, most);
+    ASSERT_EQ(static_cast<int>(found.size()), most);
+    EXPECT_EQ(found[0].message, "converged");
+  }
+}
+
+TEST(Several, ChaoticSystems) {
+  EXPECT_EQ(solve_all(ends_of_motion(systems::double_pendulum(), {0, 0}, {1, 2}, 3), 6).size(), 6u);
+  EXPECT_EQ(solve_all(ends_of_motion(henon_heiles(), {0.1, 0.2}, {0.4, 0.1}, 10), 6).size(), 6u);
+}
+
+/// The times at which a pendulum of energy 1/2 passes 1, from either start.
+TEST(Several, FreeDurations) {
+  Problem problem = fixed_ends(systems::pendulum(), {0}, {1}, 3);
+  problem.duration.free = true;
+  problem.duration.energy = 0.5;
+  const double k = std::sqrt(0.75), first = std::ellint_1(k, std::asin(std::sin(0.5) / k));
+  const double half = 2 * std::ellint_1(k, pi / 2);
+  for (const Solution& s : solve_all(make_problem(problem), 5)) {
+    const double swings = std::min(std::abs(std::remainder(s.duration() - first, half)),
+                                   std::abs(std::remainder(s.duration() + first, half)));
+    EXPECT_LT(swings, 1e-8) << s.duration();
+  }
+}
+
+/// From 0.5 to rest in T = 10: quarter swings and three quarters more, by Landau's quadrature as above.
+TEST(Several, NaturalEnds) {
+  const Problem problem =
+      with_ends(systems::pendulum(), 10, [](BoundaryRelation& r) { r.fix(0, false, 0.5); });
+  const std::vector<Solution> found = solve_all(problem, 10);
+  Values grid, energies;
+  const double least = std::sin(0.25);
+  for (int i = 1; i <= 4000; ++i) grid.push_back(1 - (1 - least) * std::exp(-i / 160.0));
+  for (int quarters = 1; quarters < 40; quarters += 2)
+    for (const double sign : {1.0, -1.0})
+      for (double k : roots(grid, [&](double k) {
+             return quarters * std::ellint_1(k, pi / 2) + sign * std::ellint_1(k, std::asin(least / k)) - 10;
+           }))
+        energies.push_back(2 * k * k - 1);
+  Values reached;
+  for (const Solution& s : found) reached.push_back(s.energy.value());
+  std::sort(energies.begin(), energies.end());
+  std::sort(reached.begin(), reached.end());
+  ASSERT_EQ(reached.size(), energies.size());
+  EXPECT_LT(largest_difference(reached, energies), 1e-8);
+}
+
+/// Time shifts of one orbit are one solution.
+TEST(Several, PeriodicOrbitsCountOnce) {
+  Problem problem = closed(henon_heiles(), 6.5);
+  problem.duration.free = true;
+  problem.duration.energy = 0.08;
+  const std::vector<Solution> found =
+      solve_all(guessed(problem,
+                        [](double t) {
+                          return Values{0.3 * std::cos(2 * pi * t), 0.3 * std::sin(2 * pi * t)};
+                        }),
+                6);
+  EXPECT_GE(found.size(), 3u);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(found[k].nullity, 1);
+    EXPECT_NEAR(found[k].energy.value(), 0.08, 1e-8);
+    for (std::size_t j = 0; j < k; ++j) EXPECT_GT(std::abs(found[k].action - found[j].action), 1e-6);
+  }
+}
+
+TEST(Several, EquilibriaCountOnce) {
+  Solver solver;
+  int at_rest = 0;
+  const Problem problem = with_ends(systems::pendulum(), 10, [](BoundaryRelation&) {});
+  for (const Solution& s : solver.solve_all(problem, within(1e-9), 8))
+    at_rest += largest(s.trajectory.nodes) < 1e-6;
+  EXPECT_EQ(at_rest, 1);
+}
+
+TEST(Several, OnElementsThatAreNamed) {
+  const Problem problem = fixed_ends(systems::pendulum(), {0}, {1}, 20);
+  Solver solver;
+  const std::vector<Solution> exact = solver.solve_all(problem, within(1e-9), 20);
+  const std::vector<Solution> found = solver.solve_all(problem, pinned(scheme("midpoint"), 400), 20);
+  ASSERT_EQ(found.size(), exact.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_EQ(found[k].trajectory.elements(), 400);
+    EXPECT_LT(node_distance(found[k].trajectory, exact[k].trajectory), 10 * found[k].error_estimate);
+  }
+}
+
+TEST(Several, IsTheSameEachTime) {
+  const Problem problem = fixed_ends(systems::kepler(), {1, 0}, {-0.6, 0.9}, 9);
+  Solver used;
+  const std::vector<Solution> first = used.solve_all(problem, within(1e-9), 6),
+                              again = used.solve_all(problem, within(1e-9), 6);
+  ASSERT_EQ(first.size(), again.size());
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    EXPECT_EQ(first[k].trajectory.nodes, again[k].trajectory.nodes);
+    EXPECT_EQ(first[k].strategy, again[k].strategy);
+    EXPECT_EQ(first[k].iterations, again[k].iterations);
+  }
+}
+
+}  // namespace
+}  // namespace extremal::laws
