@@ -58,15 +58,52 @@ std::optional<Samples> wanted_samples(const SolveArguments& a, const std::vector
   return sample(study.problem, solution.trajectory, at);
 }
 
+/// One result for each solution of a search; the outer one has the fields of the first.
+Result search_result(Result result, const std::vector<Solution>& solutions, const SolveArguments& a,
+                     const std::vector<double>& at, const Study& study) {
+  const Result empty = result;
+  result.solutions.emplace();
+  result.solution = solutions.front();
+  if (!result.solution.converged()) return result;
+  for (const Solution& solution : solutions) {
+    Result each = empty;
+    each.solution = solution;
+    each.samples = wanted_samples(a, at, study, solution);
+    result.solutions->push_back(std::move(each));
+  }
+  result.samples = result.solutions->front().samples;
+  return result;
+}
+
+Samples sampled(const Study& study, const Result& result, int count) {
+  return sample(study.problem, result.solution.trajectory, equal_times(count, result.solution.duration()));
+}
+
+void write_csv_of(const std::string& path, const Study& study, const Result& result) {
+  const auto samples = [&](const Result& each) {
+    return each.samples ? *each.samples : sampled(study, each, csv_samples);
+  };
+  if (!result.solutions) return write_csv(path, samples(result), result.names);
+  std::vector<Samples> all;
+  for (const Result& each : *result.solutions) all.push_back(samples(each));
+  write_csv(path, all, result.names);
+}
+
+Picture picture_of(const Study& study, const Result& result) {
+  Picture picture{result.title, result.names, sampled(study, result, plot_samples)};
+  if (!result.solutions || result.solutions->size() < 2) return picture;
+  for (const Result& each : *result.solutions) {
+    picture.labels.push_back(fmt::format("{}", picture.labels.size() + 1));
+    if (picture.labels.size() > 1) picture.others.push_back(sampled(study, each, plot_samples));
+  }
+  return picture;
+}
+
 void write_outputs(const SolveArguments& a, const Study& study, const Result& result) {
   if (!a.output.empty()) write_json(a.output, result);
   if (!result.solution.converged()) return;
-  const auto sampled = [&](int count) {
-    const Trajectory& trajectory = result.solution.trajectory;
-    return sample(study.problem, trajectory, equal_times(count, trajectory.duration()));
-  };
-  if (!a.csv.empty()) write_csv(a.csv, result.samples ? *result.samples : sampled(csv_samples), result.names);
-  if (!a.plot.empty()) write_plot(a.plot, {result.title, result.names, sampled(plot_samples)});
+  if (!a.csv.empty()) write_csv_of(a.csv, study, result);
+  if (!a.plot.empty()) write_plot(a.plot, picture_of(study, result));
 }
 
 }  // namespace
@@ -81,10 +118,13 @@ int solve(const SolveArguments& a) {
   {
     const Progress progress(!a.quiet && a.repeat == 1);
     study.options.progress = progress.callback();
-    result.solution = run(study, a.repeat);
+    if (study.solutions == 0)
+      result.solution = run(study, a.repeat);
+    else
+      result = search_result(std::move(result), run_all(study, a.repeat), a, at, study);
   }
   const bool converged = result.solution.converged();
-  if (converged) result.samples = wanted_samples(a, at, study, result.solution);
+  if (converged && study.solutions == 0) result.samples = wanted_samples(a, at, study, result.solution);
   write_outputs(a, study, result);
   if (!a.quiet) fmt::print("{}", summary(result));
   if (!converged)

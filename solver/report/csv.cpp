@@ -26,31 +26,53 @@ std::vector<Keyed> keyed_columns(const Samples& samples, const std::vector<std::
   return columns;
 }
 
+/// `prefix` begins each line, also that of the keys, which is left out where it is not wanted.
+void write_rows(std::ostream& out, const Samples& samples, const std::vector<std::string>& names,
+                const std::string& heading, const std::string& prefix, bool with_keys) {
+  check_shape(samples, names);
+  const std::vector<Keyed> columns = keyed_columns(samples, names);
+  fmt::memory_buffer line;
+  const auto end_line = [&] {
+    line[line.size() - 1] = '\n';
+    out.write(line.data(), static_cast<std::streamsize>(line.size()));
+    line.clear();
+  };
+  if (with_keys) {
+    fmt::format_to(std::back_inserter(line), "{}", heading);
+    for (const Keyed& column : columns) fmt::format_to(std::back_inserter(line), "{},", column.key);
+    end_line();
+  }
+  for (std::size_t row = 0; row < samples.count(); ++row) {
+    fmt::format_to(std::back_inserter(line), "{}", prefix);
+    for (const Keyed& column : columns) {
+      const double value = (*column.values)[row];
+      if (!std::isfinite(value))
+        throw std::logic_error(fmt::format("column {} is {} in row {}", column.key, value, row + 1));
+      fmt::format_to(std::back_inserter(line), "{},", value);
+    }
+    end_line();
+  }
+}
+
 }  // namespace
 
 void write_csv(std::ostream& out, const Samples& samples, const std::vector<std::string>& names) {
-  check_shape(samples, names);
-  const std::vector<Keyed> columns = keyed_columns(samples, names);
+  write_rows(out, samples, names, "", "", true);
+}
 
-  fmt::memory_buffer line;
-  for (const Keyed& column : columns) fmt::format_to(std::back_inserter(line), "{},", column.key);
-  for (std::size_t row = 0;; ++row) {
-    line[line.size() - 1] = '\n';
-    out.write(line.data(), static_cast<std::streamsize>(line.size()));
-    if (row == samples.count()) return;
-    line.clear();
-    for (const Keyed& column : columns) {
-      const double value = (*column.values)[row];
-      if (!std::isfinite(value)) {
-        throw std::logic_error(fmt::format("column {} is {} in row {}", column.key, value, row + 1));
-      }
-      fmt::format_to(std::back_inserter(line), "{},", value);
-    }
-  }
+void write_csv(std::ostream& out, const std::vector<Samples>& solutions,
+               const std::vector<std::string>& names) {
+  for (std::size_t k = 0; k < solutions.size(); ++k)
+    write_rows(out, solutions[k], names, "solution,", fmt::format("{},", k + 1), k == 0);
 }
 
 void write_csv(const std::string& path, const Samples& samples, const std::vector<std::string>& names) {
   write_file(path, [&](std::ostream& out) { write_csv(out, samples, names); });
+}
+
+void write_csv(const std::string& path, const std::vector<Samples>& solutions,
+               const std::vector<std::string>& names) {
+  write_file(path, [&](std::ostream& out) { write_csv(out, solutions, names); });
 }
 
 }  // namespace extremal

@@ -15,8 +15,14 @@ namespace extremal {
 /// column and row if a number is not finite.
 void write_csv(std::ostream& out, const Samples& samples, const std::vector<std::string>& names);
 
+/// Several solutions below each other, their numbers from 1 in a first column `solution`.
+void write_csv(std::ostream& out, const std::vector<Samples>& solutions,
+               const std::vector<std::string>& names);
+
 /// The same into a file. Throws std::runtime_error with the path if it cannot be written; what was written
 /// in part is removed.
 void write_csv(const std::string& path, const Samples& samples, const std::vector<std::string>& names);
+void write_csv(const std::string& path, const std::vector<Samples>& solutions,
+               const std::vector<std::string>& names);
 
 }  // namespace extremal

@@ -130,40 +130,58 @@ class Fields {
   Json object_ = Json::object();
 };
 
-void write_column(std::ostream& out, const std::string& key, const Column& column) {
+void write_column(std::ostream& out, const std::string& indent, const std::string& key,
+                  const Column& column) {
   const auto bad = std::find_if_not(column.begin(), column.end(), [](double x) { return std::isfinite(x); });
   if (bad != column.end()) refuse(fmt::format("samples.{}[{}]", key, bad - column.begin()), *bad);
-  out << "    " << dumped(key) << ": " << dumped(column);
+  out << indent << dumped(key) << ": " << dumped(column);
 }
 
 /// Column by column: a tree of all the samples would cost several times their memory.
-void write_samples(std::ostream& out, const Samples& samples, const std::vector<std::string>& names) {
+void write_samples(std::ostream& out, const std::string& indent, const Samples& samples,
+                   const std::vector<std::string>& names) {
   check_shape(samples, names);
-  out << ",\n  \"samples\": {\n";
-  write_column(out, "t", samples.t);
+  const std::string inner = indent + "  ";
+  out << ",\n" << indent << "\"samples\": {\n";
+  write_column(out, inner, "t", samples.t);
   const auto write_columns = [&](const std::vector<Column>& columns, auto key) {
     for (std::size_t a = 0; a < names.size(); ++a) {
       out << ",\n";
-      write_column(out, key(names[a]), columns[a]);
+      write_column(out, inner, key(names[a]), columns[a]);
     }
   };
   write_columns(samples.q, [](const std::string& coordinate) { return coordinate; });
   write_columns(samples.v, velocity_key);
   write_columns(samples.p, momentum_key);
-  out << "\n  }";
+  out << "\n" << indent << "}";
+}
+
+/// An object that begins where the stream is; its lines are indented by two more than `indent`.
+void write_object(std::ostream& out, const std::string& indent, const Result& result) {
+  const Fields fields(result);
+  const std::string inner = indent + "  ";
+  const char* separator = "{\n";
+  for (const auto& [key, value] : fields.object().items()) {
+    out << separator << inner << dumped(key) << ": " << dumped(value);
+    separator = ",\n";
+  }
+  if (result.samples && result.solution.converged()) write_samples(out, inner, *result.samples, result.names);
+  if (result.solutions) {
+    out << ",\n" << inner << "\"solutions\": [";
+    for (std::size_t k = 0; k < result.solutions->size(); ++k) {
+      out << (k == 0 ? "" : ", ");
+      write_object(out, inner, (*result.solutions)[k]);
+    }
+    out << "]";
+  }
+  out << "\n" << indent << "}";
 }
 
 }  // namespace
 
 void write_json(std::ostream& out, const Result& result) {
-  const Fields fields(result);
-  const char* separator = "{\n";
-  for (const auto& [key, value] : fields.object().items()) {
-    out << separator << "  " << dumped(key) << ": " << dumped(value);
-    separator = ",\n";
-  }
-  if (result.samples && result.solution.converged()) write_samples(out, *result.samples, result.names);
-  out << "\n}\n";
+  write_object(out, "", result);
+  out << "\n";
 }
 
 void write_json(const std::string& path, const Result& result) {

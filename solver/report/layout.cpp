@@ -1,5 +1,7 @@
 #include "report/layout.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,18 +12,45 @@ namespace {
 constexpr std::size_t most_curves = 8;   ///< of one array in a time plot; a longer one is a map
 constexpr std::size_t most_panels = 12;  ///< time plots below each other
 
+/// All solutions, the first one first.
+std::vector<const Samples*> solutions_of(const Picture& picture) {
+  std::vector<const Samples*> all{&picture.samples};
+  for (const Samples& other : picture.others) all.push_back(&other);
+  return all;
+}
+
 Figure lone_figure(const Picture& picture) {
   const std::string& name = picture.names[0];
-  std::vector<TimePanel> contents{{name, {&picture.samples.q[0]}, {}, first_colour}};
-  if (!picture.samples.v.empty()) {
-    contents.push_back({velocity_key(name), {&picture.samples.v[0]}, {}, second_colour});
+  TimePanel place{.label = name, .columns = {}, .names = {}, .colour = first_colour};
+  if (picture.labels.size() <= longest_legend) place.names = picture.labels;
+  TimePanel velocity{.label = velocity_key(name), .columns = {}, .names = {}, .colour = second_colour};
+  for (const Samples* samples : solutions_of(picture)) {
+    place.columns.push_back(&samples->q[0]);
+    place.times.push_back(&samples->t);
+    velocity.times.push_back(&samples->t);
+    if (!samples->v.empty()) velocity.columns.push_back(&samples->v[0]);
   }
+  std::vector<TimePanel> contents{place};
+  if (velocity.columns.size() == place.columns.size()) contents.push_back(velocity);
   const double top = top_of_panels(picture.title);
   Figure figure{
       .width = 860, .height = top + (contents.size() == 1 ? 360 : 500) + 56, .title = picture.title};
   figure.panels =
       time_panels(picture.samples.t, contents, {20, top, figure.width - 44, figure.height - top - 56});
   return figure;
+}
+
+/// The path of each solution through two or three coordinates.
+std::vector<BodyPath> solution_paths(const Picture& picture) {
+  const std::vector<const Samples*> all = solutions_of(picture);
+  const std::vector<Colour> colours = distinct_colours(all.size());
+  std::vector<BodyPath> paths;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    BodyPath path{.axes = {}, .name = all.size() > 1 ? picture.labels[k] : "", .colour = colours[k]};
+    for (const Column& column : all[k]->q) path.axes.push_back(&column);
+    paths.push_back(std::move(path));
+  }
+  return paths;
 }
 
 Figure time_figure(const Picture& picture, const std::vector<Family>& groups) {
@@ -105,6 +134,13 @@ std::vector<BodyPath> bodies(const Picture& picture, const std::vector<Family>& 
   return paths;
 }
 
+/// The first solution alone, and the title says so.
+Picture first_of(const Picture& picture) {
+  const std::string note = fmt::format("the first of {} solutions", picture.others.size() + 1);
+  return {picture.title.empty() ? note : fmt::format("{} ({})", picture.title, note), picture.names,
+          picture.samples};
+}
+
 }  // namespace
 
 std::vector<Family> families(const std::vector<std::string>& names) {
@@ -127,11 +163,11 @@ Figure layout(const Picture& picture) {
   std::vector<Family> groups = families(picture.names);
   if (count == 1) return lone_figure(picture);
   if (count == 2 || count == 3) {
-    BodyPath path{.axes = {}, .name = "", .colour = first_colour};
-    for (const Column& column : picture.samples.q) path.axes.push_back(&column);
-    return count == 2 ? plane_figure(picture, {path}, picture.names)
-                      : space_figure(picture, {path}, picture.names);
+    const std::vector<BodyPath> paths = solution_paths(picture);
+    return count == 2 ? plane_figure(picture, paths, picture.names)
+                      : space_figure(picture, paths, picture.names);
   }
+  if (!picture.others.empty()) return layout(first_of(picture));
   const std::size_t length = groups[0].members.size();
   const bool one_length = std::all_of(groups.begin(), groups.end(),
                                       [&](const Family& each) { return each.members.size() == length; });

@@ -31,8 +31,9 @@ Figure layout(const Comparison& comparison);
 struct TimePanel {
   std::string label;
   std::vector<const Column*> columns;
-  std::vector<std::string> names;  ///< for the legend; empty: none
-  Colour colour = 0;               ///< of a lone curve
+  std::vector<std::string> names;         ///< for the legend; empty: none
+  Colour colour = 0;                      ///< of a lone curve
+  std::vector<const Column*> times = {};  ///< of each column, where they differ
 };
 /// Panels that share the time axis, within a box that includes the gaps between them.
 std::vector<Panel> time_panels(const Column& t, const std::vector<TimePanel>& contents, Box box);

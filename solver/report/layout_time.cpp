@@ -44,13 +44,16 @@ std::vector<Panel> time_panels(const Column& t, const std::vector<TimePanel>& co
     const Extent range = extent(content.columns, 0.05);
     Panel panel;
     panel.y = make_axis(content.label, range.low, range.high, height / 36);
-    panel.x = make_axis("t", t.front(), t.back(), box.width / 80);
+    double last = t.back();
+    for (const Column* times : content.times) last = std::max(last, times->back());
+    panel.x = make_axis("t", t.front(), last, box.width / 80);
     panel.x.numbered = panels.size() + 1 == contents.size();
     const std::size_t curves = content.columns.size();
     const std::vector<Colour> colours =
         curves == 1 ? std::vector<Colour>{content.colour} : distinct_colours(curves);
     for (std::size_t k = 0; k < curves; ++k) {
-      panel.curves.push_back({t, *content.columns[k], colours[k]});
+      panel.curves.push_back(
+          {content.times.empty() ? t : *content.times[k], *content.columns[k], colours[k]});
       if (curves > 1 && k < content.names.size()) panel.legend.push_back({content.names[k], colours[k]});
     }
     widest = std::max(widest, number_width(panel.y));

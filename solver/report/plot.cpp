@@ -29,8 +29,7 @@ void check_finite(const std::string& key, const Column& column) {
   }
 }
 
-void check(const Picture& picture) {
-  const Samples& samples = picture.samples;
+void check(const Picture& picture, const Samples& samples) {
   if (picture.names.empty()) throw std::invalid_argument("cannot plot 0 coordinates");
   if (samples.count() < 2) {
     throw std::invalid_argument(fmt::format("cannot plot {} samples; need at least 2", samples.count()));
@@ -66,7 +65,11 @@ void write_figure(const std::string& path, const Figure& figure) {
 
 void write_plot(const std::string& path, const Picture& picture) {
   format_of(path);
-  check(picture);
+  check(picture, picture.samples);
+  for (const Samples& other : picture.others) check(picture, other);
+  if (!picture.others.empty() && picture.labels.size() != picture.others.size() + 1)
+    throw std::invalid_argument(fmt::format("cannot plot {} solutions with {} labels",
+                                            picture.others.size() + 1, picture.labels.size()));
   write_figure(path, layout(picture));
 }
 

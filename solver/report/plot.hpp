@@ -15,6 +15,8 @@ struct Picture {
   std::string title;               ///< may be empty; any text
   std::vector<std::string> names;  ///< of the coordinates: "x", "x[1]"
   Samples samples;
+  std::vector<Samples> others = {};      ///< of further solutions, drawn over the first where there is room
+  std::vector<std::string> labels = {};  ///< of all of them, for the legend
 };
 
 /// Refuses a path that does not end in .svg or .png with std::invalid_argument. To be called before work is
@@ -28,6 +30,8 @@ void check_plot_path(const std::string& path);
 ///  - two or three arrays of one length, x[n], y[n] (and z[n]): the paths of n bodies;
 ///  - one long array: a map, time across and index upwards;
 ///  - all else: each coordinate or array against time.
+/// Further solutions are drawn with up to three coordinates; of more coordinates only the first is, and the
+/// title says so.
 /// Throws std::invalid_argument for columns that do not fit the names, std::runtime_error if gnuplot is
 /// missing or fails or the path cannot be written.
 void write_plot(const std::string& path, const Picture& picture);

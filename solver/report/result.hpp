@@ -31,6 +31,8 @@ struct Result {
   Solution solution = {};
   double seconds_read = 0;              ///< from opening the scene until the problem was ready
   std::optional<Samples> samples = {};  ///< never written where the solution has not converged
+  /// Those of a search, by action; `solution` is the first of them, or tells why there is none.
+  std::optional<std::vector<Result>> solutions = {};
 };
 
 /// Keys in JSON and CSV: "x[1]'" and "p_x[1]".

@@ -121,6 +121,24 @@ Table without_bars(Table table) {
   return table;
 }
 
+/// A row for each solution of a search.
+std::string solutions_text(const Result& result) {
+  using Align = Table::Align;
+  Table table{
+      {{"solution"}, {"action"}, {"duration"}, {"energy"}, {"index"}, {"nullity"}, {"strategy", Align::left}},
+      {}};
+  const auto count = [](const std::optional<int>& value) { return value ? fmt::format("{}", *value) : "–"; };
+  for (const Result& each : *result.solutions) {
+    const Solution& solution = each.solution;
+    const bool energy = solution.energy && std::isfinite(*solution.energy);
+    table.rows.push_back(
+        {fmt::format("{}", table.rows.size() + 1), fmt::format("{:.12g}", solution.action),
+         fmt::format("{:.10g}", solution.duration()), energy ? fmt::format("{:.10g}", *solution.energy) : "–",
+         count(solution.morse_index), count(solution.nullity), printable(solution.strategy, 200)});
+  }
+  return "\n" + plain_text(table);
+}
+
 }  // namespace
 
 std::string summary(const Result& result) {
@@ -146,7 +164,7 @@ std::string summary(const Result& result) {
   lines.add("time",
             fmt::format("read {}, solve {}, analyse {}", duration_text(result.seconds_read),
                         duration_text(solution.seconds_solve), duration_text(solution.seconds_analyse)));
-  return lines.text();
+  return lines.text() + (result.solutions && result.solutions->size() > 1 ? solutions_text(result) : "");
 }
 
 std::string duration_text(double seconds) {

@@ -9,7 +9,8 @@
 
 namespace extremal {
 
-/// A result in some ten aligned lines, each ended by a newline.
+/// A result in some ten aligned lines, each ended by a newline; below them a table of the solutions of a
+/// search that found several.
 std::string summary(const Result& result);
 
 /// "850 ns", "12.3 µs", "4.56 ms", "1.23 s": three digits.

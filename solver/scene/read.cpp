@@ -123,4 +123,11 @@ SolveTable read_solve_table(const Document& document, const toml::table& table) 
   return solve;
 }
 
+SearchTable read_search_table(const Document& document, const toml::table& table) {
+  const auto solutions = number(document, table, "solutions");
+  if (!solutions)
+    throw SceneError(document.at(table), "[search] has no solutions; give how many extremals are wanted");
+  return {*solutions};
+}
+
 }  // namespace extremal

@@ -12,5 +12,6 @@ SystemTable read_system_table(const Document& document, const toml::table& table
 BoundaryTable read_boundary_table(const Document& document, const toml::table& table);
 GuessTable read_guess_table(const Document& document, const toml::table& table);
 SolveTable read_solve_table(const Document& document, const toml::table& table);
+SearchTable read_search_table(const Document& document, const toml::table& table);
 
 }  // namespace extremal

@@ -77,6 +77,12 @@ void check_solve(const SolveTable& solve) {
                      fmt::format("elements = {}; need 1 to 1000000000", solve.elements->value));
 }
 
+void check_search(const SearchTable& search) {
+  if (!(search.solutions.value >= 1 && search.solutions.value <= 1000))
+    throw SceneError(search.solutions.at,
+                     fmt::format("solutions = {}; need 1 to 1000", search.solutions.value));
+}
+
 const toml::table* table(const Document& document, std::string_view name, bool needed) {
   const toml::table* found = document.root[name].as_table();
   if (!found && needed)
@@ -101,10 +107,13 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
   scene.boundary = read_boundary_table(document, *table(document, "boundary", true));
   if (const auto* guess = table(document, "guess", false)) scene.guess = read_guess_table(document, *guess);
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);
+  if (const auto* search = table(document, "search", false))
+    scene.search = read_search_table(document, *search);
   check_system(scene.system);
   check_duration(scene);
   check_guess(scene);
   check_solve(scene.solve);
+  if (scene.search) check_search(*scene.search);
   return scene;
 }
 

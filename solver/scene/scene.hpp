@@ -75,6 +75,10 @@ struct SolveTable {
   std::optional<Number> elements;
 };
 
+struct SearchTable {
+  Number solutions;  ///< how many are wanted
+};
+
 struct Scene {
   std::string path;
   std::string title;
@@ -82,6 +86,7 @@ struct Scene {
   BoundaryTable boundary;
   GuessTable guess;
   SolveTable solve;
+  std::optional<SearchTable> search;
 };
 
 /// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).

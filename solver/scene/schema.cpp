@@ -13,7 +13,7 @@ constexpr KeyRecord keys[] = {
     {"", "guess", Kind::table},
     {"", "solve", Kind::table},
     {"", "path", Kind::table, false, false},
-    {"", "search", Kind::table, false, false},
+    {"", "search", Kind::table},
     {"", "continuation", Kind::table, false, false},
     {"", "fit", Kind::table, false, false},
 
@@ -45,6 +45,8 @@ constexpr KeyRecord keys[] = {
     {"solve", "scheme", Kind::text},
     {"solve", "elements", Kind::integer},
     {"solve", "method", Kind::text},
+
+    {"search", "solutions", Kind::integer},
 
     {"system file", "about", Kind::note, true},
     {"system file", "system", Kind::table},

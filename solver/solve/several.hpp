@@ -14,9 +14,9 @@ namespace extremal {
 class ExtremalFamily;
 
 /// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
-/// bent by smooth noise of growing size and by loops; and from each extremal found along the families that
-/// other durations and other ends make of it, which come past more of the problem's. What finds nothing new
-/// for as many steps as one solve may take ends the search.
+/// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
+/// that other durations and other ends make of it, which come past more of the problem's. What finds nothing
+/// new for as many steps as one solve may take ends the search.
 class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace,

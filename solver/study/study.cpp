@@ -73,6 +73,7 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   study.title = scene.title;
   study.system = make_system(scene.system);
   study.options = read_options(scene.solve);
+  if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);
   return study;
 }
@@ -95,6 +96,29 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
+/// What solve() returns the last time, with the medians of the times it took.
+template <class Solve>
+std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solve) {
+  if (repeat < 1) throw std::invalid_argument(fmt::format("repeat = {}; need at least 1", repeat));
+  check_memory(study);
+  std::vector<Solution> solutions;
+  std::vector<std::vector<double>> solving, analysing;  // for each solution, of each time
+  for (int k = 0; k < repeat; ++k) {
+    solutions = solve();
+    solving.resize(solutions.size());
+    analysing.resize(solutions.size());
+    for (std::size_t i = 0; i < solutions.size(); ++i) {
+      solving[i].push_back(solutions[i].seconds_solve);
+      analysing[i].push_back(solutions[i].seconds_analyse);
+    }
+  }
+  for (std::size_t i = 0; i < solutions.size(); ++i) {
+    solutions[i].seconds_solve = median(std::move(solving[i]));
+    solutions[i].seconds_analyse = median(std::move(analysing[i]));
+  }
+  return solutions;
+}
+
 }  // namespace
 
 Study load(const std::string& path, const std::vector<std::string>& sets) {
@@ -111,19 +135,15 @@ Study load(const std::string& path, const std::vector<std::string>& sets) {
 }
 
 Solution run(const Study& study, int repeat) {
-  if (repeat < 1) throw std::invalid_argument(fmt::format("repeat = {}; need at least 1", repeat));
-  check_memory(study);
   Solver solver;
-  Solution solution;
-  std::vector<double> solve, analyse;
-  for (int k = 0; k < repeat; ++k) {
-    solution = solver.solve(study.problem, study.options);
-    solve.push_back(solution.seconds_solve);
-    analyse.push_back(solution.seconds_analyse);
-  }
-  solution.seconds_solve = median(std::move(solve));
-  solution.seconds_analyse = median(std::move(analyse));
-  return solution;
+  const auto solve = [&] { return std::vector<Solution>{solver.solve(study.problem, study.options)}; };
+  return repeated(study, repeat, solve).front();
+}
+
+std::vector<Solution> run_all(const Study& study, int repeat) {
+  Solver solver;
+  return repeated(study, repeat,
+                  [&] { return solver.solve_all(study.problem, study.options, study.solutions); });
 }
 
 }  // namespace extremal

@@ -21,7 +21,8 @@ struct Study {
   System system;
   Problem problem;
   SolveOptions options;
-  double seconds_read = 0;          ///< from opening the file until this was ready
+  int solutions = 0;        ///< so many extremals are wanted; 0: the one reached from the guess
+  double seconds_read = 0;  ///< from opening the file until this was ready
 };
 
 /// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column.
@@ -31,5 +32,8 @@ Study load(const std::string& path, const std::vector<std::string>& sets = {});
 /// are the medians. Throws std::invalid_argument if repeat < 1 and std::length_error where the least
 /// that the solve needs exceeds the memory there is.
 Solution run(const Study& study, int repeat = 1);
+
+/// The same for study.solutions extremals, as Solver::solve_all returns them.
+std::vector<Solution> run_all(const Study& study, int repeat = 1);
 
 }  // namespace extremal

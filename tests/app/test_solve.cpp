@@ -62,6 +62,60 @@ TEST_F(Command, WritesCsvAndPlot) {
   EXPECT_NE(read_text(folder / "r.svg").find("<svg"), std::string::npos);
 }
 
+TEST_F(Command, SeveralSolutions) {
+  const std::vector<std::string> search{"--set", "search.solutions=9", "--set", "boundary.duration=12"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), search.begin(), search.end());
+    return solve(pendulum, more);
+  };
+  const Outcome o = with({"--output", "r.json", "--csv", "r.csv", "--plot", "r.svg", "--samples", "5"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  Json r = Json::parse(read_text(folder / "r.json"));
+  const Json list = r["solutions"];
+  ASSERT_GT(list.size(), 2u);
+  EXPECT_LT(list.size(), 9u);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    EXPECT_EQ(list[k]["status"], "converged");
+    EXPECT_EQ(list[k]["samples"]["q"][0], 0.0);
+    EXPECT_EQ(list[k]["samples"]["q"][4], 1.5);
+    EXPECT_EQ(list[k]["windows"].back()[1], 12.0);
+    EXPECT_TRUE(list[k]["morse_index"].is_number());
+    if (k > 0) {
+      EXPECT_GT(list[k]["action"], list[k - 1]["action"]);
+    }
+  }
+  r.erase("solutions");
+  EXPECT_EQ(r, list[0]);
+  EXPECT_NE(o.out.find("of up to 9 extremals found"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("solution  "), std::string::npos) << o.out;
+  const std::string csv = read_text(folder / "r.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "solution,t,q,q',p_q");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<std::ptrdiff_t>(1 + 5 * list.size()));
+  EXPECT_NE(csv.find("\n" + std::to_string(list.size()) + ",12,1.5,"), std::string::npos);
+
+  const Outcome again = with({"--output", "s.json", "--samples", "5", "--repeat", "2", "--quiet"});
+  EXPECT_EQ(again.exit, 0);
+  EXPECT_EQ(again.out + again.error, "");
+  Json s = Json::parse(read_text(folder / "s.json"))["solutions"];
+  ASSERT_EQ(s.size(), list.size());
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    s[k]["seconds"] = list[k]["seconds"];
+    EXPECT_EQ(s[k], list[k]);
+  }
+}
+
+/// q'' = −4 eᑫ has no solution between zeros a time of 1 apart.
+TEST_F(Command, ASearchThatFindsNothing) {
+  const Outcome o = solve(
+      "[system]\ncoordinates = [\"q\"]\nlagrangian = \"q'^2/2 - 4*exp(q)\"\n[boundary]\nstart = { q = 0 }\n"
+      "end = { q = 0 }\nduration = 1\n[search]\nsolutions = 3\n",
+      {"--output", "r.json"});
+  EXPECT_EQ(o.exit, 1);
+  const Json r = Json::parse(read_text(folder / "r.json"));
+  EXPECT_NE(r["status"], "converged");
+  EXPECT_EQ(r["solutions"], Json::array());
+}
+
 TEST_F(Command, AResultServesAsTheGuessOfAnother) {
   ASSERT_EQ(solve(pendulum, {"--output", "r.json", "--samples", "40"}).exit, 0);
   const Outcome o = solve(pendulum, {"--set", "guess.file=r.json", "--set", "boundary.duration=2.1"});

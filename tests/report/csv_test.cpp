@@ -28,6 +28,15 @@ TEST(Csv, HeaderAndRows) {
             "2.5,-0.6,0.9,0.2,0.4,0.6,0.8\n");
 }
 
+TEST(Csv, SeveralSolutionsBelowEachOther) {
+  std::ostringstream out;
+  const Samples samples{.t = {0, 2}, .q = {{1, 3}}, .v = {{4, 5}}, .p = {{6, 7}}};
+  write_csv(out, std::vector<Samples>{samples, samples}, {"x"});
+  EXPECT_EQ(out.str(),
+            "solution,t,x,x',p_x\n1,0,1,4,6\n1,2,3,5,7\n"
+            "2,0,1,4,6\n2,2,3,5,7\n");
+}
+
 TEST(Csv, ElementsOfArraysAreKeyedAsTheyAreWritten) {
   const std::string all = text(*transfer_result().samples, {"x[1]", "x[2]"});
   EXPECT_EQ(all.substr(0, all.find('\n')), "t,x[1],x[2],x[1]',x[2]',p_x[1],p_x[2]");

@@ -156,6 +156,35 @@ TEST(Layout, VelocitiesMayBeAbsent) {
   EXPECT_EQ(planes(layout(picture)), (Texts{"t-u"}));
 }
 
+TEST(Layout, SeveralSolutionsAreDrawnTogether) {
+  const auto several = [](const std::vector<std::string>& names, std::size_t count) {
+    Picture picture = waves(names);
+    picture.labels = {"1"};
+    for (std::size_t k = 2; k <= count; ++k) {
+      picture.others.push_back(picture.samples);
+      for (double& t : picture.others.back().t) t *= static_cast<double>(k);
+      picture.labels.push_back(std::to_string(k));
+    }
+    return layout(picture);
+  };
+  const Figure one = several({"u"}, 3);
+  EXPECT_EQ(planes(one), (Texts{"t-u", "t-u'"}));
+  for (const Panel& panel : one.panels) {
+    ASSERT_EQ(panel.curves.size(), 3u);
+    EXPECT_DOUBLE_EQ(panel.curves[2].x.back(), 9);
+    EXPECT_GE(panel.x.high, 9);
+  }
+  ASSERT_EQ(one.panels[0].legend.size(), 3u);
+  EXPECT_EQ(one.panels[0].legend[2].text, "3");
+  EXPECT_TRUE(several({"u"}, 9).panels[0].legend.empty());
+  EXPECT_EQ(planes(several({"x", "y"}, 3)), (Texts{"x-y"}));
+  EXPECT_EQ(several({"x", "y"}, 3).panels[0].legend[1].text, "2");
+  EXPECT_EQ(planes(several({"x", "y", "z"}, 2)), (Texts{"x-y", "x-z", "y-z", "view"}));
+  const Figure first = several({"a", "b", "c", "d"}, 4);
+  EXPECT_EQ(first.title, "Waves (the first of 4 solutions)");
+  EXPECT_EQ(first.panels[0].curves.size(), 1u);
+}
+
 TEST(Layout, PathsHaveEqualScales) {
   const Picture three = waves({"x", "y", "z"});
   for (const Picture& picture :

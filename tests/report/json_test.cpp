@@ -48,6 +48,23 @@ std::string refusal(const Result& result) {
   return "not refused";
 }
 
+TEST(Json, SolutionsOfASearchFollow) {
+  Result result = transfer_result();
+  EXPECT_FALSE(parsed(result).contains("solutions"));
+  const Json first = parsed(result);
+  Result other = transfer_result();
+  other.solution.action = 5.5;
+  result.solutions = {{transfer_result(), other}};
+  Json json = parsed(result);
+  EXPECT_EQ(keys(json).back(), "solutions");
+  ASSERT_EQ(json["solutions"].size(), 2u);
+  EXPECT_EQ(json["solutions"][0], first);
+  EXPECT_EQ(json["solutions"][1]["action"], 5.5);
+  EXPECT_EQ(keys(json["solutions"][1]), keys(first));
+  result.solutions->clear();
+  EXPECT_EQ(parsed(result)["solutions"], Json::array());
+}
+
 TEST(Json, WritesEveryFieldInTheOrderOfTheContract) {
   const Json json = parsed(transfer_result());
   EXPECT_EQ(keys(json), (std::vector<std::string>{

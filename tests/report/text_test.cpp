@@ -27,6 +27,24 @@ TEST(Summary, OfAConvergedResult) {
             "time            read 100 µs, solve 40.0 µs, analyse 10.0 µs\n");
 }
 
+TEST(Summary, OfSeveralSolutions) {
+  Result result = transfer_result(), other = transfer_result();
+  other.solution.action = 5.5;
+  other.solution.morse_index = 3;
+  other.solution.energy.reset();
+  other.solution.strategy = "deflated newton from the guess";
+  const std::string first = summary(result);
+  result.solutions = {{transfer_result()}};
+  EXPECT_EQ(summary(result), first);
+  result.solutions->push_back(other);
+  EXPECT_EQ(summary(result),
+            first +
+                "\n"
+                "solution  action  duration  energy  index  nullity  strategy\n"
+                "       1   1.234       2.5    -0.4      0        1  newton from the guess\n"
+                "       2     5.5       2.5       –      3        1  deflated newton from the guess\n");
+}
+
 TEST(Summary, ListsTheFirstConjugateTimes) {
   Result result = transfer_result();
   result.solution.conjugate_times = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};

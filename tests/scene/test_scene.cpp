@@ -148,8 +148,25 @@ TEST_F(SceneFiles, NumbersOutOfRange) {
             "scene.toml:9:13: tolerance = -0.001; need more than 0 and less than 1");
 }
 
+TEST_F(SceneFiles, Search) {
+  const auto search = [&](const std::string& lines) { return pendulum + "[search]\n" + lines; };
+  for (const int k : {1, 12, 1000}) {
+    const Scene scene = read_scene(write("scene.toml", search("solutions = " + std::to_string(k) + "\n")));
+    ASSERT_TRUE(scene.search);
+    EXPECT_EQ(scene.search->solutions.value, k);
+  }
+  EXPECT_FALSE(read_scene(write("scene.toml", pendulum)).search);
+  EXPECT_EQ(message(search("solutions = 0\n")), "scene.toml:9:13: solutions = 0; need 1 to 1000");
+  EXPECT_EQ(message(search("solutions = 1001\n")), "scene.toml:9:13: solutions = 1001; need 1 to 1000");
+  EXPECT_EQ(message(search("solutions = 2.5\n")),
+            "scene.toml:9:13: 'solutions' in [search] must be an integer, found a number");
+  EXPECT_EQ(message(search("solution = 2\n")), "scene.toml:9:1: unknown key 'solution' in [search]");
+  EXPECT_EQ(message(search("")),
+            "scene.toml:8:1: [search] has no solutions; give how many extremals are wanted");
+}
+
 TEST_F(SceneFiles, WhatIsNotAvailableYet) {
-  for (const std::string table : {"path", "search", "continuation", "fit"})
+  for (const std::string table : {"path", "continuation", "fit"})
     EXPECT_EQ(message(pendulum + "[" + table + "]\nx = 1\n"),
               "scene.toml:8:2: [" + table + "] is not available yet");
   EXPECT_EQ(message(with("lagrangian", "hamiltonian")),
