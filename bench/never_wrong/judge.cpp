@@ -101,7 +101,7 @@ class Judge {
       before = time;
     }
     if (study_.problem.ends.free > 0 || study_.problem.duration.free || study_.options.scheme ||
-        solution_.windows.empty() || !solution_.morse_index)
+        !solution_.conjugate_times_known || !solution_.morse_index)
       return;
     const auto conjugate = static_cast<int>(solution_.conjugate_times.size());
     if (conjugate != *solution_.morse_index && solution_.nullity == 0)

@@ -24,7 +24,9 @@ struct Piece {
 class SecondVariation {
  public:
   /// Beyond this many coordinates the forms are not made.
-  static constexpr int most_coordinates = 128;
+  static constexpr int most_coordinates = 256;
+  /// Beyond this many there are too many conjugate times, each too much work, to find them all.
+  static constexpr int most_to_find_all = 128;
 
   /// The trajectory must outlive it. False where no piece is short enough: L_vv is not positive definite
   /// somewhere (Legendre's condition), or the second derivatives of L are not finite; there are no pieces

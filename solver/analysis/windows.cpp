@@ -17,13 +17,14 @@ constexpr double near = 0.05;
 void find_conjugate_times(SecondVariation& variation, Minimality& result) {
   JacobiFields fields;
   const int last = variation.count() - 1;
+  std::vector<double>& times = result.conjugate_times.emplace();
   fields.begin(variation, 0, 0);
   for (int k = 1; k <= last; ++k) {
     const Piece piece = variation.piece(k);
     const double distance = k == last ? fields.distance(variation, k) : INFINITY;
     if (distance < near) result.distance = distance * piece.length;
     for (double tau : fields.advance(variation, k))
-      if (k < last || tau < 1) result.conjugate_times.push_back(piece.start + tau * piece.length);
+      if (k < last || tau < 1) times.push_back(piece.start + tau * piece.length);
   }
 }
 
@@ -45,11 +46,11 @@ double next_conjugate_time(SecondVariation& variation, double start) {
 
 Minimality minimality(SecondVariation& variation, double longest) {
   Minimality result;
-  find_conjugate_times(variation, result);
+  if (variation.coordinates() <= SecondVariation::most_to_find_all) find_conjugate_times(variation, result);
   const double duration = variation.end(variation.count() - 1);
   for (double start = 0; start < duration;) {
-    const bool known = start == 0 && !result.conjugate_times.empty();
-    const double conjugate = known ? result.conjugate_times.front() : next_conjugate_time(variation, start);
+    const bool known = start == 0 && result.conjugate_times && !result.conjugate_times->empty();
+    const double conjugate = known ? result.conjugate_times->front() : next_conjugate_time(variation, start);
     const double length = std::min(conjugate - start, longest);
     result.within_longest = result.within_longest && longest <= length;
     const double end = start + length <= duration ? start + (1 - margin) * length : duration;

@@ -86,7 +86,8 @@ class Fields {
       windows.push_back({number("windows", from), number("windows", to)});
     for (double time : solution.conjugate_times) times.push_back(number("conjugate_times", time));
     append(object_, "windows", known ? std::move(windows) : Json(nullptr));
-    append(object_, "conjugate_times", known ? std::move(times) : Json(nullptr));
+    const bool times_known = known && solution.conjugate_times_known;
+    append(object_, "conjugate_times", times_known ? std::move(times) : Json(nullptr));
   }
 
   void counts() {

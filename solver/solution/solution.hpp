@@ -73,8 +73,9 @@ struct Solution {
   /// Abutting, from 0 to T: each minimising with its ends fixed, the union of two neighbours not. Empty where
   /// L_vv is not positive definite, so that no path is a minimum, and where coordinates are too many.
   std::vector<std::array<double, 2>> windows;
-  /// In (0, T), to the start as fixed, ascending, repeated by multiplicity. Known where there are windows.
+  /// In (0, T), to the start as fixed, ascending, repeated by multiplicity.
   std::vector<double> conjugate_times;
+  bool conjugate_times_known = false;  ///< only where there are windows, and coordinates not too many
   Certificate certificate = Certificate::none;
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 

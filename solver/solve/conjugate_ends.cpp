@@ -79,7 +79,7 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, d
 }
 
 bool failed_at_conjugate_ends(const Problem& problem, const Trajectory& last, SecondVariation& memory) {
-  if (!fixed(problem) || problem.coordinates() > SecondVariation::most_coordinates) return false;
+  if (!fixed(problem) || problem.coordinates() > SecondVariation::most_to_find_all) return false;
   if (last.elements() > most_elements) return false;
   if (!memory.assemble(problem.lagrangian, last)) return false;
   return minimality(memory).distance <= suspicious * last.duration();

@@ -30,8 +30,8 @@ double longest_window(const Problem& problem, const SolveOptions& options, const
 double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
                        Solution& solution) {
   if (problem.coordinates() > SecondVariation::most_coordinates) {
-    solution.message += fmt::format("; windows and conjugate times are only found for up to {} coordinates",
-                                    SecondVariation::most_coordinates);
+    solution.message +=
+        fmt::format("; windows are only found for up to {} coordinates", SecondVariation::most_coordinates);
     return INFINITY;
   }
   if (!memory.assemble(problem.lagrangian, solution.trajectory)) {
@@ -45,7 +45,12 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   const bool refuted = bounded && !found.within_longest;
   if (refuted) found = minimality(memory);
   solution.windows = std::move(found.windows);
-  solution.conjugate_times = std::move(found.conjugate_times);
+  solution.conjugate_times_known = found.conjugate_times.has_value();
+  if (found.conjugate_times)
+    solution.conjugate_times = *std::move(found.conjugate_times);
+  else
+    solution.message += fmt::format("; conjugate times are only found for up to {} coordinates",
+                                    SecondVariation::most_to_find_all);
   solution.certificate = bounded && !refuted ? Certificate::global : Certificate::sampled;
   return found.distance;
 }

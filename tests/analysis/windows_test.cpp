@@ -46,6 +46,31 @@ TEST(Windows, OfTheOscillatorAreHalfPeriods) {
     }
 }
 
+/// n masses in a line between walls, all springs 1, have ω_j = 2 sin(jπ/(2n + 2)): the fastest mode makes the
+/// windows. Of so many coordinates conjugate times are not listed.
+TEST(Windows, OfManyCoordinates) {
+  constexpr int n = 150;
+  const auto lagrangian = trace(n, [](auto q, auto v, auto) {
+    auto l = v[0] * v[0] / 2 - (q[0] * q[0] + q[n - 1] * q[n - 1]) / 2;
+    for (int a = 1; a < n; ++a) l = l + v[a] * v[a] / 2 - (q[a] - q[a - 1]) * (q[a] - q[a - 1]) / 2;
+    return l;
+  });
+  constexpr double T = 4;
+  Values start(n), end(n);
+  for (int a = 0; a < n; ++a) start[a] = std::sin(0.1 * a), end[a] = std::cos(0.2 * a);
+  const Solution s = solve(fixed_ends(lagrangian, start, end, T), within(1e-8));
+  ASSERT_TRUE(s.converged()) << s.message;
+  const auto omega = [](int j) { return 2 * std::sin(j * pi / (2 * n + 2)); };
+  int index = 0;
+  for (int j = 1; j <= n; ++j) index += static_cast<int>(std::ceil(T * omega(j) / pi)) - 1;
+  EXPECT_EQ(s.morse_index, index);
+  ASSERT_EQ(s.windows.size(), 3u);
+  for (int k : {0, 1}) EXPECT_NEAR(s.windows[k][1] - s.windows[k][0], pi / omega(n), 3e-6);
+  EXPECT_EQ(s.windows[2][1], T);
+  EXPECT_FALSE(s.conjugate_times_known);
+  EXPECT_NE(s.message.find("conjugate times are only found"), std::string::npos);
+}
+
 /// The second variation is positive definite up to the conjugate time, exclusively.
 TEST(Windows, EndBeforeTheConjugateTime) {
   for (double T : {pi * (1 - 1e-5), pi * (1 + 1e-5)}) {

@@ -233,6 +233,9 @@ TEST(Json, WritesEmptyListsOnlyWhereTheyAreKnown) {
   result.solution.certificate = Certificate::global;
   EXPECT_EQ(parsed(result)["conjugate_times"].dump(), "[]");
   EXPECT_EQ(parsed(result)["certificate"], "global");
+  result.solution.conjugate_times_known = false;
+  EXPECT_TRUE(parsed(result)["conjugate_times"].is_null());
+  EXPECT_FALSE(parsed(result)["windows"].is_null());
   result.solution.windows.clear();
   result.solution.certificate = Certificate::none;
   EXPECT_TRUE(parsed(result)["windows"].is_null());

@@ -30,6 +30,7 @@ inline Result transfer_result() {
   solution.minimizing = true;
   solution.windows = {{0, 1.2}, {1.2, 2.5}};
   solution.conjugate_times = {1.25};
+  solution.conjugate_times_known = true;
   solution.certificate = Certificate::sampled;
   solution.momentum_start = {0.1, 0.9};
   solution.momentum_end = {-0.3, 0.7};
