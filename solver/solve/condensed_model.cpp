@@ -22,7 +22,7 @@ class CondensedModel final : public QuadraticModel {
   }
 
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override {
-    system_.solve(action.nodes, closing, step.nodes, step.duration);
+    system_.solve(action.nodes, closing, step.nodes, step.duration, refining_);
     action.expand_step(step.nodes, step.duration, step.inner);
   }
 

@@ -94,10 +94,13 @@ const ClosingEquation* NewtonIteration::closing(const Path& path) {
   return &closing_;
 }
 
-/// The correction from the gradient that was evaluated last; NaN if it is not finite.
-double NewtonIteration::solve_for_step(const Path& path, Step& step) {
+/// The correction from the gradient that was evaluated last; NaN if it is not finite. Another correction
+/// makes up for what is not refined.
+double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine) {
   if (!action_.finite()) return NAN;
+  model_->set_refining(refine);
   model_->solve(action_, closing(path), step);
+  model_->set_refining(true);
   const double nodes = largest(step.nodes), inner = largest(step.inner);
   if (std::isnan(nodes) || std::isnan(inner)) return NAN;
   double size = std::max(nodes, inner) / (scale_ > 0 ? scale_ : 1);
@@ -170,6 +173,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     contraction_ = surprise * expected;
     norm_ = remaining_ = contraction_ * step;
     damping_ = predicted_ = 1;
+    if (std::isnan(solve_for_step(path, step_, true))) return StepResult::singular;
     apply(path, step_, 1);
     return StepResult::ok;
   }

@@ -84,7 +84,7 @@ class NewtonIteration {
   void use_sparse(int elements);
   /// Whether model() is not the second variation itself.
   bool approximate() const { return raised_ && model_ == &*raised_; }
-  double solve_for_step(const Path& path, Step& step);
+  double solve_for_step(const Path& path, Step& step, bool refine = false);
   void apply(Path& path, const Step& step, double factor);
 
   const Problem* problem_ = nullptr;

@@ -39,8 +39,13 @@ class QuadraticModel {
   virtual void evaluate_gradient(DiscreteAction& action, const Path& path) = 0;
   /// The step from the gradient that was evaluated last.
   virtual void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) = 0;
+  /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
+  void set_refining(bool on) { refining_ = on; }
   /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null.
   virtual Inertia inertia(double threshold) = 0;
+
+ protected:
+  bool refining_ = true;
 };
 
 /// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.

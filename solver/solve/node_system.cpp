@@ -154,14 +154,14 @@ void NodeSystem::border_right(const NodeEquations& nodes, const ClosingEquation*
 }
 
 void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
-                       double& duration_step) {
+                       double& duration_step, bool refine) {
   const std::size_t inner = right_.size(), last = static_cast<std::size_t>(elements_) * n_;
   for (std::size_t k = 0; k < inner; ++k) right_[k] = -nodes.gradient[n_ + k];
   border_right(nodes, closing);
   if (exact_)
     solve_exactly();
   else
-    solve_schur(has_own_row(closing));
+    solve_schur(has_own_row(closing), refine);
   step.assign(last + n_, 0);
   std::copy(right_.begin(), right_.end(), step.begin() + n_);
   for (const Triplet& z : ends_->z)
@@ -170,9 +170,9 @@ void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closin
 }
 
 /// right_ and small_ become the solution.
-void NodeSystem::solve_schur(bool own_row) {
+void NodeSystem::solve_schur(bool own_row, bool refine) {
   const std::size_t inner = right_.size();
-  if (elements_ > 1) chain_->solve_step(right_.data());
+  if (elements_ > 1) refine ? chain_->solve(right_.data(), 1) : chain_->solve_step(right_.data());
   if (border_ == 0) return;
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)

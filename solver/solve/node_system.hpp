@@ -22,9 +22,10 @@ class NodeSystem {
   /// Factors the second variation that `nodes` holds. False if singular to working precision.
   bool factor(NodeEquations& nodes, const ClosingEquation* closing);
 
-  /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds.
+  /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds; `refine` as
+  /// QuadraticModel::set_refining.
   void solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
-             double& duration_step);
+             double& duration_step, bool refine = true);
 
   /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
   /// are counted by NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
@@ -35,7 +36,7 @@ class NodeSystem {
   bool factor_schur(const ClosingEquation* closing);
   bool factor_exactly(const ClosingEquation* closing);
   void border_right(const NodeEquations& nodes, const ClosingEquation* closing);
-  void solve_schur(bool own_row);
+  void solve_schur(bool own_row, bool refine);
   void solve_exactly();
   void assemble_border(const NodeEquations& nodes);
   void add_end(double* column, int stride, int e, double factor, const NodeEquations& nodes) const;

@@ -93,6 +93,7 @@ void RaisedModel::restrict_batch(const Path& path, int batch, const double* grad
 }
 
 void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, Step& step) {
+  low_.set_refining(refining_);
   low_.solve(low_action_, closing, low_step_);
   step.nodes = low_step_.nodes;
   step.duration = low_step_.duration;

@@ -107,7 +107,7 @@ void SparseModel::evaluate_gradient(DiscreteAction& action, const Path& path) { 
 void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, Step& step) {
   right_.resize(unknowns_);
   std::transform(gradient_.begin(), gradient_.end(), right_.begin(), [](double g) { return -g; });
-  matrix_.solve_step(right_.data());
+  refining_ ? matrix_.solve(right_.data(), 1) : matrix_.solve_step(right_.data());
   step.duration = 0;
   if (free_duration_) {
     // Rows of the closing equation against the solved right-hand side and the solved border.
