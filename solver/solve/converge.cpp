@@ -27,7 +27,7 @@ std::string describe(StepResult result) {
 }  // namespace
 
 NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& tables,
-                      const NewtonGoal& goal, const std::function<void()>& on_step) {
+                      const NewtonGoal& goal, const std::function<bool()>& on_step) {
   NewtonReport report;
   bool chord = goal.reuse;
   while (report.steps < goal.steps) {
@@ -35,7 +35,7 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
     const double before = newton.norm();
     const StepResult result = chord ? newton.chord_step(path) : newton.full_step(path, goal.remaining);
     ++report.steps;
-    if (on_step) on_step();
+    const bool more = !on_step || on_step();
     if (result != StepResult::ok) {
       report.failure = describe(result);
       return report;
@@ -51,9 +51,13 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
       report.reached = true;
       return report;
     }
+    if (!more) {
+      report.failure = "the effort that one solve may take is spent";
+      return report;
+    }
     chord = settled && rate < chord_contraction;
   }
-  report.failure = fmt::format("{} Newton steps did not converge", goal.steps);
+  report.failure = fmt::format("{} Newton steps did not converge", report.steps);
   return report;
 }
 

@@ -27,8 +27,8 @@ struct NewtonReport {
 };
 
 /// Steps until the goal, or until corrections are roundoff and shrink no more: full steps, and chord steps
-/// where the last contraction was strong. `on_step` may be empty.
+/// where the last contraction was strong. `on_step` says after each whether there may be more; may be empty.
 NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& tables,
-                      const NewtonGoal& goal, const std::function<void()>& on_step);
+                      const NewtonGoal& goal, const std::function<bool()>& on_step);
 
 }  // namespace extremal

@@ -45,9 +45,11 @@ bool PinnedSolve::solve_discrete(int elements) {
     }
     ResidualTest test;
     test.begin(problem_, w_.iteration, w_.path);
-    const NewtonReport report =
-        converge(w_.iteration, w_.path, w_.pinned, {roundoff, std::min(steps, options_.max_iterations)},
-                 [this] { outcome_.record(w_, options_); });
+    const NewtonReport report = converge(w_.iteration, w_.path, w_.pinned,
+                                         {roundoff, std::min(steps, options_.max_iterations)}, [this] {
+                                           outcome_.record(w_, options_);
+                                           return true;
+                                         });
     outcome_.message = report.failure;
     if (!report.reached) return false;
     if (!test.passed(problem_, w_.iteration, w_.path, 0, scales(w_.path, w_.pinned).magnitude)) {

@@ -96,13 +96,37 @@ bool Refinement::confirmed() {
   if (!suspicious()) return true;
   w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
   raise(std::min(w_.path.degree() + 2, max_degree));
-  const NewtonReport report =
-      converge(w_.iteration, w_.path, *tables_, {loosest_newton, fine_steps}, [this] { record(); });
+  const NewtonReport report = converge(w_.iteration, w_.path, *tables_, {loosest_newton, fine_steps},
+                                       [this] { return count_step(); });
   outcome_.tables = tables_;
   double moved = 0;
   for (std::size_t k = 0; k < w_.before.size(); ++k)
     moved = std::max(moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
   return report.reached && moved <= 10 * outcome_.error + loosest_newton * scales_.q;
+}
+
+/// Finer elements would not see what happens between the points of those there are, others may.
+bool Refinement::holds_on_other_elements() {
+  const std::span<const double> mesh = w_.path.mesh();
+  std::vector<double> other{0};
+  for (std::size_t k = 0; k + 1 < mesh.size(); ++k) other.push_back(0.5 * (mesh[k] + mesh[k + 1]));
+  other.push_back(1);
+  w_.other.resample_from(w_.path, *tables_, other);
+  w_.before.assign(w_.other.nodes().begin(), w_.other.nodes().end());
+  w_.iteration.reset(problem_, *tables_, w_.other.elements());
+  w_.iteration.set_scale(scales_.q);
+  const NewtonReport report =
+      converge(w_.iteration, w_.other, *tables_,
+               {std::clamp(0.5 * options_.tolerance, roundoff, loosest_newton), fine_steps},
+               [this] { return count_step(); });
+  double moved = 0;
+  for (std::size_t k = 0; k < w_.before.size(); ++k)
+    moved = std::max(moved, std::abs(w_.other.nodes()[k] - w_.before[k]));
+  rebind();
+  outcome_.error = std::max(outcome_.error, moved);
+  const bool holds = report.reached && moved <= options_.tolerance * scales_.q;
+  if (!holds) outcome_.message = "other elements told another path";
+  return holds;
 }
 
 void Refinement::record() {
@@ -183,14 +207,15 @@ void Refinement::measure() {
 NewtonReport Refinement::converge_to(double error, bool reuse) {
   const NewtonGoal goal{std::clamp(0.5 * error, roundoff, loosest_newton), steps_left(fine_steps), reuse,
                         std::max(options_.tolerance, error)};
-  const NewtonReport report = converge(w_.iteration, w_.path, *tables_, goal, [this] { record(); });
+  const NewtonReport report =
+      converge(w_.iteration, w_.path, *tables_, goal, [this] { return count_step(); });
   measure();
   return report;
 }
 
 Refinement::Attempt Refinement::attempt() {
   NewtonReport newton = converge(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)},
-                                 [this] { record(); });
+                                 [this] { return count_step(); });
   outcome_.message = newton.failure;
   if (!newton.reached) return Attempt::failed;
   measure();

@@ -49,6 +49,8 @@ class Refinement {
   /// False if steps from this path were so long that the second variation is nearly singular, and other
   /// elements find another path.
   bool confirmed();
+  /// Whether elements with other ends tell the same path within the tolerance; their difference is an error.
+  bool holds_on_other_elements();
   /// Whether a step from this path was much longer than the path.
   bool suspicious() const;
 

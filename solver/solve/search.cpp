@@ -30,6 +30,8 @@ constexpr unsigned first_noises = 8, most_noises = 10000;
 /// Of the guess's extent, in turn.
 constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 
+constexpr const char* from_guess = "newton from the guess";
+
 int first_elements(const Frequency& frequency) {
   const double wanted = std::min<double>(frequency.phase() / longest_element, most_first_elements);
   return lanes * std::max(1, static_cast<int>(std::ceil(wanted / lanes)));
@@ -73,7 +75,11 @@ bool Search::begin() {
 /// Pursues the path in the workspace.
 Refinement::Result Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
-  const Refinement::Result result = refinement_.pursue();
+  Refinement::Result result = refinement_.pursue();
+  // A path far from the guess may be wild, and resolved by accident only.
+  if (result == Refinement::Result::converged && strategy != from_guess &&
+      !refinement_.holds_on_other_elements())
+    result = Refinement::Result::failed;
   const bool converged = result == Refinement::Result::converged;
   doubtful_ = converged ? !refinement_.confirmed() : refinement_.suspicious();
   return converged && doubtful_ ? Refinement::Result::unreachable : result;
@@ -157,7 +163,7 @@ Outcome Search::run() {
   allowance_ =
       std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns)));
   refinement_.allow(allowance_);
-  Refinement::Result result = pursue("newton from the guess");
+  Refinement::Result result = pursue(from_guess);
   const bool doubtful = doubtful_;
   if (result == Refinement::Result::failed) {
     const std::string failure = outcome_.message;
