@@ -13,6 +13,8 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Block = Eigen::Map<const Matrix>;
 
+/// Relative to the range: a longer step may land beyond what the guess is meant to pass.
+constexpr double longest_step = 0.3;
 /// The action must fall by this part of what its slope promises.
 constexpr double sufficient = 1e-4;
 constexpr double shortest = 0x1p-40;
@@ -83,8 +85,8 @@ double Descent::slope() {
 }
 
 /// The step, or a part of it with which the action falls enough. False if there is none.
-bool Descent::shorten(double slope, double before) {
-  for (double factor = 1; factor > shortest; factor /= 2) {
+bool Descent::shorten(double slope, double before, double longest) {
+  for (double factor = std::min(1.0, longest); factor > shortest; factor /= 2) {
     saved_.copy_values(w_.path);
     w_.path.add(step_.nodes, step_.inner, factor);
     w_.path.load_ends();
@@ -110,7 +112,8 @@ Descent::Result Descent::descend(const ElementTables& tables) {
   const bool one_window = std::find(held_.begin(), held_.end(), true) == held_.end();
   if (size <= (one_window ? close : nearly_minimal) * range) return Result::minimal;
   const double before = action.action();
-  return shorten(slope(), before) ? Result::moved : Result::failed;
+  return shorten(slope(), before, range > 0 ? longest_step * range / size : 1) ? Result::moved
+                                                                               : Result::failed;
 }
 
 bool Descent::run(const ElementTables& tables) {

@@ -29,7 +29,7 @@ class Descent {
   bool find_windows();
   void solve_windows();
   double slope();
-  bool shorten(double slope, double size);
+  bool shorten(double slope, double before, double longest);
 
   const Problem& problem_;
   Workspace& w_;

@@ -21,7 +21,7 @@ constexpr int most_first_elements = 1 << 12;
 /// A mesh whose elements differ less than this is not worth starting again for.
 constexpr double mild_grading = 3;
 /// Newton steps in all, times unknowns of the first mesh: what other guesses may cost.
-constexpr double most_work = 4e6;
+constexpr double most_work = 1e7;
 constexpr double least_steps = 100;
 /// Tries to move the default guess to where L is finite.
 constexpr unsigned most_bends = 8;
@@ -78,8 +78,10 @@ Refinement::Result Search::pursue(const char* strategy) {
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
   if (result == Refinement::Result::converged && strategy != from_guess &&
-      !refinement_.holds_on_other_elements())
+      !refinement_.holds_on_other_elements()) {
+    unheld_ = w_.path;
     result = Refinement::Result::failed;
+  }
   const bool converged = result == Refinement::Result::converged;
   doubtful_ = converged ? !refinement_.confirmed() : refinement_.suspicious();
   return converged && doubtful_ ? Refinement::Result::unreachable : result;
@@ -88,8 +90,8 @@ Refinement::Result Search::pursue(const char* strategy) {
 bool Search::found(const char* strategy) { return pursue(strategy) == Refinement::Result::converged; }
 
 /// Downhill in windows.
-bool Search::by_descent() {
-  start(halved(mesh_), bend_);
+bool Search::by_descent(const std::vector<double>& mesh) {
+  start(mesh, bend_);
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   int steps = refinement_.steps_left() / 2;  // others may need fewer
   Descent descent(problem_, w_, [&] { return refinement_.count_step() && --steps > 0; });
@@ -126,7 +128,7 @@ bool Search::from_line() {
   Problem line = problem_;
   line.guess = {};
   guess_ = &line;
-  const bool result = begin() && (found("newton from the straight line") || by_descent());
+  const bool result = begin() && (found("newton from the straight line") || by_descent(mesh_));
   guess_ = &problem_;
   return result;
 }
@@ -147,9 +149,9 @@ void Search::renew() { refinement_.allow(allowance_); }
 
 /// Cheapest first; but where the user has given a guess, what stays near it before noise.
 bool Search::from_other_guesses() {
+  if (by_descent(mesh_)) return true;
   start(halved(mesh_), bend_);
-  if (found("newton from the guess on finer elements")) return true;
-  if (by_descent()) return true;
+  if (found("newton from the guess on finer elements") || by_descent(halved(mesh_))) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;
   begin();
@@ -175,6 +177,8 @@ Outcome Search::run() {
           "{} Newton steps from the guess ({}), through other durations and from smooth noise "
           "found no extremal; try a better guess or a shorter duration",
           outcome_.iterations, failure);
+      // Where ends are conjugate, elements tell different members of a family.
+      if (unheld_) std::swap(w_.path, *unheld_);
     }
   }
   if (result == Refinement::Result::converged) outcome_.status = Status::converged;

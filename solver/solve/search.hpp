@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solve/refinement.hpp"
@@ -35,7 +36,7 @@ class Search {
   bool found(const char* strategy);
   bool from_other_guesses();
   bool through_other_durations();
-  bool by_descent();
+  bool by_descent(const std::vector<double>& mesh);
   bool from_line();
   bool from_noise(unsigned tries);
 
@@ -46,8 +47,9 @@ class Search {
   Outcome outcome_;
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
-  int allowance_ = 0;  ///< of Newton steps
-  Bend bend_;          ///< of the default guess, where L is not finite on it
+  int allowance_ = 0;           ///< of Newton steps
+  Bend bend_;                   ///< of the default guess, where L is not finite on it
+  std::optional<Path> unheld_;  ///< found on some elements, but not on others
   unsigned seed_ = 0;
   bool doubtful_ = false;  ///< the equations of the last path were nearly singular
 };
