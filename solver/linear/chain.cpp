@@ -149,13 +149,17 @@ bool Chain::factor(double smallest) {
   for (auto entry = saved.rbegin(); entry != saved.rend(); ++entry)
     diagonal_entry(entry->first) = entry->second;
   factored_ = suspicion >= 0;
+  if (!factored_) {
+    deflated_.clear();
+    return false;
+  }
   inertia_.positive -= int(deflated_.size());
   inertia_.zero += int(deflated_.size());
   if (pivoted_) {
     const auto more = pivoted_factor_.deflated();
     deflated_.insert(deflated_.end(), more.begin(), more.end());
   }
-  return factored_ && deflated_.empty();
+  return deflated_.empty();
 }
 
 void Chain::solve_factored(double* x, int columns) const {

@@ -9,7 +9,9 @@ namespace extremal {
 
 namespace {
 
-constexpr double threshold = 0.1;   // u
+constexpr double threshold = 0.1;  // u
+/// Rows delayed at a time, by rows of a block: where more are, the matrix is noise, and would take long.
+constexpr int most_delayed = 8;
 constexpr double satisfying = 0.5;  // a 1×1 pivot this good needs no comparison with 2×2 ones
 
 }  // namespace
@@ -169,6 +171,7 @@ bool PivotedChain::factor(const double* diagonal, const double* lower, int block
     eliminate(k + 1 < blocks ? order_ - n : order_, smallest);
     stage.pivots = done_;
     keep_rest(stage);
+    if (order_ > most_delayed * std::max(n, 8)) return false;
     stages_.push_back(stage);
   }
   inertia_.zero = int(deflated_.size());

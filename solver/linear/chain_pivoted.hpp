@@ -31,7 +31,7 @@ struct Deflation {
 /// matrix that differs from A by a known diagonal matrix of low rank.
 class PivotedChain {
  public:
-  /// Blocks as in Chain. False if an entry is not finite.
+  /// Blocks as in Chain. False if an entry is not finite, or if so many rows find no pivot that A is noise.
   bool factor(const double* diagonal, const double* lower, int blocks, int size, double smallest);
 
   /// X := (A + Σ amount e_row e_rowᵀ)⁻¹ X, row-major with `columns` columns.

@@ -44,7 +44,6 @@ bool PinnedSolve::solve_discrete(int elements) {
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
     ResidualTest test;
-    test.begin(problem_, w_.iteration, w_.path);
     const NewtonReport report = converge(w_.iteration, w_.path, w_.pinned,
                                          {roundoff, std::min(steps, options_.max_iterations)}, [this] {
                                            outcome_.record(w_, options_);
@@ -52,7 +51,7 @@ bool PinnedSolve::solve_discrete(int elements) {
                                          });
     outcome_.message = report.failure;
     if (!report.reached) return false;
-    if (!test.passed(problem_, w_.iteration, w_.path, 0, scales(w_.path, w_.pinned).magnitude)) {
+    if (!test.passed(problem_, w_.iteration, w_.path, scales(w_.path, w_.pinned).magnitude)) {
       outcome_.message = test.message();
       return false;
     }

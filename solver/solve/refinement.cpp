@@ -70,7 +70,6 @@ double Refinement::step_cost() const { return w_.path.batches() * batch_cost(*ta
 
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
-  test_.begin(problem_, w_.iteration, w_.path);
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
@@ -246,8 +245,16 @@ Refinement::Attempt Refinement::attempt() {
   }
 }
 
+/// Newton's method may have left a residual within the tolerance; one more step then makes it much smaller.
 bool Refinement::solved() {
-  if (test_.passed(problem_, w_.iteration, w_.path, 10 * options_.tolerance, scales_.magnitude)) return true;
+  const auto passed = [this] { return test_.passed(problem_, w_.iteration, w_.path, scales_.magnitude); };
+  if (passed()) return true;
+  const double left = test_.share();
+  if (left <= std::min(10 * options_.tolerance, loosest_newton) &&
+      w_.iteration.full_step(w_.path, 0) == StepResult::ok) {
+    count_step();
+    if (passed() || test_.share() <= 0.1 * left) return true;
+  }
   outcome_.message = test_.message();
   return false;
 }

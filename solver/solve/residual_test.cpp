@@ -8,25 +8,19 @@ namespace extremal {
 
 namespace {
 
-/// A residual below this, relative to the largest momentum or to the first residual, may be roundoff; one
-/// above the second is not what Newton's method leaves.
-constexpr double least = 1e-10, largest = 1e-6;
+/// A residual below this, relative to the largest momentum, may be roundoff.
+constexpr double least = 1e-10;
 /// Of a body at rest, relative to forces that cancel.
 constexpr double roundoff = 1e-14;
 
 }  // namespace
 
-void ResidualTest::begin(const Problem& problem, NewtonIteration& newton, const Path& path) {
-  first_ = problem.ends.free > 0 ? newton.residual_at(path) : 0;
-}
-
-bool ResidualTest::passed(const Problem& problem, NewtonIteration& newton, const Path& path, double allowed,
+bool ResidualTest::passed(const Problem& problem, NewtonIteration& newton, const Path& path,
                           double magnitude) {
   if (problem.ends.free == 0) return true;
   const double left = newton.residual_at(path), momentum = newton.action().momentum_scale();
   share_ = left / momentum;
-  return left <= std::max({std::clamp(allowed, least, largest) * momentum, least * first_,
-                           roundoff * newton.stiffness() * magnitude});
+  return left <= std::max({least * momentum, roundoff * newton.stiffness() * magnitude});
 }
 
 std::string ResidualTest::message() const {

@@ -7,22 +7,20 @@
 namespace extremal {
 
 /// Where the ends are not fixed, a second variation that is nearly singular lets steps become short although
-/// δS does not vanish: neither against the momenta, nor, at rest, against what it was where the iteration
-/// began.
+/// δS does not vanish against the momenta.
 class ResidualTest {
  public:
-  /// At the path that the iteration starts from.
-  void begin(const Problem& problem, NewtonIteration& newton, const Path& path);
+  /// At the path where it ended; `magnitude` is the largest |q|.
+  bool passed(const Problem& problem, NewtonIteration& newton, const Path& path, double magnitude);
 
-  /// At the path where it ended; `allowed` of the largest momentum, `magnitude` the largest |q|.
-  bool passed(const Problem& problem, NewtonIteration& newton, const Path& path, double allowed,
-              double magnitude);
+  /// What the last test found left, relative to the largest momentum.
+  double share() const { return share_; }
 
   /// Why the last test was not passed.
   std::string message() const;
 
  private:
-  double first_ = 0, share_ = 0;
+  double share_ = 0;
 };
 
 }  // namespace extremal

@@ -87,10 +87,13 @@ Refinement::Result Search::pursue(const char* strategy) {
   return converged && doubtful_ ? Refinement::Result::unreachable : result;
 }
 
-bool Search::found(const char* strategy) { return pursue(strategy) == Refinement::Result::converged; }
+bool Search::found(const char* strategy) {
+  return !refinement_.exhausted() && pursue(strategy) == Refinement::Result::converged;
+}
 
 /// Downhill in windows.
 bool Search::by_descent(const std::vector<double>& mesh) {
+  if (refinement_.exhausted()) return false;
   start(mesh, bend_);
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   int steps = refinement_.steps_left() / 2;  // others may need fewer
@@ -100,7 +103,8 @@ bool Search::by_descent(const std::vector<double>& mesh) {
 
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.
 bool Search::through_other_durations() {
-  if (problem_.duration.free || !problem_.lagrangian->structure().autonomous) return false;
+  if (refinement_.exhausted() || problem_.duration.free || !problem_.lagrangian->structure().autonomous)
+    return false;
   const auto count = [this] { return refinement_.count_step(); };
   start(mesh_, bend_, homotopy_degree);
   DurationHomotopy homotopy(problem_, w_, count);
