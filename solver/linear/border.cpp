@@ -12,8 +12,6 @@ namespace extremal {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
-/// Directions taken to be null, at most, by rows of a block: more are noise.
-constexpr int most_deflated = 4;
 
 /// Parts this much larger than the solution they add up to cost digits that refinement brings back.
 constexpr double cancellation = 4;
@@ -89,8 +87,6 @@ bool Border::factor(Chain& a, double deflated) {
   if (a.order() != order_)
     throw std::invalid_argument(fmt::format("border: {} rows around a chain of {}", order_, a.order()));
   if (!a.factor(deflated) && a.deflated().empty()) return false;
-  // As a second variation between fixed ends A has as many null directions as its blocks have rows, at most.
-  if (int(a.deflated().size()) > most_deflated * a.size()) return false;
   chain_inertia_ = a.inertia();
   chain_inertia_.positive += chain_inertia_.zero;
   chain_inertia_.zero = 0;

@@ -1,6 +1,8 @@
 #include "solve/finish.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Dense>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -18,6 +20,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Eigenvalues within the error of the discretisation of zero, relative, count in the nullity; it is taken to
 /// be that of the trajectory, and within these bounds.
+/// Of the largest momentum.
+constexpr double largest_residual = 1e-6;
 constexpr double least_null = 1e-8, largest_null = 1e-3;
 double null_threshold(double error, double size) {
   return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
@@ -44,6 +48,12 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
+}
+
+/// Forces so strong that steps are roundoff while δS is not: atoms that overlap.
+bool balanced(const Solution& solution, Workspace& w) {
+  const double roundoff = 1e-12 * w.iteration.stiffness() * scales(w.path, *w.final_tables).magnitude;
+  return solution.residual <= largest_residual || w.iteration.residual() <= roundoff;
 }
 
 /// The closing equation must hold at what is returned: a duration that runs away can look like convergence.
@@ -114,7 +124,13 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
     solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
     read_off(problem, outcome, w, solution);
     w.final_tables = outcome.tables;
-    if (closed(problem, options, w)) {
+    if (!balanced(solution, w)) {
+      solution.status = Status::not_converged;
+      solution.message = fmt::format(
+          "a residual of {:.1e} of the largest momentum is left: forces are too strong for what they move; "
+          "try another guess",
+          solution.residual);
+    } else if (closed(problem, options, w)) {
       observe_energy(*problem.lagrangian, solution);
       const double distance = read_minimality(problem, options, variation, solution);
       judge_conjugate_ends(problem, options, distance, w, solution);

@@ -12,6 +12,8 @@ namespace {
 constexpr double least_damping = 1e-3;
 /// Pivots this much smaller than the entry they came from are not trusted.
 constexpr double breakdown = 1e-11;
+/// Time of one more damping tried, by that of a step.
+constexpr double trial_burden = 0.4;
 /// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
 constexpr double pivoted_burden = 100, sparse_burden = 1000;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
@@ -127,10 +129,11 @@ double NewtonIteration::residual() const {
 }
 
 double NewtonIteration::burden() const {
-  if (tables_->unknowns() > most_dense_unknowns) return 1;
-  if (model_ != condensed_.get()) return sparse_burden;
+  const double tested = 1 + trial_burden * std::max(0, trials_ - 1);
+  if (tables_->unknowns() > most_dense_unknowns) return tested;
+  if (model_ != condensed_.get()) return sparse_burden * tested;
   const Chain& chain = action_.nodes.chain;
-  return chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1;
+  return tested * (chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1);
 }
 
 double NewtonIteration::stiffness() const {
@@ -157,6 +160,7 @@ bool NewtonIteration::factor(const Path& path) {
 /// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
 StepResult NewtonIteration::full_step(Path& path, double enough) {
   ++count_;
+  trials_ = 0;
   if (!factor(path)) return action_.finite() ? StepResult::singular : StepResult::not_finite;
   if (scale_ == 0)
     scale_ = solve_for_step(path, step_);  // a path without extent: its first step is the scale
@@ -185,6 +189,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
       return StepResult::stalled;
     }
     apply(path, step_, factor);
+    ++trials_;
     const bool positive = path.duration() > 0;
     if (positive) model_->evaluate_gradient(action_, path);
     const double simplified = positive ? solve_for_step(path, simplified_) : NAN;

@@ -102,6 +102,7 @@ class NewtonIteration {
   double curvature_ = 0;  ///< contraction of the last full step by its length; 0: not known
   double largest_curvature_ = 0;
   int count_ = 0;
+  int trials_ = 0;  ///< dampings that the last full step tried
 };
 
 }  // namespace extremal

@@ -11,6 +11,8 @@ namespace {
 /// What of the border is this small, relative, are null directions: families of extremals, whose
 /// eigenvalue is zero but for the error of the elements.
 constexpr double singular_border = 1e-8;
+/// Null directions of the chain, by coordinates, that are believed.
+constexpr std::size_t most_deflated = 4;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -90,6 +92,8 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
   const bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? Border::deflated_below : 0);
   exact_ = !regular && border_ > 0 && !chain_->deflated().empty();
   if (!regular && !exact_) return false;
+  // Between fixed ends there are as many null directions as coordinates, at most; many more are noise.
+  if (chain_->deflated().size() > most_deflated * static_cast<std::size_t>(n_)) return false;
   if (border_ == 0) return true;
   assemble_border(nodes);
   return exact_ ? factor_exactly(closing) : factor_schur(closing);

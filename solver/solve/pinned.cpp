@@ -14,6 +14,8 @@ namespace {
 constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
 constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
 constexpr int most_elements = 1 << 20;
+/// An error below the second (relative) that more elements reduce less than by the first is roundoff.
+constexpr double stagnation = 0.9, near_roundoff = 1e-9;
 constexpr int steps = 100;
 constexpr double roundoff = 1e-15;
 
@@ -106,7 +108,7 @@ Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
   const int order = std::min(scheme_.order, scheme_.degree + 1);
-  for (;;) {
+  for (double before = INFINITY;; before = outcome_.error) {
     if (!solve_discrete(elements)) {
       if (options_.elements > 0 || elements >= 256) break;
       elements *= 4;
@@ -127,6 +129,11 @@ Outcome PinnedSolve::run() {
     if (options_.elements > 0 || outcome_.error <= outcome_.tolerance) {
       outcome_.status = Status::converged;
       outcome_.message = "converged";
+      break;
+    }
+    if (outcome_.error > stagnation * before && outcome_.error < near_roundoff * size.q) {
+      outcome_.message = fmt::format("roundoff hides the tolerance {:.1e} from {} elements on; loosen it",
+                                     options_.tolerance, elements);
       break;
     }
     const double growth = std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order);

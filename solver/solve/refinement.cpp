@@ -23,6 +23,8 @@ constexpr int fine_steps = 12;
 constexpr double roundoff = 1e-15;
 /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
 constexpr double loosest_newton = 1e-6;
+/// Steps that end what Newton's method began.
+constexpr int most_polish = 3;
 /// Times that elements are planned before all are halved.
 constexpr int most_plans = 6;
 /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
@@ -33,6 +35,8 @@ constexpr double suspicious_step = 1e6;
 constexpr double rest = 1e-12;
 /// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh.
 constexpr double most_cost = 1e9, most_first_steps = 200;
+/// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
+constexpr double border_cost = 2;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
@@ -66,7 +70,11 @@ void Refinement::take(const ElementTables& tables) {
   most_cost_ = std::max({most_cost_, most_cost, most_first_steps * step_cost()});
 }
 
-double Refinement::step_cost() const { return w_.path.batches() * batch_cost(*tables_, w_.path.degree()); }
+double Refinement::step_cost() const {
+  const double n = w_.path.coordinates(), columns = problem_.ends.free + problem_.duration.free;
+  return w_.path.batches() * batch_cost(*tables_, w_.path.degree()) +
+         border_cost * w_.path.elements() * n * n * columns;
+}
 
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
@@ -245,15 +253,14 @@ Refinement::Attempt Refinement::attempt() {
   }
 }
 
-/// Newton's method may have left a residual within the tolerance; one more step then makes it much smaller.
+/// Newton's method may have left a residual within the tolerance; few more steps then make it roundoff.
 bool Refinement::solved() {
-  const auto passed = [this] { return test_.passed(problem_, w_.iteration, w_.path, scales_.magnitude); };
-  if (passed()) return true;
-  const double left = test_.share();
-  if (left <= std::min(10 * options_.tolerance, loosest_newton) &&
-      w_.iteration.full_step(w_.path, 0) == StepResult::ok) {
-    count_step();
-    if (passed() || test_.share() <= 0.1 * left) return true;
+  for (int step = 0;; ++step) {
+    if (test_.passed(problem_, w_.iteration, w_.path, scales_.magnitude)) return true;
+    const double allowed = std::min(10 * options_.tolerance, loosest_newton);
+    if (step == most_polish || test_.share() > allowed || exhausted()) break;
+    if (w_.iteration.full_step(w_.path, 0) != StepResult::ok) break;
+    record();
   }
   outcome_.message = test_.message();
   return false;

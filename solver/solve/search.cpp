@@ -25,6 +25,8 @@ constexpr double most_work = 1e7;
 constexpr double least_steps = 100;
 /// Tries to move the default guess to where L is finite.
 constexpr unsigned most_bends = 8;
+/// A path so much larger than the guess has run away to where forces vanish.
+constexpr double runaway = 100;
 /// Starts with noise that are cheaper than other durations are; and at most.
 constexpr unsigned first_noises = 8, most_noises = 10000;
 /// Of the guess's extent, in turn.
@@ -77,8 +79,10 @@ Refinement::Result Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
+  const bool far = problem_.ends.free > 0 && magnitude_ > 0 &&
+                   scales(w_.path, refinement_.tables()).magnitude > runaway * magnitude_;
   if (result == Refinement::Result::converged && strategy != from_guess &&
-      !refinement_.holds_on_other_elements()) {
+      (far || !refinement_.holds_on_other_elements())) {
     unheld_ = w_.path;
     result = Refinement::Result::failed;
   }
@@ -88,7 +92,9 @@ Refinement::Result Search::pursue(const char* strategy) {
 }
 
 bool Search::found(const char* strategy) {
-  return !refinement_.exhausted() && pursue(strategy) == Refinement::Result::converged;
+  if (refinement_.exhausted()) return false;
+  meet_ends(problem_, w_.path);
+  return pursue(strategy) == Refinement::Result::converged;
 }
 
 /// Downhill in windows.
@@ -165,6 +171,7 @@ bool Search::from_other_guesses() {
 Outcome Search::run() {
   outcome_.message = "the action is not finite along the guess";
   if (!begin()) return outcome_;
+  magnitude_ = scales(w_.path, refinement_.tables()).magnitude;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * w_.path.elements();
   allowance_ =
       std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns)));

@@ -47,6 +47,7 @@ class Search {
   Outcome outcome_;
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
+  double magnitude_ = 0;        ///< of the guess
   int allowance_ = 0;           ///< of Newton steps
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others

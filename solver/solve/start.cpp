@@ -115,6 +115,19 @@ std::vector<double> moved_ends(const Problem& problem, std::vector<double> ends,
   return ends;
 }
 
+void meet_ends(const Problem& problem, Path& path) {
+  const std::size_t n = problem.coordinates();
+  const int last = path.elements();
+  std::vector<double> now(path.node(0), path.node(0) + n);
+  now.insert(now.end(), path.node(last), path.node(last) + n);
+  const std::vector<double> ends = nearest(problem.ends, now);
+  for (std::size_t a = 0; a < n; ++a) {
+    if (ends[a] != now[a]) path.set_node(0, static_cast<int>(a), ends[a]);
+    if (ends[n + a] != now[n + a]) path.set_node(last, static_cast<int>(a), ends[n + a]);
+  }
+  path.load_ends();
+}
+
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path) {
   const std::size_t n = problem.coordinates();
