@@ -42,6 +42,13 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   end_gradient_.resize(n_);
 }
 
+void DiscreteAction::substitute(const Lagrangian& lagrangian, const ElementTables& tables) {
+  lagrangian_ = &lagrangian;
+  tables_ = &tables;
+  v_.resize(std::max(v_.size(), tables.shape().velocity_free ? 0 : n_ * sizes_.points));
+  rows_.resize(std::max(rows_.size(), lagrangian.rows(Order::hessian) * sizes_.points));
+}
+
 ElementBatch DiscreteAction::batch(const Path& path, int b) {
   return {.h = path.h(b),
           .start = path.start(b),

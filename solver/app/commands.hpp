@@ -34,6 +34,13 @@ struct CompareArguments {
 };
 int compare(const CompareArguments& arguments);
 
+struct ContinueArguments {
+  std::string scene;
+  std::vector<std::string> sets;
+  std::string output, csv, plot;  ///< paths; empty: not asked for
+};
+int follow(const ContinueArguments& arguments);
+
 struct CheckArguments {
   std::string scene;
   std::vector<std::string> sets;

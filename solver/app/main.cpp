@@ -47,12 +47,23 @@ void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& chose
   command.callback([&a, &chosen] { chosen = [&a] { return compare(a); }; });
 }
 
+void add_continue(CLI::App& app, ContinueArguments& a, std::function<int()>& chosen) {
+  CLI::App& command = *app.add_subcommand("continue", "follow the family of extremals that a scene asks for");
+  add_scene(command, a.scene, a.sets);
+  command.add_option("--output", a.output, "write the branch as JSON")->type_name("B.json");
+  command.add_option("--csv", a.csv, "write its points as CSV")->type_name("B.csv");
+  command.add_option("--plot", a.plot, "draw the branch")->type_name("P.svg|P.png");
+  command.callback([&a, &chosen] { chosen = [&a] { return follow(a); }; });
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Trajectories of Lagrangian systems as stationary points of the discrete action", "extremal");
   app.require_subcommand(1);
   std::function<int()> chosen;
   SolveArguments solve_arguments;
   add_solve(app, solve_arguments, chosen);
+  ContinueArguments continue_arguments;
+  add_continue(app, continue_arguments, chosen);
   CompareArguments compare_arguments;
   add_compare(app, compare_arguments, chosen);
 

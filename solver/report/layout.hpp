@@ -27,6 +27,10 @@ Figure layout(const Picture& picture);
 struct Comparison;
 Figure layout(const Comparison& comparison);
 
+/// What varies along a branch against action or duration. Throws std::invalid_argument without points.
+struct FollowedBranch;
+Figure layout(const FollowedBranch& branch);
+
 /// Curves against time, a panel each below the other.
 struct TimePanel {
   std::string label;

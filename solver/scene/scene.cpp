@@ -83,6 +83,11 @@ void check_search(const SearchTable& search) {
                      fmt::format("solutions = {}; need 1 to 1000", search.solutions.value));
 }
 
+void check_continuation(const ContinuationTable& continuation) {
+  if (const auto& points = continuation.points; points && !(points->value >= 2 && points->value <= 100000))
+    throw SceneError(points->at, fmt::format("points = {}; need 2 to 100000", points->value));
+}
+
 const toml::table* table(const Document& document, std::string_view name, bool needed) {
   const toml::table* found = document.root[name].as_table();
   if (!found && needed)
@@ -109,11 +114,14 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);
   if (const auto* search = table(document, "search", false))
     scene.search = read_search_table(document, *search);
+  if (const auto* continuation = table(document, "continuation", false))
+    scene.continuation = read_continuation_table(document, *continuation);
   check_system(scene.system);
   check_duration(scene);
   check_guess(scene);
   check_solve(scene.solve);
   if (scene.search) check_search(*scene.search);
+  if (scene.continuation) check_continuation(*scene.continuation);
   return scene;
 }
 

@@ -79,6 +79,14 @@ struct SearchTable {
   Number solutions;  ///< how many are wanted
 };
 
+/// A family of problems: "duration", "energy" or a parameter of the system varies.
+struct ContinuationTable {
+  Location at;
+  Text parameter;
+  Number to;
+  std::optional<Number> points;  ///< at most
+};
+
 struct Scene {
   std::string path;
   std::string title;
@@ -87,6 +95,7 @@ struct Scene {
   GuessTable guess;
   SolveTable solve;
   std::optional<SearchTable> search;
+  std::optional<ContinuationTable> continuation;
 };
 
 /// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).

@@ -14,7 +14,7 @@ constexpr KeyRecord keys[] = {
     {"", "solve", Kind::table},
     {"", "path", Kind::table, false, false},
     {"", "search", Kind::table},
-    {"", "continuation", Kind::table, false, false},
+    {"", "continuation", Kind::table},
     {"", "fit", Kind::table, false, false},
 
     {"system", "use", Kind::text},
@@ -47,6 +47,11 @@ constexpr KeyRecord keys[] = {
     {"solve", "method", Kind::text},
 
     {"search", "solutions", Kind::integer},
+
+    {"continuation", "parameter", Kind::text},
+    {"continuation", "to", Kind::number},
+    {"continuation", "points", Kind::integer},
+    {"continuation", "switch", Kind::boolean},
 
     {"system file", "about", Kind::note, true},
     {"system file", "system", Kind::table},

@@ -25,14 +25,14 @@ constexpr double unresolved = 1e-5, resolved = 1e-7;
 constexpr int most_elements = 256;
 constexpr double strongest_cut = 4;
 
-void scale(Move& move, double factor) {
-  for (double& x : move.step.nodes) x *= factor;
-  for (double& x : move.step.inner) x *= factor;
-  move.step.duration *= factor;
-  move.parameter *= factor;
-}
-
 }  // namespace
+
+void Move::scale(double factor) {
+  for (double& x : step.nodes) x *= factor;
+  for (double& x : step.inner) x *= factor;
+  step.duration *= factor;
+  parameter *= factor;
+}
 
 void Move::add(const Move& other, double factor) {
   for (std::size_t k = 0; k < step.nodes.size(); ++k) step.nodes[k] += factor * other.step.nodes[k];
@@ -134,7 +134,7 @@ bool ExtremalFamily::turn() {
   const double length = std::sqrt(dot(direction_, direction_));
   const double along = first ? onward(direction_) : dot(tangent_, direction_);
   next_ = direction_;
-  scale(next_, std::copysign(1 / length, along));
+  next_.scale(std::copysign(1 / length, along));
   cosine_ = first ? 1 : std::abs(along) / (length * std::sqrt(dot(tangent_, tangent_)));
   return cosine_ > sharpest_turn;
 }
@@ -167,15 +167,8 @@ bool ExtremalFamily::resolve() {
   const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
                                      {aim, aim, degree, degree, degree, most_elements, strongest_cut});
   if (finer.mesh.empty()) return finer.degree != 0;
-  const std::size_t n = w_.path.coordinates();
-  const std::vector<double> before(w_.path.mesh().begin(), w_.path.mesh().end());
-  std::vector<double> nodes;
-  for (std::size_t k = 0, from = 0; k < finer.mesh.size(); ++k) {
-    while (from + 2 < before.size() && before[from + 1] < finer.mesh[k]) ++from;
-    const double share = (finer.mesh[k] - before[from]) / (before[from + 1] - before[from]);
-    const double* tangent = tangent_.step.nodes.data() + from * n;
-    for (std::size_t a = 0; a < n; ++a) nodes.push_back(tangent[a] + share * (tangent[n + a] - tangent[a]));
-  }
+  std::vector<double> nodes =
+      interpolated(tangent_.step.nodes, w_.path.coordinates(), w_.path.mesh(), finer.mesh);
   w_.other.resample_from(w_.path, *tables_, finer.mesh);
   std::swap(w_.path, w_.other);
   w_.iteration.reset(problem(), *tables_, w_.path.elements());

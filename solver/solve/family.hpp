@@ -13,6 +13,7 @@ struct Move {
   Step step;
   double parameter = 0;
   void add(const Move& other, double factor);
+  void scale(double factor);
 };
 
 /// Extremals of which one parameter varies, in the workspace's path, followed past folds by pseudo-arclength

@@ -46,6 +46,20 @@ double largest(std::span<const double> x) {
 
 }  // namespace
 
+const ClosingEquation* closing_equation(const Problem& problem, const Path& path, ClosingEquation& equation) {
+  const Duration& duration = problem.duration;
+  if (!duration.free) return nullptr;
+  const std::size_t n = problem.coordinates();
+  if (duration.energy) {
+    equation.row.clear();
+    equation.value = *duration.energy;
+  } else {
+    equation.row.resize(2 * n);
+    equation.value = duration.where({path.node(0), n}, {path.node(path.elements()), n}, equation.row);
+  }
+  return &equation;
+}
+
 void NewtonIteration::reset(const Problem& problem, const ElementTables& tables, int elements,
                             const ElementTables* low) {
   problem_ = &problem;
@@ -80,20 +94,6 @@ void NewtonIteration::use_sparse(int elements) {
   if (!sparse_) sparse_.emplace();
   model_ = &*sparse_;
   sparse_->reset(*problem_, *tables_, elements);
-}
-
-const ClosingEquation* NewtonIteration::closing(const Path& path) {
-  const Duration& duration = problem_->duration;
-  if (!duration.free) return nullptr;
-  const std::size_t n = problem_->coordinates();
-  if (duration.energy) {
-    closing_.row.clear();
-    closing_.value = *duration.energy;
-  } else {
-    closing_.row.resize(2 * n);
-    closing_.value = duration.where({path.node(0), n}, {path.node(path.elements()), n}, closing_.row);
-  }
-  return &closing_;
 }
 
 /// The correction from the gradient that was evaluated last; NaN if it is not finite. Another correction

@@ -16,6 +16,10 @@
 
 namespace extremal {
 
+/// The equation that closes the duration of a problem, at the path's ends, in the memory of `equation`; null
+/// where the duration is fixed.
+const ClosingEquation* closing_equation(const Problem& problem, const Path& path, ClosingEquation& equation);
+
 /// What ended a run of steps.
 enum class StepResult {
   ok,
@@ -76,7 +80,7 @@ class NewtonIteration {
   /// Largest second derivative of S_h by q(0).
   double stiffness() const;
   /// The equation that closes the duration, at the path's ends; null where it is fixed.
-  const ClosingEquation* closing(const Path& path);
+  const ClosingEquation* closing(const Path& path) { return closing_equation(*problem_, path, closing_); }
 
  private:
   bool factor(const Path& path);

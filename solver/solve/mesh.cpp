@@ -68,4 +68,17 @@ std::vector<double> halved(const std::vector<double>& mesh) {
   return result;
 }
 
+std::vector<double> interpolated(std::span<const double> values, std::size_t n, std::span<const double> from,
+                                 std::span<const double> to) {
+  std::vector<double> result;
+  result.reserve(to.size() * n);
+  for (std::size_t k = 0, left = 0; k < to.size(); ++k) {
+    while (left + 2 < from.size() && from[left + 1] < to[k]) ++left;
+    const double share = (to[k] - from[left]) / (from[left + 1] - from[left]);
+    const double* at = values.data() + left * n;
+    for (std::size_t a = 0; a < n; ++a) result.push_back(at[a] + share * (at[n + a] - at[a]));
+  }
+  return result;
+}
+
 }  // namespace extremal

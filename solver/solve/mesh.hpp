@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 /// \file Meshes over τ = t/T in [0, 1], as many elements as asked, short where they should be.
@@ -30,5 +31,9 @@ class Density {
 
 std::vector<double> uniform_mesh(int elements);
 std::vector<double> halved(const std::vector<double>& mesh);
+
+/// Values of n numbers at the nodes of one mesh (values[k*n + a]), interpolated linearly to those of another.
+std::vector<double> interpolated(std::span<const double> values, std::size_t n, std::span<const double> from,
+                                 std::span<const double> to);
 
 }  // namespace extremal

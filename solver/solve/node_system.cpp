@@ -114,7 +114,10 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
   if (!schur_.allFinite()) return false;
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
-  if (pivots.minCoeff() > singular_border * pivots.maxCoeff()) {
+  // All pivots are roundoff where large entries stand beside a null row and column alone.
+  const double largest = schur_.cwiseAbs().maxCoeff();
+  if (pivots.minCoeff() > singular_border * pivots.maxCoeff() &&
+      pivots.maxCoeff() > singular_border * largest) {
     least_norm_.reset();
     return true;
   }

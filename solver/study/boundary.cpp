@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+#include <utility>
+
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -67,6 +70,20 @@ PlacedRelation read_relation(const BoundaryTable& boundary, const System& system
   fix_ends(boundary.end, true, system, placed);
   for (const Text& condition : boundary.conditions) add_condition(condition, system, placed);
   return placed;
+}
+
+void set_relation(const BoundaryTable& boundary, const System& system, Problem& problem) {
+  PlacedRelation placed = read_relation(boundary, system);
+  try {
+    problem.ends = solve_relation(placed.relation);
+    problem.boundary = std::move(placed.relation);
+  } catch (const RelationError& e) {
+    throw SceneError(placed.rows[e.row],
+                     e.contradiction ? "this condition contradicts the ones before it"
+                                     : "this condition follows from the ones before it; leave it out");
+  } catch (const std::invalid_argument& e) {
+    throw SceneError(boundary.at, e.what());
+  }
 }
 
 Duration read_duration(const BoundaryTable& boundary, const System& system) {

@@ -25,6 +25,9 @@ Closure read_closure(const BoundaryTable& boundary, const System& system);
 /// Fixed ends, conditions, or the closure of a periodic orbit. Throws SceneError.
 PlacedRelation read_relation(const BoundaryTable& boundary, const System& system);
 
+/// The relation into a problem, solved. Throws SceneError where conditions depend on each other.
+void set_relation(const BoundaryTable& boundary, const System& system, Problem& problem);
+
 /// Without the guess of a free duration: its value is then 0.
 Duration read_duration(const BoundaryTable& boundary, const System& system);
 

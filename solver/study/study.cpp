@@ -31,27 +31,13 @@ SolveOptions read_options(const SolveTable& table) {
   return options;
 }
 
-Problem solved_relation(const BoundaryTable& boundary, Problem problem, const PlacedRelation& placed) {
-  try {
-    problem.boundary = placed.relation;
-    problem.ends = solve_relation(placed.relation);
-    return problem;
-  } catch (const RelationError& e) {
-    throw SceneError(placed.rows[e.row],
-                     e.contradiction ? "this condition contradicts the ones before it"
-                                     : "this condition follows from the ones before it; leave it out");
-  } catch (const std::invalid_argument& e) {
-    throw SceneError(boundary.at, e.what());
-  }
-}
-
 Problem read_problem(const Scene& scene, const System& system) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
-  problem = solved_relation(scene.boundary, std::move(problem), read_relation(scene.boundary, system));
+  set_relation(scene.boundary, system, problem);
   problem.duration = read_duration(scene.boundary, system);
   read_guess(scene, system, problem);
   try {
@@ -75,6 +61,7 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   study.options = read_options(scene.solve);
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);
+  if (scene.continuation) study.continuation = read_continued(scene, study.system, study.problem);
   return study;
 }
 

@@ -8,6 +8,7 @@
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
 #include "solve/solve.hpp"
+#include "study/continued.hpp"
 #include "system/formula.hpp"
 
 /// \file From a scene to a solution.
@@ -21,7 +22,8 @@ struct Study {
   System system;
   Problem problem;
   SolveOptions options;
-  int solutions = 0;        ///< so many extremals are wanted; 0: the one reached from the guess
+  int solutions = 0;  ///< so many extremals are wanted; 0: the one reached from the guess
+  std::optional<Continued> continuation;
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "app/commands.hpp"
+#include "app/paths.hpp"
+#include "report/branch.hpp"
+#include "report/plot.hpp"
+#include "study/continued.hpp"
+#include "study/study.hpp"
+
+namespace extremal::app {
+namespace {
+
+/// One line that is written over, on a terminal.
+void show(const BranchPoint& point) {
+  fmt::print(stderr, "\r\x1b[K{:.10g}, duration {:.6g}, action {:.6g}", point.parameter,
+             point.solution.duration(), point.solution.action);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+int follow(const ContinueArguments& a) {
+  check_writable("--output", a.output);
+  check_writable("--csv", a.csv);
+  check_writable("--plot", a.plot);
+  if (!a.plot.empty()) check_plot_path(a.plot);
+  const Study study = load(a.scene, a.sets);
+  const bool terminal = ::isatty(STDERR_FILENO);
+  std::function<void(const BranchPoint&)> progress;
+  if (terminal) progress = show;
+  const FollowedBranch branch = extremal::follow(study, progress);
+  if (terminal) fmt::print(stderr, "\r\x1b[K");
+  if (!a.output.empty()) write_json(a.output, branch);
+  if (branch.points.empty()) {
+    fmt::print(stderr, "error: {}: {}\n", a.scene, branch.message);
+    return Exit::not_converged;
+  }
+  if (!a.csv.empty()) write_csv(a.csv, branch);
+  if (!a.plot.empty()) write_plot(a.plot, branch);
+  fmt::print("{}", summary(branch));
+  return Exit::done;
+}
+
+}  // namespace extremal::app

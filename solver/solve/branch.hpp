@@ -1,0 +1,90 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "solve/family.hpp"
+
+/// \file The equations of a branch of extremals, linearised at one path of it.
+
+namespace extremal {
+
+/// What varies along a branch.
+enum class Varied { duration, energy, parameter };
+
+/// Problems that differ in one number.
+struct ProblemFamily {
+  Problem problem;  ///< where it begins
+  Varied varied = Varied::duration;
+  double from = 0, to = 1;  ///< the number there, and where the branch is to lead
+  /// The problem with this value of a parameter, if it has one; for Varied::parameter. Its boundary relation
+  /// has the same coefficients, its ends, duration and energy may differ.
+  std::function<std::optional<Problem>(double)> at = {};
+};
+
+/// Curves through the workspace's path: with x the path, δS = 0 and what closes a free duration leave of (x,
+/// T) one direction where the duration or the energy varies, and of (x, T, p) one where a parameter p does.
+class Branch {
+ public:
+  Branch(const ProblemFamily& family, Workspace& workspace);
+
+  /// Takes over the path in the workspace, on elements of its degree, with this value of the coordinate.
+  bool place(double coordinate);
+  /// The same after the elements changed.
+  void bind();
+  /// What Move::parameter changes: the parameter, or the duration.
+  double coordinate() const { return by_duration() ? w_.path.duration() : coordinate_; }
+  /// Moves path and coordinate; false if there is no problem there.
+  bool apply(const Move& move, double factor);
+
+  /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
+  bool linearise();
+  Move correction, direction;
+
+  /// Of the path that was linearised.
+  double action() const { return action_; }
+  /// The number that varies.
+  double varied() const;
+  /// By how much a move makes it greater, correction and direction apart.
+  double change(bool along) const;
+  /// The sign of the determinant of the equations with the tangent `onward`·direction as their last row: it
+  /// changes where branches cross, but not at folds.
+  int orientation(double onward) const;
+  /// Of the second variation, duration and parameter held; eigenvalues within `threshold` of zero are null.
+  void set_null_threshold(double threshold) { threshold_ = threshold; }
+  const Inertia& inertia() const { return inertia_; }
+
+  /// ∂S/∂s along onward·direction as the derivatives of the action tell it: −E ∂T/∂s + ∂S/∂p ∂p/∂s.
+  double action_slope() const { return action_slope_; }
+
+  const Problem& problem() const { return problem_; }
+  const ElementTables& tables() const { return *tables_; }
+  /// Mean over nodes, relative to an extent of the path; durations relative to another, parameters to the
+  /// distance wanted.
+  double dot(const Move& a, const Move& b) const;
+  struct Units {
+    double extent = 1, duration = 1;
+  };
+  void set_units(const Units& units) { units_ = units; }
+
+ private:
+  bool by_duration() const { return family_.varied != Varied::parameter; }
+  bool linearise_duration();
+  bool linearise_parameter();
+  double solve_beside(double by, Move& move);
+  void fit_path(const Problem& problem);
+
+  const ProblemFamily& family_;
+  Workspace& w_;
+  Problem problem_;
+  Levels beside_;
+  const ElementTables* tables_ = nullptr;
+  double coordinate_ = 0, unit_, threshold_ = 1e-8;
+  Units units_;
+  double action_ = 0, energy_ = 0, energy_unit_ = 1, action_slope_ = 0;
+  int closing_sign_ = 1;
+  Inertia inertia_;
+  Path at_;
+};
+
+}  // namespace extremal

@@ -1,0 +1,151 @@
+#include "study/continued.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "study/boundary.hpp"
+#include "study/modelling.hpp"
+#include "study/study.hpp"
+
+namespace extremal {
+namespace {
+
+/// Values that differ by less than this, relative, are the same.
+constexpr double same = 1e-12;
+/// Part of the way to the value wanted, where it is tried what depends on a parameter.
+constexpr double near = 1e-3;
+
+void check_different(const ContinuationTable& table, double from) {
+  const double to = table.to.value;
+  if (std::abs(to - from) <= same * std::max(std::abs(to), std::abs(from)))
+    throw SceneError(table.to.at, fmt::format("{} is {} already; give another value for 'to'",
+                                              table.parameter.value, from));
+}
+
+Continued varied_duration(const ContinuationTable& table, const Problem& problem) {
+  if (problem.duration.free)
+    throw SceneError(position(table.parameter, 0),
+                     "the duration is free, so it cannot be varied; vary \"energy\" or a parameter");
+  if (!problem.lagrangian->structure().autonomous)
+    throw SceneError(position(table.parameter, 0),
+                     "varying the duration needs a Lagrangian that does not depend on t");
+  if (!(table.to.value > 0))
+    throw SceneError(table.to.at, fmt::format("to = {}; a duration must be positive", table.to.value));
+  return {"duration", {problem, Varied::duration, problem.duration.value, table.to.value, {}}};
+}
+
+Continued varied_energy(const ContinuationTable& table, const Problem& problem) {
+  if (!problem.duration.energy)
+    throw SceneError(position(table.parameter, 0),
+                     "varying the energy needs duration = \"free\" and 'energy' in [boundary]");
+  return {"energy", {problem, Varied::energy, *problem.duration.energy, table.to.value, {}}};
+}
+
+bool same_coefficients(const EndMap& a, const EndMap& b) {
+  return a.free == b.free &&
+         std::equal(a.z.begin(), a.z.end(), b.z.begin(), b.z.end(), [](const Triplet& x, const Triplet& y) {
+           return x.row == y.row && x.column == y.column && x.value == y.value;
+         });
+}
+
+Assignment* find_parameter(SystemTable& table, const std::string& name) {
+  const auto found = std::find_if(table.parameters.begin(), table.parameters.end(),
+                                  [&](const Assignment& a) { return a.name == name; });
+  return found == table.parameters.end() ? nullptr : &*found;
+}
+
+/// A scene whose parameter can be given any value.
+class VariedScene {
+ public:
+  VariedScene(const Scene& scene, Problem problem, std::string parameter)
+      : system_(scene.system),
+        boundary_(scene.boundary),
+        problem_(std::move(problem)),
+        parameter_(std::move(parameter)) {
+    problem_.guess = {};
+  }
+
+  Problem at(double value) {
+    find_parameter(system_, parameter_)->values.front().value = value;
+    const System system = make_system(system_);
+    Problem problem = problem_;
+    problem.lagrangian = system.lagrangian;
+    set_relation(boundary_, system, problem);
+    problem.duration = read_duration(boundary_, system);
+    return problem;
+  }
+
+ private:
+  SystemTable system_;
+  BoundaryTable boundary_;
+  Problem problem_;
+  std::string parameter_;
+};
+
+Continued varied_parameter(const Scene& scene, const System& system, const Problem& problem) {
+  const ContinuationTable& table = *scene.continuation;
+  const std::string& name = table.parameter.value;
+  const auto known = system.parameters.find(name);
+  if (known == system.parameters.end()) {
+    std::vector<std::string> names{"duration", "energy"};
+    for (const auto& [other, value] : system.parameters) names.push_back(other);
+    throw UnknownName(position(table.parameter, 0), fmt::format("unknown parameter '{}'", name), name, names);
+  }
+  if (known->second.list)
+    throw SceneError(position(table.parameter, 0),
+                     fmt::format("'{}' is a list; a parameter that varies is one number", name));
+  const auto varied = std::make_shared<VariedScene>(scene, problem, name);
+  Continued continued{name, {problem, Varied::parameter, known->second.value.front(), table.to.value, {}}};
+  const double beside = continued.family.from + near * (table.to.value - continued.family.from);
+  if (!same_coefficients(problem.ends, varied->at(beside).ends))
+    throw SceneError(
+        position(table.parameter, 0),
+        fmt::format("the coefficients of the boundary relation depend on '{}'; only its values may", name));
+  continued.family.at = [varied](double value) -> std::optional<Problem> {
+    try {
+      return varied->at(value);
+    } catch (const SceneError&) {
+      return std::nullopt;
+    }
+  };
+  return continued;
+}
+
+}  // namespace
+
+Continued read_continued(const Scene& scene, const System& system, const Problem& problem) {
+  const ContinuationTable& table = *scene.continuation;
+  const std::string& name = table.parameter.value;
+  Continued continued = name == "duration" ? varied_duration(table, problem)
+                        : name == "energy" ? varied_energy(table, problem)
+                                           : varied_parameter(scene, system, problem);
+  check_different(table, continued.family.from);
+  if (table.points) continued.points = static_cast<int>(table.points->value);
+  return continued;
+}
+
+FollowedBranch follow(const Study& study, const std::function<void(const BranchPoint&)>& progress) {
+  if (!study.continuation)
+    throw std::invalid_argument(study.scene +
+                                ": the table [continuation] is missing: what is to vary, and how far");
+  const Continued& continued = *study.continuation;
+  Continuation branch(continued.family, {study.options, continued.points});
+  FollowedBranch followed;
+  followed.title = study.title;
+  followed.parameter = continued.parameter;
+  followed.names = study.problem.names;
+  while (branch.advance()) {
+    followed.points.push_back(branch.point());
+    if (progress) progress(branch.point());
+  }
+  followed.end = branch.end();
+  followed.message = branch.message();
+  followed.worst_action_slope = branch.worst_action_slope();
+  return followed;
+}
+
+}  // namespace extremal
