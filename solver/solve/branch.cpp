@@ -59,7 +59,29 @@ bool Branch::apply(const Move& move, double factor) {
   w_.path.add(move.step.nodes, move.step.inner, factor);
   if (!by_duration()) w_.path.set_duration(duration);
   w_.path.load_ends();
-  return place(coordinate);
+  const std::vector<double> before = ends();
+  if (!place(coordinate)) return false;
+  ends_ = ends();
+  for (std::size_t e = 0; e < ends_.size(); ++e) ends_[e] -= before[e];
+  stretch_ = by_duration() ? 0 : w_.path.duration() - duration;
+  return true;
+}
+
+/// q(0), q(T).
+std::vector<double> Branch::ends() const {
+  const int n = w_.path.coordinates();
+  std::vector<double> both(w_.path.node(0), w_.path.node(0) + n);
+  both.insert(both.end(), w_.path.node(w_.path.elements()), w_.path.node(w_.path.elements()) + n);
+  return both;
+}
+
+double Branch::drift(const Move& tangent) const {
+  const std::size_t n = ends_.size() / 2, last = tangent.step.nodes.size() - n;
+  double sum = 0;
+  for (std::size_t a = 0; a < n; ++a)
+    sum += tangent.step.nodes[a] * ends_[a] + tangent.step.nodes[last + a] * ends_[n + a];
+  return sum / (units_.extent * units_.extent * static_cast<double>(tangent.step.nodes.size())) +
+         tangent.step.duration * stretch_ / (units_.duration * units_.duration);
 }
 
 bool Branch::linearise() {

@@ -36,6 +36,9 @@ class Branch {
   double coordinate() const { return by_duration() ? w_.path.duration() : coordinate_; }
   /// Moves path and coordinate; false if there is no problem there.
   bool apply(const Move& move, double factor);
+  /// Scalar product of a tangent with what the last apply() moved besides: ends and durations that do not
+  /// depend linearly on the parameter.
+  double drift(const Move& tangent) const;
 
   /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
   bool linearise();
@@ -73,6 +76,7 @@ class Branch {
   bool linearise_parameter();
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);
+  std::vector<double> ends() const;
 
   const ProblemFamily& family_;
   Workspace& w_;
@@ -85,6 +89,8 @@ class Branch {
   int closing_sign_ = 1;
   Inertia inertia_;
   Path at_;
+  std::vector<double> ends_;  ///< what the last apply() moved them by besides, 2n
+  double stretch_ = 0;        ///< and the duration
 };
 
 }  // namespace extremal

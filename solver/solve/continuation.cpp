@@ -32,8 +32,8 @@ constexpr double strongest_cut = 16;
 constexpr double lavish = 1e-4;
 /// Of the size of the guess: a path smaller than this is at rest.
 constexpr double rest = 1e-9;
-/// The unit of lengths becomes no smaller than this share of what it was before.
-constexpr double least_extent = 0.1;
+/// The unit of lengths is no smaller than this share of the largest path so far.
+constexpr double least_extent = 0.3;
 
 }  // namespace
 
@@ -95,9 +95,9 @@ bool Continuation::begin() {
     return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
   if (here_.rate * (family_.to - family_.from) < 0) here_.scale(-1);
   measure_anew();
-  check_action();
   first_ = here_;
   found_.push_back(read(PointKind::regular));
+  check_action();
   return true;
 }
 
@@ -109,8 +109,8 @@ bool Continuation::correct(double length, const double* landing) {
     const Move& direction = branch_.direction;
     Move& move = branch_.correction;
     const double along = landing ? branch_.change(true) : branch_.dot(tangent_, direction);
-    const double off =
-        landing ? branch_.varied() + branch_.change(false) - *landing : branch_.dot(tangent_, move);
+    const double off = landing ? branch_.varied() + branch_.change(false) - *landing
+                               : branch_.dot(tangent_, move) + branch_.drift(tangent_);
     if (along == 0) return false;
     move.add(direction, -off / along);
     const double size = std::sqrt(branch_.dot(move, move));
@@ -193,11 +193,13 @@ bool Continuation::turn(bool first) {
   return true;
 }
 
-/// Lengths from here on in units of the path that is here, or of larger ones before: one that shrinks to
-/// nothing is passed.
+/// Lengths from here on in units of the path that is here, or of a share of the largest before: a path that
+/// shrinks to nothing is passed.
 void Continuation::measure_anew() {
-  extent_ = std::max(sizes().q, least_extent * extent_);
-  here_.units = {extent_ > 0 ? extent_ : 1, w_.path.duration()};
+  const double extent = sizes().q;
+  largest_extent_ = std::max(largest_extent_, extent);
+  const double unit = std::max(extent, least_extent * largest_extent_);
+  here_.units = {unit > 0 ? unit : 1, w_.path.duration()};
   branch_.set_units(here_.units);
   here_.scale(1 / std::sqrt(branch_.dot(here_.tangent, here_.tangent)));
 }

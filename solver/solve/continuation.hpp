@@ -105,10 +105,10 @@ class Continuation {
   ContinuationOptions options_;
   Workspace w_;
   Branch branch_;
-  Stand here_, first_;  ///< where the path in the workspace stands; the first point
-  Move tangent_;        ///< that the path is corrected across
-  double extent_ = 0;   ///< of paths, the unit of lengths
-  double rest_ = 0;     ///< paths whose extent is less are at rest
+  Stand here_, first_;         ///< where the path in the workspace stands; the first point
+  Move tangent_;               ///< that the path is corrected across
+  double largest_extent_ = 0;  ///< of paths so far
+  double rest_ = 0;            ///< paths whose extent is less are at rest
   double length_ = 0, longest_ = 0, cosine_ = 1, error_ = 0;
   int corrections_ = 0, count_ = 0;
   bool started_ = false, crowded_ = false;  ///< elements were too many

@@ -165,8 +165,30 @@ TEST_F(SceneFiles, Search) {
             "scene.toml:8:1: [search] has no solutions; give how many extremals are wanted");
 }
 
+TEST_F(SceneFiles, ContinuationIsRead) {
+  const auto continuation = [&](const std::string& lines) { return pendulum + "[continuation]\n" + lines; };
+  const Scene scene =
+      read_scene(write("scene.toml", continuation("parameter = \"duration\"\nto = 3\nswitch = false\n")));
+  ASSERT_TRUE(scene.continuation);
+  EXPECT_EQ(scene.continuation->parameter.value, "duration");
+  EXPECT_EQ(scene.continuation->to.value, 3);
+  EXPECT_FALSE(scene.continuation->points);
+  const std::string fine = "parameter = \"duration\"\nto = 3\n";
+  EXPECT_EQ(message(continuation("to = 3\n")),
+            "scene.toml:8:1: [continuation] has no parameter; give \"duration\", \"energy\" or the name of a "
+            "parameter of the system");
+  EXPECT_EQ(message(continuation("parameter = \"duration\"\n")),
+            "scene.toml:8:1: [continuation] has no 'to'; give the value that the family is to lead to");
+  EXPECT_EQ(message(continuation(fine + "points = 1\n")), "scene.toml:11:10: points = 1; need 2 to 100000");
+  EXPECT_EQ(
+      message(continuation(fine + "switch = true\n")),
+      "scene.toml:11:10: following the branches that bifurcate is not available yet; leave 'switch' out");
+  EXPECT_EQ(message(continuation(fine + "step = 1\n")),
+            "scene.toml:11:1: unknown key 'step' in [continuation]");
+}
+
 TEST_F(SceneFiles, WhatIsNotAvailableYet) {
-  for (const std::string table : {"path", "continuation", "fit"})
+  for (const std::string table : {"path", "fit"})
     EXPECT_EQ(message(pendulum + "[" + table + "]\nx = 1\n"),
               "scene.toml:8:2: [" + table + "] is not available yet");
   EXPECT_EQ(message(with("lagrangian", "hamiltonian")),

@@ -1,0 +1,208 @@
+#include "solve/continuation.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "solve/laws.hpp"
+
+/// \file Families of extremals against closed forms: amplitudes, periods, folds, crossings, closed curves.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+/// λ of q'' = −λ e^q, q(0) = q(1) = 0, by the parameter θ of its solution
+/// q = −2 log(cosh((t − ½)θ/2) / cosh(θ/4)): λ = (θ²/2) / cosh²(θ/4).
+double bratu_lambda(double theta) { return theta * theta / 2 / std::pow(std::cosh(theta / 4), 2); }
+
+/// q'(0) = θ tanh(θ/4), which grows with θ.
+double bratu_theta(double slope) {
+  double low = 0, high = 60;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = (low + high) / 2;
+    (middle * std::tanh(middle / 4) < slope ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+ProblemFamily varied(const std::function<Problem(double)>& at, double from, double to) {
+  return {at(from), Varied::parameter, from, to, [at](double p) { return std::optional<Problem>(at(p)); }};
+}
+
+std::vector<BranchPoint> follow(Continuation& branch) {
+  std::vector<BranchPoint> points;
+  while (branch.advance()) points.push_back(branch.point());
+  return points;
+}
+
+std::vector<double> values(const std::vector<BranchPoint>& points, PointKind kind) {
+  std::vector<double> found;
+  for (const BranchPoint& point : points)
+    if (point.kind == kind) found.push_back(point.parameter);
+  return found;
+}
+
+State start_of(const BranchPoint& point) { return at(point.solution.trajectory, 0); }
+
+TEST(Continuation, BratuFoldAndBothBranches) {
+  const auto problem = [](double lambda) {
+    return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - lambda * exp(q[0]); }),
+                      {0}, {0}, 1);
+  };
+  Continuation branch(varied(problem, 0.5, 4), {within(1e-10), 60});
+  const std::vector<BranchPoint> points = follow(branch);
+  const std::vector<double> folds = values(points, PointKind::fold);
+  ASSERT_EQ(folds.size(), 1u);
+  EXPECT_NEAR(folds[0], 3.513830719125162, 1e-8);
+  EXPECT_TRUE(values(points, PointKind::branch).empty());
+  EXPECT_EQ(branch.end(), BranchEnd::points);
+  for (const BranchPoint& point : points)
+    EXPECT_NEAR(bratu_lambda(bratu_theta(start_of(point).v[0])), point.parameter, 1e-8 * point.parameter);
+  // Far along the upper branch, where the index is one.
+  EXPECT_LT(points.back().parameter, 0.5);
+  EXPECT_EQ(points.front().solution.morse_index, 0);
+  EXPECT_EQ(points.back().solution.morse_index, 1);
+  EXPECT_LE(branch.worst_action_slope(), 1e-6);
+}
+
+TEST(Continuation, BucklingLoads) {
+  const auto problem = [](double lambda) {
+    return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 + lambda * cos(q[0]); }),
+                      {0}, {0}, 1);
+  };
+  Continuation branch(varied(problem, 5, 50), {});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_EQ(points.back().parameter, 50);
+  const std::vector<double> loads = values(points, PointKind::branch);
+  ASSERT_EQ(loads.size(), 2u);
+  EXPECT_NEAR(loads[0], pi * pi, 1e-8);
+  EXPECT_NEAR(loads[1], 4 * pi * pi, 1e-8);
+  EXPECT_TRUE(values(points, PointKind::fold).empty());
+}
+
+/// q'' = −ω²q from 0 to 1 in the time 1: q'(0) = ω/sin ω.
+TEST(Continuation, OscillatorInItsFrequency) {
+  const auto problem = [](double omega) {
+    return fixed_ends(
+        trace(1, [=](auto q, auto v, auto) { return (v[0] * v[0] - omega * omega * q[0] * q[0]) / 2; }), {0},
+        {1}, 1);
+  };
+  Continuation branch(varied(problem, 0.5, 3), {within(1e-10), 60});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_EQ(points.back().parameter, 3);
+  for (const BranchPoint& point : points) {
+    const double omega = point.parameter, exact = omega / std::sin(omega);
+    EXPECT_NEAR(start_of(point).v[0], exact, 1e-8 * exact);
+    // S = q q'/2 at the end.
+    EXPECT_NEAR(point.solution.action, omega / std::tan(omega) / 2, 1e-9 * std::abs(exact));
+  }
+}
+
+/// Ends and the duration may depend on the parameter: a free particle from 0 to p² in the time p.
+TEST(Continuation, EndsAndDurationThatVary) {
+  const auto free = trace(1, [](auto, auto v, auto) { return v[0] * v[0] / 2; });
+  const auto problem = [&](double p) { return fixed_ends(free, {0}, {p * p}, p); };
+  Continuation branch(varied(problem, 1, 3), {});
+  for (const BranchPoint& point : follow(branch)) {
+    EXPECT_NEAR(start_of(point).v[0], point.parameter, 1e-12 * point.parameter);
+    EXPECT_NEAR(point.solution.action, std::pow(point.parameter, 3) / 2, 1e-10);
+  }
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_LE(branch.worst_action_slope(), 1e-7);
+}
+
+std::shared_ptr<const Lagrangian> pendulum() {
+  return trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + cos(q[0]); });
+}
+
+/// Of a libration with the energy E: 4 K(k), k² = (E + 1)/2.
+double period(double energy) { return 4 * std::comp_ellint_1(std::sqrt((energy + 1) / 2)); }
+
+/// From 0 to 0 in half a period.
+TEST(Continuation, PendulumInTheDuration) {
+  const Problem problem =
+      guessed(fixed_ends(pendulum(), {0}, {0}, 3.3), [](double tau) { return Values{std::sin(pi * tau)}; });
+  Continuation branch({problem, Varied::duration, 3.3, 6, {}}, {within(1e-10), 60});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_EQ(points.back().parameter, 6);
+  EXPECT_GT(points.size(), 8u);
+  for (const BranchPoint& point : points) {
+    EXPECT_EQ(point.parameter, point.solution.duration());
+    EXPECT_NEAR(period(*point.solution.energy) / 2, point.parameter, 1e-7);
+  }
+  EXPECT_LE(branch.worst_action_slope(), 1e-6);
+}
+
+TEST(Continuation, LibrationsInTheEnergy) {
+  Problem problem = with_ends(pendulum(), 6.4, [](BoundaryRelation& r) {
+    const int row = r.add_row(0);
+    r.add(row, 0, 1);
+    r.add(row, 1, -1);
+  });
+  problem.periodic = true;
+  problem.duration = {.value = 6.4, .free = true, .energy = -0.9, .where = {}};
+  problem = guessed(std::move(problem), [](double tau) { return Values{0.45 * std::sin(2 * pi * tau)}; });
+  Continuation branch({problem, Varied::energy, -0.9, 0.9, {}}, {within(1e-9), 80});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_NEAR(points.back().parameter, 0.9, 1e-12);
+  for (const BranchPoint& point : points) {
+    EXPECT_NEAR(*point.solution.energy, point.parameter, 1e-7);
+    EXPECT_NEAR(point.solution.duration(), period(point.parameter), 1e-7);
+    EXPECT_EQ(point.kind, PointKind::regular);
+  }
+  EXPECT_LE(branch.worst_action_slope(), 1e-6);
+}
+
+/// Rest at the zeros of V' = q² + p² − 1, with both ends free: a circle in (p, q).
+TEST(Continuation, ClosedFamily) {
+  const auto problem = [](double p) {
+    const auto lagrangian = trace(1, [=](auto q, auto v, auto) {
+      return v[0] * v[0] / 2 - q[0] * q[0] * q[0] / 3 - (p * p - 1) * q[0];
+    });
+    return guessed(with_ends(lagrangian, 1, [](BoundaryRelation&) {}), [](double) { return Values{1}; });
+  };
+  Continuation branch(varied(problem, 0.1, 2), {within(1e-10), 600});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::closed) << branch.message();
+  const std::vector<double> folds = values(points, PointKind::fold);
+  ASSERT_EQ(folds.size(), 2u);
+  EXPECT_NEAR(folds[0], 1, 1e-8);
+  EXPECT_NEAR(folds[1], -1, 1e-8);
+  for (const BranchPoint& point : points) {
+    const double q = start_of(point).q[0], p = point.parameter;
+    EXPECT_NEAR(q * q + p * p, 1, 1e-9);
+  }
+}
+
+/// There is no extremal where the parameter is negative.
+TEST(Continuation, EndsWhereThereIsNoProblem) {
+  const auto at = [](double p) -> std::optional<Problem> {
+    if (p <= 0) return std::nullopt;
+    return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 + p * cos(q[0]); }), {0},
+                      {1}, 1);
+  };
+  Continuation branch({*at(1), Varied::parameter, 1, -1, at}, {});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::limit);
+  EXPECT_GT(points.size(), 3u);
+  EXPECT_GT(points.back().parameter, 0);
+  EXPECT_LT(points.back().parameter, 1e-3);
+  EXPECT_NE(branch.message().find("cannot be followed"), std::string::npos) << branch.message();
+}
+
+/// No extremal to begin with: half a period of the oscillator between different ends.
+TEST(Continuation, WithoutAFirstPoint) {
+  const auto oscillator = trace(1, [](auto q, auto v, auto) { return (v[0] * v[0] - q[0] * q[0]) / 2; });
+  Continuation branch({fixed_ends(oscillator, {0}, {1}, pi), Varied::duration, pi, 4, {}}, {});
+  EXPECT_FALSE(branch.advance());
+  EXPECT_EQ(branch.end(), BranchEnd::not_started);
+  EXPECT_NE(branch.message().find("no extremal to begin with: "), std::string::npos) << branch.message();
+}
+
+}  // namespace
+}  // namespace extremal::laws
