@@ -46,8 +46,8 @@ class DiscreteAction {
   void reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements, bool border,
              bool condense = true);
 
-  /// From now on values and gradients are those of another Lagrangian of as many coordinates, on tables of the
-  /// same scheme bound to it; the factors there are stay. evaluate() needs the one that reset() was given.
+  /// From now on values and gradients are those of another Lagrangian of as many coordinates, on tables of
+  /// the same scheme bound to it; the factors stay. evaluate() needs the one that reset() was given.
   void substitute(const Lagrangian& lagrangian, const ElementTables& tables);
 
   /// S_h and its gradient; condensed with the factors there are into `nodes`.
