@@ -11,7 +11,8 @@ namespace {
 /// Errors relative to the largest range (max − min) among the coordinates, velocities, momenta.
 struct Errors {
   double q = 0, v = 0, p = 0;
-  double absolute = 0;  ///< of q, in its own units
+  double absolute = 0;   ///< of q, in its own units
+  double magnitude = 0;  ///< largest |q|
 };
 
 /// ∂L/∂q' of states on the way.
@@ -54,6 +55,7 @@ Errors errors(const Problem& problem, const Solution& solution, const Table& tru
     e.absolute = std::max(e.absolute, largest_difference(q, truth.states[i].q));
     e.v = std::max(e.v, largest_difference(v, truth.states[i].v));
     e.p = std::max(e.p, largest_difference(p, true_p[i]));
+    for (double x : truth.states[i].q) e.magnitude = std::max(e.magnitude, std::abs(x));
     true_q.push_back(truth.states[i].q);
     true_v.push_back(truth.states[i].v);
   }
@@ -80,8 +82,8 @@ TEST_P(Accuracy, MeetsEveryToleranceAndEstimatesItsError) {
     EXPECT_LE(e.q, options.tolerance) << "q at " << options.tolerance;
     EXPECT_LE(e.v, 10 * options.tolerance) << "q' at " << options.tolerance;
     EXPECT_LE(e.p, 10 * options.tolerance) << "p at " << options.tolerance;
-    // Below, the truth itself is rounded.
-    const double rounding = 4e-16 * e.absolute / std::max(e.q, 1e-300);
+    // Truth and sample are rounded, each by half a unit in the last place of q.
+    const double rounding = 0x1p-52 * e.magnitude;
     EXPECT_LE(s.error_estimate, 100 * (e.absolute + rounding)) << "estimate at " << options.tolerance;
     EXPECT_GE(s.error_estimate, 0.01 * (e.absolute - rounding)) << "estimate at " << options.tolerance;
     far +=
