@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/units.hpp"
+
 namespace extremal {
 
 namespace {
@@ -23,19 +25,10 @@ constexpr double resolution = 1e-13;
 MatrixXd even(const MatrixXd& m) { return (m + m.transpose()) / 2; }
 
 /// Of momenta over coordinates, square roots: those in which the rows of A, B, D have entries of at most
-/// about
-/// 1. A diagonal may vanish; rows do not.
+/// about 1.
 VectorXd units(const Piece& piece) {
-  constexpr int sweeps = 3;
-  MatrixXd size =
-      piece.a.cwiseAbs() + piece.b.cwiseAbs() + piece.b.transpose().cwiseAbs() + piece.d.cwiseAbs();
-  VectorXd unit = VectorXd::Ones(size.rows());
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    const VectorXd row = size.rowwise().maxCoeff().cwiseSqrt();
-    unit = unit.cwiseProduct(row);
-    size = row.cwiseInverse().asDiagonal() * size * row.cwiseInverse().asDiagonal();
-  }
-  return unit;
+  return equilibration(piece.a.cwiseAbs() + piece.b.cwiseAbs() + piece.b.transpose().cwiseAbs() +
+                       piece.d.cwiseAbs());
 }
 
 /// A zero of f between `low` and `high`, where f has the values given, of opposite signs: the method of Brent

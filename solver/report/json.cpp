@@ -39,6 +39,7 @@ class Fields {
     stability();
     append(object_, "momentum_start", momentum("momentum_start", result.solution.momentum_start));
     append(object_, "momentum_end", momentum("momentum_end", result.solution.momentum_end));
+    multipliers();
     counts();
   }
 
@@ -88,6 +89,18 @@ class Fields {
     append(object_, "windows", known ? std::move(windows) : Json(nullptr));
     const bool times_known = known && solution.conjugate_times_known;
     append(object_, "conjugate_times", times_known ? std::move(times) : Json(nullptr));
+  }
+
+  /// Null where the orbit is not periodic and where they are not known.
+  void multipliers() {
+    const Floquet* floquet = converged_ && result_.solution.floquet ? &*result_.solution.floquet : nullptr;
+    Json values = Json::array();
+    if (floquet)
+      for (const std::complex<double>& value : floquet->multipliers)
+        values.push_back({number("multipliers", value.real()), number("multipliers", value.imag())});
+    append(object_, "multipliers", floquet ? std::move(values) : Json(nullptr));
+    append(object_, "krein", floquet ? Json(floquet->krein) : Json(nullptr));
+    append_number("symplectic_defect", floquet ? std::optional(floquet->symplectic_defect) : std::nullopt);
   }
 
   void counts() {

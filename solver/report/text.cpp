@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "report/figure.hpp"
 
@@ -70,6 +71,22 @@ std::string windows_text(const Solution& solution) {
 /// "1 element", "2 elements".
 std::string counted(int count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+/// Stability by pairs of multipliers λ, 1/λ, and quadruples λ, 1/λ with their conjugates.
+std::string stability_text(const Solution& solution) {
+  if (!solution.floquet || solution.floquet->multipliers.empty()) return "";
+  const Floquet& floquet = *solution.floquet;
+  std::string text = floquet.stable() ? "stable" : "unstable";
+  const char* separator = ": ";
+  const auto list = [&](int count, const char* noun, const char* rest) {
+    if (count > 0) text += std::exchange(separator, ", ") + counted(count, noun) + rest;
+  };
+  list(floquet.real_pairs, "real pair", "");
+  list(floquet.quadruples, "complex quadruple", "");
+  list(floquet.circle_pairs, "pair", " on the unit circle");
+  list(floquet.trivial_pairs, "trivial pair", " at ±1 (double, known to √ε)");
+  return text + fmt::format("; largest modulus {:.9g}", std::abs(floquet.multipliers.front()));
 }
 
 /// Widths of the columns, of at least `least` characters.
@@ -156,6 +173,7 @@ std::string summary(const Result& result) {
     if (solution.converged()) lines.add_small("error estimate", solution.error_estimate);
     lines.add_small("residual", solution.residual);
     lines.add("index", index_text(solution));
+    lines.add("stability", stability_text(solution));
     lines.add("windows", windows_text(solution));
     lines.add("mesh", fmt::format("{} of degree {}, {}", counted(trajectory.elements(), "element"),
                                   trajectory.degree, counted(solution.unknowns, "unknown")));

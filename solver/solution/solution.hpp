@@ -8,6 +8,7 @@
 
 #include "action/scheme.hpp"
 #include "problem/problem.hpp"
+#include "solution/floquet.hpp"
 
 /// \file What a solve returns.
 
@@ -77,6 +78,7 @@ struct Solution {
   std::vector<double> conjugate_times;
   bool conjugate_times_known = false;  ///< only where there are windows, and coordinates not too many
   Certificate certificate = Certificate::none;
+  std::optional<Floquet> floquet;  ///< of a periodic problem that has windows, coordinates not too many
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
   int unknowns = 0, iterations = 0;

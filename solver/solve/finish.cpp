@@ -11,6 +11,7 @@
 #include "solution/observe.hpp"
 #include "solve/conjugate_ends.hpp"
 #include "solve/minimality.hpp"
+#include "solve/stability.hpp"
 
 namespace extremal {
 
@@ -133,6 +134,7 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
     } else if (closed(problem, options, w)) {
       observe_energy(*problem.lagrangian, solution);
       const double distance = read_minimality(problem, options, variation, solution);
+      read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       judge_conjugate_ends(problem, options, distance, w, solution);
     } else {
       solution.status = Status::no_solution_near;

@@ -67,12 +67,15 @@ TEST(Json, SolutionsOfASearchFollow) {
 
 TEST(Json, WritesEveryFieldInTheOrderOfTheContract) {
   const Json json = parsed(transfer_result());
-  EXPECT_EQ(keys(json), (std::vector<std::string>{
-                            "status",          "message",        "strategy",     "title",          "duration",
-                            "action",          "energy",         "energy_drift", "error_estimate", "residual",
-                            "morse_index",     "nullity",        "minimizing",   "certificate",    "windows",
-                            "conjugate_times", "momentum_start", "momentum_end", "elements",       "degree",
-                            "unknowns",        "iterations",     "seconds",      "samples"}));
+  EXPECT_EQ(keys(json), (std::vector<std::string>{"status",          "message",        "strategy",
+                                                  "title",           "duration",       "action",
+                                                  "energy",          "energy_drift",   "error_estimate",
+                                                  "residual",        "morse_index",    "nullity",
+                                                  "minimizing",      "certificate",    "windows",
+                                                  "conjugate_times", "momentum_start", "momentum_end",
+                                                  "multipliers",     "krein",          "symplectic_defect",
+                                                  "elements",        "degree",         "unknowns",
+                                                  "iterations",      "seconds",        "samples"}));
   EXPECT_EQ(json["status"], "converged");
   EXPECT_EQ(json["message"], "the tolerance 1e-09 is met");
   EXPECT_EQ(json["strategy"], "newton from the guess");

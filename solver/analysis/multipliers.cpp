@@ -1,0 +1,154 @@
+#include "analysis/multipliers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/dichotomy.hpp"
+#include "analysis/symplectic.hpp"
+
+namespace extremal {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXd;
+
+/// Relative, over that of coordinates.
+constexpr double momentum_error = 10;
+/// The shift in time has a double multiplier 1, which may be so many times farther off than its accuracy.
+constexpr double expected = 1e4;
+/// Pieces are multiplied until their product is this large.
+constexpr double largest_factor = 100;
+/// Imaginary parts of a double real eigenvalue, relative.
+constexpr double real_within = 1e-12;
+/// Moduli as near as this, relative, are equal in the order of multipliers.
+constexpr double same_modulus = 1e-9;
+
+/// Products of some pieces each, then R⁻¹: q ← R⁻¹q, p ← Rᵀp.
+std::vector<MatrixXd> factors(const SecondVariation& variation, const MatrixXd& map) {
+  const int n = variation.coordinates();
+  const Eigen::VectorXd unit = symplectic_units(variation);
+  std::vector<MatrixXd> result;
+  for (int k = 0; k < variation.count(); ++k) {
+    MatrixXd next = transfer(variation.piece(k), unit);
+    if (result.empty() || result.back().norm() > largest_factor)
+      result.push_back(std::move(next));
+    else
+      result.back() = next * result.back();
+  }
+  if (map.size() > 0) {
+    const MatrixXd scaled = unit.asDiagonal() * map * unit.cwiseInverse().asDiagonal();
+    MatrixXd& last = result.back();
+    last.topRows(n) = scaled.partialPivLu().solve(last.topRows(n)).eval();
+    last.bottomRows(n) = (scaled.transpose() * last.bottomRows(n)).eval();
+  }
+  return result;
+}
+
+/// Multipliers as they are found, a pair or four at a time.
+class Collection {
+ public:
+  void add_sum(const ReciprocalPair& pair, double accuracy) {
+    const Complex half = pair.sum / 2.0;
+    if (std::abs(std::abs(half.real()) - 1) <= accuracy / 2 && std::abs(half.imag()) <= accuracy / 2) {
+      ++result_.trivial_pairs;
+      add(std::copysign(1, half.real()), 1, 0);
+      add(std::copysign(1, half.real()), 1, 0);
+    } else if (half.imag() == 0 && std::abs(half.real()) < 1) {
+      ++result_.circle_pairs;
+      const double sine = std::sqrt((1 - half.real()) * (1 + half.real()));
+      add({half.real(), sine}, 1, pair.sign);
+      add({half.real(), -sine}, 1, -pair.sign);
+      note_defect(half.real() * half.real() + sine * sine);
+    } else {
+      Complex root = std::sqrt(half - 1.0) * std::sqrt(half + 1.0);
+      if (std::real(std::conj(root) * half) < 0) root = -root;
+      add_growing(half + root);
+    }
+  }
+
+  /// λ, |λ| > 1, and 1/λ; for a positive imaginary part also their conjugates, for a negative one none.
+  void add_growing(Complex lambda) {
+    if (std::abs(lambda.imag()) <= real_within * std::abs(lambda)) {
+      ++result_.real_pairs;
+      const double real = lambda.real();
+      add(real, std::abs(real), 0);
+      add(1 / real, std::abs(1 / real), 0);
+      note_defect(real * (1 / real));
+    } else if (lambda.imag() > 0) {
+      ++result_.quadruples;
+      add_pair(lambda);
+      add_pair(std::conj(lambda));
+    }
+  }
+
+  /// In their order; nothing if one is not finite.
+  std::optional<Floquet> ordered() {
+    for (const Entry& entry : entries_)
+      if (!std::isfinite(entry.modulus) || entry.modulus == 0) return std::nullopt;
+    const auto by_argument = [](const Entry& a, const Entry& b) {
+      const double x = std::arg(a.value), y = std::arg(b.value);
+      return std::abs(x) != std::abs(y) ? std::abs(x) < std::abs(y) : x > y;
+    };
+    std::stable_sort(entries_.begin(), entries_.end(),
+                     [](const Entry& a, const Entry& b) { return a.modulus > b.modulus; });
+    for (auto first = entries_.begin(); first != entries_.end();) {
+      const auto end = std::find_if(first, entries_.end(), [&](const Entry& entry) {
+        return entry.modulus < (1 - same_modulus) * first->modulus;
+      });
+      std::stable_sort(first, end, by_argument);
+      first = end;
+    }
+    for (const Entry& entry : entries_) {
+      result_.multipliers.push_back(entry.value);
+      result_.krein.push_back(entry.sign);
+    }
+    return result_;
+  }
+
+ private:
+  struct Entry {
+    Complex value;
+    double modulus;
+    int sign;
+  };
+  void add(Complex value, double modulus, int sign) { entries_.push_back({value, modulus, sign}); }
+  void add_pair(Complex lambda) {
+    const Complex inverse = 1.0 / lambda;
+    add(lambda, std::abs(lambda), 0);
+    add(inverse, std::abs(inverse), 0);
+    note_defect(lambda * inverse);
+  }
+  void note_defect(Complex product) {
+    result_.symplectic_defect = std::max(result_.symplectic_defect, std::abs(product - 1.0));
+  }
+
+  Floquet result_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace
+
+std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {
+  const Dichotomy parts = separate(factors(variation, orbit.map));
+  Collection found;
+  for (const MatrixXd& block : parts.growing) {
+    if (!block.allFinite()) return std::nullopt;
+    const auto values = block.rows() == 1 ? Eigen::VectorXcd(block.diagonal().cast<Complex>())
+                                          : Eigen::VectorXcd(block.eigenvalues());
+    for (const Complex& value : values) found.add_growing(value);
+  }
+  if (!parts.centre.allFinite()) return std::nullopt;
+  if (parts.centre.size() > 0) {
+    const ReciprocalPairs centre = reciprocal_pairs(parts.centre);
+    const double accuracy = (sum_accuracy + momentum_error * orbit.relative_error) * centre.scale;
+    const auto shift = std::min_element(
+        centre.pairs.begin(), centre.pairs.end(),
+        [](const auto& a, const auto& b) { return std::abs(a.sum - 2.0) < std::abs(b.sum - 2.0); });
+    for (auto pair = centre.pairs.begin(); pair != centre.pairs.end(); ++pair)
+      found.add_sum(*pair, pair == shift && orbit.autonomous ? expected * accuracy : accuracy);
+  }
+  return found.ordered();
+}
+
+}  // namespace extremal

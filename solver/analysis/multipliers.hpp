@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <optional>
+
+#include "analysis/variation.hpp"
+#include "solution/floquet.hpp"
+
+/// \file Floquet multipliers of a periodic orbit from its second variation.
+
+namespace extremal {
+
+/// Beyond this many coordinates they are not computed.
+constexpr int most_coordinates_for_multipliers = 128;
+
+/// An orbit that closes by q(T) = R q(0) + c.
+struct ClosedOrbit {
+  Eigen::MatrixXd map;        ///< R, n × n; empty for the identity
+  double relative_error = 0;  ///< of its coordinates: the linearised flow is as uncertain, and λ + 1/λ
+  bool autonomous = false;    ///< L does not depend on t
+};
+
+/// Large multipliers and small ones are as good, relative, as those of moderate size are. Nothing if one
+/// overflows.
+std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit);
+
+}  // namespace extremal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <complex>
+#include <vector>
+
+/// \file The stability of a periodic orbit as data.
+
+namespace extremal {
+
+/// Eigenvalues of the linearised flow over [0, T] of a periodic orbit, after R⁻¹ where q(T) = R q(0) + c,
+/// with (q, p) as variables. They come as λ, 1/λ: on the unit circle, real, or four together λ, 1/λ and
+/// conjugates.
+///
+/// Every continuous symmetry, as the shift in time, makes λ = 1 (or −1, where R reverses it) a double
+/// eigenvalue with one eigenvector. An error δ of the matrix moves such an eigenvalue by √δ, but μ = λ + 1/λ
+/// by δ only. Where μ cannot be told from ±2 the pair is given as exactly ±1, and counts as trivial: pairs
+/// nearer to ±1 than √δ are not resolved.
+struct Floquet {
+  std::vector<std::complex<double>> multipliers;  ///< 2n, largest modulus first, then by |argument|, + first
+  /// Beside them: sign of i vᴴJv of the eigenvector v = (q, p), J = (0 I; −I 0), for multipliers on the unit
+  /// circle; 0 off it and for trivial ones.
+  std::vector<int> krein;
+  double symplectic_defect = 0;  ///< largest |λ·λ' − 1| of pairs that are not trivial
+  int trivial_pairs = 0, circle_pairs = 0, real_pairs = 0, quadruples = 0;
+
+  /// All on the unit circle.
+  bool stable() const { return real_pairs == 0 && quadruples == 0; }
+};
+
+}  // namespace extremal

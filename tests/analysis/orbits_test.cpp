@@ -1,0 +1,222 @@
+#include <complex>
+#include <fstream>
+#include <numbers>
+
+#include "analysis/independent.hpp"
+#include "solve/scenes.hpp"
+
+/// \file Multipliers of orbits that are solved for, against published values and the linearised flow.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+using Complex = std::complex<double>;
+
+constexpr double tolerance = 1e-12;
+
+Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T) {
+  const int n = lagrangian->structure().coordinates;
+  Problem problem = with_ends(std::move(lagrangian), T, [&](BoundaryRelation& b) {
+    for (int a = 0; a < n; ++a) {
+      const int row = b.add_row(0);
+      b.add(row, a, -1);
+      b.add(row, n + a, 1);
+    }
+  });
+  problem.periodic = true;
+  return make_problem(std::move(problem));
+}
+
+/// ∂(q, p)(T)/∂(q, p)(0), integrated.
+Eigen::MatrixXd linearised_flow(const Lagrangian& lagrangian, const Solution& solution) {
+  const int n = lagrangian.structure().coordinates;
+  Flow flow(lagrangian);
+  Values y = at(solution.trajectory, 0).q;
+  y.insert(y.end(), solution.momentum_start.begin(), solution.momentum_start.end());
+  y.resize(2 * n * (2 * n + 1));
+  for (int c = 0; c < 2 * n; ++c) y[2 * n * (c + 1) + c] = 1;
+  Dop853 integrator([&](double t, auto x, auto slope) { return flow.slope_with_variations(t, x, slope); },
+                    static_cast<int>(y.size()));
+  double t = 0;
+  if (integrator.advance(t, y, solution.duration(), {.tolerance = 1e-14, .block = n}) != Integrated::done)
+    throw std::runtime_error("the integration failed");
+  return Eigen::Map<const Eigen::MatrixXd>(y.data() + 2 * n, 2 * n, 2 * n);
+}
+
+/// λ² − μλ + 1 = 0 with the trace μ, driven through resonance: x'' + sin x = 0.8 cos 1.3 t.
+TEST(MultipliersOfOrbits, DrivenPendulum) {
+  const auto lagrangian = trace(
+      1, [](auto q, auto v, auto t) { return v[0] * v[0] / 2 + cos(q[0]) + 0.8 * cos(1.3 * t) * q[0]; });
+  const double T = 2 * pi / 1.3;
+  const Solution s = solve(
+      guessed(periodic(lagrangian, T), [](double tau) { return Values{-1.1 * std::cos(2 * pi * tau)}; }),
+      within(tolerance));
+  ASSERT_TRUE(s.floquet);
+  const Complex sum = s.floquet->multipliers[0] + s.floquet->multipliers[1];
+  EXPECT_NEAR(sum.real(), linearised_flow(*lagrangian, s).trace(), 1e-10);
+  EXPECT_LT(std::abs(sum.imag()), 1e-15);
+}
+
+/// Every multiplier is 1: three equal frequencies in space, two in the plane.
+TEST(MultipliersOfOrbits, KeplerEllipse) {
+  for (int n : {2, 3}) {
+    const auto lagrangian = trace(n, [=](auto q, auto v, auto) {
+      auto r2 = q[0] * q[0], v2 = v[0] * v[0];
+      for (int a = 1; a < n; ++a) r2 = r2 + q[a] * q[a], v2 = v2 + v[a] * v[a];
+      return v2 / 2 + 1 / sqrt(r2);
+    });
+    const auto ellipse = [=](double tau) {
+      const double e = 0.3, l = 2 * pi * tau;
+      double anomaly = l;
+      for (int i = 0; i < 50; ++i) anomaly = l + e * std::sin(anomaly);
+      Values q{std::cos(anomaly) - e, std::sqrt(1 - e * e) * std::sin(anomaly)};
+      if (n == 3) q.push_back(0.2 * q[1]), q[1] *= std::sqrt(0.96);
+      return q;
+    };
+    const Solution s = solve(guessed(periodic(lagrangian, 2 * pi), ellipse), within(tolerance));
+    ASSERT_TRUE(s.floquet);
+    EXPECT_EQ(s.floquet->multipliers, std::vector<Complex>(2 * n, 1.0));
+    EXPECT_EQ(s.floquet->krein, std::vector<int>(2 * n, 0));
+    EXPECT_EQ(s.floquet->trivial_pairs, n);
+  }
+}
+
+/// C. Simó, Dynamical properties of the figure eight solution (2002): exp(±2πi ν), ν = 0.00842272 and
+/// 0.29809253; the others are 1 by two translations, the rotation and the shift in time.
+TEST(MultipliersOfOrbits, FigureEight) {
+  Study study = load(bench_data("figure-eight.toml"));
+  study.options.tolerance = tolerance;
+  const Solution s = run(study);
+  ASSERT_TRUE(s.converged() && s.floquet) << s.message;
+  EXPECT_TRUE(s.floquet->stable());
+  EXPECT_EQ(s.floquet->trivial_pairs, 4);
+  EXPECT_EQ(s.floquet->circle_pairs, 2);
+  const auto& found = s.floquet->multipliers;
+  const std::size_t first = 8;  // after those at argument 0
+  EXPECT_NEAR(std::arg(found[first]) / (2 * pi), 0.00842272, 6e-9);
+  EXPECT_NEAR(std::arg(found[first + 2]) / (2 * pi), 0.29809253, 6e-9);
+}
+
+/// A scene of the orbit that begins at a published state.
+Solution solved(const std::string& text) {
+  const std::string path = testing::TempDir() + "multipliers.toml";
+  std::ofstream(path) << text;
+  const Solution s = run(load(path));
+  if (!s.converged() || !s.floquet) throw std::runtime_error(s.message);
+  return s;
+}
+
+std::string state_text(const std::vector<std::string>& names, const nlohmann::json& state) {
+  std::string text;
+  for (std::size_t a = 0; a < names.size(); ++a) {
+    text += fmt::format("{} = {}, \"{}'\" = {}, ", names[a], decimal(state[a]), names[a],
+                        decimal(state[names.size() + a]));
+  }
+  return "{ " + text.substr(0, text.size() - 2) + " }";
+}
+
+/// Stability index (|λ| + 1/|λ|)/2 of the catalogue, and every multiplier that is not trivial.
+TEST(MultipliersOfOrbits, OfTheRestrictedProblem) {
+  for (const char* id :
+       {"cr3bp-earth-moon-L1haloN-f1", "cr3bp-earth-moon-L1lyap-416", "cr3bp-earth-moon-L1halo-231",
+        "cr3bp-sun-earth-halo-1197", "cr3bp-earth-moon-dro-s2", "cr3bp-saturn-enceladus-L1halo-66",
+        "cr3bp-earth-moon-vertical-1002"}) {
+    const nlohmann::json c = published("cr3bp_periodic_orbits.json", id);
+    const Solution s = solved(fmt::format(
+        R"toml([system]
+coordinates = ["x", "y", "z"]
+parameters = {{ mu = {} }}
+definitions = {{ r1 = "sqrt((x + mu)^2 + y^2 + z^2)", r2 = "sqrt((x - 1 + mu)^2 + y^2 + z^2)"
+  }
+}
+lagrangian = "((x' - y)^2 + (y' + x)^2 + z'^2)/2 + (1 - mu)/r1 + mu/r2"
+[boundary]
+periodic = true
+duration = {}
+[guess]
+state = {}
+[solve]
+tolerance = 1e-12
+)toml",
+        decimal(c["parameters"]["mu"]), decimal(c["refined"]["period"]),
+        state_text({"x", "y", "z"}, c["refined"]["state"])));
+    const double largest = std::abs(s.floquet->multipliers[0]);
+    EXPECT_NEAR((largest + 1 / largest) / 2 / c["stability_index_computed"].get<double>(), 1, 1e-9) << id;
+    EXPECT_EQ(s.floquet->trivial_pairs, 1) << id;
+    EXPECT_LT(s.floquet->symplectic_defect, 1e-14);
+    for (const auto& pair : c["floquet_multipliers"]) {
+      const Complex truth(pair[0], pair[1]);
+      if (std::abs(truth - 1.0) < 1e-4) continue;
+      double nearest = INFINITY;
+      for (const Complex& value : s.floquet->multipliers)
+        nearest = std::min(nearest, std::abs(value / truth - 1.0));
+      EXPECT_LT(nearest, 1e-9) << id << " " << truth;
+    }
+  }
+}
+
+/// Choreographies of three bodies with multipliers above a million: two translations, the rotation and the
+/// shift in time leave four pairs at 1.
+TEST(MultipliersOfOrbits, OfUnstableChoreographies) {
+  for (const char* id : {"3b-simo-004", "3b-simo-003"}) {
+    const nlohmann::json c = published("nbody_periodic_orbits.json", id);
+    const Solution s = solved(fmt::format(
+        R"toml([system]
+coordinates = ["x1", "y1", "x2", "y2", "x3", "y3"]
+lagrangian = "(x1'^2 + y1'^2 + x2'^2 + y2'^2 + x3'^2 + y3'^2)/2 + 1/sqrt((x1 - x2)^2 + (y1 - y2)^2) + 1/sqrt((x1 - x3)^2 + (y1 - y3)^2) + 1/sqrt((x2 - x3)^2 + (y2 - y3)^2)"
+[boundary]
+periodic = true
+duration = {}
+[guess]
+state = {}
+[solve]
+tolerance = 1e-12
+)toml",
+        decimal(c["refined"]["period"]),
+        state_text({"x1", "y1", "x2", "y2", "x3", "y3"}, c["refined"]["state"])));
+    EXPECT_NEAR(std::abs(s.floquet->multipliers[0]) / c["max_abs_multiplier"].get<double>(), 1, 1e-8) << id;
+    EXPECT_EQ(s.floquet->trivial_pairs, 4) << id;
+    EXPECT_LT(s.floquet->symplectic_defect, 1e-14);
+    EXPECT_FALSE(s.floquet->stable());
+  }
+}
+
+/// A rotating pendulum closes up to 2π; its only multipliers are those of the shift in time.
+TEST(MultipliersOfOrbits, RotatingPendulum) {
+  const double T = 3;
+  Problem problem = with_ends(systems::pendulum(), T, [](BoundaryRelation& b) {
+    const int row = b.add_row(2 * pi);
+    b.add(row, 0, -1);
+    b.add(row, 1, 1);
+  });
+  problem.periodic = true;
+  const Solution s =
+      solve(guessed(problem, [](double tau) { return Values{2 * pi * tau}; }), within(tolerance));
+  ASSERT_TRUE(s.floquet);
+  EXPECT_EQ(s.floquet->multipliers, std::vector<Complex>(2, 1.0));
+}
+
+TEST(MultipliersOfOrbits, OfPeriodicOnesAlone) {
+  const Solution s = solve(fixed_ends(systems::oscillator(1), {0}, {1}, 1), within(1e-9));
+  EXPECT_FALSE(s.floquet);
+}
+
+/// With so many coordinates they are left out, and the message says so.
+TEST(MultipliersOfOrbits, AreLimitedInCoordinates) {
+  for (int n : {128, 129}) {
+    const auto lagrangian = trace(n, [=](auto q, auto v, auto) {
+      auto l = 0 * v[0];
+      for (int a = 0; a < n; ++a) l = l + (v[a] * v[a] - q[a] * q[a]) / 2;
+      return l;
+    });
+    const Solution s = solve(guessed(periodic(lagrangian, 1), [=](double) { return Values(n, 0.0); }),
+                             pinned(lobatto(4), 2));
+    EXPECT_EQ(s.floquet.has_value(), n == 128);
+    EXPECT_EQ(s.message.find("multipliers are only found for up to 128 coordinates") != std::string::npos,
+              n == 129);
+  }
+}
+
+}  // namespace
+}  // namespace extremal::laws
