@@ -95,30 +95,35 @@ TEST(Multipliers, OfOscillators) {
 }
 
 /// Seen from a frame that turns with Ω the modes e^{i(ω−Ω)t} and e^{i(ω+Ω)t} keep their sign −1, also for
-/// Ω > ω, where the first turns backwards; for equal multipliers of opposite signs the signs are still told.
+/// Ω > ω, where the first turns backwards.
 TEST(Multipliers, KreinSignsInATurningFrame) {
   const double w = 1, turn = 1.7;
   const auto lagrangian = trace(2, [=](auto q, auto v, auto) {
     const auto x = v[0] - turn * q[1], y = v[1] + turn * q[0];
     return (x * x + y * y - w * w * (q[0] * q[0] + q[1] * q[1])) / 2;
   });
-  for (double T : {0.5, 1.0, 2.9, pi / turn}) {
+  const auto found_after = [&](double T) {
     const Floquet found = floquet_at_rest(lagrangian, T).value();
     const Complex slow = std::polar(1.0, (w - turn) * T), fast = std::polar(1.0, (w + turn) * T);
     expect_multipliers(found, with_inverses({slow, fast}), 1e-12);
-    int balance = 0;
+    return found;
+  };
+  for (double T : {0.5, 1.0, 2.9}) {
+    const Floquet found = found_after(T);
     for (std::size_t k = 0; k < 4; ++k) {
-      if (T < 3 && T != pi / turn) {
-        const bool negative =
-            std::abs(found.multipliers[k] - slow) < 1e-9 || std::abs(found.multipliers[k] - fast) < 1e-9;
-        EXPECT_EQ(found.krein[k], negative ? -1 : 1) << T;
-      }
-      balance += found.multipliers[k].imag() > 0 ? found.krein[k] : 0;
-    }
-    if (T == pi / turn) {
-      EXPECT_EQ(balance, 0);
+      const auto is = [&](double rate) {
+        return std::abs(found.multipliers[k] - std::polar(1.0, rate * T)) < 1e-9;
+      };
+      EXPECT_EQ(found.krein[k], is(w - turn) || is(w + turn) ? -1 : 1) << T;
     }
   }
+  // Equal multipliers of one sign, and of both.
+  const Floquet same = found_after(pi / turn), opposite = found_after(pi / w);
+  EXPECT_EQ(same.krein[0], same.krein[1]);
+  EXPECT_EQ(same.krein[0], -same.krein[2]);
+  std::vector<int> signs = opposite.krein;
+  std::sort(signs.begin(), signs.begin() + 2);
+  EXPECT_EQ(std::vector<int>(signs.begin(), signs.begin() + 2), (std::vector<int>{-1, 1}));
 }
 
 /// Eigenvalues 1e±12, 1e±6 and on the unit circle of one matrix, modes mixed and the frame turning once in T.

@@ -230,6 +230,21 @@ TEST(Json, AFailedResultKeepsWhatIsFinite) {
   EXPECT_FALSE(json.contains("samples"));
 }
 
+TEST(Json, WritesMultipliersWhereTheyAreKnown) {
+  Result result = transfer_result();
+  for (const char* key : {"multipliers", "krein", "symplectic_defect"})
+    EXPECT_TRUE(parsed(result)[key].is_null()) << key;
+  Floquet& floquet = result.solution.floquet.emplace();
+  floquet.multipliers = {{2, 0}, {0.6, 0.8}, {0.6, -0.8}, {0.5, 0}};
+  floquet.krein = {0, -1, 1, 0};
+  floquet.symplectic_defect = 1e-16;
+  EXPECT_EQ(parsed(result)["multipliers"].dump(), "[[2.0,0.0],[0.6,0.8],[0.6,-0.8],[0.5,0.0]]");
+  EXPECT_EQ(parsed(result)["krein"].dump(), "[0,-1,1,0]");
+  EXPECT_EQ(parsed(result)["symplectic_defect"], 1e-16);
+  result.solution.status = Status::not_converged;
+  EXPECT_TRUE(parsed(result)["multipliers"].is_null());
+}
+
 TEST(Json, WritesEmptyListsOnlyWhereTheyAreKnown) {
   Result result = transfer_result();
   result.solution.conjugate_times.clear();

@@ -56,6 +56,27 @@ TEST(Summary, ListsTheFirstConjugateTimes) {
   EXPECT_EQ(summary(result).find("windows"), std::string::npos);
 }
 
+TEST(Summary, TellsStability) {
+  Result result = transfer_result();
+  Floquet& floquet = result.solution.floquet.emplace();
+  floquet.multipliers = {{606.25, 0}, {1, 0}, {1, 0}, {1 / 606.25, 0}};
+  floquet.real_pairs = floquet.trivial_pairs = 1;
+  EXPECT_NE(
+      summary(result).find("stability       unstable: 1 real pair, 1 trivial pair at ±1 (double, known to "
+                           "√ε); largest modulus 606.25\n"),
+      std::string::npos);
+  floquet.multipliers = {{2, 2}, {2, -2}, {0.25, 0.25}, {0.25, -0.25}};
+  floquet.real_pairs = floquet.trivial_pairs = 0;
+  floquet.quadruples = 1;
+  EXPECT_NE(summary(result).find("unstable: 1 complex quadruple; largest modulus 2.82842712\n"),
+            std::string::npos);
+  floquet.multipliers = {{0.6, 0.8}, {0.6, -0.8}, {0, 1}, {0, -1}};
+  floquet.quadruples = 0;
+  floquet.circle_pairs = 2;
+  EXPECT_NE(summary(result).find("stable: 2 pairs on the unit circle; largest modulus 1\n"),
+            std::string::npos);
+}
+
 TEST(Summary, LeavesOutWhatThereIsNot) {
   Result result = transfer_result();
   result.title.clear();
