@@ -104,7 +104,8 @@ class Judge {
         !solution_.conjugate_times_known || !solution_.morse_index)
       return;
     const auto conjugate = static_cast<int>(solution_.conjugate_times.size());
-    if (conjugate != *solution_.morse_index && solution_.nullity == 0)
+    if (conjugate != *solution_.morse_index && solution_.nullity == 0 &&
+        !rests(study_.problem, solution_.trajectory))
       blame("index", fmt::format("index {} with {} conjugate times", *solution_.morse_index, conjugate));
   }
 

@@ -94,6 +94,11 @@ double size_of(const extremal::Study& study, const extremal::Trajectory& traject
 std::optional<TrueError> error_by_reference(const extremal::Study& study,
                                             const extremal::Solution& solution) {
   if (study.problem.periodic || solution.nullity.value_or(1) != 0) return std::nullopt;
+  return distance_from_nearest(study, solution);
+}
+
+std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
+                                               const extremal::Solution& solution) {
   if (rests(study.problem, solution.trajectory)) return std::nullopt;
   if (study.problem.coordinates() > most_reference_coordinates) return std::nullopt;
   extremal::Study again = study;

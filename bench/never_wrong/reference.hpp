@@ -19,6 +19,10 @@ struct TrueError {
 /// and where extremals come in families, so that they would differ by more than errors.
 std::optional<TrueError> error_by_reference(const extremal::Study& study, const extremal::Solution& solution);
 
+/// The same from the nearest of a family, where there is one.
+std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
+                                               const extremal::Solution& solution);
+
 /// Error of q in units of q by one step of multiple shooting, integrated as precisely as can be.
 std::optional<double> error_by_shooting(const extremal::Study& study, const extremal::Solution& solution);
 

@@ -36,7 +36,13 @@ std::vector<double> widths(const std::vector<Range>& ranges) {
 class Surveyor {
  public:
   Surveyor(const Lagrangian& lagrangian, int coordinates)
-      : lagrangian_(lagrangian), n_(coordinates), ranges_q_(n_), ranges_v_(n_), ranges_p_(n_), p_(n_) {
+      : lagrangian_(lagrangian),
+        n_(coordinates),
+        ranges_q_(n_),
+        ranges_v_(n_),
+        ranges_p_(n_),
+        p_(n_),
+        force_(n_) {
     const std::size_t rows = 2 * n_ + 1 + lagrangian.rows(Order::gradient);
     q_ = storage_.reserve(rows * batch);
     v_ = q_ + n_ * batch;
@@ -55,7 +61,10 @@ class Surveyor {
 
   Survey finish() {
     if (count_ > 0) evaluate();
-    return {finite_, start_, drift_, widths(ranges_q_), widths(ranges_v_), widths(ranges_p_)};
+    found_.q = widths(ranges_q_);
+    found_.v = widths(ranges_v_);
+    found_.p = widths(ranges_p_);
+    return std::move(found_);
   }
 
  private:
@@ -75,27 +84,43 @@ class Surveyor {
     const auto v = [&](int a) { return v_[a * batch + i]; };
     double energy = -out_[i];
     std::fill(p_.begin(), p_.end(), 0.0);
+    std::fill(force_.begin(), force_.end(), 0.0);
     for (const Triplet& m : s.mass) {
       p_[m.row] += m.value * v(m.column);
       energy += 0.5 * v(m.row) * m.value * v(m.column);
     }
-    for (const Triplet& c : s.gyroscopic) p_[c.row] += c.value * q(c.column);
+    for (const Triplet& c : s.gyroscopic) {
+      p_[c.row] += c.value * q(c.column);
+      force_[c.column] += c.value * v(c.row);
+    }
     for (std::size_t a = 0; a < s.linear.size(); ++a) p_[a] += s.linear[a];
     for (std::size_t k = 0; k < s.gradient.size(); ++k) {
       const int a = s.gradient[k] - static_cast<int>(n_);
-      if (a < 0) continue;
       const double slope = out_[(1 + k) * batch + i];
+      if (a < 0) {
+        force_[s.gradient[k]] += slope;
+        continue;
+      }
       p_[a] += slope;
       energy += v(a) * slope;
     }
+    double speed = 0, momentum = 0, force = 0, products = 0;
     for (std::size_t a = 0; a < n_; ++a) {
       ranges_q_[a].add(q(a));
       ranges_v_[a].add(v(a));
       ranges_p_[a].add(p_[a]);
+      speed += std::abs(v(a));
+      momentum += std::abs(p_[a]);
+      force += std::abs(force_[a]);
+      products += std::abs(p_[a] * v(a));
     }
-    if (std::exchange(first_, false)) start_ = energy;
-    finite_ = finite_ && std::isfinite(energy);
-    drift_ = std::max(drift_, std::abs(energy - start_));
+    found_.speed = std::max(found_.speed, speed);
+    found_.momentum = std::max(found_.momentum, momentum);
+    found_.force = std::max(found_.force, force);
+    found_.terms = std::max(found_.terms, products + std::abs(energy - products));
+    if (std::exchange(first_, false)) found_.energy = energy;
+    found_.finite = found_.finite && std::isfinite(energy);
+    found_.energy_drift = std::max(found_.energy_drift, std::abs(energy - found_.energy));
   }
 
   const Lagrangian& lagrangian_;
@@ -103,10 +128,10 @@ class Surveyor {
   Scratch storage_, scratch_;
   double *q_, *v_, *t_, *out_;
   int count_ = 0;
-  bool first_ = true, finite_ = true;
-  double start_ = 0, drift_ = 0;
+  bool first_ = true;
+  Survey found_;
   std::vector<Range> ranges_q_, ranges_v_, ranges_p_;
-  std::vector<double> p_;
+  std::vector<double> p_, force_;
 };
 
 /// The nodes of an element and the midpoints between them.
@@ -138,14 +163,15 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   return surveyor.finish();
 }
 
-void observe_energy(const Lagrangian& lagrangian, Solution& solution) {
+std::optional<Survey> observe_energy(const Lagrangian& lagrangian, Solution& solution) {
   solution.energy.reset();
   solution.energy_drift.reset();
-  if (!lagrangian.structure().autonomous) return;
-  const Survey found = survey(lagrangian, solution.trajectory);
-  if (!found.finite) return;
+  if (!lagrangian.structure().autonomous) return std::nullopt;
+  Survey found = survey(lagrangian, solution.trajectory);
+  if (!found.finite) return std::nullopt;
   solution.energy = found.energy;
   solution.energy_drift = found.energy_drift;
+  return found;
 }
 
 }  // namespace extremal

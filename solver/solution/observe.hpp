@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solution/solution.hpp"
@@ -14,12 +15,16 @@ struct Survey {
   double energy = 0;            ///< p·q' − L at t = 0
   double energy_drift = 0;      ///< largest |E(t) − E(0)|
   std::vector<double> q, v, p;  ///< range (max − min) of each coordinate, velocity, canonical momentum
+  /// Largest sums over coordinates of |q'|, |p|, |∂L/∂q|; and of |p·q'| terms and |L|, which energy is left
+  /// of.
+  double speed = 0, momentum = 0, force = 0, terms = 0;
 };
 
 /// Throws std::invalid_argument if the two differ in their coordinates.
 Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory);
 
-/// Sets energy and drift of a solution; leaves them absent where L depends on t or they are not finite.
-void observe_energy(const Lagrangian& lagrangian, Solution& solution);
+/// Sets energy and drift of a solution, from the survey that is returned; leaves all absent where L depends
+/// on t or the energy is not finite.
+std::optional<Survey> observe_energy(const Lagrangian& lagrangian, Solution& solution);
 
 }  // namespace extremal

@@ -10,6 +10,7 @@
 #include "action/rule.hpp"
 #include "solution/observe.hpp"
 #include "solve/conjugate_ends.hpp"
+#include "solve/conservation.hpp"
 #include "solve/minimality.hpp"
 #include "solve/stability.hpp"
 
@@ -23,6 +24,8 @@ using Clock = std::chrono::steady_clock;
 /// be that of the trajectory, and within these bounds.
 /// Of the largest momentum.
 constexpr double largest_residual = 1e-6;
+/// The same, that may be roundoff.
+constexpr double least_roundoff = 1e-11;
 constexpr double least_null = 1e-8, largest_null = 1e-3;
 double null_threshold(double error, double size) {
   return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
@@ -67,6 +70,49 @@ bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
   const double value = closing->row.empty() ? slope + closing->value : closing->value;
   const double allowed = std::max(10 * (options.elements > 0 ? 0 : options.tolerance), 1e-6);
   return std::abs(value) <= allowed * size && w.path.duration() < 1e6 * problem.duration.value;
+}
+
+/// What is left of the natural conditions must be within the error that momenta may have: where forces hardly
+/// change them, that may be far below the momenta.
+bool within_momenta(const Survey& survey, double tolerance, Workspace& w) {
+  const double momentum = w.iteration.action().momentum_scale();
+  const double range = *std::max_element(survey.p.begin(), survey.p.end());
+  const double roundoff =
+      least_roundoff * momentum + 1e-14 * w.iteration.stiffness() * scales(w.path, *w.final_tables).magnitude;
+  return w.iteration.residual() <= std::max(10 * tolerance * range, roundoff);
+}
+
+/// Whether the elements have seen all of the path, and the equations had a solution.
+void judge_resolution(const Problem& problem, const SolveOptions& options, const Outcome& outcome,
+                      Workspace& w, Solution& solution) {
+  const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
+  const double estimate = solution.error_estimate;
+  if (found) solution.error_estimate = error_behind_drift(*found, solution.trajectory, estimate);
+  const bool raised = solution.error_estimate > estimate;
+  const bool conserved =
+      !found || options.scheme || conserves_energy(*found, solution.trajectory, options.tolerance);
+  if (!conserved || (raised && options.elements == 0 && solution.error_estimate > outcome.tolerance)) {
+    solution.status = Status::not_converged;
+    solution.message = fmt::format(
+        "the energy drifts by {:.1e}, more than the tolerance {:.1e} explains: between the points of its "
+        "elements the path passes a singularity or a kink that they do not resolve; try another tolerance",
+        *solution.energy_drift, options.tolerance);
+  } else if (found && problem.ends.free > 0 && !options.scheme &&
+             !within_momenta(*found, options.tolerance, w)) {
+    solution.status = Status::not_converged;
+    solution.message = fmt::format(
+        "a residual of {:.1e} of the largest momentum is left, more than momenta change by within the "
+        "tolerance {:.1e}: forces all but vanish along the path, and there may be no extremal near; try "
+        "another "
+        "guess",
+        solution.residual, options.tolerance);
+  } else if (outcome.elsewhere && !problem.periodic && solution.nullity.value_or(0) > 0) {
+    // Far away, where forces vanish, next to nothing is left of equations that have no solution.
+    solution.status = Status::conjugate_ends;
+    solution.message =
+        "away from the guess a path was found along which the second variation is singular: one of a family, "
+        "or none where forces vanish; move an end or the duration, or try a better guess";
+  }
 }
 
 /// What is left of a solution that turned out to be none.
@@ -132,10 +178,10 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
           "try another guess",
           solution.residual);
     } else if (closed(problem, options, w)) {
-      observe_energy(*problem.lagrangian, solution);
+      judge_resolution(problem, options, outcome, w, solution);
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
-      judge_conjugate_ends(problem, options, distance, w, solution);
+      if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);
     } else {
       solution.status = Status::no_solution_near;
       solution.message = "the duration ran away: no extremal near the guess meets what closes it";

@@ -16,6 +16,8 @@ constexpr double breakdown = 1e-11;
 constexpr double trial_burden = 0.4;
 /// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
 constexpr double pivoted_burden = 100, sparse_burden = 1000;
+/// Floating-point operations, elements times the cube of their unknowns, beyond which they are not.
+constexpr double most_pivoted_work = 1e9;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
 constexpr double amplified_roundoff = 1e-11;
 /// A step that is not tested may contract worse than any before by this factor; by so much it does. Steps of
@@ -148,10 +150,12 @@ double NewtonIteration::residual_at(const Path& path) {
 }
 
 /// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
-/// element, all unknowns are factored at once with pivoting.
+/// element, all unknowns are factored at once with pivoting, if they are not too many.
 bool NewtonIteration::factor(const Path& path) {
   if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;
-  if (!action_.finite() || !(model_ == condensed_.get() || approximate())) return false;
+  const bool condensed = model_ == condensed_.get();
+  if (!action_.finite() || !(condensed || approximate())) return false;
+  if (condensed && path.elements() * std::pow(tables_->unknowns(), 3) > most_pivoted_work) return false;
   use_sparse(path.elements());
   return model_->evaluate(action_, path, closing(path));
 }

@@ -17,6 +17,12 @@ constexpr int most_elements = 1 << 20;
 /// An error below the second (relative) that more elements reduce less than by the first is roundoff.
 constexpr double stagnation = 0.9, near_roundoff = 1e-9;
 constexpr int steps = 100;
+/// Elements become at most so many times more at once.
+constexpr double most_growth = 16;
+/// An error within this factor of what its order lets expect falls regularly.
+constexpr double regular_fall = 0.5;
+/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails.
+constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
 
 }  // namespace
@@ -49,6 +55,7 @@ bool PinnedSolve::solve_discrete(int elements) {
     const NewtonReport report = converge(w_.iteration, w_.path, w_.pinned,
                                          {roundoff, std::min(steps, options_.max_iterations)}, [this] {
                                            outcome_.record(w_, options_);
+                                           cost_ += w_.path.batches() * batch_cost(w_.pinned, scheme_.degree);
                                            return true;
                                          });
     outcome_.message = report.failure;
@@ -104,13 +111,18 @@ double PinnedSolve::distance_to_companion() {
   return distance;
 }
 
+/// How many times more elements the tolerance needs, as the error falls by its order.
+double PinnedSolve::wanted_growth() const {
+  return std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order());
+}
+
 Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
-  const int order = std::min(scheme_.order, scheme_.degree + 1);
-  for (double before = INFINITY;; before = outcome_.error) {
+  double before = INFINITY, expected = 0;  // errors: the last, and what this one should be
+  for (;; before = outcome_.error) {
     if (!solve_discrete(elements)) {
-      if (options_.elements > 0 || elements >= 256) break;
+      if (options_.elements > 0 || elements >= 256 || cost_ > most_cost) break;
       elements *= 4;
       continue;
     }
@@ -136,14 +148,18 @@ Outcome PinnedSolve::run() {
                                      options_.tolerance, elements);
       break;
     }
-    const double growth = std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order);
-    if (elements * std::min(growth, 16.0) > most_elements) {
+    // An error that falls as expected tells what is needed in the end; else what is next.
+    const bool regular = outcome_.error > regular_fall * expected && outcome_.error < expected / regular_fall;
+    const double growth = wanted_growth();
+    if (elements * (regular ? growth : std::min(growth, most_growth)) > most_elements) {
       outcome_.message =
           fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
                       scheme_.name, most_elements, options_.tolerance);
       break;
     }
-    elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * std::clamp(growth, 1.1, 16.0))));
+    const double factor = std::clamp(growth, 1.1, most_growth);
+    expected = outcome_.error * std::pow(factor, -order());
+    elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * factor)));
   }
   return outcome_;
 }

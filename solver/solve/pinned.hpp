@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "solve/converge.hpp"
 #include "solve/residual_test.hpp"
 #include "solve/workspace.hpp"
@@ -20,6 +22,9 @@ class PinnedSolve {
   bool solve_discrete(int elements);
   bool exact_quadrature_settled();
   double distance_to_companion();
+  double wanted_growth() const;
+  /// Of the error of q throughout, not of the nodes alone.
+  int order() const { return std::min(scheme_.order, scheme_.degree + 1); }
   void bind(int points);
 
   const Problem& problem_;
@@ -27,6 +32,7 @@ class PinnedSolve {
   Workspace& w_;
   Scheme scheme_;
   Outcome outcome_;
+  double cost_ = 0;
 };
 
 }  // namespace extremal

@@ -34,7 +34,7 @@ constexpr double suspicious_step = 1e6;
 /// Of the size of the path that was started from: a path smaller than this is at rest.
 constexpr double rest = 1e-12;
 /// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh.
-constexpr double most_cost = 1e9, most_first_steps = 200;
+constexpr double most_cost = 1e8, most_first_steps = 200;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
 /// Errors below this (relative) may be roundoff.

@@ -77,11 +77,12 @@ bool Search::begin() {
 /// Pursues the path in the workspace.
 Refinement::Result Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
+  outcome_.elsewhere = strategy != from_guess;
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
   const bool far = problem_.ends.free > 0 && magnitude_ > 0 &&
                    scales(w_.path, refinement_.tables()).magnitude > runaway * magnitude_;
-  if (result == Refinement::Result::converged && strategy != from_guess &&
+  if (result == Refinement::Result::converged && outcome_.elsewhere &&
       (far || !refinement_.holds_on_other_elements())) {
     unheld_ = w_.path;
     result = Refinement::Result::failed;
@@ -124,6 +125,14 @@ bool Search::through_other_durations() {
   return false;
 }
 
+/// A guess that asks for more elements than there may be would ask again.
+bool Search::from_finer_elements() {
+  const std::vector<double> finer = halved(mesh_);
+  if (finer.size() > most_first_elements + 1) return false;
+  start(finer, bend_);
+  return found("newton from the guess on finer elements") || by_descent(finer);
+}
+
 bool Search::from_noise(unsigned tries) {
   for (const unsigned last = seed_ + tries; seed_ < last && !refinement_.exhausted(); ++seed_) {
     start(mesh_, {noise_sizes[seed_ % std::size(noise_sizes)], seed_});
@@ -159,9 +168,7 @@ void Search::renew() { refinement_.allow(allowance_); }
 
 /// Cheapest first; but where the user has given a guess, what stays near it before noise.
 bool Search::from_other_guesses() {
-  if (by_descent(mesh_)) return true;
-  start(halved(mesh_), bend_);
-  if (found("newton from the guess on finer elements") || by_descent(halved(mesh_))) return true;
+  if (by_descent(mesh_) || from_finer_elements()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;
   begin();

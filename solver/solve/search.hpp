@@ -37,6 +37,7 @@ class Search {
   bool from_other_guesses();
   bool through_other_durations();
   bool by_descent(const std::vector<double>& mesh);
+  bool from_finer_elements();
   bool from_line();
   bool from_noise(unsigned tries);
 

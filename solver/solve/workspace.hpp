@@ -33,8 +33,9 @@ struct Outcome {
   Status status = Status::not_converged;
   std::string message;
   const char* strategy = "newton from the guess";
-  double error = 0;      ///< of q, absolute
-  double tolerance = 0;  ///< absolute
+  bool elsewhere = false;  ///< reached in another way than by Newton's method from the guess
+  double error = 0;        ///< of q, absolute
+  double tolerance = 0;    ///< absolute
   int iterations = 0;
   const ElementTables* tables = nullptr;
 

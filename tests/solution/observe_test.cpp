@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "action/rule.hpp"
@@ -46,6 +47,11 @@ TEST(Observe, ChargeOnItsCircle) {
   // v = −2 (sin 2t, cos 2t) and (−y, x) = (sin 2t, cos 2t).
   EXPECT_NEAR(found.p[0], 2, 1e-3);
   EXPECT_NEAR(found.p[1], 2, 1e-3);
+  // |sin| + |cos| is √2 at most; p = −(sin 2t, cos 2t), ∂L/∂q = (v1, −v0), p·v = 2, L = 0.
+  EXPECT_NEAR(found.speed, 2 * std::numbers::sqrt2, 1e-3);
+  EXPECT_NEAR(found.momentum, std::numbers::sqrt2, 1e-3);
+  EXPECT_NEAR(found.force, 2 * std::numbers::sqrt2, 1e-3);
+  EXPECT_NEAR(found.terms, 2, 1e-11);
 }
 
 TEST(Observe, DriftIsTheLargestDeparture) {
@@ -71,12 +77,12 @@ TEST(Observe, ConfigurationDependentMass) {
 TEST(Observe, EnergyOfASolution) {
   Solution solution;
   solution.trajectory = sampled(2, 12, 11, 7.0, circle);
-  observe_energy(*charge(), solution);
+  EXPECT_TRUE(observe_energy(*charge(), solution));
   ASSERT_TRUE(solution.energy && solution.energy_drift);
   EXPECT_NEAR(*solution.energy, 2, 1e-13);
   const auto driven =
       trace(2, [](auto q, auto v, auto t) { return (v[0] * v[0] + v[1] * v[1]) / 2.0 + q[0] * cos(t); });
-  observe_energy(*driven, solution);
+  EXPECT_FALSE(observe_energy(*driven, solution));
   EXPECT_FALSE(solution.energy || solution.energy_drift);
 }
 

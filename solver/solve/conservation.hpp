@@ -1,0 +1,19 @@
+#pragma once
+
+#include "solution/observe.hpp"
+#include "solve/solve.hpp"
+
+/// \file What the elements do not see, a close passage, a kink or a layer between their points, shows as
+/// drift of the energy: errors δq and δp change it by no more than |q'|·δp + |∂L/∂q|·δq.
+
+namespace extremal {
+
+/// Whether the drift is no more than a tolerance explains, relative to the ranges of q and, ten times, p.
+bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double tolerance);
+
+/// The error of q, in its units, with a drift that the smooth error `estimate` does not explain: slopes at
+/// the ends of an element of degree s and length h amplify that by s(s + 1)/h. A kink makes slopes wrong over
+/// h.
+double error_behind_drift(const Survey& survey, const Trajectory& trajectory, double estimate);
+
+}  // namespace extremal
