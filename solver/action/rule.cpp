@@ -273,6 +273,16 @@ std::vector<double> legendre_matrix(int degree) {
   return matrix;
 }
 
+const Basis& lobatto_nodal_basis(int degree) {
+  static const std::vector<Basis> bases = [] {
+    std::vector<Basis> all(1);
+    for (int s = 1; s <= max_degree; ++s) all.push_back(lobatto_basis(s, lobatto_barycentric(s).nodes));
+    return all;
+  }();
+  element_of(degree);  // refuses other degrees
+  return bases[degree];
+}
+
 const Barycentric& lobatto_barycentric(int degree) { return element_of(degree).rounded; }
 
 }  // namespace extremal

@@ -35,6 +35,8 @@ struct Basis {
 /// 1 <= degree <= max_degree. A point that equals a node as lobatto_rule returns it is that node: its values
 /// are exactly 0 and 1.
 Basis lobatto_basis(int degree, std::span<const double> points);
+/// The same at the Lobatto nodes themselves, kept for the whole run.
+const Basis& lobatto_nodal_basis(int degree);
 
 /// Values alone: takes nodal values to values at the points, points × (s+1).
 std::vector<double> interpolation_matrix(int degree, std::span<const double> points);

@@ -129,6 +129,16 @@ class Collection {
 
 }  // namespace
 
+double doubling_product(const Floquet& floquet) {
+  Complex product = 1;
+  for (const Complex& value : floquet.multipliers) {
+    const Complex sum = 1.0 + value;
+    const double size = std::abs(value);
+    product *= sum / (size > 1 ? size : 1.0);
+  }
+  return product.real();
+}
+
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {
   const Dichotomy parts = separate(factors(variation, orbit.map));
   Collection found;

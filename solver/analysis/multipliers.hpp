@@ -24,4 +24,8 @@ struct ClosedOrbit {
 /// overflows.
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit);
 
+/// ∏ (1 + λ), of which each pair λ, 1/λ gives λ + 1/λ + 2, divided by the size of large factors. It changes
+/// its sign where a pair passes −1.
+double doubling_product(const Floquet& floquet);
+
 }  // namespace extremal

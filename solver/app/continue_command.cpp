@@ -35,7 +35,7 @@ int follow(const ContinueArguments& a) {
   if (terminal) fmt::print(stderr, "\r\x1b[K");
   if (!a.output.empty()) write_json(a.output, branch);
   if (branch.points.empty()) {
-    fmt::print(stderr, "error: {}: {}\n", a.scene, branch.message);
+    fmt::print(stderr, "error: {}: {}\n", a.scene, branch.branches.front().message);
     return Exit::not_converged;
   }
   if (!a.csv.empty()) write_csv(a.csv, branch);

@@ -9,18 +9,22 @@
 
 namespace extremal {
 
-/// {"status", "message", "points": [{"parameter", "duration", "energy", "action", "morse_index",
-/// "multipliers", "kind", "start"}]}; what is not known of a point is null.
+/// {"status", "message", "branches": [{"origin", "status", "message", "points", "action_defect",
+/// "momentum_defect"}], "points": [{"branch", "parameter", "duration", "energy", "action", "morse_index",
+/// "nullity", "multipliers", "krein", "kind", "start"}]}; what is not known of a point is null. Status and
+/// message are those of the branch that was asked for, number 0; "origin" is the number of the point, counted
+/// from 0, that another one begins next to.
 void write_json(std::ostream& out, const FollowedBranch& branch);
 /// The same into a file. Throws std::runtime_error with the path if it cannot be written.
 void write_json(const std::string& path, const FollowedBranch& branch);
 
-/// A line for each point: parameter, duration, energy, action, morse_index, kind, then coordinates and
-/// velocities at the start. Cells that are not known stay empty.
+/// A line for each point: branch, parameter, duration, energy, action, morse_index, nullity, kind, then
+/// coordinates and velocities at the start; for periodic orbits real and imaginary parts of the multipliers.
+/// Cells that are not known stay empty.
 void write_csv(std::ostream& out, const FollowedBranch& branch);
 void write_csv(const std::string& path, const FollowedBranch& branch);
 
-/// A table of the points, why the branch ended, and how well the derivatives of the action are met.
+/// A table of the points, why each branch ended, and how well the derivatives of the action are met.
 std::string summary(const FollowedBranch& branch);
 
 /// What varies against the action, or, where the energy varies, the duration; folds and crossings are marked.

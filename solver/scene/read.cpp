@@ -139,10 +139,7 @@ ContinuationTable read_continuation_table(const Document& document, const toml::
                      "[continuation] has no parameter; give \"duration\", \"energy\" or the name of a "
                      "parameter of the system");
   if (!to) throw SceneError(at, "[continuation] has no 'to'; give the value that the family is to lead to");
-  if (table["switch"].value_or(false))
-    throw SceneError(document.at(*table.get("switch")),
-                     "following the branches that bifurcate is not available yet; leave 'switch' out");
-  return {at, *parameter, *to, number(document, table, "points")};
+  return {at, *parameter, *to, number(document, table, "points"), table["switch"].value_or(false)};
 }
 
 }  // namespace extremal

@@ -84,7 +84,8 @@ struct ContinuationTable {
   Location at;
   Text parameter;
   Number to;
-  std::optional<Number> points;  ///< at most
+  std::optional<Number> points;  ///< at most, of each branch
+  bool switching = false;        ///< also follow the branches that bifurcate
 };
 
 struct Scene {

@@ -134,15 +134,25 @@ class Surveyor {
   std::vector<double> p_, force_;
 };
 
-/// The nodes of an element and the midpoints between them.
-std::vector<double> survey_points(int degree) {
+/// At the nodes of an element and the midpoints between them.
+Basis make_survey_basis(int degree) {
   const std::vector<double>& nodes = lobatto_barycentric(degree).nodes;
   std::vector<double> points{nodes.front()};
   for (int j = 1; j <= degree; ++j) {
     points.push_back((nodes[j - 1] + nodes[j]) / 2);
     points.push_back(nodes[j]);
   }
-  return points;
+  return lobatto_basis(degree, points);
+}
+
+/// Kept for the whole run.
+const Basis& survey_basis(int degree) {
+  static const std::vector<Basis> bases = [] {
+    std::vector<Basis> all(1);
+    for (int s = 1; s <= max_degree; ++s) all.push_back(make_survey_basis(s));
+    return all;
+  }();
+  return bases.at(degree);
 }
 
 }  // namespace
@@ -151,7 +161,7 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   if (lagrangian.structure().coordinates != trajectory.coordinates)
     throw std::invalid_argument(fmt::format("a trajectory of {} coordinates for a Lagrangian of {}",
                                             trajectory.coordinates, lagrangian.structure().coordinates));
-  const Basis basis = lobatto_basis(trajectory.degree, survey_points(trajectory.degree));
+  const Basis& basis = survey_basis(trajectory.degree);
   Surveyor surveyor(lagrangian, trajectory.coordinates);
   for (int k = 0; k < trajectory.elements(); ++k) {
     const double start = trajectory.times[k], h = trajectory.times[k + 1] - start;

@@ -1,8 +1,12 @@
 #include "solve/branch.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "machine/simd.hpp"
+#include "solve/doubled.hpp"
 #include "solve/start.hpp"
 
 namespace extremal {
@@ -22,6 +26,9 @@ void add_scaled(std::vector<double>& to, double factor, std::span<const double> 
 Branch::Branch(const ProblemFamily& family, Workspace& workspace)
     : family_(family), w_(workspace), problem_(family.problem), unit_(std::abs(family.to - family.from)) {
   if (by_duration()) problem_.duration = {.value = 0, .free = true, .energy = 0, .where = {}};
+  if (!problem_.periodic) return;
+  const ClosingMap map = closing_map(problem_);
+  if (!map.r.isIdentity(0)) map_ = map.r;
 }
 
 bool Branch::place(double coordinate) {
@@ -79,15 +86,31 @@ double Branch::drift(const Move& tangent) const {
   const std::size_t n = ends_.size() / 2, last = tangent.step.nodes.size() - n;
   double sum = 0;
   for (std::size_t a = 0; a < n; ++a)
-    sum += tangent.step.nodes[a] * ends_[a] + tangent.step.nodes[last + a] * ends_[n + a];
-  return sum / (units_.extent * units_.extent * static_cast<double>(tangent.step.nodes.size())) +
+    sum += weight(0) * tangent.step.nodes[a] * ends_[a] +
+           weight(w_.path.elements()) * tangent.step.nodes[last + a] * ends_[n + a];
+  return sum / (units_.extent * units_.extent * static_cast<double>(n)) +
          tangent.step.duration * stretch_ / (units_.duration * units_.duration);
 }
 
 bool Branch::linearise() {
+  inertia_.reset();
   const bool solved = by_duration() ? linearise_duration() : linearise_parameter();
+  if (solved && shifts()) {
+    find_shift();
+    leave_shift_out(correction);
+    leave_shift_out(direction);
+  }
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
+}
+
+void Branch::note_action() {
+  const DiscreteAction& action = w_.iteration.action();
+  action_ = action.action();
+  energy_ = -action.slope_duration();
+  momenta_.assign(action.start_gradient().begin(), action.start_gradient().end());
+  for (double& p : momenta_) p = -p;
+  momenta_.insert(momenta_.end(), action.end_gradient().begin(), action.end_gradient().end());
 }
 
 /// With H and t the second derivatives of S_h in x and in x and T, H δx + t δT = −g leaves one direction
@@ -96,23 +119,53 @@ bool Branch::linearise() {
 bool Branch::linearise_duration() {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
-  ClosingEquation closing;
-  if (!model.evaluate(action, w_.path, &closing) || !action.finite()) return false;
-  action_ = action.action();
-  energy_ = -action.slope_duration();
+  const bool factored = model.evaluate(action, w_.path, &closing_);
+  defined_ = action.finite();
+  if (!factored || !defined_) return false;
+  note_action();
   energy_unit_ = std::abs(energy_) + std::abs(action_) / w_.path.duration();
   if (energy_unit_ == 0) energy_unit_ = 1;
+  const bool by_energy = closing_.row.empty();
   const auto solve = [&](double excess, Move& move) {
-    closing.value = excess + energy_;
-    model.solve(action, &closing, move.step);
+    closing_.value = by_energy ? energy_ + excess * energy_unit_ : -excess * units_.extent;
+    model.solve(action, &closing_, move.step);
     move.parameter = std::exchange(move.step.duration, 0);
   };
   solve(0, correction);
-  solve(energy_unit_, direction);
+  solve(1, direction);
   direction.add(correction, -1);
-  inertia_ = model.inertia(threshold_);
+  along_ = by_energy ? energy_unit_ : energy_change(direction);
+  off_ = by_energy ? 0 : energy_change(correction) - action.nodes.border_gradient - energy_;
   action_slope_ = -energy_ * direction.parameter;
   return true;
+}
+
+/// Of E = −∂S/∂T, to first order.
+double Branch::energy_change(const Move& move) const {
+  const NodeEquations& nodes = w_.iteration.action().nodes;
+  return -std::inner_product(move.step.nodes.begin(), move.step.nodes.end(), nodes.border.begin(),
+                             nodes.corner * move.parameter);
+}
+
+/// Where the energy has an extremum along the branch, the equations that it closes are singular. So are those
+/// that a displacement of the ends closes, where they do not move; and a displacement along the shift in time
+/// would be the shift.
+std::vector<double> Branch::closing_row(const Move& onward) const {
+  if (!by_duration() || tables_->unknowns() > most_dense_unknowns) return {};
+  const std::size_t n = w_.path.coordinates(), last = onward.step.nodes.size() - n;
+  std::vector<double> row(onward.step.nodes.begin(), onward.step.nodes.begin() + n);
+  row.insert(row.end(), onward.step.nodes.begin() + last, onward.step.nodes.end());
+  if (shifts()) {
+    std::vector<double> shift(shift_.step.nodes.begin(), shift_.step.nodes.begin() + n);
+    shift.insert(shift.end(), shift_.step.nodes.begin() + last, shift_.step.nodes.end());
+    const double square = std::inner_product(shift.begin(), shift.end(), shift.begin(), 0.0);
+    const double product = std::inner_product(shift.begin(), shift.end(), row.begin(), 0.0);
+    for (std::size_t e = 0; e < row.size() && square > 0; ++e) row[e] -= product / square * shift[e];
+  }
+  const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
+  if (!(length > std::abs(energy_change(onward)) / energy_unit_ * units_.extent)) return {};
+  for (double& x : row) x /= length;
+  return row;
 }
 
 /// H δx = −∂g/∂p, and what closes a free duration with it, by gradients beside the path with the factors
@@ -122,10 +175,10 @@ bool Branch::linearise_parameter() {
   DiscreteAction& action = w_.iteration.action();
   ClosingEquation equation;
   const ClosingEquation* closing = closing_equation(problem_, w_.path, equation);
-  if (!model.evaluate(action, w_.path, closing) || !action.finite()) return false;
-  action_ = action.action();
-  energy_ = -action.slope_duration();
-  inertia_ = model.inertia(threshold_);
+  const bool factored = model.evaluate(action, w_.path, closing);
+  defined_ = action.finite();
+  if (!factored || !defined_) return false;
+  note_action();
   model.solve(action, closing, correction.step);
   correction.parameter = 0;
   closing_sign_ = 1;
@@ -137,7 +190,8 @@ bool Branch::linearise_parameter() {
   Move before;
   const double by = small * unit_;
   const double after_action = solve_beside(by, direction), before_action = solve_beside(-by, before);
-  if (!std::isfinite(after_action) || !std::isfinite(before_action)) return false;
+  defined_ = std::isfinite(after_action) && std::isfinite(before_action);
+  if (!defined_) return false;
   direction.add(before, -1);
   direction.scale(1 / (2 * by));
   direction.parameter = 1;
@@ -171,20 +225,88 @@ double Branch::solve_beside(double by, Move& move) {
 double Branch::varied() const { return family_.varied == Varied::energy ? energy_ : coordinate(); }
 
 double Branch::change(bool along) const {
-  if (family_.varied == Varied::energy) return along ? energy_unit_ : 0;
+  if (family_.varied == Varied::energy) return along ? along_ : off_;
   return along ? direction.parameter : correction.parameter;
 }
 
+const Inertia& Branch::inertia() const {
+  if (!inertia_)
+    inertia_ = w_.iteration.model().inertia_beside(
+        threshold_, shifts() ? std::span<const double>(shift_.step.nodes) : std::span<const double>());
+  return *inertia_;
+}
+
+/// The velocity, which is a path as well. Extremals that differ by the shift are the same orbit, and the
+/// second variation is null along it but for the error of the elements.
+void Branch::find_shift() {
+  const int n = w_.path.coordinates();
+  const Basis& nodes = lobatto_nodal_basis(w_.path.degree());
+  std::vector<double> slopes(nodes.points.size() * n);
+  rates_.reset(*tables_, w_.path.mesh(), 1);
+  for (int k = 0; k < w_.path.elements(); ++k) {
+    w_.path.element_slopes(k, nodes.derivative, slopes.data());
+    rates_.set_element(k, slopes.data());
+  }
+  Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(rates_.node(0), n);
+  if (map_) end = (*map_ * end).eval();
+  for (int a = 0; a < n; ++a) rates_.set_node(rates_.elements(), a, end[a]);
+  rates_.load_ends();
+  shift_.step.nodes.assign(rates_.nodes().begin(), rates_.nodes().end());
+  shift_.step.inner.assign(rates_.x(0), rates_.x(0) + rates_.batches() * tables_->unknowns() * lanes);
+}
+
+void Branch::leave_shift_out(Move& move) const {
+  const double square = dot(shift_, shift_);
+  if (square > 0) move.add(shift_, -dot(shift_, move) / square);
+}
+
+void Branch::respond(const Move& onward, Move& response) {
+  const std::size_t n = w_.path.coordinates(), count = w_.path.elements() + 1;
+  std::vector<double> load(count * n);
+  for (std::size_t k = 1; k + 1 < count; ++k)
+    for (std::size_t a = 0; a < n; ++a) {
+      const double tau = w_.path.mesh()[k], weight = w_.path.mesh()[k + 1] - w_.path.mesh()[k - 1];
+      load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
+    }
+  if (shifts()) {
+    // The response to a load along the shift would be large.
+    const std::vector<double>& along = shift_.step.nodes;
+    double product = 0, square = 0;
+    for (std::size_t k = n; k < load.size() - n; ++k) {
+      product += load[k] * along[k];
+      square += along[k] * along[k];
+    }
+    for (std::size_t k = n; k < load.size() - n; ++k) load[k] -= product / square * along[k];
+  }
+  ClosingEquation equation;
+  const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, w_.path, equation);
+  w_.iteration.model().respond(w_.iteration.action(), closing, load, response.step);
+  response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
+  if (shifts()) leave_shift_out(response);
+  response.add(direction, -dot(onward, response) / dot(onward, direction));
+}
+
 int Branch::orientation(double onward) const {
-  const bool negative = (inertia_.negative % 2 != 0) != (onward * direction.parameter * closing_sign_ < 0);
+  const bool negative = (inertia().negative % 2 != 0) != (onward * direction.parameter * closing_sign_ < 0);
   return negative ? -1 : 1;
 }
 
+/// Of node k in the mean over τ.
+double Branch::weight(int k) const {
+  const std::span<const double> mesh = w_.path.mesh();
+  return 0.5 * (mesh[std::min(k + 1, w_.path.elements())] - mesh[std::max(k - 1, 0)]);
+}
+
 double Branch::dot(const Move& a, const Move& b) const {
+  const std::size_t n = w_.path.coordinates();
   double sum = 0;
-  for (std::size_t k = 0; k < a.step.nodes.size(); ++k) sum += a.step.nodes[k] * b.step.nodes[k];
+  for (int k = 0; k <= w_.path.elements(); ++k) {
+    double product = 0;
+    for (std::size_t i = k * n; i < (k + 1) * n; ++i) product += a.step.nodes[i] * b.step.nodes[i];
+    sum += weight(k) * product;
+  }
   const double unit = by_duration() ? units_.duration : unit_;
-  return sum / (units_.extent * units_.extent * static_cast<double>(a.step.nodes.size())) +
+  return sum / (units_.extent * units_.extent * static_cast<double>(n)) +
          a.step.duration * b.step.duration / (units_.duration * units_.duration) +
          a.parameter * b.parameter / (unit * unit);
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <functional>
 #include <optional>
 
+#include "action/rule.hpp"
 #include "solve/family.hpp"
 
 /// \file The equations of a branch of extremals, linearised at one path of it.
@@ -43,9 +45,21 @@ class Branch {
   /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
   bool linearise();
   Move correction, direction;
+  /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
+  bool defined() const { return defined_; }
+  /// Over (q(0), q(T)): a displacement of the ends that had better close the equations near the path that was
+  /// linearised at last, whose tangent is given. Empty: the energy does.
+  std::vector<double> closing_row(const Move& onward) const;
+  void close_by(const std::vector<double>& row) { closing_.row = row; }
+  /// What the equations linearised last, with the tangent `onward` as their last row, answer to a load that
+  /// no symmetry of the path suggests: the nearer to where branches cross, the longer, and along the branch
+  /// that crosses.
+  void respond(const Move& onward, Move& response);
 
   /// Of the path that was linearised.
   double action() const { return action_; }
+  /// −∂S/∂q(0), then ∂S/∂q(T).
+  std::span<const double> momenta() const { return momenta_; }
   /// The number that varies.
   double varied() const;
   /// By how much a move makes it greater, correction and direction apart.
@@ -55,15 +69,15 @@ class Branch {
   int orientation(double onward) const;
   /// Of the second variation, duration and parameter held; eigenvalues within `threshold` of zero are null.
   void set_null_threshold(double threshold) { threshold_ = threshold; }
-  const Inertia& inertia() const { return inertia_; }
+  const Inertia& inertia() const;
 
   /// ∂S/∂s along onward·direction as the derivatives of the action tell it: −E ∂T/∂s + ∂S/∂p ∂p/∂s.
   double action_slope() const { return action_slope_; }
 
   const Problem& problem() const { return problem_; }
   const ElementTables& tables() const { return *tables_; }
-  /// Mean over nodes, relative to an extent of the path; durations relative to another, parameters to the
-  /// distance wanted.
+  /// Mean over τ, by the nodes, relative to an extent of the path; durations relative to another, parameters
+  /// to the distance wanted.
   double dot(const Move& a, const Move& b) const;
   struct Units {
     double extent = 1, duration = 1;
@@ -74,9 +88,15 @@ class Branch {
   bool by_duration() const { return family_.varied != Varied::parameter; }
   bool linearise_duration();
   bool linearise_parameter();
+  double energy_change(const Move& move) const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);
+  void note_action();
   std::vector<double> ends() const;
+  bool shifts() const { return problem_.periodic && problem_.lagrangian->structure().autonomous; }
+  void find_shift();
+  void leave_shift_out(Move& move) const;
+  double weight(int k) const;
 
   const ProblemFamily& family_;
   Workspace& w_;
@@ -84,11 +104,17 @@ class Branch {
   Levels beside_;
   const ElementTables* tables_ = nullptr;
   double coordinate_ = 0, unit_, threshold_ = 1e-8;
+  bool defined_ = true;
   Units units_;
+  ClosingEquation closing_;     ///< where the duration or the energy varies
+  double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction
   double action_ = 0, energy_ = 0, energy_unit_ = 1, action_slope_ = 0;
   int closing_sign_ = 1;
-  Inertia inertia_;
-  Path at_;
+  mutable std::optional<Inertia> inertia_;  ///< of the last linearisation, once asked for
+  Path at_, rates_;
+  Move shift_;  ///< where shifts(): what a path that begins later differs by, per time
+  std::optional<Eigen::MatrixXd> map_;  ///< R of q(T) = R q(0) + c, where it is not the identity
+  std::vector<double> momenta_;
   std::vector<double> ends_;  ///< what the last apply() moved them by besides, 2n
   double stretch_ = 0;        ///< and the duration
 };

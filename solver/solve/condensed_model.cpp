@@ -26,14 +26,31 @@ class CondensedModel final : public QuadraticModel {
     action.expand_step(step.nodes, step.duration, step.inner);
   }
 
-  Inertia inertia(double threshold) override {
-    Inertia result = system_.inertia(threshold);
+  /// Inner unknowns follow the nodes, without what the gradient adds to them.
+  void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
+               Step& step) override {
+    NodeEquations& nodes = action.nodes;
+    const std::size_t n = action.start_gradient().size();
+    nodes.gradient.assign(load.size(), 0);
+    for (std::size_t k = n; k + n < load.size(); ++k) nodes.gradient[k] = -load[k];
+    nodes.border_gradient = 0;
+    const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
+    system_.solve(nodes, closing ? &homogeneous : nullptr, step.nodes, step.duration);
+    action.expand_step(step.nodes, step.duration, step.inner);
+    const std::vector<double> rest(step.nodes.size(), 0);
+    action.expand_step(rest, 0, left_out_);
+    for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] -= left_out_[k];
+  }
+
+  Inertia inertia_beside(double threshold, std::span<const double> null) override {
+    Inertia result = system_.inertia(threshold, null);
     result.negative += negative_;
     return result;
   }
 
  private:
   NodeSystem system_;
+  AlignedDoubles left_out_;
   int negative_ = 0;  ///< among the inner unknowns
 };
 

@@ -8,32 +8,26 @@
 
 #include "solution/observe.hpp"
 #include "solve/finish.hpp"
-#include "solve/search.hpp"
+#include "solve/stability.hpp"
 
 namespace extremal {
 
 namespace {
 
 /// Lengths are relative, as Branch::dot measures them.
-constexpr double first_length = 0.02, least_length = 1e-7, least_longest = 0.02, most_longest = 0.4;
-/// The longest step, so that so many make up the distance wanted where as many points are allowed.
-constexpr double coverage = 4;
+constexpr double least_length = 1e-7;
 /// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
 /// branch turns by more than the angle with this cosine.
 constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
 constexpr int most_corrections = 8, most_resolutions = 4;
 /// Corrections below this (relative) that shrink no more are roundoff.
 constexpr double roundoff = 1e-9, least_goal = 1e-14;
-/// Corrections are carried on to this share of the tolerance, elements planned for this one.
-constexpr double unfinished = 0.01, spare = 0.1;
-constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
-constexpr double strongest_cut = 16;
-/// Elements whose error is below this share of the tolerance are more than needed.
-constexpr double lavish = 1e-4;
-/// Of the size of the guess: a path smaller than this is at rest.
-constexpr double rest = 1e-9;
+/// Corrections are carried on to this share of the tolerance.
+constexpr double unfinished = 0.01;
 /// The unit of lengths is no smaller than this share of the largest path so far.
 constexpr double least_extent = 0.3;
+/// The action is held against its derivatives at one point of so many.
+constexpr int unchecked = 8;
 
 }  // namespace
 
@@ -54,6 +48,13 @@ const char* name(PointKind kind) {
 Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
     : family_(std::move(family)), options_(std::move(options)), branch_(family_, w_) {}
 
+Continuation::Continuation(ProblemFamily family, ContinuationOptions options, Seed seed, int side)
+    : family_(std::move(family)),
+      options_(std::move(options)),
+      branch_(family_, w_),
+      seed_(std::move(seed)),
+      side_(side) {}
+
 bool Continuation::stop(BranchEnd end, std::string message) {
   end_ = end;
   message_ = std::move(message);
@@ -62,42 +63,16 @@ bool Continuation::stop(BranchEnd end, std::string message) {
 
 bool Continuation::advance() {
   if (end_ != BranchEnd::none && found_.empty()) return false;
-  if (!started_) {
-    started_ = true;
-    if (!begin()) return false;
-  }
+  if (!std::exchange(started_, true) && !begin()) return false;
   if (count_ == options_.points) {
     found_.clear();
     return stop(BranchEnd::points, fmt::format("{} points have been found; ask for more", count_));
   }
   while (found_.empty())
     if (end_ != BranchEnd::none || !step()) return false;
-  point_ = std::move(found_.front());
+  last_ = std::move(found_.front());
   found_.pop_front();
   ++count_;
-  return true;
-}
-
-/// The extremal that a solve finds, with the branch's tangent there.
-bool Continuation::begin() {
-  w_.levels.bind(family_.problem.lagrangian);
-  SolveOptions adaptive = options_.solve;
-  adaptive.scheme.reset();
-  adaptive.elements = 0;
-  const Outcome outcome = Search(family_.problem, adaptive, w_).run();
-  if (outcome.status != Status::converged)
-    return stop(BranchEnd::not_started, "no extremal to begin with: " + outcome.message);
-  for (const double x : family_.problem.guess.q) rest_ = std::max(rest_, rest * std::abs(x));
-  const double coordinate = family_.varied == Varied::parameter ? family_.from : w_.path.duration();
-  longest_ = std::clamp(coverage / options_.points, least_longest, most_longest);
-  length_ = std::min(first_length, longest_);
-  if (!branch_.place(coordinate) || resolve() == Elements::too_many || !turn(true))
-    return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
-  if (here_.rate * (family_.to - family_.from) < 0) here_.scale(-1);
-  measure_anew();
-  first_ = here_;
-  found_.push_back(read(PointKind::regular));
-  check_action();
   return true;
 }
 
@@ -105,7 +80,12 @@ bool Continuation::begin() {
 bool Continuation::correct(double length, const double* landing) {
   const double goal = std::max(unfinished * options_.solve.tolerance, least_goal);
   double before = INFINITY;
-  for (corrections_ = 1; corrections_ <= most_corrections && branch_.linearise(); ++corrections_) {
+  refusal_ = Refusal::rough;
+  for (corrections_ = 1; corrections_ <= most_corrections; ++corrections_) {
+    if (!branch_.linearise()) {
+      if (!branch_.defined()) refusal_ = Refusal::no_problem;
+      return false;
+    }
     const Move& direction = branch_.direction;
     Move& move = branch_.correction;
     const double along = landing ? branch_.change(true) : branch_.dot(tangent_, direction);
@@ -118,50 +98,15 @@ bool Continuation::correct(double length, const double* landing) {
     const bool noise = size < roundoff && rate > 0.3;
     if (!noise && (!(size <= longest_correction * length) || rate > (before < INFINITY ? contraction : 1)))
       return false;
-    if (!branch_.apply(move, 1)) return false;
-    if (noise || size * rate <= goal) return true;
+    if (!branch_.apply(move, 1)) {
+      refusal_ = Refusal::no_problem;
+      return false;
+    }
+    // The next one is size²/before² times this one.
+    if (noise || size * rate * rate <= goal) return true;
     before = size;
   }
   return false;
-}
-
-Scales Continuation::sizes() const {
-  Scales size = scales(w_.path, branch_.tables());
-  if (size.q <= rest_) size.q = 0;
-  return size;
-}
-
-/// Elements that meet the tolerance, and not many more than that takes.
-Continuation::Elements Continuation::resolve() {
-  const ElementTables& tables = branch_.tables();
-  const Scales size = sizes();
-  w_.resolution.measure(w_.path, tables);
-  const Resolution::Error error = w_.resolution.at(w_.path.degree());
-  const double tolerance = options_.solve.tolerance;
-  error_ = error.q + 0x1p-53 * size.magnitude * std::sqrt(w_.path.elements() * w_.path.degree());
-  branch_.set_null_threshold(std::clamp(3 * error_ / (size.q > 0 ? size.q : 1), 1e-8, 1e-3));
-  const double excess = size.q > 0 ? std::max(error.q / size.q, 0.1 * error.v / size.v) / tolerance : 0;
-  if (excess <= 1 && (excess == 0 || excess > lavish)) return Elements::fine;
-  const auto aim = [&](double share) { return Resolution::Error{share * size.q, 10 * share * size.v}; };
-  const Plan plan = w_.planner.plan(w_.resolution, w_.path.mesh(), tables,
-                                    {.aim = aim(spare * tolerance),
-                                     .tolerated = aim(0.7 * tolerance),
-                                     .raised_degree = std::min(w_.path.degree() + 1, highest_degree),
-                                     .least_degree = least_degree,
-                                     .highest_degree = highest_degree,
-                                     .most_elements = most_elements,
-                                     .strongest_cut = strongest_cut});
-  const bool fewer = plan.degree * plan.mesh.size() < 0.7 * w_.path.degree() * (w_.path.elements() + 1);
-  if (excess <= 1 && (plan.mesh.empty() || !fewer)) return Elements::fine;
-  if (plan.degree == 0) return Elements::too_many;
-  const std::vector<double> before(w_.path.mesh().begin(), w_.path.mesh().end());
-  const std::vector<double>& mesh = plan.mesh.empty() ? before : plan.mesh;
-  w_.other.resample_from(w_.path, w_.levels.at(plan.degree), mesh);
-  if (!tangent_.step.nodes.empty())
-    tangent_.step.nodes = interpolated(tangent_.step.nodes, w_.path.coordinates(), before, mesh);
-  std::swap(w_.path, w_.other);
-  branch_.bind();
-  return Elements::changed;
 }
 
 void Continuation::Stand::scale(double factor) {
@@ -173,7 +118,11 @@ void Continuation::Stand::scale(double factor) {
 
 /// The next tangent, onward, and what there is to know of the place.
 bool Continuation::turn(bool first) {
-  if (!branch_.linearise()) return false;
+  if (!branch_.linearise()) {
+    refusal_ = branch_.defined() ? Refusal::rough : Refusal::no_problem;
+    return false;
+  }
+  refusal_ = Refusal::rough;
   // A path with nothing left to correct: a long correction is the roundoff of nearly singular factors.
   if (!first && branch_.dot(branch_.correction, branch_.correction) > 1) return false;
   const double length = std::sqrt(branch_.dot(branch_.direction, branch_.direction));
@@ -186,6 +135,7 @@ bool Continuation::turn(bool first) {
   here_.action = branch_.action();
   here_.tangent = branch_.direction;
   here_.tangent.scale(onward);
+  here_.row = branch_.closing_row(here_.tangent);
   here_.rate = onward * branch_.change(true);
   here_.action_rate = onward * branch_.action_slope();
   here_.orientation = branch_.orientation(onward);
@@ -204,58 +154,74 @@ void Continuation::measure_anew() {
   here_.scale(1 / std::sqrt(branch_.dot(here_.tangent, here_.tangent)));
 }
 
-/// So far along the tangent from a place, and back onto the branch. False if that fails.
-bool Continuation::go(const Stand& from, double length) {
+/// So far along the tangent from a place, and back onto the branch; on elements that meet the tolerance, or
+/// on those of the place. False if that fails.
+bool Continuation::go(const Stand& from, double length, bool same_elements) {
   w_.path = from.path;
   tangent_ = from.tangent;
   here_.units = from.units;
   branch_.set_units(from.units);
-  crowded_ = false;
+  refusal_ = Refusal::no_problem;
   if (!branch_.place(from.coordinate)) return false;
   branch_.bind();
+  branch_.close_by(from.row);
   if (!branch_.apply(tangent_, length) || !correct(std::abs(length), nullptr)) return false;
-  for (int k = 0; k < most_resolutions; ++k) {
+  for (int k = 0; k < most_resolutions && !same_elements; ++k) {
     const Elements elements = resolve();
-    crowded_ = elements == Elements::too_many;
-    if (crowded_) return false;
+    if (elements == Elements::too_many) {
+      refusal_ = Refusal::crowded;
+      return false;
+    }
     if (elements == Elements::fine) break;
     if (!correct(std::abs(length), nullptr)) return false;
   }
   return turn();
 }
 
+bool Continuation::give_up(double varied) {
+  switch (refusal_) {
+    case Refusal::crowded:
+      return stop(BranchEnd::collision,
+                  fmt::format("at {:.8g} the path needs ever more elements: it comes near a singularity; "
+                              "loosen the tolerance",
+                              varied));
+    case Refusal::no_problem:
+      return stop(BranchEnd::limit,
+                  fmt::format("at {:.8g} the branch cannot be followed: beyond, there is no such problem, or "
+                              "L is not finite",
+                              varied));
+    default:
+      return stop(
+          BranchEnd::too_short,
+          fmt::format("at {:.8g} the branch cannot be followed in steps of {:.0e}", varied, least_length));
+  }
+}
+
 /// The next step that succeeds, with all that is met on it.
 bool Continuation::step() {
   const Stand from = here_;
   for (;; length_ *= 0.4) {
-    if (length_ < least_length)
-      return crowded_ ? stop(BranchEnd::collision,
-                             fmt::format("at {:.8g} the path needs more than {} elements of degree {}: it "
-                                         "comes near a singularity; loosen the tolerance",
-                                         from.varied, most_elements, highest_degree))
-                      : stop(BranchEnd::limit,
-                             fmt::format("at {:.8g} the branch cannot be followed in steps of {:.0e}: it "
-                                         "ends, or L is not finite beyond",
-                                         from.varied, least_length));
+    if (length_ < least_length) return give_up(from.varied);
     if (go(from, length_) && cosine_ > sharpest_turn) break;
   }
   const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
   const double passed = std::exchange(
       length_, std::min(longest_, length_ * (corrections_ > 4 ? std::min(growth, 0.7) : growth)));
   measure_anew();
-  const BranchPoint next = read(PointKind::regular);
+  BranchPoint next = read(PointKind::regular);
   const Stand to = here_;
-  check_action();
+  if (++steps_ % unchecked == 0) check_action();
   meet(from, to, passed);
   here_ = to;
-  if (end_ == BranchEnd::none) found_.push_back(next);
+  if (end_ == BranchEnd::none) found_.push_back({std::move(next)});
   return !found_.empty();
 }
 
-BranchPoint Continuation::read(PointKind kind) const {
+BranchPoint Continuation::read(PointKind kind) {
   BranchPoint point;
   point.parameter = here_.varied;
   point.kind = kind;
+  const Problem& problem = branch_.problem();
   Solution& solution = point.solution;
   solution.status = Status::converged;
   solution.message = "converged";
@@ -265,8 +231,37 @@ BranchPoint Continuation::read(PointKind kind) const {
   solution.error_estimate = error_;
   solution.morse_index = branch_.inertia().negative;
   solution.nullity = branch_.inertia().zero;
-  observe_energy(*branch_.problem().lagrangian, solution);
+  observe_energy(*problem.lagrangian, solution);
+  read_momenta(solution);
+  if (!problem.periodic) return point;
+  if (problem.coordinates() <= most_coordinates_for_multipliers)
+    variation_.assemble(problem.lagrangian, solution.trajectory);
+  read_stability(problem, variation_, sizes().q, solution);
+  here_.doubling = solution.floquet ? doubling_product(*solution.floquet) : 1;
   return point;
+}
+
+/// p = ∂L/∂q' of the trajectory against the derivatives of the action.
+void Continuation::read_momenta(Solution& solution) {
+  const std::size_t n = solution.trajectory.coordinates;
+  const std::span<const double> momenta = branch_.momenta();
+  solution.momentum_start.assign(momenta.begin(), momenta.begin() + n);
+  solution.momentum_end.assign(momenta.begin() + n, momenta.end());
+  const Trajectory& trajectory = solution.trajectory;
+  double worst = 0, largest = 0;
+  for (const bool end : {false, true}) {
+    const double t = end ? solution.duration() : 0;
+    const std::size_t first = end ? trajectory.nodes.size() - n : 0;
+    const PointValues at =
+        evaluate_at(*branch_.problem().lagrangian, {trajectory.nodes.data() + first, n},
+                    {trajectory.slopes.data() + first, n}, t, Order::gradient, momentum_memory_);
+    const std::vector<double>& action = end ? solution.momentum_end : solution.momentum_start;
+    for (std::size_t a = 0; a < n; ++a) {
+      worst = std::max(worst, std::abs(at.dv[a] - action[a]));
+      largest = std::max(largest, std::abs(action[a]));
+    }
+  }
+  if (largest > 0) worst_momentum_ = std::max(worst_momentum_, worst / largest);
 }
 
 }  // namespace extremal

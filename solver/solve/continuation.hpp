@@ -1,8 +1,11 @@
 #pragma once
 
 #include <deque>
+#include <functional>
+#include <optional>
 #include <string>
 
+#include "analysis/variation.hpp"
 #include "solve/branch.hpp"
 
 /// \file A branch of extremals, point by point.
@@ -19,6 +22,7 @@ const char* name(PointKind kind);
 struct BranchPoint {
   double parameter = 0;  ///< the number that varies
   PointKind kind = PointKind::regular;
+  int branch = 0;     ///< which of several, see Diagram
   Solution solution;  ///< without windows
 };
 
@@ -29,37 +33,58 @@ enum class BranchEnd {
   target,       ///< it led where it was to lead
   points,       ///< as many points as were asked for
   closed,       ///< it came back to its first point
+  rest,         ///< its orbits shrink onto an equilibrium
   collision,    ///< the path needs ever more elements
-  limit,        ///< steps became too short: there is nothing beyond
+  limit,        ///< there is no problem beyond, or L is not finite there
+  too_short,    ///< steps became too short
 };
 
 struct ContinuationOptions {
   SolveOptions solve = {};  ///< of the first point; each point meets its tolerance
   int points = 50;          ///< at most, folds and crossings included
+  bool seeds = false;       ///< keep what other branches begin with
+};
+
+/// A path next to where another branch begins.
+struct Seed {
+  PointKind kind;     ///< branch or period_doubling
+  Path path;          ///< after a period doubling that of the orbit run through twice
+  double coordinate;  ///< see Branch
+  Branch::Units units;
 };
 
 /// Extremals of a family of problems, from the one that a solve finds to where the family is to lead, past
 /// folds, by pseudo-arclength (Keller 1977): a step along the tangent, then Newton's method across it.
 /// Elements are chosen anew where those there are do not meet the tolerance. Steps grow while Newton's method
-/// converges fast and the branch bends little. Folds are found where the derivative of what varies changes
-/// its sign, crossings where the orientation of the equations does (Branch::orientation), to 1e-8 of the
-/// distance wanted.
+/// converges fast and the branch bends little. Found to 1e-11 of the distance wanted: folds, where the
+/// derivative of what varies changes its sign; crossings, where the orientation of the equations does
+/// (Branch::orientation) and their response to a load has no bound; period doublings of periodic orbits,
+/// where a multiplier passes −1.
 ///
 ///     Continuation branch(family, options);
 ///     while (branch.advance()) use(branch.point());
 class Continuation {
  public:
   Continuation(ProblemFamily family, ContinuationOptions options);
+  /// The branch that crosses another one near a seed, one way (side = 1) or the other (−1). The family is
+  /// that of its orbits: after a period doubling, that of twice the period.
+  Continuation(ProblemFamily family, ContinuationOptions options, Seed seed, int side);
 
   /// To the next point. False where the branch has ended.
   bool advance();
-  const BranchPoint& point() const { return point_; }
+  const BranchPoint& point() const { return last_.point; }
+  /// What begins at the point, if options.seeds are wanted.
+  const std::optional<Seed>& seed() const { return last_.seed; }
 
   BranchEnd end() const { return end_; }
   /// Why it ended, with numbers.
   const std::string& message() const { return message_; }
-  /// Largest |∂S/∂s − (−E ∂T/∂s + ∂S/∂p ∂p/∂s)| so far, relative to |S| by the length of the path.
+  /// Largest |∂S/∂s − (−E ∂T/∂s + ∂S/∂p ∂p/∂s)| so far, relative to |S| by the length of the path: at every
+  /// few points differences of the action, that of Newton's method, are held against its derivatives.
   double worst_action_slope() const { return worst_action_slope_; }
+  /// Largest |∂S/∂q(T) − p(T)|, |∂S/∂q(0) + p(0)| so far, relative to the largest of them: derivatives of the
+  /// action against the momenta of the trajectory.
+  double worst_momentum() const { return worst_momentum_; }
 
  private:
   /// A place on the branch.
@@ -67,54 +92,85 @@ class Continuation {
     Path path;
     Branch::Units units;  ///< lengths are measured in
     double coordinate = 0, varied = 0, action = 0;
-    Move tangent;            ///< of length one
-    double rate = 0;         ///< ∂varied/∂s along the tangent
-    double action_rate = 0;  ///< ∂S/∂s as its derivatives tell it
+    Move tangent;             ///< of length one
+    std::vector<double> row;  ///< see Branch::closing_row
+    double rate = 0;          ///< ∂varied/∂s along the tangent
+    double action_rate = 0;   ///< ∂S/∂s as its derivatives tell it
     int orientation = 1, index = 0;
+    double doubling = 1;  ///< of the sign of ∏ (1 + λ) over all multipliers λ
     void scale(double factor);
+  };
+  struct Found {
+    BranchPoint point;
+    std::optional<Seed> seed = {};
   };
   /// What is met on a step, and how far along the tangent.
   struct Meeting {
     double at;
-    BranchPoint point;
+    Found found;
   };
   enum class Elements { fine, changed, too_many };
+  /// Why a step failed.
+  enum class Refusal { none, no_problem, crowded, rough };
 
   bool begin();
+  bool begin_from_solve();
+  bool begin_from_seed();
   bool step();
-  bool go(const Stand& from, double length);
+  bool go(const Stand& from, double length, bool same_elements = false);
   bool correct(double length, const double* landing);
   Elements resolve();
+  Plan plan_for(const Scales& size);
+  void adopt(const Plan& plan);
   Scales sizes() const;
   bool turn(bool first = false);
   void measure_anew();
-  BranchPoint read(PointKind kind) const;
+  BranchPoint read(PointKind kind);
+  void read_momenta(Solution& solution);
   bool stop(BranchEnd end, std::string message);
+  bool give_up(double varied);
 
   void meet(const Stand& from, const Stand& to, double length);
   double find_fold(const Stand& from, const Stand& to, double length);
-  double find_crossing(const Stand& from, const Stand& to, double length);
   double find_value(const Stand& from, double value, double near, double before, double far, double after);
-  template <class Test>
+  template <class Test, class Done>
   double root(const Stand& from, double low, double at_low, double high, double at_high, const Test& test,
-              double enough);
+              const Done& done);
+  bool settled(double change) const;
   bool is_first() const;
   void check_action();
+
+  void find_crossings(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
+  struct Side;
+  double find_crossing(const Stand& from, const Stand& before, double low, double high, Move& response);
+  double narrow(const Stand& from, const Stand& before, Side (&sides)[2]);
+  static bool differs(const Stand& a, const Stand& b);
+  std::optional<BranchPoint> crossing_at(const Stand& from, double at, double length);
+  std::optional<Stand> resolved_for(const Stand& from, const Move& response);
+  double find_doubling(const Stand& from, const Stand& to, double length);
+  double doubling();
+  double find_rest(const Stand& from, const Stand& to, double length);
+  std::optional<Seed> seed_at(PointKind kind, const Stand& from, double at);
 
   ProblemFamily family_;
   ContinuationOptions options_;
   Workspace w_;
+  SecondVariation variation_;
+  Scratch momentum_memory_;
   Branch branch_;
+  std::optional<Seed> seed_;  ///< what the branch begins with
+  int side_ = 1;
   Stand here_, first_;         ///< where the path in the workspace stands; the first point
   Move tangent_;               ///< that the path is corrected across
   double largest_extent_ = 0;  ///< of paths so far
   double rest_ = 0;            ///< paths whose extent is less are at rest
   double length_ = 0, longest_ = 0, cosine_ = 1, error_ = 0;
-  int corrections_ = 0, count_ = 0;
-  bool started_ = false, crowded_ = false;  ///< elements were too many
-  double worst_action_slope_ = 0;
-  std::deque<BranchPoint> found_;
-  BranchPoint point_;
+  int corrections_ = 0, count_ = 0, steps_ = 0;
+  bool started_ = false;
+  Refusal refusal_ = Refusal::none;
+  double worst_action_slope_ = 0, worst_momentum_ = 0;
+  std::deque<Found> found_;
+  Found last_;
   BranchEnd end_ = BranchEnd::none;
   std::string message_ = "the branch has not been followed";
 };

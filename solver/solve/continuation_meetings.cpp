@@ -5,48 +5,48 @@
 #include <utility>
 
 #include "solve/continuation.hpp"
+#include "solve/continuation_root.hpp"
 
-/// \file What is met on a step along a branch: folds, crossings, the value wanted, the first point again.
+/// \file What is met on a step along a branch: folds, the value wanted, rest, the first point again.
 
 namespace extremal {
 
 namespace {
 
-/// Folds and crossings are located to this, relative to the distance wanted, or to as much of the step.
-constexpr double located = 1e-11, least_part = 1e-13;
-constexpr int most_trials = 60;
 /// From this near, relative to the distance wanted, Newton's method lands on a value.
 constexpr double near_value = 1e-3;
 /// Half the length that the derivative of the action is checked over.
-constexpr double probe = 0.01;
+constexpr double probe = 0.003;
 /// Two points of a closed branch differ by no more than this, relative.
 constexpr double same = 1e-6;
+/// An orbit this small against the one before the step is next to rest.
+constexpr double nearly_rest = 1e-3;
+
+/// Mean over τ of the product of two paths, each less its mean, by the nodes.
+double swing(const Path& a, const Path& b) {
+  const std::size_t n = a.coordinates(), count = a.elements() + 1;
+  const std::vector<double> other = interpolated(b.nodes(), n, b.mesh(), a.mesh());
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double product = 0, mean = 0, other_mean = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double weight = 0.5 * (a.mesh()[std::min(k + 1, count - 1)] - a.mesh()[k > 0 ? k - 1 : 0]);
+      const double x = a.nodes()[k * n + i], y = other[k * n + i];
+      product += weight * x * y;
+      mean += weight * x;
+      other_mean += weight * y;
+    }
+    sum += product - mean * other_mean;
+  }
+  return sum;
+}
 
 }  // namespace
 
-/// Where along the tangent test(), read at the place, is zero: the secant through ends of the interval, one
-/// of which is weighted less when it stays (Illinois). To where `enough` bounds value × last change. NaN
-/// where the branch cannot be followed.
-template <class Test>
-double Continuation::root(const Stand& from, double low, double at_low, double high, double at_high,
-                          const Test& test, double enough) {
-  double last = low;
-  for (int k = 0; k < most_trials; ++k) {
-    const double at = (low * at_high - high * at_low) / (at_high - at_low);
-    if (!go(from, at)) return NAN;
-    const double value = test();
-    if (std::abs(value * (at - last)) <= enough || at == last) return at;
-    last = at;
-    if (value * at_high < 0) {
-      low = std::exchange(high, at);
-      at_low = std::exchange(at_high, value);
-    } else {
-      high = at;
-      at_high = value;
-      at_low *= 0.5;
-    }
-  }
-  return NAN;
+/// Folds and crossings are located so well.
+bool Continuation::settled(double change) const {
+  return std::abs(change * here_.rate) <= located * std::abs(family_.to - family_.from) &&
+         std::abs(change) <= 1e-6;
 }
 
 /// |∂varied/∂s| times the distance from the fold bounds how much more or less it is there.
@@ -54,22 +54,7 @@ double Continuation::find_fold(const Stand& from, const Stand& to, double length
   if (!(from.rate * to.rate < 0)) return NAN;
   return root(
       from, 0, from.rate, length, to.rate, [this] { return here_.rate; },
-      located * std::abs(family_.to - family_.from));
-}
-
-double Continuation::find_crossing(const Stand& from, const Stand& to, double length) {
-  const bool odd = from.orientation != to.orientation;
-  if (!odd && std::abs(from.index - to.index) < 2) return NAN;
-  double low = 0, high = length;
-  const double distance = std::abs(family_.to - family_.from);
-  while (high - low > least_part * length) {
-    const double middle = 0.5 * (low + high);
-    if (!go(from, middle)) break;
-    const bool beyond = odd ? here_.orientation != from.orientation : here_.index != from.index;
-    (beyond ? high : low) = middle;
-    if ((high - low) * std::abs(here_.rate) <= located * distance && high - low < 1e-6 * length) break;
-  }
-  return go(from, high) || go(from, low) ? high : NAN;
+      [this](double, double change) { return settled(change); });
 }
 
 /// To a value between those before and after: exactly, or, where Newton's method does not land there, nearly.
@@ -79,22 +64,38 @@ double Continuation::find_value(const Stand& from, double value, double near, do
   const auto search = [&](double enough) {
     return root(
         from, near, before - value, far, after - value, [&] { return here_.varied - value; },
-        enough * distance * (far - near));
+        [&](double off, double change) {
+          return std::abs(off * change) <= enough * distance * (far - near);
+        });
   };
   const double at = search(near_value);
   return std::isfinite(at) && correct(1, &value) && turn() ? at : search(1e-13);
+}
+
+/// Where periodic orbits have all but shrunk to a point: beyond, they would be the same ones half a period
+/// later.
+double Continuation::find_rest(const Stand& from, const Stand& to, double length) {
+  const Problem& problem = branch_.problem();
+  if (!problem.periodic || !problem.lagrangian->structure().autonomous) return NAN;
+  const double size = swing(from.path, from.path), after = swing(to.path, from.path) / size;
+  if (!(after < 0)) return NAN;
+  return root(
+      from, 0, 1 - nearly_rest, length, after - nearly_rest,
+      [&] { return swing(here_.path, from.path) / size - nearly_rest; },
+      [](double off, double) { return std::abs(off) <= 0.1 * nearly_rest; });
 }
 
 void Continuation::meet(const Stand& from, const Stand& to, double length) {
   std::vector<Meeting> met;
   double turned_at = length, turned = to.varied;
   if (const double at = find_fold(from, to, length); std::isfinite(at)) {
-    met.push_back({at, read(PointKind::fold)});
+    met.push_back({at, {read(PointKind::fold)}});
     turned_at = at;
     turned = here_.varied;
   }
-  if (const double at = find_crossing(from, to, length); std::isfinite(at))
-    met.push_back({at, read(PointKind::branch)});
+  find_crossings(from, to, length, met);
+  if (const double at = find_doubling(from, to, length); std::isfinite(at))
+    met.push_back({at, {read(PointKind::period_doubling), seed_at(PointKind::period_doubling, from, at)}});
   const double distance = std::abs(family_.to - family_.from);
   const auto search = [&](double value) {
     const auto between = [&](double a, double b) {
@@ -105,16 +106,25 @@ void Continuation::meet(const Stand& from, const Stand& to, double length) {
       return find_value(from, value, turned_at, turned, length, to.varied);
     return static_cast<double>(NAN);
   };
-  if (const double at = search(family_.to); std::isfinite(at)) {
+  const auto ends_at = [&](double at, BranchEnd end, std::string message) {
     std::erase_if(met, [&](const Meeting& meeting) { return meeting.at > at; });
-    met.push_back({at, read(PointKind::regular)});
-    stop(BranchEnd::target, fmt::format("the branch leads to {:.12g}", family_.to));
-  } else if (const double back = search(family_.from); std::isfinite(back) && is_first()) {
-    std::erase_if(met, [&](const Meeting& meeting) { return meeting.at > back; });
-    stop(BranchEnd::closed, "the branch is closed: it came back to its first point");
+    stop(end, std::move(message));
+  };
+  if (const double at = search(family_.to); std::isfinite(at)) {
+    BranchPoint last = read(PointKind::regular);
+    ends_at(at, BranchEnd::target, fmt::format("the branch leads to {:.12g}", family_.to));
+    met.push_back({at, {std::move(last)}});
+  } else if (const double back = search(first_.varied); std::isfinite(back) && is_first()) {
+    ends_at(back, BranchEnd::closed, "the branch is closed: it came back to its first point");
+  } else if (const double rest = find_rest(from, to, length); std::isfinite(rest)) {
+    BranchPoint last = read(PointKind::regular);
+    ends_at(rest, BranchEnd::rest,
+            fmt::format("at {:.8g} the orbits shrink onto an equilibrium, with the period {:.8g}",
+                        here_.varied, here_.path.duration()));
+    met.push_back({rest, {std::move(last)}});
   }
   std::sort(met.begin(), met.end(), [](const Meeting& a, const Meeting& b) { return a.at < b.at; });
-  for (Meeting& meeting : met) found_.push_back(std::move(meeting.point));
+  for (Meeting& meeting : met) found_.push_back(std::move(meeting.found));
 }
 
 /// Whether the place is the first point, passed in the same direction.
@@ -131,18 +141,14 @@ bool Continuation::is_first() const {
 void Continuation::check_action() {
   const Stand at = here_;
   double action[2], rate[2];
-  for (int side = 0; side < 2; ++side) {
-    const bool there = go(at, side ? probe : -probe);
-    if (there) {
-      action[side] = here_.action;
-      rate[side] = here_.action_rate * branch_.dot(tangent_, tangent_) / branch_.dot(tangent_, here_.tangent);
-    }
-    if (!there) {
-      here_ = at;
-      return;
-    }
+  bool there = true;
+  for (int side = 0; side < 2 && there; ++side) {
+    there = go(at, side ? probe : -probe, true);
+    action[side] = here_.action;
+    rate[side] = here_.action_rate * branch_.dot(tangent_, tangent_) / branch_.dot(tangent_, here_.tangent);
   }
   here_ = at;
+  if (!there) return;
   const double found = (action[1] - action[0]) / (2 * probe);
   const double expected = (rate[0] + 4 * at.action_rate + rate[1]) / 6;
   const double size = std::max(std::abs(at.action), std::abs(at.action_rate));

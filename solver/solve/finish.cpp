@@ -148,7 +148,7 @@ Trajectory trajectory_of(const Path& path) {
   const std::size_t size = static_cast<std::size_t>(path.degree() + 1) * path.coordinates();
   t.nodes.resize(path.elements() * size);
   t.slopes.resize(path.elements() * size);
-  const Basis basis = lobatto_basis(path.degree(), lobatto_barycentric(path.degree()).nodes);
+  const Basis& basis = lobatto_nodal_basis(path.degree());
   for (int k = 0; k < path.elements(); ++k) {
     path.element(k, t.nodes.data() + k * size);
     path.element_slopes(k, basis.derivative, t.slopes.data() + k * size);

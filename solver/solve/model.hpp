@@ -39,10 +39,18 @@ class QuadraticModel {
   virtual void evaluate_gradient(DiscreteAction& action, const Path& path) = 0;
   /// The step from the gradient that was evaluated last.
   virtual void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) = 0;
+  /// The step that a load on the nodes between elements, (N + 1) × n, would cause: with K the second
+  /// variation and what closes the duration, K·step = load. Loads on the ends are left out. The gradient is
+  /// evaluated anew after it.
+  virtual void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
+                       Step& step) = 0;
   /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
   void set_refining(bool on) { refining_ = on; }
   /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null.
-  virtual Inertia inertia(double threshold) = 0;
+  Inertia inertia(double threshold) { return inertia_beside(threshold, {}); }
+  /// The same where a vector over the nodes, (N + 1) × n, is known to be null but for the error of the
+  /// elements: it counts as null, and the form is taken across it.
+  virtual Inertia inertia_beside(double threshold, std::span<const double> null) = 0;
 
  protected:
   bool refining_ = true;

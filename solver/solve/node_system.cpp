@@ -203,18 +203,38 @@ void NodeSystem::solve_exactly() {
   small_ = all.tail(border_);
 }
 
-Inertia NodeSystem::inertia(double threshold) const {
+Inertia NodeSystem::inertia(double threshold, std::span<const double> null) const {
   if (elements_ < 2 && free_ == 0) return {};
   if (free_ == 0) return chain_->inertia();
   Chain chain = *chain_;
   Border ends;
-  ends.resize(static_cast<int>(right_.size()), free_);
+  const bool across = !null.empty();
+  const int columns = free_ + across;
+  const Eigen::Index inner = static_cast<Eigen::Index>(right_.size());
+  ends.resize(static_cast<int>(inner), columns);
   using Eigen::Map;
-  Map<RowMatrix>(ends.column_block(), right_.size(), free_) =
-      Map<const RowMatrix>(columns_.data(), right_.size(), border_).leftCols(free_);
-  Map<RowMatrix>(ends.corner(), free_, free_) = corner_.topLeftCorner(free_, free_);
+  Map<RowMatrix> block(ends.column_block(), inner, columns), corner(ends.corner(), columns, columns);
+  block.leftCols(free_) = Map<const RowMatrix>(columns_.data(), inner, border_).leftCols(free_);
+  corner.setZero();
+  corner.topLeftCorner(free_, free_) = corner_.topLeftCorner(free_, free_);
+  if (across) {
+    block.col(free_) = Map<const Eigen::VectorXd>(null.data() + n_, inner);
+    const std::size_t last = static_cast<std::size_t>(elements_) * n_;
+    for (const Triplet& z : ends_->z) {
+      const double product = z.value * null[z.row < n_ ? z.row : last + z.row - n_];
+      corner(z.column, free_) += product;
+      corner(free_, z.column) += product;
+    }
+  }
   ends.factor(chain, std::max(threshold, Border::deflated_below));
-  return ends.inertia(threshold);
+  Inertia result = ends.inertia(threshold);
+  if (across) {
+    // The multiplier of the condition brings a positive and a negative eigenvalue.
+    --result.positive;
+    --result.negative;
+    ++result.zero;
+  }
+  return result;
 }
 
 }  // namespace extremal

@@ -29,8 +29,9 @@ class NodeSystem {
 
   /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
   /// are counted by NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
-  /// Schur complement that remains, are null.
-  Inertia inertia(double threshold) const;
+  /// Schur complement that remains, are null. So is `null`, (N + 1) × n, unless it is empty: what is counted
+  /// is the form across it.
+  Inertia inertia(double threshold, std::span<const double> null = {}) const;
 
  private:
   bool factor_schur(const ClosingEquation* closing);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <stdexcept>
 
 #include "action/rule.hpp"
 #include "machine/simd.hpp"
@@ -111,11 +112,15 @@ void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
   }
 }
 
-Inertia RaisedModel::inertia(double threshold) {
-  Inertia result = low_.inertia(threshold);
+Inertia RaisedModel::inertia_beside(double threshold, std::span<const double> null) {
+  Inertia result = low_.inertia_beside(threshold, null);
   const int per_sign = elements_ * (inner_ - low_inner_);
   for (double m : mass_) (m > 0 ? result.positive : result.negative) += per_sign;
   return result;
+}
+
+void RaisedModel::respond(DiscreteAction&, const ClosingEquation*, std::span<const double>, Step&) {
+  throw std::logic_error("a model of the second variation was asked for its response");
 }
 
 }  // namespace extremal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "machine/simd.hpp"
 
@@ -139,6 +140,30 @@ void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
       step.inner[(static_cast<std::size_t>(k / lanes) * m + u) * lanes + k % lanes] = value;
       if (u >= inner_) step.nodes[static_cast<std::size_t>(k) * n_ + u - inner_] = value;
     }
+}
+
+void SparseModel::respond(DiscreteAction& action, const ClosingEquation* closing,
+                          std::span<const double> load, Step& step) {
+  clear_gradient();
+  const std::size_t nodes = static_cast<std::size_t>(elements_ - 1) * n_;
+  for (std::size_t k = 0; k < nodes; ++k) gradient_[k] = -load[k + n_];
+  slope_ = 0;
+  const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
+  solve(action, closing ? &homogeneous : nullptr, step);
+}
+
+/// Across s the form has a negative square less unless sᵀH⁻¹s > 0.
+Inertia SparseModel::inertia_beside(double, std::span<const double> null) {
+  Inertia result = matrix_.inertia();
+  if (null.empty()) return result;
+  std::vector<double> load(unknowns_, 0);
+  std::copy(null.begin() + n_, null.end() - n_, load.begin());
+  std::vector<double> response = load;
+  matrix_.solve(response.data(), 1);
+  const bool positive = std::inner_product(load.begin(), load.end(), response.begin(), 0.0) > 0;
+  --(positive ? result.positive : result.negative);
+  ++result.zero;
+  return result;
 }
 
 }  // namespace extremal

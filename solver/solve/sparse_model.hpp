@@ -17,7 +17,9 @@ class SparseModel final : public QuadraticModel {
   bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;
   void evaluate_gradient(DiscreteAction& action, const Path& path) override;
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
-  Inertia inertia(double) override { return matrix_.inertia(); }
+  void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
+               Step& step) override;
+  Inertia inertia_beside(double, std::span<const double> null) override;
 
   /// In place of the gradient that was evaluated last, another: add_gradient() for each batch of elements,
   /// over their local unknowns in lanes.

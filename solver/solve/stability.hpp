@@ -1,5 +1,6 @@
 #pragma once
 
+#include "analysis/multipliers.hpp"
 #include "analysis/variation.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
@@ -8,8 +9,11 @@
 
 namespace extremal {
 
-/// Sets the Floquet multipliers of a converged solution of a periodic problem. `variation` is that of its
-/// windows, where it has any. `size` of the solution: that its error is relative to.
+/// How an orbit of a periodic problem closes; `relative_error` of its coordinates.
+ClosedOrbit closed_orbit(const Problem& problem, double relative_error);
+
+/// Sets the Floquet multipliers of a converged solution of a periodic problem. `variation` was
+/// assembled for it, perhaps without success. `size` of the solution: that its error is relative to.
 void read_stability(const Problem& problem, const SecondVariation& variation, double size,
                     Solution& solution);
 

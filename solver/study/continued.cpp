@@ -125,6 +125,7 @@ Continued read_continued(const Scene& scene, const System& system, const Problem
                                            : varied_parameter(scene, system, problem);
   check_different(table, continued.family.from);
   if (table.points) continued.points = static_cast<int>(table.points->value);
+  continued.switching = table.switching;
   return continued;
 }
 
@@ -133,18 +134,16 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
     throw std::invalid_argument(study.scene +
                                 ": the table [continuation] is missing: what is to vary, and how far");
   const Continued& continued = *study.continuation;
-  Continuation branch(continued.family, {study.options, continued.points});
+  Diagram diagram(continued.family, {study.options, continued.points, continued.switching});
   FollowedBranch followed;
   followed.title = study.title;
   followed.parameter = continued.parameter;
   followed.names = study.problem.names;
-  while (branch.advance()) {
-    followed.points.push_back(branch.point());
-    if (progress) progress(branch.point());
+  while (diagram.advance()) {
+    followed.points.push_back(diagram.point());
+    if (progress) progress(diagram.point());
   }
-  followed.end = branch.end();
-  followed.message = branch.message();
-  followed.worst_action_slope = branch.worst_action_slope();
+  followed.branches = diagram.branches();
   return followed;
 }
 

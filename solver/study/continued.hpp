@@ -3,7 +3,7 @@
 #include <string>
 
 #include "scene/scene.hpp"
-#include "solve/continuation.hpp"
+#include "solve/diagram.hpp"
 #include "system/formula.hpp"
 
 /// \file [continuation]: a scene's family of problems, and the branch of its extremals.
@@ -14,24 +14,23 @@ struct Study;
 
 /// What a scene asks to be varied.
 struct Continued {
-  std::string parameter;  ///< its name; "duration" or "energy"
-  ProblemFamily family;   ///< of the scene's problem
-  int points = 50;        ///< at most
+  std::string parameter;   ///< its name; "duration" or "energy"
+  ProblemFamily family;    ///< of the scene's problem
+  int points = 50;         ///< at most, of each branch
+  bool switching = false;  ///< also what bifurcates
 };
 
 /// Throws SceneError for a parameter that is not there, or cannot be varied, and for a value that it has
 /// already.
 Continued read_continued(const Scene& scene, const System& system, const Problem& problem);
 
-/// A branch as it was followed.
+/// A branch as it was followed, with those that bifurcate from it if they were asked for.
 struct FollowedBranch {
   std::string title;  ///< may be empty
   std::string parameter;
-  std::vector<std::string> names;  ///< of the coordinates
-  std::vector<BranchPoint> points;
-  BranchEnd end = BranchEnd::not_started;
-  std::string message = "nothing has been followed";  ///< why it ended
-  double worst_action_slope = 0;                      ///< as Continuation::worst_action_slope()
+  std::vector<std::string> names;      ///< of the coordinates
+  std::vector<BranchPoint> points;     ///< branch by branch
+  std::vector<BranchRecord> branches;  ///< the first is the one that was asked for
 };
 
 /// Follows the branch that a scene asks for; `progress` is called with each point. Throws SceneError if it

@@ -16,8 +16,9 @@ const std::string bratu =
     "[boundary]\nstart = { q = 0.0 }\nend = { q = 0.0 }\nduration = 1.0\n"
     "[continuation]\nparameter = \"lambda\"\nto = 4.0\npoints = 30\n";
 
-const std::set<std::string> point_keys = {"parameter",   "duration",    "energy", "action",
-                                          "morse_index", "multipliers", "kind",   "start"};
+const std::set<std::string> point_keys = {"branch", "parameter",   "duration", "energy",
+                                          "action", "morse_index", "nullity",  "multipliers",
+                                          "krein",  "kind",        "start"};
 
 std::string with(const std::string& from, const std::string& to) {
   std::string s = bratu;
@@ -40,7 +41,12 @@ TEST_F(Command, ContinuesAFamily) {
   EXPECT_NE(o.out.find("30 points have been found"), std::string::npos) << o.out;
   EXPECT_NE(read_text(folder / "b.svg").find("<svg"), std::string::npos);
   const Json b = Json::parse(read_text(folder / "b.json"));
-  ASSERT_EQ(b.size(), 3u);
+  ASSERT_EQ(b.size(), 4u);
+  ASSERT_EQ(b["branches"].size(), 1u);
+  EXPECT_EQ(b["branches"][0]["origin"], nullptr);
+  EXPECT_EQ(b["branches"][0]["points"], 30);
+  EXPECT_LE(b["branches"][0]["action_defect"], 1e-7);
+  EXPECT_LE(b["branches"][0]["momentum_defect"], 1e-8);  // ten times the tolerance
   EXPECT_EQ(b["status"], "converged");
   ASSERT_EQ(b["points"].size(), 30u);
   int folds = 0;
@@ -48,6 +54,8 @@ TEST_F(Command, ContinuesAFamily) {
     std::set<std::string> keys;
     for (const auto& [key, value] : point.items()) keys.insert(key);
     EXPECT_EQ(keys, point_keys);
+    EXPECT_EQ(point["branch"], 0);
+    EXPECT_EQ(point["multipliers"], nullptr);
     EXPECT_EQ(point["start"]["q"], 0.0);
     EXPECT_GT(point["start"]["q'"].get<double>(), 0);
     if (point["kind"] != "fold") continue;
@@ -56,7 +64,8 @@ TEST_F(Command, ContinuesAFamily) {
   }
   EXPECT_EQ(folds, 1);
   const std::string csv = read_text(folder / "b.csv");
-  EXPECT_EQ(csv.rfind("parameter,duration,energy,action,morse_index,kind,q,q'\n1,1,", 0), 0u) << csv;
+  EXPECT_EQ(csv.rfind("branch,parameter,duration,energy,action,morse_index,nullity,kind,q,q'\n0,1,1,", 0), 0u)
+      << csv;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 31);
 }
 

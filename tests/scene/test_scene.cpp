@@ -180,9 +180,9 @@ TEST_F(SceneFiles, ContinuationIsRead) {
   EXPECT_EQ(message(continuation("parameter = \"duration\"\n")),
             "scene.toml:8:1: [continuation] has no 'to'; give the value that the family is to lead to");
   EXPECT_EQ(message(continuation(fine + "points = 1\n")), "scene.toml:11:10: points = 1; need 2 to 100000");
-  EXPECT_EQ(
-      message(continuation(fine + "switch = true\n")),
-      "scene.toml:11:10: following the branches that bifurcate is not available yet; leave 'switch' out");
+  EXPECT_FALSE(scene.continuation->switching);
+  EXPECT_EQ(message(continuation(fine + "switch = 1\n")),
+            "scene.toml:11:10: 'switch' in [continuation] must be true or false, found an integer");
   EXPECT_EQ(message(continuation(fine + "step = 1\n")),
             "scene.toml:11:1: unknown key 'step' in [continuation]");
 }

@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/continuation.hpp"
+#include "solve/continuation_root.hpp"
+#include "solve/doubled.hpp"
+#include "solve/finish.hpp"
+#include "solve/stability.hpp"
+
+/// \file Where other branches cross on a step, and where orbits of twice the period begin.
+
+namespace extremal {
+
+namespace {
+
+constexpr int most_trials = 80, most_crossings = 8;
+/// Responses on either side of a crossing point opposite ways, to a cosine of this.
+constexpr double opposite = -0.9;
+/// Beyond a crossing, by so much of the step, the next one is sought.
+constexpr double beyond_it = 1e-4;
+/// From a seed to the crossing.
+constexpr double seed_distance = 1e-4;
+
+}  // namespace
+
+/// One end of the interval that holds a crossing.
+struct Continuation::Side {
+  double at = 0, weight = 1;
+  Move response = {};
+  double size = 0;  ///< of the response; 0: not known
+};
+
+/// A crossing, or, where the equations are too singular there, a point next to it: what varies is then
+/// interpolated by the cubic through points on either side.
+std::optional<BranchPoint> Continuation::crossing_at(const Stand& from, double at, double length) {
+  if (go(from, at)) return read(PointKind::branch);
+  for (const double share : {1e-7, 1e-5, 1e-3, 1e-2}) {
+    const double off = share * length;
+    if (!go(from, at + off)) continue;
+    const double after = here_.varied, rate_after = here_.rate;
+    if (!go(from, at - off)) continue;
+    BranchPoint point = read(PointKind::branch);
+    point.parameter = 0.5 * (here_.varied + after) - 0.25 * off * (rate_after - here_.rate);
+    return point;
+  }
+  return std::nullopt;
+}
+
+/// Between low, where the branch is as `before`, and high. `response` is that next to it: at it, there may be
+/// none. NaN where the branch cannot be followed.
+double Continuation::find_crossing(const Stand& from, const Stand& before, double low, double high,
+                                   Move& response) {
+  Side sides[2] = {{.at = low}, {.at = high}};
+  const double at = narrow(from, before, sides);
+  response = std::move(sides[sides[0].size > sides[1].size ? 0 : 1].response);
+  return response.step.nodes.empty() ? NAN : at;
+}
+
+/// By halves as the orientation tells, then by the secant of ±1/|response|, which passes zero at a crossing.
+double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides)[2]) {
+  Move response;
+  double last = sides[0].at;
+  bool lower_before = false;
+  for (int k = 0; k < most_trials; ++k) {
+    const bool known = sides[0].size > 0 && sides[1].size > 0;
+    const bool near =
+        known && branch_.dot(sides[0].response, sides[1].response) < opposite * sides[0].size * sides[1].size;
+    const double a = near ? sides[0].weight / sides[0].size : 1,
+                 b = near ? sides[1].weight / sides[1].size : 1;
+    const double guess = (sides[0].at * b + sides[1].at * a) / (a + b);
+    // Where the crossing lies just there, nothing can be solved.
+    const double aside = near ? 0.03 : 0.3;
+    double at = guess;
+    if (!go(from, at, true) && !go(from, at = guess + aside * (sides[1].at - guess), true) &&
+        !go(from, at = guess - aside * (guess - sides[0].at), true))
+      return near ? guess : NAN;
+    branch_.respond(here_.tangent, response);
+    const double size = std::sqrt(branch_.dot(response, response));
+    const bool lower = near ? branch_.dot(response, sides[0].response) > 0 : !differs(here_, before);
+    // At the crossing itself the way along the other branch counts as null and is left out.
+    const bool gone = near && size < std::min(sides[0].size, sides[1].size);
+    if (!std::isfinite(size) || size == 0 || gone || settled(at - last) || at == last) return at;
+    last = at;
+    // The same side again: the other one counts less (Illinois).
+    if (near && lower == lower_before) sides[lower ? 1 : 0].weight *= 0.5;
+    sides[lower ? 0 : 1] = {at, 1, response, size};
+    lower_before = lower;
+  }
+  return last;
+}
+
+/// A change of the index alone is a fold of the duration, or of what varies.
+bool Continuation::differs(const Stand& a, const Stand& b) {
+  return a.orientation != b.orientation || std::abs(a.index - b.index) >= 2;
+}
+
+void Continuation::find_crossings(const Stand& from, const Stand& to, double length,
+                                  std::vector<Meeting>& met) {
+  Stand before = from;
+  double low = 0;
+  for (int k = 0; k < most_crossings && differs(before, to); ++k) {
+    Move response;
+    double at = find_crossing(from, before, low, length, response);
+    if (!std::isfinite(at)) return;
+    Stand base = from;
+    if (auto finer = resolved_for(from, response)) {
+      base = *std::move(finer);
+      if (!go(base, low, true)) return;
+      at = find_crossing(base, Stand(here_), low, length, response);
+      if (!std::isfinite(at)) return;
+    }
+    std::optional<BranchPoint> point = crossing_at(base, at, length);
+    if (!point) return;
+    met.push_back({at, {*std::move(point), seed_at(PointKind::branch, base, at)}});
+    low = at + beyond_it * length;
+    if (!(low < length) || !go(from, low, true)) return;
+    before = here_;
+  }
+}
+
+/// ∏ (1 + λ) at the place, by multipliers as they are, however near to −1.
+double Continuation::doubling() {
+  const Problem& problem = branch_.problem();
+  const Trajectory trajectory = trajectory_of(here_.path);
+  if (!variation_.assemble(problem.lagrangian, trajectory)) return NAN;
+  const std::optional<Floquet> found = floquet(variation_, closed_orbit(problem, 0));
+  return found ? doubling_product(*found) : NAN;
+}
+
+double Continuation::find_doubling(const Stand& from, const Stand& to, double length) {
+  if (!(from.doubling * to.doubling < 0)) return NAN;
+  return root(
+      from, 0, from.doubling, length, to.doubling, [this] { return doubling(); },
+      [this](double, double change) { return settled(change); });
+}
+
+std::optional<Seed> Continuation::seed_at(PointKind kind, const Stand& from, double at) {
+  if (!options_.seeds) return std::nullopt;
+  if (!go(from, at - seed_distance) && !go(from, at + seed_distance)) return std::nullopt;
+  Seed seed{kind, here_.path, here_.coordinate, here_.units};
+  if (kind == PointKind::branch) return seed;
+  double_path(branch_.problem(), here_.path, branch_.tables(), seed.path);
+  seed.units.duration *= 2;
+  if (family_.varied != Varied::parameter) seed.coordinate *= 2;
+  return seed;
+}
+
+}  // namespace extremal

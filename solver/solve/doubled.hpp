@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "action/path.hpp"
+#include "solve/branch.hpp"
+
+/// \file Periodic orbits run through twice.
+
+namespace extremal {
+
+/// q(T) = R q(0) + c.
+struct ClosingMap {
+  Eigen::MatrixXd r;  ///< n × n
+  Eigen::VectorXd c;
+  bool identity() const { return r.isIdentity(0) && c.isZero(0); }
+};
+
+/// Of a periodic problem.
+ClosingMap closing_map(const Problem& problem);
+
+/// The problem of twice the period, which every solution of a periodic problem solves, run through twice.
+Problem doubled(const Problem& problem);
+ProblemFamily doubled(const ProblemFamily& family);
+
+/// Fills `twice` with a path of the problem run through twice, on elements of `tables`, whose degree is the
+/// path's.
+void double_path(const Problem& problem, const Path& path, const ElementTables& tables, Path& twice);
+
+}  // namespace extremal

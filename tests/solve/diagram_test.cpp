@@ -1,0 +1,180 @@
+#include "solve/diagram.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+
+#include "solve/scenes.hpp"
+
+/// \file Branches that bifurcate, against closed forms, characteristic values and published orbits.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+struct Followed {
+  std::vector<BranchPoint> points;
+  std::vector<BranchRecord> branches;
+
+  std::vector<BranchPoint> of(int branch) const {
+    std::vector<BranchPoint> result;
+    for (const BranchPoint& point : points)
+      if (point.branch == branch) result.push_back(point);
+    return result;
+  }
+  /// Parameters of the points of one kind on the first branch.
+  std::vector<double> values(PointKind kind) const {
+    std::vector<double> result;
+    for (const BranchPoint& point : points)
+      if (point.branch == 0 && point.kind == kind) result.push_back(point.parameter);
+    return result;
+  }
+};
+
+Followed follow(const ProblemFamily& family, double tolerance, int points) {
+  Diagram diagram(family, {.solve = within(tolerance), .points = points, .seeds = true});
+  Followed followed;
+  while (diagram.advance()) followed.points.push_back(diagram.point());
+  followed.branches = diagram.branches();
+  return followed;
+}
+
+ProblemFamily varied(const std::function<Problem(double)>& at, double from, double to) {
+  return {at(from), Varied::parameter, from, to, [at](double p) { return std::optional<Problem>(at(p)); }};
+}
+
+State start_of(const BranchPoint& point) { return at(point.solution.trajectory, 0); }
+
+/// q'' = −λ sin q with q(0) = q(1) = 0, Euler's buckled rod: m half waves of modulus k have √λ = 2m K(k) and
+/// q'(0) = 2k√λ.
+TEST(Diagram, BuckledRods) {
+  const auto problem = [](double lambda) {
+    return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 + lambda * cos(q[0]); }),
+                      {0}, {0}, 1);
+  };
+  const Followed found = follow(varied(problem, 5, 50), 1e-10, 50);
+  const std::vector<double> loads = found.values(PointKind::branch);
+  ASSERT_EQ(loads.size(), 2u);
+  EXPECT_NEAR(loads[0], pi * pi, 1e-8);
+  EXPECT_NEAR(loads[1], 4 * pi * pi, 1e-8);
+  ASSERT_EQ(found.branches.size(), 5u);
+  for (int branch = 1; branch < 5; ++branch) {
+    const std::vector<BranchPoint> rods = found.of(branch);
+    EXPECT_GT(rods.size(), 4u);
+    EXPECT_EQ(found.branches[branch].end, BranchEnd::target) << found.branches[branch].message;
+    EXPECT_EQ(rods.back().parameter, 50);
+    const int waves = branch < 3 ? 1 : 2;
+    for (const BranchPoint& rod : rods) {
+      const double slope = start_of(rod).v[0], root = std::sqrt(rod.parameter);
+      EXPECT_EQ(slope > 0, start_of(rods.front()).v[0] > 0);
+      EXPECT_NEAR(2 * waves * std::comp_ellint_1(slope / (2 * root)), root, 1e-8 * root);
+      EXPECT_EQ(rod.solution.morse_index, waves - 1);
+    }
+  }
+  EXPECT_LT(start_of(found.of(1).front()).v[0] * start_of(found.of(2).front()).v[0], 0);
+}
+
+/// The lowest characteristic values of q'' + (a − 2 cos 2t) q = 0 by Fourier series: even or odd ones of the
+/// period π, or those that change sign over it (DLMF 28.4).
+Values characteristic(bool changing, bool odd) {
+  const int count = 20;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+  for (int k = 0; k < count; ++k) {
+    const int frequency = changing ? 2 * k + 1 : odd ? 2 * k + 2 : 2 * k;
+    matrix(k, k) = frequency * frequency;
+    if (k + 1 < count) matrix(k, k + 1) = matrix(k + 1, k) = !changing && !odd && k == 0 ? std::sqrt(2.0) : 1;
+  }
+  if (changing) matrix(0, 0) += odd ? -1 : 1;
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues();
+  return {values[0], values[1]};
+}
+
+/// A spring that stiffens, shaken: from rest, motions of the period π begin at a_0, b_2, a_2, and such of
+/// twice the period at b_1, a_1. Rest is stable where none of them is negative.
+TEST(Diagram, MathieusEquation) {
+  const auto problem = [](double a) {
+    const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
+      const auto square = q[0] * q[0];
+      return v[0] * v[0] / 2 - (a - 2 * cos(2 * t)) * square / 2 - square * square / 4;
+    });
+    Problem periodic = with_ends(lagrangian, pi, [](BoundaryRelation& r) {
+      const int row = r.add_row(0);
+      r.add(row, 0, -1);
+      r.add(row, 1, 1);
+    });
+    periodic.periodic = true;
+    return guessed(std::move(periodic), [](double) { return Values{0}; });
+  };
+  const Followed found = follow(varied(problem, -1, 5), 1e-10, 40);
+  const Values even = characteristic(false, false), odd = characteristic(false, true);
+  const std::vector<double> crossings = found.values(PointKind::branch);
+  ASSERT_EQ(crossings.size(), 3u);
+  EXPECT_NEAR(crossings[0], even[0], 1e-8);
+  EXPECT_NEAR(crossings[1], odd[0], 1e-8);
+  EXPECT_NEAR(crossings[2], even[1], 1e-8);
+  const std::vector<double> doublings = found.values(PointKind::period_doubling);
+  ASSERT_EQ(doublings.size(), 2u);
+  EXPECT_NEAR(doublings[0], characteristic(true, true)[0], 1e-8);
+  EXPECT_NEAR(doublings[1], characteristic(true, false)[0], 1e-8);
+  for (const BranchPoint& point : found.of(0)) {
+    ASSERT_TRUE(point.solution.floquet);
+    const double a = point.parameter;
+    if (point.kind != PointKind::regular) continue;
+    EXPECT_EQ(point.solution.floquet->stable(),
+              (a > even[0] && a < doublings[0]) || (a > doublings[1] && a < odd[0]) || a > even[1])
+        << a;
+  }
+  ASSERT_EQ(found.branches.size(), 9u);
+  // In the order of a: a_0 both ways, b_1, a_1, b_2 and a_2 both ways.
+  for (const int branch : {3, 4}) {
+    const std::vector<BranchPoint> doubled = found.of(branch);
+    ASSERT_GT(doubled.size(), 3u);
+    for (const BranchPoint& point : doubled) {
+      EXPECT_NEAR(point.solution.duration(), 2 * pi, 1e-15);
+      for (const double t : {0.0, 0.7}) {
+        const double now = at(point.solution.trajectory, t).q[0];
+        EXPECT_NEAR(at(point.solution.trajectory, t + pi).q[0], -now, 1e-7);
+      }
+    }
+  }
+}
+
+/// The halo orbits, north and south, where planar ones about L1 of Earth and Moon lose their stability out of
+/// the plane; and an orbit of the catalogue on the way.
+TEST(Diagram, HaloOrbits) {
+  const nlohmann::json orbit = published("cr3bp_periodic_orbits.json", "cr3bp-earth-moon-L1haloN-f1");
+  const double period = decimal(orbit["refined"]["period"]), jacobi = decimal(orbit["refined"]["jacobi"]);
+  const Study study =
+      load(std::string(EXTREMAL_SOURCE_DIR) + "/problems/scenes/lyapunov-family.toml", {"continuation.to=3"});
+  const ProblemFamily& family = study.continuation->family;
+  const Followed found = follow(family, 1e-11, 30);
+  EXPECT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  ASSERT_EQ(found.branches.size(), 3u);
+  double heights[2] = {0, 0};
+  for (const int branch : {1, 2}) {
+    EXPECT_LE(found.branches[branch].worst_action_slope, 1e-6);
+    EXPECT_LE(found.branches[branch].worst_momentum, 1e-8);
+    const std::vector<BranchPoint> halos = found.of(branch);
+    const auto distance = [&](const BranchPoint& a) { return std::abs(a.parameter - period); };
+    const BranchPoint& nearest = *std::min_element(
+        halos.begin(), halos.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+    Problem problem = family.problem;
+    problem.guess = {};
+    problem.duration.value = period;
+    const Trajectory& path = nearest.solution.trajectory;
+    const Solution halo =
+        solve(guessed(std::move(problem), [&](double tau) { return at(path, tau * path.duration()).q; }),
+              within(1e-11));
+    // C = −2E in the catalogue's units.
+    EXPECT_NEAR(-2 * *halo.energy, jacobi, 1e-9);
+    const double largest = std::abs(halo.floquet->multipliers[0]);
+    EXPECT_NEAR((largest + 1 / largest) / 2, orbit["stability_index_computed"].get<double>(), 1e-6);
+    for (int k = 0; k < 100; ++k) heights[branch - 1] += at(halo.trajectory, k * period / 100).q[2];
+  }
+  EXPECT_NEAR(heights[0], -heights[1], 1e-6 * std::abs(heights[0]));
+  EXPECT_GT(std::abs(heights[0]), 1);
+}
+
+}  // namespace
+}  // namespace extremal::laws
