@@ -27,7 +27,10 @@ void write_csv(const std::string& path, const FollowedBranch& branch);
 /// A table of the points, why each branch ended, and how well the derivatives of the action are met.
 std::string summary(const FollowedBranch& branch);
 
-/// What varies against the action, or, where the energy varies, the duration; folds and crossings are marked.
+/// A parameter against the action, or duration and energy against each other: periodic orbits coloured by
+/// their stability, others by whether their index is zero, with folds, crossings and period doublings marked.
+/// Beside it some solutions from the first point to the last: paths in the plane or in space, else the first
+/// coordinate against time.
 /// Throws as write_plot of a trajectory does, and std::invalid_argument without points.
 void write_plot(const std::string& path, const FollowedBranch& branch);
 

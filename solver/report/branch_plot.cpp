@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "report/branch.hpp"
@@ -7,42 +9,163 @@ namespace extremal {
 
 namespace {
 
-constexpr double margin = 0.06, ticks = 6;
+constexpr double margin = 0.06, height = 420;
+constexpr Colour ink = 0x22262C, third_colour = 0x009E73;
+/// Orbits drawn, and points of each.
+constexpr std::size_t most_orbits = 14, samples = 400;
 
-Axis axis(const std::string& label, const Column& values) {
-  const Extent range = extent({&values}, margin);
-  return make_axis(label, range.low, range.high, ticks);
+/// What is drawn upwards: the action hides what little energies and durations differ by.
+const char* height_name(const FollowedBranch& branch) {
+  if (branch.parameter == "energy") return "duration";
+  return branch.parameter == "duration" ? "energy" : "action";
+}
+
+double height_of(const FollowedBranch& branch, const Solution& solution) {
+  if (branch.parameter == "energy") return solution.duration();
+  return branch.parameter == "duration" ? solution.energy.value_or(0) : solution.action;
+}
+
+/// What the colour of a branch says: of periodic orbits their stability, of others whether they are minima.
+struct Kinds {
+  bool orbits;
+  const char* good() const { return orbits ? "stable" : "index 0"; }
+  const char* bad() const { return orbits ? "unstable" : "higher index"; }
+  bool is_good(const BranchPoint& point) const {
+    const Solution& solution = point.solution;
+    return orbits ? solution.floquet && solution.floquet->stable() : solution.morse_index == 0;
+  }
+};
+
+Axis axis(const std::string& label, const std::vector<const Column*>& values, double pixels) {
+  const Extent range = extent(values, margin);
+  return make_axis(label, range.low, range.high, pixels / 75);
+}
+
+std::vector<Curve> branch_curves(const FollowedBranch& branch, const Column& x, const Column& y,
+                                 const Kinds& kinds) {
+  std::vector<Curve> curves;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const BranchPoint &from = branch.points[k], &to = branch.points[k + 1];
+    if (from.branch != to.branch) continue;
+    // At what is located there is no telling.
+    const bool good = kinds.is_good(to.kind == PointKind::regular ? to : from);
+    const Colour colour = good ? first_colour : second_colour;
+    const bool on = !curves.empty() && curves.back().colour == colour && curves.back().x.back() == x[k] &&
+                    curves.back().y.back() == y[k];
+    if (!on) curves.push_back({{x[k]}, {y[k]}, colour, from.branch == 0 ? 2.0 : 1.3});
+    curves.back().x.push_back(x[k + 1]);
+    curves.back().y.push_back(y[k + 1]);
+  }
+  return curves;
+}
+
+void add_marks(const FollowedBranch& branch, const Column& x, const Column& y, Panel& panel) {
+  std::set<PointKind> seen;
+  const auto style = [](PointKind kind) -> std::pair<Colour, Shape> {
+    if (kind == PointKind::period_doubling) return {third_colour, Shape::disc};
+    return {ink, kind == PointKind::fold ? Shape::disc : Shape::ring};
+  };
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const PointKind kind = branch.points[k].kind;
+    if (kind == PointKind::regular) continue;
+    const auto [colour, shape] = style(kind);
+    panel.marks.push_back({x[k], y[k], colour, shape});
+    if (seen.insert(kind).second) panel.legend.push_back({name(kind), colour, shape});
+  }
+}
+
+Panel branch_panel(const FollowedBranch& branch, Box box) {
+  const bool orbits = std::any_of(branch.points.begin(), branch.points.end(),
+                                  [](const BranchPoint& p) { return p.solution.floquet.has_value(); });
+  const Kinds kinds{orbits};
+  Column x, y;
+  for (const BranchPoint& point : branch.points) {
+    x.push_back(point.parameter);
+    y.push_back(height_of(branch, point.solution));
+  }
+  Panel panel;
+  panel.x = axis(branch.parameter, {&x}, box.width);
+  panel.y = axis(height_name(branch), {&y}, box.height);
+  const double shift = number_width(panel.y);
+  panel.box = {box.left + shift, box.top, box.width - shift, box.height};
+  panel.curves = branch_curves(branch, x, y, kinds);
+  for (const bool good : {true, false}) {
+    const Colour colour = good ? first_colour : second_colour;
+    if (std::any_of(panel.curves.begin(), panel.curves.end(),
+                    [&](const Curve& curve) { return curve.colour == colour; }))
+      panel.legend.push_back({good ? kinds.good() : kinds.bad(), colour, Shape::line});
+  }
+  add_marks(branch, x, y, panel);
+  return panel;
+}
+
+/// Columns t/T and the coordinates of one solution.
+std::vector<Column> sampled(const Trajectory& trajectory) {
+  const std::size_t n = trajectory.coordinates;
+  std::vector<Column> columns(n + 1);
+  std::vector<double> q(n), v(n);
+  for (std::size_t k = 0; k <= samples; ++k) {
+    const double tau = static_cast<double>(k) / samples;
+    trajectory.at(tau * trajectory.duration(), q, v);
+    columns[0].push_back(tau);
+    for (std::size_t a = 0; a < n; ++a) columns[a + 1].push_back(q[a]);
+  }
+  return columns;
+}
+
+/// Solutions evenly from the first point to the last.
+std::vector<std::vector<Column>> chosen_solutions(const FollowedBranch& branch) {
+  const std::size_t count = branch.points.size(), drawn = std::min(count, most_orbits);
+  std::vector<std::vector<Column>> solutions;
+  for (std::size_t k = 0; k < drawn; ++k) {
+    const std::size_t point = drawn > 1 ? k * (count - 1) / (drawn - 1) : 0;
+    solutions.push_back(sampled(branch.points[point].solution.trajectory));
+  }
+  return solutions;
+}
+
+/// Two columns of every solution against each other.
+Panel orbit_panel(const std::vector<std::vector<Column>>& solutions, std::size_t across, std::size_t up,
+                  const std::string& across_label, const std::string& up_label, Box box) {
+  std::vector<const Column*> xs, ys;
+  for (const std::vector<Column>& solution : solutions) {
+    xs.push_back(&solution[across]);
+    ys.push_back(&solution[up]);
+  }
+  Panel panel;
+  panel.x = axis(across_label, xs, box.width);
+  panel.y = axis(up_label, ys, box.height);
+  const double shift = number_width(panel.y);
+  panel.box = {box.left + shift, box.top, box.width - shift, box.height};
+  const std::vector<Colour> colours = distinct_colours(std::max<std::size_t>(solutions.size(), 7));
+  for (std::size_t k = 0; k < solutions.size(); ++k)
+    panel.curves.push_back({solutions[k][across], solutions[k][up], colours[k], 1.3});
+  return panel;
 }
 
 }  // namespace
 
 Figure layout(const FollowedBranch& branch) {
   if (branch.points.empty()) throw std::invalid_argument("cannot plot a branch without points");
-  const bool energies = branch.parameter == "energy";
-  Curve curve{{}, {}, first_colour};
-  for (const BranchPoint& point : branch.points) {
-    curve.x.push_back(point.parameter);
-    curve.y.push_back(energies ? point.solution.duration() : point.solution.action);
+  const double top = top_of_panels(branch.title) + 24, wide = 620, gap = 44;
+  Figure figure{.width = gap + wide, .height = top + height + 56, .title = branch.title};
+  figure.panels.push_back(branch_panel(branch, {gap, top, wide, height}));
+  const std::vector<std::vector<Column>> solutions = chosen_solutions(branch);
+  const std::vector<std::string>& names = branch.names;
+  const auto add = [&](std::size_t across, std::size_t up, double width) {
+    const std::string label = across == 0 ? "t/T" : names[across - 1];
+    figure.panels.push_back(
+        orbit_panel(solutions, across, up, label, names[up - 1], {figure.width + gap, top, width, height}));
+    figure.width += gap + width;
+  };
+  // Paths in the plane and in space; of other systems the first coordinate against time.
+  if (names.size() == 2 || names.size() == 3) {
+    add(1, 2, 460);
+    if (names.size() == 3) add(1, 3, 460);
+  } else {
+    add(0, 1, 460);
   }
-  const double top = top_of_panels(branch.title) + 18, height = 420;
-  Figure figure{.width = 860, .height = top + height + 56, .title = branch.title};
-  Panel panel;
-  panel.x = axis(branch.parameter, curve.x);
-  panel.y = axis(energies ? "duration" : "action", curve.y);
-  bool folds = false, crossings = false;
-  for (std::size_t k = 0; k < branch.points.size(); ++k) {
-    const PointKind kind = branch.points[k].kind;
-    if (kind == PointKind::regular) continue;
-    const bool fold = kind == PointKind::fold;
-    (fold ? folds : crossings) = true;
-    panel.marks.push_back({curve.x[k], curve.y[k], second_colour, fold ? Shape::disc : Shape::ring});
-  }
-  if (folds) panel.legend.push_back({"fold", second_colour, Shape::disc});
-  if (crossings) panel.legend.push_back({"branch", second_colour, Shape::ring});
-  panel.curves.push_back(std::move(curve));
-  const double left = 44 + number_width(panel.y);
-  panel.box = {left, top, figure.width - left - 24, height};
-  figure.panels.push_back(std::move(panel));
+  figure.width += 28;
   return figure;
 }
 
