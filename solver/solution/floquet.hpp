@@ -20,6 +20,9 @@ struct Floquet {
   /// Beside them: sign of i vᴴJv of the eigenvector v = (q, p), J = (0 I; −I 0), for multipliers on the unit
   /// circle; 0 off it and for trivial ones.
   std::vector<int> krein;
+  /// Beside them: eigenvectors (q, p) at t = 0, 2n, of length one; for a double one with one eigenvector
+  /// twice that. Left out along branches, and where the second variation between fixed ends is singular.
+  std::vector<std::vector<std::complex<double>>> vectors;
   double symplectic_defect = 0;  ///< largest |λ·λ' − 1| of pairs that are not trivial
   int trivial_pairs = 0, circle_pairs = 0, real_pairs = 0, quadruples = 0;
 

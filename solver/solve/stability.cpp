@@ -2,9 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
+#include "analysis/orbit_form.hpp"
 #include "solve/doubled.hpp"
 
 namespace extremal {
+
+namespace {
+
+void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Floquet& floquet) {
+  const auto form = OrbitForm::make(variation, orbit.map);
+  if (!form) return;
+  for (const std::complex<double>& value : floquet.multipliers) {
+    const Eigen::VectorXcd vector = form->eigenvector(value);
+    floquet.vectors.emplace_back(vector.begin(), vector.end());
+  }
+}
+
+}  // namespace
 
 ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
   ClosingMap map = closing_map(problem);
@@ -13,8 +29,8 @@ ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
           .autonomous = problem.lagrangian->structure().autonomous};
 }
 
-void read_stability(const Problem& problem, const SecondVariation& variation, double size,
-                    Solution& solution) {
+void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
+                    bool vectors) {
   if (!problem.periodic) return;
   if (problem.coordinates() > most_coordinates_for_multipliers) {
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
@@ -23,9 +39,20 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     solution.message += "; nor are multipliers found";
   } else {
     const double error = size > 0 ? solution.error_estimate / size : 0;
-    solution.floquet = floquet(variation, closed_orbit(problem, error));
+    const ClosedOrbit orbit = closed_orbit(problem, error);
+    solution.floquet = floquet(variation, orbit);
     if (!solution.floquet) solution.message += "; multipliers are too large for numbers";
+    if (solution.floquet && vectors) add_vectors(variation, orbit, *solution.floquet);
   }
+}
+
+std::vector<int> iterate_indices(const Problem& problem, const Solution& solution, int most) {
+  if (!problem.periodic || most < 0)
+    throw std::invalid_argument(fmt::format("indices of {} iterates; need a periodic problem", most));
+  SecondVariation variation;
+  if (!variation.assemble(problem.lagrangian, solution.trajectory)) return {};
+  const auto form = OrbitForm::make(variation, closed_orbit(problem, 0).map);
+  return form ? form->iterates(most) : std::vector<int>{};
 }
 
 }  // namespace extremal

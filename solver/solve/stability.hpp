@@ -14,7 +14,11 @@ ClosedOrbit closed_orbit(const Problem& problem, double relative_error);
 
 /// Sets the Floquet multipliers of a converged solution of a periodic problem. `variation` was
 /// assembled for it, perhaps without success. `size` of the solution: that its error is relative to.
-void read_stability(const Problem& problem, const SecondVariation& variation, double size,
-                    Solution& solution);
+void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
+                    bool vectors = true);
+
+/// Morse indices of a solution of a periodic problem run through 1, 2, … most times. Empty where they cannot
+/// be told: see OrbitForm. Throws std::invalid_argument for another problem, or for a negative number.
+std::vector<int> iterate_indices(const Problem& problem, const Solution& solution, int most);
 
 }  // namespace extremal

@@ -76,6 +76,22 @@ inline Values integrated_conjugate_times(const Lagrangian& lagrangian, const Sol
   return times;
 }
 
+/// ∂(q, p)(T)/∂(q, p)(0), integrated.
+inline Eigen::MatrixXd linearised_flow(const Lagrangian& lagrangian, const Solution& solution) {
+  const int n = lagrangian.structure().coordinates;
+  Flow flow(lagrangian);
+  Values y = at(solution.trajectory, 0).q;
+  y.insert(y.end(), solution.momentum_start.begin(), solution.momentum_start.end());
+  y.resize(2 * n * (2 * n + 1));
+  for (int c = 0; c < 2 * n; ++c) y[2 * n * (c + 1) + c] = 1;
+  Dop853 integrator([&](double t, auto x, auto slope) { return flow.slope_with_variations(t, x, slope); },
+                    static_cast<int>(y.size()));
+  double t = 0;
+  if (integrator.advance(t, y, solution.duration(), {.tolerance = 1e-14, .block = n}) != Integrated::done)
+    throw std::runtime_error("the integration failed");
+  return Eigen::Map<const Eigen::MatrixXd>(y.data() + 2 * n, 2 * n, 2 * n);
+}
+
 /// Windows abut and cover [0, T]; each is minimising and the union of two neighbours is not, by the index of
 /// the problem between the same points of the trajectory, solved anew from it.
 inline void expect_windows(const Solution& solution, const std::shared_ptr<const Lagrangian>& lagrangian,

@@ -29,22 +29,6 @@ Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T) {
   return make_problem(std::move(problem));
 }
 
-/// ∂(q, p)(T)/∂(q, p)(0), integrated.
-Eigen::MatrixXd linearised_flow(const Lagrangian& lagrangian, const Solution& solution) {
-  const int n = lagrangian.structure().coordinates;
-  Flow flow(lagrangian);
-  Values y = at(solution.trajectory, 0).q;
-  y.insert(y.end(), solution.momentum_start.begin(), solution.momentum_start.end());
-  y.resize(2 * n * (2 * n + 1));
-  for (int c = 0; c < 2 * n; ++c) y[2 * n * (c + 1) + c] = 1;
-  Dop853 integrator([&](double t, auto x, auto slope) { return flow.slope_with_variations(t, x, slope); },
-                    static_cast<int>(y.size()));
-  double t = 0;
-  if (integrator.advance(t, y, solution.duration(), {.tolerance = 1e-14, .block = n}) != Integrated::done)
-    throw std::runtime_error("the integration failed");
-  return Eigen::Map<const Eigen::MatrixXd>(y.data() + 2 * n, 2 * n, 2 * n);
-}
-
 /// λ² − μλ + 1 = 0 with the trace μ, driven through resonance: x'' + sin x = 0.8 cos 1.3 t.
 TEST(MultipliersOfOrbits, DrivenPendulum) {
   const auto lagrangian = trace(
