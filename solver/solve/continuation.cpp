@@ -29,6 +29,18 @@ constexpr double least_extent = 0.3;
 /// The action is held against its derivatives at one point of so many.
 constexpr int unchecked = 8;
 
+/// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
+constexpr double singular_grading = 100;
+double grading(const Path& path) {
+  const std::span<const double> mesh = path.mesh();
+  double shortest = 1, longest = 0;
+  for (int k = 0; k < path.elements(); ++k) {
+    shortest = std::min(shortest, mesh[k + 1] - mesh[k]);
+    longest = std::max(longest, mesh[k + 1] - mesh[k]);
+  }
+  return longest / shortest;
+}
+
 }  // namespace
 
 const char* name(PointKind kind) {
@@ -178,13 +190,16 @@ bool Continuation::go(const Stand& from, double length, bool same_elements) {
   return turn();
 }
 
-bool Continuation::give_up(double varied) {
+bool Continuation::give_up(const Stand& from) {
+  const double varied = from.varied, graded = grading(from.path);
+  if (refusal_ == Refusal::rough && graded > singular_grading) refusal_ = Refusal::crowded;
   switch (refusal_) {
     case Refusal::crowded:
-      return stop(BranchEnd::collision,
-                  fmt::format("at {:.8g} the path needs ever more elements: it comes near a singularity; "
-                              "loosen the tolerance",
-                              varied));
+      return stop(
+          BranchEnd::collision,
+          fmt::format("at {:.8g} the path, whose shortest element is {:.0e} of its longest, needs ever "
+                      "more of them: it comes near a singularity; loosen the tolerance",
+                      varied, 1 / graded));
     case Refusal::no_problem:
       return stop(BranchEnd::limit,
                   fmt::format("at {:.8g} the branch cannot be followed: beyond, there is no such problem, or "
@@ -201,7 +216,7 @@ bool Continuation::give_up(double varied) {
 bool Continuation::step() {
   const Stand from = here_;
   for (;; length_ *= 0.4) {
-    if (length_ < least_length) return give_up(from.varied);
+    if (length_ < least_length) return give_up(from);
     if (go(from, length_) && cosine_ > sharpest_turn) break;
   }
   const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
@@ -236,7 +251,7 @@ BranchPoint Continuation::read(PointKind kind) {
   if (!problem.periodic) return point;
   if (problem.coordinates() <= most_coordinates_for_multipliers)
     variation_.assemble(problem.lagrangian, solution.trajectory);
-  read_stability(problem, variation_, sizes().q, solution);
+  read_stability(problem, variation_, sizes().q, solution, false);
   here_.doubling = solution.floquet ? doubling_product(*solution.floquet) : 1;
   return point;
 }

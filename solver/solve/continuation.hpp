@@ -128,7 +128,7 @@ class Continuation {
   BranchPoint read(PointKind kind);
   void read_momenta(Solution& solution);
   bool stop(BranchEnd end, std::string message);
-  bool give_up(double varied);
+  bool give_up(const Stand& from);
 
   void meet(const Stand& from, const Stand& to, double length);
   double find_fold(const Stand& from, const Stand& to, double length);

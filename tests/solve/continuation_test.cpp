@@ -179,6 +179,74 @@ TEST(Continuation, ClosedFamily) {
   }
 }
 
+/// Librations that shrink: near rest E = −1 + a²/2 and the period is 2π(1 + a²/16).
+TEST(Continuation, ShrinksOntoAnEquilibrium) {
+  Problem problem = with_ends(pendulum(), 6.4, [](BoundaryRelation& r) {
+    const int row = r.add_row(0);
+    r.add(row, 0, 1);
+    r.add(row, 1, -1);
+  });
+  problem.periodic = true;
+  problem.duration = {.value = 6.4, .free = true, .energy = -0.8, .where = {}};
+  problem = guessed(std::move(problem), [](double tau) { return Values{0.6 * std::sin(2 * pi * tau)}; });
+  Continuation branch({problem, Varied::energy, -0.8, -1.5, {}}, {within(1e-9), 80});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::rest) << branch.message();
+  EXPECT_NE(branch.message().find("shrink onto an equilibrium"), std::string::npos) << branch.message();
+  EXPECT_NEAR(points.back().parameter, -1, 1e-5);
+  EXPECT_NEAR(points.back().solution.duration(), 2 * pi, 1e-5);
+  EXPECT_GE(points.back().parameter, -1);
+}
+
+/// The Kepler arc between two places at the distance 1 in the time 1.5, the long way round: where the angle
+/// comes to 2π it falls into the centre.
+TEST(Continuation, EndsInACollision) {
+  const auto at = [](double angle) {
+    return guessed(fixed_ends(trace(2,
+                                    [](auto q, auto v, auto) {
+                                      return (v[0] * v[0] + v[1] * v[1]) / 2 +
+                                             1 / sqrt(q[0] * q[0] + q[1] * q[1]);
+                                    }),
+                              {1, 0}, {std::cos(angle), std::sin(angle)}, 1.5),
+                   [=](double tau) {
+                     const double r = 1 - 1.6 * tau * (1 - tau);
+                     return Values{r * std::cos(angle * tau), r * std::sin(angle * tau)};
+                   });
+  };
+  Continuation branch(varied(at, 4, 7), {within(1e-6), 400});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::collision) << branch.message();
+  EXPECT_GT(points.back().parameter, 5);
+  EXPECT_LT(points.back().parameter, 2 * pi);
+  // The angular momentum falls all the way.
+  for (std::size_t k = 1; k < points.size(); ++k)
+    EXPECT_LT(start_of(points[k]).v[1], start_of(points[k - 1]).v[1]);
+}
+
+/// Every point meets the tolerance: each is solved for anew, ten times as accurately.
+TEST(Continuation, PointsMeetTheTolerance) {
+  const auto problem = [](double lambda) {
+    return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - lambda * exp(q[0]); }),
+                      {0}, {0}, 1);
+  };
+  const double tolerance = 1e-7;
+  Continuation branch(varied(problem, 0.5, 4), {within(tolerance), 40});
+  for (const BranchPoint& point : follow(branch)) {
+    if (point.kind != PointKind::regular) continue;
+    const Trajectory& path = point.solution.trajectory;
+    const Solution again =
+        solve(guessed(problem(point.parameter), [&](double tau) { return at(path, tau).q; }),
+              within(0.1 * tolerance));
+    double largest = 0, worst = 0;
+    for (int k = 0; k <= 100; ++k) {
+      const double t = k / 100.0, q = at(again.trajectory, t).q[0];
+      largest = std::max(largest, std::abs(q));
+      worst = std::max(worst, std::abs(at(path, t).q[0] - q));
+    }
+    EXPECT_LE(worst, 1.1 * tolerance * largest) << point.parameter;
+  }
+}
+
 /// There is no extremal where the parameter is negative.
 TEST(Continuation, EndsWhereThereIsNoProblem) {
   const auto at = [](double p) -> std::optional<Problem> {

@@ -176,5 +176,30 @@ TEST(Diagram, HaloOrbits) {
   EXPECT_GT(std::abs(heights[0]), 1);
 }
 
+/// Vertical orbits from the motion near the libration point to one of the catalogue; where their branch
+/// crosses that of the axial orbits a pair of multipliers passes 1.
+TEST(Diagram, VerticalOrbits) {
+  const nlohmann::json orbit = published("cr3bp_periodic_orbits.json", "cr3bp-earth-moon-vertical-1002");
+  ProblemFamily family =
+      load(std::string(EXTREMAL_SOURCE_DIR) + "/problems/scenes/vertical-family.toml").continuation->family;
+  family.to = -decimal(orbit["refined"]["jacobi"]) / 2;
+  Continuation branch(family, {.solve = within(1e-11), .points = 40});
+  BranchPoint last;
+  while (branch.advance()) {
+    last = branch.point();
+    const auto& multipliers = last.solution.floquet->multipliers;
+    const auto near_one = [](const std::complex<double>& value) { return std::abs(value - 1.0) < 0.05; };
+    if (last.kind == PointKind::branch) {
+      EXPECT_EQ(std::count_if(multipliers.begin(), multipliers.end(), near_one), 4);
+    } else {
+      EXPECT_EQ(last.solution.floquet->trivial_pairs, 1);
+    }
+  }
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_NEAR(last.solution.duration(), decimal(orbit["refined"]["period"]), 1e-8);
+  const double largest = std::abs(last.solution.floquet->multipliers[0]);
+  EXPECT_NEAR((largest + 1 / largest) / 2 / orbit["stability_index_computed"].get<double>(), 1, 1e-7);
+}
+
 }  // namespace
 }  // namespace extremal::laws
