@@ -1,6 +1,7 @@
 #include "action/tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -90,6 +91,7 @@ SchemeTables::SchemeTables(const Scheme& given, int exact_points) : scheme(given
   weight = rule.weights;
   lobatto = lobatto_barycentric(degree).nodes;
   nodal = node == lobatto;
+  end_derivative = lobatto_basis(degree, std::array{0.0, 1.0}).derivative;
   const Basis basis = lobatto_basis(degree, node);
   value = element_basis(basis.value, node, degree, false);
   slope = element_basis(basis.derivative, node, degree, true);

@@ -73,6 +73,7 @@ Problem make_problem(Problem problem) {
   check_duration(problem.duration, problem.lagrangian->structure().autonomous);
   check_guess(problem.guess, problem.coordinates());
   problem.ends = solve_relation(problem.boundary);
+  if (problem.periodic) problem.symmetries = continuous_symmetries(problem);
   return problem;
 }
 

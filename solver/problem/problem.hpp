@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "problem/symmetry.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file A problem: a Lagrangian, what its ends satisfy, its duration and a guess. Checked once, when it
@@ -77,6 +78,7 @@ struct Problem {
   BoundaryRelation boundary;
   EndMap ends;            ///< of `boundary`
   bool periodic = false;  ///< closed, perhaps up to a symmetry
+  std::vector<Generator> symmetries;  ///< of a periodic problem
   Duration duration;
   Guess guess;
   std::optional<double> curvature;  ///< a bound of M⁻¹V'' known to hold everywhere
@@ -84,7 +86,7 @@ struct Problem {
   int coordinates() const { return boundary.coordinates; }
 };
 
-/// Checks dimensions, durations and relations, and fills `ends`. Throws std::invalid_argument or
+/// Checks dimensions, durations and relations, and fills `ends` and `symmetries`. Throws std::invalid_argument or
 /// RelationError.
 Problem make_problem(Problem problem);
 

@@ -8,13 +8,14 @@ namespace {
 class CondensedModel final : public QuadraticModel {
  public:
   void reset(const Problem& problem, const ElementTables& tables, int elements) override {
+    phases_ = nullptr;
     system_.reset(problem.ends, elements, tables.coordinates(), problem.duration.free);
   }
 
   bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override {
     action.evaluate(path);
     negative_ = action.nodes.negative;
-    return action.finite() && system_.factor(action.nodes, closing);
+    return action.finite() && system_.factor(action.nodes, closing, phases_);
   }
 
   void evaluate_gradient(DiscreteAction& action, const Path& path) override {

@@ -10,8 +10,12 @@ namespace {
 
 /// A factorisation is used again while the simplified steps shrink at least so fast.
 constexpr double chord_contraction = 0.2;
+/// A first step that needs more is not trusted.
+constexpr double mild_damping = 0.25;
 /// Corrections below this that shrink no more are amplified roundoff.
 constexpr double stagnation = 1e-9;
+
+constexpr const char* spent = "the effort that one solve may take is spent";
 
 std::string describe(StepResult result) {
   switch (result) {
@@ -22,6 +26,22 @@ std::string describe(StepResult result) {
     default:
       return "Newton's method had to be damped too strongly";
   }
+}
+
+/// Whether the last step reached the goal, or roundoff; `before` is the correction before its.
+bool arrived(const NewtonIteration& newton, const NewtonGoal& goal, bool chord, double before,
+             NewtonReport& report) {
+  report.remaining = newton.remaining();
+  report.most_remaining = newton.most_remaining();
+  const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
+                        newton.norm() > 0.3 * before;
+  const bool enough = report.remaining <= goal.remaining && report.most_remaining <= goal.most_remaining;
+  return report.reached = enough || roundoff;
+}
+
+/// Whether another step may use the factors of the last.
+bool contracts(const NewtonIteration& newton) {
+  return newton.damping() == 1 && newton.contraction() < chord_contraction;
 }
 
 }  // namespace
@@ -40,24 +60,42 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
       report.failure = describe(result);
       return report;
     }
-    const double rate = std::min(newton.contraction(), 1.0);
-    const bool settled = newton.damping() == 1 && rate < 0.5;
-    report.remaining = newton.remaining();
-    report.most_remaining = newton.most_remaining();
-    const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
-                          newton.norm() > 0.3 * before;
-    const bool enough = report.remaining <= goal.remaining && report.most_remaining <= goal.most_remaining;
-    if (enough || roundoff) {
-      report.reached = true;
-      return report;
-    }
+    if (arrived(newton, goal, chord, before, report)) return report;
     if (!more) {
-      report.failure = "the effort that one solve may take is spent";
+      report.failure = spent;
       return report;
     }
-    chord = settled && rate < chord_contraction;
+    chord = contracts(newton);
   }
   report.failure = fmt::format("{} Newton steps did not converge", report.steps);
+  return report;
+}
+
+NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& tables,
+                      const NewtonGoal& goal, Path& saved, const std::function<bool()>& on_step) {
+  if (goal.steps < 2) return converge(newton, path, tables, goal, on_step);
+  newton.set_scale(scales(path, tables).q);
+  const StepResult first = newton.full_step(path, goal.remaining, mild_damping);
+  const bool more = !on_step || on_step();
+  NewtonReport report;
+  report.steps = 1;
+  NewtonGoal rest = goal;
+  --rest.steps;
+  if (first == StepResult::ok) {
+    if (arrived(newton, goal, false, 0, report)) return report;
+    rest.reuse = contracts(newton);
+  } else if (more && first == StepResult::stalled && newton.hold_softest(path)) {
+    saved = path;
+    const NewtonReport held = converge(newton, path, tables, rest, on_step);
+    newton.release();
+    rest.steps -= held.steps;
+    if (!held.reached) {
+      path.copy_values(saved);
+      path.load_ends();
+    }
+  }
+  if (more && rest.steps > 0) return converge(newton, path, tables, rest, on_step);
+  report.failure = spent;
   return report;
 }
 

@@ -8,8 +8,6 @@ namespace extremal {
 
 namespace {
 
-/// Below this the damped iteration has stopped to make progress.
-constexpr double least_damping = 1e-3;
 /// Pivots this much smaller than the entry they came from are not trusted.
 constexpr double breakdown = 1e-11;
 /// Time of one more damping tried, by that of a step.
@@ -152,6 +150,9 @@ double NewtonIteration::residual_at(const Path& path) {
 /// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
 /// element, all unknowns are factored at once with pivoting, if they are not too many.
 bool NewtonIteration::factor(const Path& path) {
+  measure_phases(*problem_, path, tables_->scheme(), phases_);
+  if (!held_.empty()) phases_.add(held_);
+  model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
   if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;
   const bool condensed = model_ == condensed_.get();
   if (!action_.finite() || !(condensed || approximate())) return false;
@@ -162,7 +163,7 @@ bool NewtonIteration::factor(const Path& path) {
 
 /// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
 /// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
-StepResult NewtonIteration::full_step(Path& path, double enough) {
+StepResult NewtonIteration::full_step(Path& path, double enough, double least_damping) {
   ++count_;
   trials_ = 0;
   if (!factor(path)) return action_.finite() ? StepResult::singular : StepResult::not_finite;
@@ -189,6 +190,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
   saved_.copy_values(path);
   for (;; factor /= 2) {
     if (factor < least_damping) {
+      path.load_ends();
       model_->evaluate_gradient(action_, path);
       return StepResult::stalled;
     }
@@ -200,7 +202,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     if (approximate() && !(simplified <= worst_approximate * step) && !(step < amplified_roundoff)) {
       path.copy_values(saved_);
       use_sparse(path.elements());
-      return full_step(path, enough);
+      return full_step(path, enough, least_damping);
     }
     if (simplified <= (1 - factor / 4) * step || step < amplified_roundoff) {
       contraction_ = simplified / step;
@@ -221,6 +223,34 @@ StepResult NewtonIteration::full_step(Path& path, double enough) {
     remaining_ = norm_ * contraction_;
   }
   return StepResult::ok;
+}
+
+/// Inverse iteration from the step, which has most of that direction already.
+bool NewtonIteration::hold_softest(const Path& path) {
+  if (model_ != condensed_.get()) return false;
+  held_.clear();
+  if (!factor(path) || std::isnan(solve_for_step(path, step_))) return false;
+  const std::size_t n = path.coordinates(), elements = path.elements();
+  const std::span<const double> mesh = path.mesh();
+  const auto weigh = [&](std::vector<double> x) {
+    for (std::size_t k = 0; k <= elements; ++k)
+      for (std::size_t a = 0; a < n; ++a)
+        x[k * n + a] *= 0.5 * (mesh[std::min(k + 1, elements)] - mesh[std::max<std::size_t>(k, 1) - 1]);
+    return x;
+  };
+  action_.nodes.gradient = weigh(step_.nodes);
+  action_.nodes.border_gradient = 0;
+  ClosingEquation closed;
+  if (const ClosingEquation* equation = closing(path)) closed.row = equation->row;
+  model_->solve(action_, problem_->duration.free ? &closed : nullptr, step_);
+  held_ = weigh(step_.nodes);
+  predicted_ = 1;
+  return std::isfinite(largest(held_));
+}
+
+void NewtonIteration::release() {
+  held_.clear();
+  predicted_ = 1;
 }
 
 StepResult NewtonIteration::chord_step(Path& path) {

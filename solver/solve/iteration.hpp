@@ -41,11 +41,18 @@ class NewtonIteration {
   /// Assembles at `path`, factors and takes a damped step; then, where the simplified step that tested it
   /// is much smaller, takes that as well. `norm` becomes the size of the last correction, `contraction` its
   /// ratio to the one before. A step so short that earlier contraction lets expect the next correction
-  /// below `enough` is not tested: `norm` is then what is expected.
-  StepResult full_step(Path& path, double enough);
+  /// below `enough` is not tested: `norm` is then what is expected. Stronger damping than `least_damping` is
+  /// a stall: the path is then where it was.
+  static constexpr double strongest_damping = 1e-3;
+  StepResult full_step(Path& path, double enough, double least_damping = strongest_damping);
 
   /// What was learned of the curvature of δS no longer holds: another path.
   void forget() { curvature_ = largest_curvature_ = 0; }
+
+  /// From now until release() steps leave out the direction in which the path last factored is softest. False
+  /// where that cannot be done.
+  bool hold_softest(const Path& path);
+  void release();
 
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
@@ -100,6 +107,8 @@ class NewtonIteration {
   QuadraticModel* model_ = nullptr;
   Step step_, simplified_;
   ClosingEquation closing_;
+  PhaseConditions phases_;
+  std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   mutable std::vector<double> free_;
   double scale_ = 1, norm_ = 0, remaining_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;

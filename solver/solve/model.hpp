@@ -7,6 +7,7 @@
 #include "action/discrete_action.hpp"
 #include "linear/inertia.hpp"
 #include "problem/problem.hpp"
+#include "solve/phase.hpp"
 
 /// \file The quadratic model of S_h at a path: what a Newton step needs.
 
@@ -44,6 +45,8 @@ class QuadraticModel {
   /// evaluated anew after it.
   virtual void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                        Step& step) = 0;
+  /// Directions that evaluate() and solve() hold from now until reset(); null for none.
+  void set_phases(const PhaseConditions* phases) { phases_ = phases; }
   /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
   void set_refining(bool on) { refining_ = on; }
   /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null.
@@ -54,6 +57,7 @@ class QuadraticModel {
 
  protected:
   bool refining_ = true;
+  const PhaseConditions* phases_ = nullptr;
 };
 
 /// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.

@@ -44,11 +44,7 @@ void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool f
   elements_ = elements;
   free_ = ends.free;
   free_duration_ = free_duration;
-  border_ = free_ + free_duration;
-  const std::size_t inner = static_cast<std::size_t>(std::max(elements - 1, 0)) * n_;
-  columns_.resize(inner * border_);
-  solved_.resize(inner * border_);
-  right_.resize(inner);
+  right_.resize(static_cast<std::size_t>(std::max(elements - 1, 0)) * n_);
 }
 
 /// Adds factor × (column of end coordinate e) over the chain's nodes.
@@ -86,8 +82,39 @@ void NodeSystem::assemble_border(const NodeEquations& nodes) {
   corner_(free_, free_) = nodes.corner;
 }
 
-bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
+void NodeSystem::assemble_phases(const PhaseConditions& phases) {
+  const std::size_t inner = right_.size(), last = static_cast<std::size_t>(elements_) * n_;
+  for (int j = 0, column = border_ - phases_; j < phases_; ++j, ++column) {
+    const std::span<const double> direction = phases.direction(j);
+    for (std::size_t k = 0; k < inner; ++k) columns_[k * border_ + column] = direction[n_ + k];
+    for (const Triplet& z : ends_->z) {
+      const double along = z.value * direction[z.row < n_ ? z.row : last + z.row - n_];
+      corner_(z.column, column) += along;
+      corner_(column, z.column) += along;
+    }
+  }
+}
+
+/// Directions have units of their own; pivots are compared.
+void NodeSystem::scale_phases() {
+  phase_units_.resize(phases_);
+  const int others = border_ - phases_;
+  const double curvature = others > 0 ? schur_.topLeftCorner(others, others).cwiseAbs().maxCoeff() : 1;
+  for (int j = 0, row = others; j < phases_; ++j, ++row) {
+    const double along = others > 0 ? schur_.row(row).head(others).cwiseAbs().maxCoeff() : 0;
+    const double size = std::max(along, std::sqrt(curvature * std::abs(schur_(row, row))));
+    phase_units_[j] = size > 0 ? curvature / size : 1;
+  }
+  schur_.rightCols(phases_).array().rowwise() *= phase_units_.transpose().array();
+  schur_.bottomRows(phases_).array().colwise() *= phase_units_.array();
+}
+
+bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases) {
   chain_ = &nodes.chain;
+  phases_ = phases ? phases->count : 0;
+  border_ = free_ + free_duration_ + phases_;
+  columns_.resize(right_.size() * border_);
+  solved_.resize(columns_.size());
   // Alone, an almost singular chain is the whole system; with a border it is better left to that.
   const bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? Border::deflated_below : 0);
   exact_ = !regular && border_ > 0 && !chain_->deflated().empty();
@@ -96,6 +123,7 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing) {
   if (chain_->deflated().size() > most_deflated * static_cast<std::size_t>(n_)) return false;
   if (border_ == 0) return true;
   assemble_border(nodes);
+  if (phases) assemble_phases(*phases);
   return exact_ ? factor_exactly(closing) : factor_schur(closing);
 }
 
@@ -111,6 +139,7 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
     schur_.row(free_).setZero();
     for (const Triplet& z : ends_->z) schur_(free_, z.column) += closing->row[z.row] * z.value;
   }
+  if (phases_ > 0) scale_phases();
   if (!schur_.allFinite()) return false;
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
@@ -184,10 +213,12 @@ void NodeSystem::solve_schur(bool own_row, bool refine) {
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)
       if (!(own_row && c == free_)) small_[c] -= columns_[k * border_ + c] * right_[k];
+  if (phases_ > 0) small_.tail(phases_).array() *= phase_units_.array();
   if (least_norm_)
     small_ = least_norm_->solve(small_).eval();
   else
     solve_in_place(lu_, small_, permuted_);
+  if (phases_ > 0) small_.tail(phases_).array() *= phase_units_.array();
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c) right_[k] -= solved_[k * border_ + c] * small_[c];
 }

@@ -19,8 +19,9 @@ class NodeSystem {
  public:
   void reset(const EndMap& ends, int elements, int coordinates, bool free_duration);
 
-  /// Factors the second variation that `nodes` holds. False if singular to working precision.
-  bool factor(NodeEquations& nodes, const ClosingEquation* closing);
+  /// Factors the second variation that `nodes` holds, with the directions that are held. False if singular to
+  /// working precision.
+  bool factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases = nullptr);
 
   /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds; `refine` as
   /// QuadraticModel::set_refining.
@@ -40,10 +41,13 @@ class NodeSystem {
   void solve_schur(bool own_row, bool refine);
   void solve_exactly();
   void assemble_border(const NodeEquations& nodes);
+  void assemble_phases(const PhaseConditions& phases);
+  void scale_phases();
   void add_end(double* column, int stride, int e, double factor, const NodeEquations& nodes) const;
 
   const EndMap* ends_ = nullptr;
-  int n_ = 0, elements_ = 0, free_ = 0, border_ = 0;
+  int n_ = 0, elements_ = 0, free_ = 0;
+  int phases_ = 0, border_ = 0;  ///< columns: free ends, the duration, phases
   bool free_duration_ = false;
   Chain* chain_ = nullptr;
   std::vector<double> columns_, solved_, right_;
@@ -52,6 +56,7 @@ class NodeSystem {
   std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>
       least_norm_;  ///< where LU is singular
   Eigen::VectorXd small_, permuted_;
+  Eigen::VectorXd phase_units_;  ///< of the phases' rows and columns in schur_
 
   bool exact_ = false, regular_ = false;  ///< the chain is singular, and what system_ is for; system_ is not
   Border system_;

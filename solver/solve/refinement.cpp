@@ -221,19 +221,18 @@ NewtonReport Refinement::converge_to(double error, bool reuse) {
 }
 
 Refinement::Attempt Refinement::attempt() {
-  NewtonReport newton = converge(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)},
-                                 [this] { return count_step(); });
+  NewtonReport newton = approach(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)},
+                                 w_.saved, [this] { return count_step(); });
   outcome_.message = newton.failure;
   if (!newton.reached) return Attempt::failed;
   measure();
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {
-    // Finer elements than one more step makes use of would be wasted; but on coarse ones the directions of
-    // symmetries, which a period leaves free, are not yet null and mislead.
+    // Finer elements than one more step makes use of would be wasted.
     NodeError nodes{w_.resolution.at(w_.path.degree()), 0, plans > 0};
     const double known = nodes.left_out.q / scales_.q + newton.remaining;
     const double reach = std::min(w_.iteration.expected(known), 0.1 * known);
-    const double aim = problem_.periodic ? finest : std::max(finest, reach);
+    const double aim = std::max(finest, reach);
     const Plan next = plan(aim);
     if (next.degree == 0) worst_ = INFINITY;  // not measured yet
     if (next.degree == 0 || plans == most_plans) return Attempt::refine;

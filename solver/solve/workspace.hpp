@@ -18,7 +18,7 @@ namespace extremal {
 struct Workspace {
   Levels levels;
   NewtonIteration iteration;
-  Path path, other;
+  Path path, other, saved;
   Resolution resolution;
   Planner planner;
   Frequency frequency;
