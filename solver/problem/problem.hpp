@@ -66,6 +66,7 @@ struct Duration {
 struct Guess {
   std::vector<double> tau;
   std::vector<double> q;
+  bool motion = false;  ///< it solves the equations of motion, but for its ends
   bool given() const { return !tau.empty(); }
   /// Local cubic interpolation, through the samples; constant before the first and after the last.
   void at(double tau, std::span<double> q) const;
@@ -76,8 +77,8 @@ struct Problem {
   std::shared_ptr<const Lagrangian> lagrangian;
   std::vector<std::string> names;  ///< of the coordinates: "x", "q[1]"
   BoundaryRelation boundary;
-  EndMap ends;            ///< of `boundary`
-  bool periodic = false;  ///< closed, perhaps up to a symmetry
+  EndMap ends;                        ///< of `boundary`
+  bool periodic = false;              ///< closed, perhaps up to a symmetry
   std::vector<Generator> symmetries;  ///< of a periodic problem
   Duration duration;
   Guess guess;
@@ -86,8 +87,8 @@ struct Problem {
   int coordinates() const { return boundary.coordinates; }
 };
 
-/// Checks dimensions, durations and relations, and fills `ends` and `symmetries`. Throws std::invalid_argument or
-/// RelationError.
+/// Checks dimensions, durations and relations, and fills `ends` and `symmetries`. Throws
+/// std::invalid_argument or RelationError.
 Problem make_problem(Problem problem);
 
 }  // namespace extremal

@@ -17,9 +17,9 @@ struct Generator {
 /// Above this many coordinates only translations are looked for.
 inline constexpr int most_coordinates_for_rotations = 12;
 
-/// Independent affine motions of configuration space that leave the action of every path with q(T) = R q(0) + c
-/// unchanged: ∂L/∂q · δq + ∂L/∂q' · δq' = 0, or b · q' where R = 1 and c = 0, at random points about the guess.
-/// The momenta ∂L/∂q' · δq are constants of the motion (Noether).
+/// Independent affine motions of configuration space that leave the action of every path with q(T) = R q(0) +
+/// c unchanged: ∂L/∂q · δq + ∂L/∂q' · δq' = 0, or b · q' where R = 1 and c = 0, at random points about the
+/// guess. The momenta ∂L/∂q' · δq are constants of the motion (Noether).
 std::vector<Generator> continuous_symmetries(const Problem& problem);
 
 }  // namespace extremal

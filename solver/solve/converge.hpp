@@ -31,9 +31,10 @@ struct NewtonReport {
 NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& tables,
                       const NewtonGoal& goal, const std::function<bool()>& on_step);
 
-/// The same from a guess. Where a full step goes too far, the direction in which the action is softest is left
-/// out of all steps first: its curvature is not known, perhaps not its sign, as long as the path is wrong in
-/// others (rank-deficient Newton; Deuflhard, Newton Methods for Nonlinear Problems, 4.4). `saved` is memory.
+/// The same from a guess. Where a full step goes too far, the direction in which the action is softest is
+/// left out of all steps first: its curvature is not known, perhaps not its sign, as long as the path is
+/// wrong in others (rank-deficient Newton; Deuflhard, Newton Methods for Nonlinear Problems, 4.4). `saved` is
+/// memory.
 NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& tables,
                       const NewtonGoal& goal, Path& saved, const std::function<bool()>& on_step = {});
 

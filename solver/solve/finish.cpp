@@ -36,7 +36,7 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   NewtonIteration& newton = w.iteration;
   newton.reset(problem, *outcome.tables, w.path.elements());
   DiscreteAction& action = newton.action();
-  const bool factored = newton.model().evaluate(action, w.path, newton.closing(w.path));
+  const bool factored = newton.factor(w.path);
   solution.action = action.action();
   solution.momentum_start.resize(problem.coordinates());
   solution.momentum_end.resize(problem.coordinates());

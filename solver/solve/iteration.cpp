@@ -69,6 +69,8 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   norm_ = contraction_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
+  phase_free_ = false;
+  held_.clear();
   if (!sparse) {
     if (!condensed_) condensed_ = make_condensed_model();
     model_ = condensed_.get();
@@ -150,7 +152,7 @@ double NewtonIteration::residual_at(const Path& path) {
 /// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
 /// element, all unknowns are factored at once with pivoting, if they are not too many.
 bool NewtonIteration::factor(const Path& path) {
-  measure_phases(*problem_, path, tables_->scheme(), phases_);
+  measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
   if (!held_.empty()) phases_.add(held_);
   model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
   if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;

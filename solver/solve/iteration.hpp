@@ -54,6 +54,13 @@ class NewtonIteration {
   bool hold_softest(const Path& path);
   void release();
 
+  /// Assembles at `path` and factors, without a step; false if that is singular to working precision.
+  bool factor(const Path& path);
+
+  /// Whether steps may shift a periodic path in time (no, unless told): elements prefer some phases, by no
+  /// more than they err. Forgotten by reset().
+  void free_phase(bool free) { phase_free_ = free; }
+
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
 
@@ -90,7 +97,6 @@ class NewtonIteration {
   const ClosingEquation* closing(const Path& path) { return closing_equation(*problem_, path, closing_); }
 
  private:
-  bool factor(const Path& path);
   void use_low(const ElementTables& low, int elements);
   void use_sparse(int elements);
   /// Whether model() is not the second variation itself.
@@ -108,6 +114,7 @@ class NewtonIteration {
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
+  bool phase_free_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   mutable std::vector<double> free_;

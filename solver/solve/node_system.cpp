@@ -82,13 +82,13 @@ void NodeSystem::assemble_border(const NodeEquations& nodes) {
   corner_(free_, free_) = nodes.corner;
 }
 
-void NodeSystem::assemble_phases(const PhaseConditions& phases) {
-  const std::size_t inner = right_.size(), last = static_cast<std::size_t>(elements_) * n_;
-  for (int j = 0, column = border_ - phases_; j < phases_; ++j, ++column) {
-    const std::span<const double> direction = phases.direction(j);
+void NodeSystem::assemble_phases() {
+  const std::size_t inner = right_.size();
+  for (int j = 0, column = border_ - held_; j < held_; ++j, ++column) {
+    const std::span<const double> direction = phases_->direction(j);
     for (std::size_t k = 0; k < inner; ++k) columns_[k * border_ + column] = direction[n_ + k];
     for (const Triplet& z : ends_->z) {
-      const double along = z.value * direction[z.row < n_ ? z.row : last + z.row - n_];
+      const double along = z.value * direction[end_place(z.row)];
       corner_(z.column, column) += along;
       corner_(column, z.column) += along;
     }
@@ -97,22 +97,23 @@ void NodeSystem::assemble_phases(const PhaseConditions& phases) {
 
 /// Directions have units of their own; pivots are compared.
 void NodeSystem::scale_phases() {
-  phase_units_.resize(phases_);
-  const int others = border_ - phases_;
+  phase_units_.resize(held_);
+  const int others = border_ - held_;
   const double curvature = others > 0 ? schur_.topLeftCorner(others, others).cwiseAbs().maxCoeff() : 1;
-  for (int j = 0, row = others; j < phases_; ++j, ++row) {
+  for (int j = 0, row = others; j < held_; ++j, ++row) {
     const double along = others > 0 ? schur_.row(row).head(others).cwiseAbs().maxCoeff() : 0;
     const double size = std::max(along, std::sqrt(curvature * std::abs(schur_(row, row))));
     phase_units_[j] = size > 0 ? curvature / size : 1;
   }
-  schur_.rightCols(phases_).array().rowwise() *= phase_units_.transpose().array();
-  schur_.bottomRows(phases_).array().colwise() *= phase_units_.array();
+  schur_.rightCols(held_).array().rowwise() *= phase_units_.transpose().array();
+  schur_.bottomRows(held_).array().colwise() *= phase_units_.array();
 }
 
 bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases) {
   chain_ = &nodes.chain;
-  phases_ = phases ? phases->count : 0;
-  border_ = free_ + free_duration_ + phases_;
+  phases_ = phases;
+  held_ = phases ? phases->count : 0;
+  border_ = free_ + free_duration_ + held_;
   columns_.resize(right_.size() * border_);
   solved_.resize(columns_.size());
   // Alone, an almost singular chain is the whole system; with a border it is better left to that.
@@ -123,7 +124,7 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing, co
   if (chain_->deflated().size() > most_deflated * static_cast<std::size_t>(n_)) return false;
   if (border_ == 0) return true;
   assemble_border(nodes);
-  if (phases) assemble_phases(*phases);
+  if (held_ > 0) assemble_phases();
   return exact_ ? factor_exactly(closing) : factor_schur(closing);
 }
 
@@ -139,7 +140,7 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
     schur_.row(free_).setZero();
     for (const Triplet& z : ends_->z) schur_(free_, z.column) += closing->row[z.row] * z.value;
   }
-  if (phases_ > 0) scale_phases();
+  if (held_ > 0) scale_phases();
   if (!schur_.allFinite()) return false;
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
@@ -153,7 +154,7 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
   // A family of extremals: of all steps the shortest.
   least_norm_.emplace(schur_.rows(), schur_.cols());
   least_norm_->setThreshold(singular_border).compute(schur_);
-  return least_norm_->rank() > 0;
+  return true;
 }
 
 /// The ends are conjugate as if both were fixed, but are not both fixed: the system may be regular all the
@@ -213,12 +214,12 @@ void NodeSystem::solve_schur(bool own_row, bool refine) {
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)
       if (!(own_row && c == free_)) small_[c] -= columns_[k * border_ + c] * right_[k];
-  if (phases_ > 0) small_.tail(phases_).array() *= phase_units_.array();
+  if (held_ > 0) small_.tail(held_).array() *= phase_units_.array();
   if (least_norm_)
     small_ = least_norm_->solve(small_).eval();
   else
     solve_in_place(lu_, small_, permuted_);
-  if (phases_ > 0) small_.tail(phases_).array() *= phase_units_.array();
+  if (held_ > 0) small_.tail(held_).array() *= phase_units_.array();
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c) right_[k] -= solved_[k * border_ + c] * small_[c];
 }
@@ -237,34 +238,34 @@ void NodeSystem::solve_exactly() {
 Inertia NodeSystem::inertia(double threshold, std::span<const double> null) const {
   if (elements_ < 2 && free_ == 0) return {};
   if (free_ == 0) return chain_->inertia();
+  // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
+  // those of the directions across, and as many positive ones.
+  PhaseConditions held = phases_ ? *phases_ : PhaseConditions{};
+  if (!null.empty()) held.add(null);
+  held = independent(held);
+  const int columns = free_ + held.count;
   Chain chain = *chain_;
   Border ends;
-  const bool across = !null.empty();
-  const int columns = free_ + across;
-  const Eigen::Index inner = static_cast<Eigen::Index>(right_.size());
-  ends.resize(static_cast<int>(inner), columns);
-  using Eigen::Map;
-  Map<RowMatrix> block(ends.column_block(), inner, columns), corner(ends.corner(), columns, columns);
-  block.leftCols(free_) = Map<const RowMatrix>(columns_.data(), inner, border_).leftCols(free_);
+  ends.resize(static_cast<int>(right_.size()), columns);
+  Eigen::Map<RowMatrix> block(ends.column_block(), std::ssize(right_), columns),
+      corner(ends.corner(), columns, columns);
+  block.leftCols(free_) =
+      Eigen::Map<const RowMatrix>(columns_.data(), std::ssize(right_), border_).leftCols(free_);
   corner.setZero();
   corner.topLeftCorner(free_, free_) = corner_.topLeftCorner(free_, free_);
-  if (across) {
-    block.col(free_) = Map<const Eigen::VectorXd>(null.data() + n_, inner);
-    const std::size_t last = static_cast<std::size_t>(elements_) * n_;
+  for (int j = 0; j < held.count; ++j) {
+    const double* direction = held.direction(j).data();
+    for (Eigen::Index k = 0; k < block.rows(); ++k) block(k, free_ + j) = direction[n_ + k];
     for (const Triplet& z : ends_->z) {
-      const double product = z.value * null[z.row < n_ ? z.row : last + z.row - n_];
-      corner(z.column, free_) += product;
-      corner(free_, z.column) += product;
+      corner(z.column, free_ + j) += z.value * direction[end_place(z.row)];
+      corner(free_ + j, z.column) = corner(z.column, free_ + j);
     }
   }
   ends.factor(chain, std::max(threshold, Border::deflated_below));
   Inertia result = ends.inertia(threshold);
-  if (across) {
-    // The multiplier of the condition brings a positive and a negative eigenvalue.
-    --result.positive;
-    --result.negative;
-    ++result.zero;
-  }
+  result.negative -= held.count;
+  result.positive -= held.count;
+  result.zero += held.count;
   return result;
 }
 

@@ -35,19 +35,22 @@ class NodeSystem {
   Inertia inertia(double threshold, std::span<const double> null = {}) const;
 
  private:
+  /// Of end coordinate e among the nodes.
+  std::size_t end_place(int e) const { return e < n_ ? e : std::size_t(elements_) * n_ + e - n_; }
   bool factor_schur(const ClosingEquation* closing);
   bool factor_exactly(const ClosingEquation* closing);
   void border_right(const NodeEquations& nodes, const ClosingEquation* closing);
   void solve_schur(bool own_row, bool refine);
   void solve_exactly();
   void assemble_border(const NodeEquations& nodes);
-  void assemble_phases(const PhaseConditions& phases);
+  void assemble_phases();
   void scale_phases();
   void add_end(double* column, int stride, int e, double factor, const NodeEquations& nodes) const;
 
   const EndMap* ends_ = nullptr;
   int n_ = 0, elements_ = 0, free_ = 0;
-  int phases_ = 0, border_ = 0;  ///< columns: free ends, the duration, phases
+  const PhaseConditions* phases_ = nullptr;
+  int held_ = 0, border_ = 0;  ///< columns: free ends, the duration, directions that are held
   bool free_duration_ = false;
   Chain* chain_ = nullptr;
   std::vector<double> columns_, solved_, right_;

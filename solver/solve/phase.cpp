@@ -1,5 +1,6 @@
 #include "solve/phase.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <utility>
 
@@ -43,9 +44,9 @@ void add_motion(const Path& path, const Generator& generator, double* direction)
 
 }  // namespace
 
-void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme,
+void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases) {
-  const bool shifts = problem.periodic && problem.lagrangian->structure().autonomous;
+  const bool shifts = with_time && problem.periodic && problem.lagrangian->structure().autonomous;
   phases.count = shifts + static_cast<int>(problem.symmetries.size());
   const std::size_t size = path.nodes().size();
   phases.directions.assign(phases.count * size, 0);
@@ -53,6 +54,26 @@ void measure_phases(const Problem& problem, const Path& path, const SchemeTables
   if (shifts) add_shift_of_time(path, scheme, std::exchange(direction, direction + size));
   for (const Generator& generator : problem.symmetries)
     add_motion(path, generator, std::exchange(direction, direction + size));
+}
+
+PhaseConditions independent(const PhaseConditions& phases) {
+  constexpr double dependent = 1e-4;
+  PhaseConditions result;
+  for (int j = 0; j < phases.count; ++j) {
+    const std::span<const double> given = phases.direction(j);
+    Eigen::VectorXd rest = Eigen::Map<const Eigen::VectorXd>(given.data(), std::ssize(given));
+    const double before = rest.norm();
+    for (int pass = 0; pass < 2; ++pass)
+      for (int i = 0; i < result.count; ++i) {
+        const Eigen::Map<const Eigen::VectorXd> known(result.direction(i).data(), rest.size());
+        rest -= known.dot(rest) * known;
+      }
+    if (rest.norm() > dependent * before) {
+      rest.normalize();
+      result.add({rest.data(), given.size()});
+    }
+  }
+  return result;
 }
 
 }  // namespace extremal

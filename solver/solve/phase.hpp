@@ -28,8 +28,11 @@ struct PhaseConditions {
   }
 };
 
-/// Those of `problem` at `path`; none unless it is periodic.
-void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme,
+/// Those of `problem` at `path`, with or without the shift of time; none unless it is periodic.
+void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases);
+
+/// As many of them as are independent, orthonormal.
+PhaseConditions independent(const PhaseConditions& phases);
 
 }  // namespace extremal

@@ -24,6 +24,8 @@ constexpr double regular_fall = 0.5;
 /// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails.
 constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
+/// Where the orbit is known and only its phase is not.
+constexpr double orbit_goal = 1e-8;
 
 }  // namespace
 
@@ -33,6 +35,27 @@ PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Wo
 void PinnedSolve::bind(int points) {
   w_.pinned_scheme = std::make_unique<SchemeTables>(scheme_, points);
   w_.pinned.bind(*w_.pinned_scheme, *problem_.lagrangian);
+}
+
+/// Each phase of a periodic path is nearly as good as the others; of those that are stationary, the next.
+NewtonReport PinnedSolve::converge_to_roundoff() {
+  const auto run = [&](double remaining) {
+    return converge(w_.iteration, w_.path, w_.pinned, {remaining, std::min(steps, options_.max_iterations)},
+                    [this] {
+                      outcome_.record(w_, options_);
+                      cost_ += w_.path.batches() * batch_cost(w_.pinned, scheme_.degree);
+                      return true;
+                    });
+  };
+  w_.saved = w_.path;
+  if (problem_.periodic && run(orbit_goal).reached) {
+    w_.iteration.free_phase(true);
+    if (const NewtonReport report = run(roundoff); report.reached) return report;
+    w_.path.copy_values(w_.saved);
+    w_.path.load_ends();
+  }
+  w_.iteration.free_phase(true);
+  return run(roundoff);
 }
 
 /// Newton from the guess, or from the path there is, to roundoff.
@@ -52,12 +75,7 @@ bool PinnedSolve::solve_discrete(int elements) {
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
     ResidualTest test;
-    const NewtonReport report = converge(w_.iteration, w_.path, w_.pinned,
-                                         {roundoff, std::min(steps, options_.max_iterations)}, [this] {
-                                           outcome_.record(w_, options_);
-                                           cost_ += w_.path.batches() * batch_cost(w_.pinned, scheme_.degree);
-                                           return true;
-                                         });
+    const NewtonReport report = converge_to_roundoff();
     outcome_.message = report.failure;
     if (!report.reached) return false;
     if (!test.passed(problem_, w_.iteration, w_.path, scales(w_.path, w_.pinned).magnitude)) {

@@ -19,6 +19,7 @@ class PinnedSolve {
   Outcome run();
 
  private:
+  NewtonReport converge_to_roundoff();
   bool solve_discrete(int elements);
   bool exact_quadrature_settled();
   double distance_to_companion();

@@ -23,6 +23,8 @@ constexpr int fine_steps = 12;
 constexpr double roundoff = 1e-15;
 /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
 constexpr double loosest_newton = 1e-6;
+/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large.
+constexpr double most_phase_force = 1e-7;
 /// Steps that end what Newton's method began.
 constexpr int most_polish = 3;
 /// Times that elements are planned before all are halved.
@@ -255,7 +257,8 @@ Refinement::Attempt Refinement::attempt() {
 /// Newton's method may have left a residual within the tolerance; few more steps then make it roundoff.
 bool Refinement::solved() {
   for (int step = 0;; ++step) {
-    if (test_.passed(problem_, w_.iteration, w_.path, scales_.magnitude)) return true;
+    const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
+    if (test_.passed(problem_, w_.iteration, w_.path, scales_.magnitude, phase)) return true;
     const double allowed = std::min(10 * options_.tolerance, loosest_newton);
     if (step == most_polish || test_.share() > allowed || exhausted()) break;
     if (w_.iteration.full_step(w_.path, 0) != StepResult::ok) break;

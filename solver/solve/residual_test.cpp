@@ -15,12 +15,12 @@ constexpr double roundoff = 1e-14;
 
 }  // namespace
 
-bool ResidualTest::passed(const Problem& problem, NewtonIteration& newton, const Path& path,
-                          double magnitude) {
+bool ResidualTest::passed(const Problem& problem, NewtonIteration& newton, const Path& path, double magnitude,
+                          double allowed) {
   if (problem.ends.free == 0) return true;
   const double left = newton.residual_at(path), momentum = newton.action().momentum_scale();
   share_ = left / momentum;
-  return left <= std::max({least * momentum, roundoff * newton.stiffness() * magnitude});
+  return left <= std::max({std::max(least, allowed) * momentum, roundoff * newton.stiffness() * magnitude});
 }
 
 std::string ResidualTest::message() const {

@@ -10,8 +10,10 @@ namespace extremal {
 /// δS does not vanish against the momenta.
 class ResidualTest {
  public:
-  /// At the path where it ended; `magnitude` is the largest |q|.
-  bool passed(const Problem& problem, NewtonIteration& newton, const Path& path, double magnitude);
+  /// At the path where it ended; `magnitude` is the largest |q|. `allowed`, relative to the largest momentum:
+  /// what holds the phase of a periodic path.
+  bool passed(const Problem& problem, NewtonIteration& newton, const Path& path, double magnitude,
+              double allowed = 0);
 
   /// What the last test found left, relative to the largest momentum.
   double share() const { return share_; }

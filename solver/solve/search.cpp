@@ -18,6 +18,11 @@ constexpr double longest_element = 2.0;
 /// Coarse elements may not follow a family of extremals as it grows.
 constexpr int homotopy_degree = 8;
 constexpr int most_first_elements = 1 << 12;
+/// Elements follow a guess to this, relative to its range, a motion to between these by the tolerance; they
+/// follow velocities to so many times that, and become at most so many at a time.
+constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
+constexpr double guess_floor = 0.25;
+constexpr int most_passes = 10, highest_guess_degree = 12;
 /// A mesh whose elements differ less than this is not worth starting again for.
 constexpr double mild_grading = 3;
 /// Newton steps in all, times unknowns of the first mesh: what other guesses may cost.
@@ -67,11 +72,45 @@ bool Search::begin() {
     if (guess_->guess.given() || seed == most_bends) return false;
   }
   const int elements = first_elements(w_.frequency);
-  const double floor = guess_->guess.given() ? 0.25 : 1.0;
-  if (elements == lanes && w_.frequency.grading(floor) < mild_grading) return true;
-  mesh_ = w_.frequency.mesh(elements, floor);
-  start(mesh_, bend_);
+  const double floor = guess_->guess.given() ? guess_floor : 1.0;
+  if (elements > lanes || w_.frequency.grading(floor) >= mild_grading) {
+    mesh_ = w_.frequency.mesh(elements, floor);
+    start(mesh_, bend_);
+  }
+  if (guess_->guess.motion) resolve_guess();
   return true;
+}
+
+/// A good guess is worth what elements keep of it. Whether those there were did not keep it.
+bool Search::resolve_guess() {
+  bool finer_found = false;
+  const double goal =
+      guess_->guess.motion ? std::clamp(options_.tolerance, best_guess_goal, guess_goal) : guess_goal;
+  const int samples = static_cast<int>(guess_->guess.tau.size());
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const ElementTables& tables = refinement_.tables();
+    const int degree = w_.path.degree(), elements = w_.path.elements();
+    w_.resolution.measure(w_.path, tables);
+    const Resolution::Error error = w_.resolution.at(degree);
+    const Scales size = scales(w_.path, tables);
+    const Resolution::Error aim{goal * size.q, slope_goal * goal * size.v};
+    if ((error.q <= aim.q && error.v <= aim.v) || elements * degree >= samples) break;
+    measure_frequency(problem_, w_.iteration.action(), tables, w_.path, w_.frequency);
+    if (const int wanted = first_elements(w_.frequency); w_.frequency.finite() && wanted > elements) {
+      mesh_ = w_.frequency.mesh(wanted, guess_floor);
+      start(mesh_, bend_, degree);
+      finer_found = true;
+      continue;
+    }
+    const Plan finer =
+        w_.planner.plan(w_.resolution, w_.path.mesh(), tables,
+                        {aim, aim, degree, degree, highest_guess_degree, most_first_elements, guess_cut});
+    if (finer.degree == 0 || (finer.mesh.empty() && finer.degree == degree)) break;
+    if (!finer.mesh.empty()) mesh_ = finer.mesh;
+    start(mesh_, bend_, finer.degree);
+    finer_found = true;
+  }
+  return finer_found;
 }
 
 /// Pursues the path in the workspace.
@@ -168,6 +207,9 @@ void Search::renew() { refinement_.allow(allowance_); }
 
 /// Cheapest first; but where the user has given a guess, what stays near it before noise.
 bool Search::from_other_guesses() {
+  if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
+      found("newton from the guess on finer elements"))
+    return true;
   if (by_descent(mesh_) || from_finer_elements()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;

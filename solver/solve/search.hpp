@@ -32,6 +32,7 @@ class Search {
  private:
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   bool begin();
+  bool resolve_guess();
   Refinement::Result pursue(const char* strategy);
   bool found(const char* strategy);
   bool from_other_guesses();

@@ -28,7 +28,7 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
   return state;
 }
 
-/// The motion from a state, as a flow in (q, p) that is carried from time to time.
+/// The motion from a state, as a flow in (q, p).
 class Motion {
  public:
   Motion(const Problem& problem, const InitialState& state, const Location& at)
@@ -39,47 +39,54 @@ class Motion {
             2 * problem.coordinates()),
         y_(state.q) {
     const std::size_t n = state.q.size();
-    options_.tolerance = 1e-10;
+    options_.tolerance = 1e-12;
     options_.block = static_cast<int>(n);
     y_.resize(2 * n);
+    between_.resize(2 * n);
     if (!flow_.momentum(state.q, state.v, 0, std::span(y_).subspan(n)))
       throw SceneError(at, "L is not finite at the initial state of the guess");
   }
 
-  /// q at time t, which does not fall.
-  std::span<const double> at(double t) {
-    if (t > t_ && method_.advance(t_, y_, t, options_) != Integrated::done)
-      throw SceneError(
-          at_, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}", t_));
-    return std::span(y_).first(y_.size() / 2);
+  /// q from step to step until `duration`, as samples of a guess.
+  void sample(double duration, Guess& guess) {
+    constexpr int samples_a_step = 64;  // cubic interpolation then keeps about six digits
+    const std::size_t n = y_.size() / 2;
+    std::vector<double> q(y_.begin(), y_.begin() + n);
+    const auto add = [&](double t) {
+      guess.tau.push_back(t / duration);
+      guess.q.insert(guess.q.end(), q.begin(), q.end());
+    };
+    add(0);
+    for (double t = 0, before = 0; t < duration; before = t) {
+      if (method_.accept_step(t, y_, duration, options_) != Integrated::done ||
+          !method_.prepare_interpolation(y_, static_cast<int>(y_.size())))
+        throw SceneError(
+            at_, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}", t));
+      for (int k = 1; k < samples_a_step; ++k) {
+        const double theta = static_cast<double>(k) / samples_a_step;
+        method_.interpolate(theta, between_);
+        std::copy_n(between_.begin(), n, q.begin());
+        add(before + theta * (t - before));
+      }
+      std::copy_n(y_.begin(), n, q.begin());
+      add(t);
+    }
   }
-  int steps() const { return method_.steps(); }
 
  private:
   Location at_;
   Flow flow_;
   Dop853 method_;
   IntegrationOptions options_;
-  double t_ = 0;
-  std::vector<double> y_;
+  std::vector<double> y_, between_;
 };
 
 }  // namespace
 
 void integrate_state(const std::vector<Assignment>& values, const System& system, const Location& at,
                      Problem& problem) {
-  constexpr int samples_a_step = 16;  // cubic interpolation then keeps about six digits
-  const InitialState state = read_state(values, system);
-  const double duration = problem.duration.value;
-  Motion trial(problem, state, at);
-  trial.at(duration);
-  const int intervals = std::max(64, samples_a_step * trial.steps());
-  Motion motion(problem, state, at);
-  for (int k = 0; k <= intervals; ++k) {
-    problem.guess.tau.push_back(double(k) / intervals);
-    const std::span<const double> q = motion.at(k == intervals ? duration : duration * k / intervals);
-    problem.guess.q.insert(problem.guess.q.end(), q.begin(), q.end());
-  }
+  Motion(problem, read_state(values, system), at).sample(problem.duration.value, problem.guess);
+  problem.guess.motion = true;
 }
 
 }  // namespace extremal
