@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "problem/closing.hpp"
 #include "problem/problem.hpp"
 
 namespace extremal {
@@ -18,23 +19,6 @@ using Eigen::VectorXd;
 constexpr double null = 1e-9;
 /// Points beyond as many as there are unknowns, and how many may be lost where L is not finite.
 constexpr int spare_points = 8, most_tries = 4;
-
-/// q(T) = R q(0) + c.
-struct Closure {
-  MatrixXd matrix;
-  VectorXd shift;
-  bool identity() const { return matrix.isIdentity(0) && shift.isZero(0); }
-};
-
-Closure closure_of(const Problem& problem) {
-  const int n = problem.coordinates();
-  MatrixXd start = MatrixXd::Zero(n, n), end = start;
-  for (const Triplet& entry : problem.boundary.matrix)
-    (entry.column < n ? start : end)(entry.row, entry.column % n) += entry.value;
-  const auto solve = end.partialPivLu();
-  const auto value = Eigen::Map<const VectorXd>(problem.boundary.value.data(), n);
-  return {-solve.solve(start), solve.solve(value)};
-}
 
 /// What the coordinates extend over along the guess, all alike; and points about it.
 class Cloud {
@@ -75,7 +59,7 @@ class Cloud {
 /// Linear equations for the unknowns: entries of G row by row, then c and b, both in units of the extent.
 class Equations {
  public:
-  Equations(const Problem& problem, const Closure& closure)
+  Equations(const Problem& problem, const ClosingMap& closure)
       : n_(problem.coordinates()),
         matrices_(n_ <= most_coordinates_for_rotations ? n_ * n_ : 0),
         columns_(matrices_ + n_ + (closure.identity() ? n_ : 0)) {}
@@ -107,9 +91,9 @@ class Equations {
   }
 
   /// A path that is moved must close as before: R G = G R and R c = G shift + c.
-  void add_closure(const Closure& closure, double extent) {
+  void add_closure(const ClosingMap& closure, double extent) {
     if (closure.identity()) return;
-    const auto& r = closure.matrix;
+    const auto& r = closure.r;
     const int before = static_cast<int>(rows_.rows());
     rows_.conservativeResize(before + matrices_ + n_, columns_);
     rows_.bottomRows(matrices_ + n_).setZero();
@@ -122,7 +106,7 @@ class Equations {
     for (int a = 0; a < n_; ++a)
       for (int k = 0; k < n_; ++k) {
         rows_(before + matrices_ + a, matrices_ + k) += r(a, k) - (a == k);
-        if (matrices_ > 0) rows_(before + matrices_ + a, a * n_ + k) -= closure.shift[k] / extent;
+        if (matrices_ > 0) rows_(before + matrices_ + a, a * n_ + k) -= closure.c[k] / extent;
       }
   }
 
@@ -151,8 +135,8 @@ class Equations {
 }  // namespace
 
 std::vector<Generator> continuous_symmetries(const Problem& problem) {
-  const Closure closure = closure_of(problem);
-  if (!closure.matrix.allFinite()) return {};
+  const ClosingMap closure = closing_map(problem);
+  if (!closure.r.allFinite()) return {};
   Cloud cloud(problem);
   Equations equations(problem, closure);
   if (!equations.add_invariance(problem, cloud)) return {};

@@ -100,6 +100,8 @@ class Fields {
         values.push_back({number("multipliers", value.real()), number("multipliers", value.imag())});
     append(object_, "multipliers", floquet ? std::move(values) : Json(nullptr));
     append(object_, "krein", floquet ? Json(floquet->krein) : Json(nullptr));
+    if (converged_ && result_.solution.minimal_period)
+      append_number("minimal_period", result_.solution.minimal_period);
     append_number("symplectic_defect", floquet ? std::optional(floquet->symplectic_defect) : std::nullopt);
   }
 

@@ -73,6 +73,13 @@ std::string counted(int count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+/// Of an orbit that repeats itself.
+std::string period_text(const Solution& solution) {
+  if (!solution.minimal_period || *solution.minimal_period == solution.duration()) return "";
+  return fmt::format("{:.12g}, which the orbit goes through {} times", *solution.minimal_period,
+                     std::lround(solution.duration() / *solution.minimal_period));
+}
+
 /// Stability by pairs of multipliers λ, 1/λ, and quadruples λ, 1/λ with their conjugates.
 std::string stability_text(const Solution& solution) {
   if (!solution.floquet || solution.floquet->multipliers.empty()) return "";
@@ -173,6 +180,7 @@ std::string summary(const Result& result) {
     if (solution.converged()) lines.add_small("error estimate", solution.error_estimate);
     lines.add_small("residual", solution.residual);
     lines.add("index", index_text(solution));
+    lines.add("period", period_text(solution));
     lines.add("stability", stability_text(solution));
     lines.add("windows", windows_text(solution));
     lines.add("mesh", fmt::format("{} of degree {}, {}", counted(trajectory.elements(), "element"),

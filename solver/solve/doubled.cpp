@@ -27,17 +27,6 @@ EndFunction halfway(EndFunction where, const ClosingMap& map) {
 
 }  // namespace
 
-ClosingMap closing_map(const Problem& problem) {
-  const int n = problem.coordinates();
-  MatrixXd start = MatrixXd::Zero(n, n), end = start;
-  for (const Triplet& entry : problem.boundary.matrix)
-    (entry.column < n ? start : end)(entry.row, entry.column % n) += entry.value;
-  const VectorXd value = Map<const VectorXd>(problem.boundary.value.data(), n);
-  if (end.isIdentity(0)) return {-start, value};
-  const auto lu = end.partialPivLu();
-  return {-lu.solve(start), lu.solve(value)};
-}
-
 Problem doubled(const Problem& problem) {
   const ClosingMap map = closing_map(problem);
   const int n = problem.coordinates();

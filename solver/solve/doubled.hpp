@@ -1,23 +1,12 @@
 #pragma once
 
-#include <Eigen/Dense>
-
 #include "action/path.hpp"
+#include "problem/closing.hpp"
 #include "solve/branch.hpp"
 
 /// \file Periodic orbits run through twice.
 
 namespace extremal {
-
-/// q(T) = R q(0) + c.
-struct ClosingMap {
-  Eigen::MatrixXd r;  ///< n × n
-  Eigen::VectorXd c;
-  bool identity() const { return r.isIdentity(0) && c.isZero(0); }
-};
-
-/// Of a periodic problem.
-ClosingMap closing_map(const Problem& problem);
 
 /// The problem of twice the period, which every solution of a periodic problem solves, run through twice.
 Problem doubled(const Problem& problem);

@@ -24,8 +24,8 @@ constexpr double regular_fall = 0.5;
 /// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails.
 constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
-/// Where the orbit is known and only its phase is not.
-constexpr double orbit_goal = 1e-8;
+/// Relative to the largest momentum; of periodic paths.
+constexpr double stationary_residual = 1e-10;
 
 }  // namespace
 
@@ -37,25 +37,37 @@ void PinnedSolve::bind(int points) {
   w_.pinned.bind(*w_.pinned_scheme, *problem_.lagrangian);
 }
 
-/// Each phase of a periodic path is nearly as good as the others; of those that are stationary, the next.
+/// Each phase of a periodic path is nearly as good as the others. Of those that are stationary the next is
+/// found, perhaps not to many digits.
 NewtonReport PinnedSolve::converge_to_roundoff() {
-  const auto run = [&](double remaining) {
-    return converge(w_.iteration, w_.path, w_.pinned, {remaining, std::min(steps, options_.max_iterations)},
+  const auto run = [&] {
+    return converge(w_.iteration, w_.path, w_.pinned, {roundoff, std::min(steps, options_.max_iterations)},
                     [this] {
                       outcome_.record(w_, options_);
                       cost_ += w_.path.batches() * batch_cost(w_.pinned, scheme_.degree);
                       return true;
                     });
   };
+  if (!problem_.periodic) return run();
+  const auto stationary = [&] {
+    const double residual = w_.iteration.residual_at(w_.path);
+    return residual <= stationary_residual * w_.iteration.action().momentum_scale();
+  };
   w_.saved = w_.path;
-  if (problem_.periodic && run(orbit_goal).reached) {
+  NewtonReport report = run();
+  if (report.reached && stationary()) return report;
+  for (const bool from_orbit : {true, false}) {
+    if (from_orbit && !report.reached) continue;
+    if (!from_orbit) {
+      w_.path.copy_values(w_.saved);
+      w_.path.load_ends();
+    }
     w_.iteration.free_phase(true);
-    if (const NewtonReport report = run(roundoff); report.reached) return report;
-    w_.path.copy_values(w_.saved);
-    w_.path.load_ends();
+    report = run();
+    if (report.reached || stationary()) break;
   }
-  w_.iteration.free_phase(true);
-  return run(roundoff);
+  report.reached = report.reached || stationary();
+  return report;
 }
 
 /// Newton from the guess, or from the path there is, to roundoff.

@@ -249,7 +249,10 @@ Refinement::Attempt Refinement::attempt() {
     // What Newton's method had left to do is no error of the elements, or not all of it.
     nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
     const Attempt result = judge(newton, aim, nodes);
-    if (result == Attempt::converged && !solved()) return Attempt::failed;
+    if (result == Attempt::converged && !solved()) {
+      worst_ = INFINITY;  // what holds the phase is an error of the elements
+      return problem_.periodic && test_.share() <= options_.tolerance ? Attempt::refine : Attempt::failed;
+    }
     if (result != Attempt::refine) return result;
   }
 }

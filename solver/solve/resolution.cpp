@@ -64,6 +64,7 @@ Scales scales(const Path& path, const ElementTables& tables) {
     result.v =
         std::max(result.v, *std::max_element(fast, fast + lanes) - *std::min_element(slow, slow + lanes));
   }
+  result.range = result.q;
   if (result.q <= negligible * result.magnitude) result.q = result.magnitude;
   // A motion that is nearly uniform has hardly a range of velocity.
   if (path.duration() > 0) result.v = std::max(result.v, nearly_uniform * result.q / path.duration());

@@ -11,7 +11,8 @@ namespace extremal {
 
 /// Sizes of a path: largest range of a coordinate and of a velocity, largest |q|.
 struct Scales {
-  double q = 0, v = 0, magnitude = 0;
+  double q = 0;  ///< the range, or the magnitude where that is negligible
+  double v = 0, magnitude = 0, range = 0;
 };
 Scales scales(const Path& path, const ElementTables& tables);
 

@@ -32,6 +32,8 @@ constexpr double least_steps = 100;
 constexpr unsigned most_bends = 8;
 /// A path so much larger than the guess has run away to where forces vanish.
 constexpr double runaway = 100;
+/// A periodic path that is so much smaller than the guess is at rest.
+constexpr double rest = 1e-6;
 /// Starts with noise that are cheaper than other durations are; and at most.
 constexpr unsigned first_noises = 8, most_noises = 10000;
 /// Of the guess's extent, in turn.
@@ -113,6 +115,11 @@ bool Search::resolve_guess() {
   return finer_found;
 }
 
+/// An equilibrium has every period.
+bool Search::collapsed() const {
+  return extent_ > 0 && scales(w_.path, refinement_.tables()).range <= rest * extent_;
+}
+
 /// Pursues the path in the workspace.
 Refinement::Result Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
@@ -124,6 +131,11 @@ Refinement::Result Search::pursue(const char* strategy) {
   if (result == Refinement::Result::converged && outcome_.elsewhere &&
       (far || !refinement_.holds_on_other_elements())) {
     unheld_ = w_.path;
+    result = Refinement::Result::failed;
+  }
+  if (collapsed()) {
+    outcome_.message = "the orbit shrank to a point of equilibrium";
+    shrank_ = true;
     result = Refinement::Result::failed;
   }
   const bool converged = result == Refinement::Result::converged;
@@ -220,7 +232,9 @@ bool Search::from_other_guesses() {
 Outcome Search::run() {
   outcome_.message = "the action is not finite along the guess";
   if (!begin()) return outcome_;
-  magnitude_ = scales(w_.path, refinement_.tables()).magnitude;
+  const Scales size = scales(w_.path, refinement_.tables());
+  magnitude_ = size.magnitude;
+  if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * w_.path.elements();
   allowance_ =
       std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns)));
@@ -237,6 +251,13 @@ Outcome Search::run() {
           "{} Newton steps from the guess ({}), through other durations and from smooth noise "
           "found no extremal; try a better guess or a shorter duration",
           outcome_.iterations, failure);
+      if (shrank_) {
+        outcome_.status = Status::no_solution_near;
+        outcome_.message =
+            "the orbit shrank to a point of equilibrium from the guess and from others; try a larger guess "
+            "or "
+            "another duration";
+      }
       // Where ends are conjugate, elements tell different members of a family.
       if (unheld_) std::swap(w_.path, *unheld_);
     }

@@ -34,6 +34,7 @@ class Search {
   bool begin();
   bool resolve_guess();
   Refinement::Result pursue(const char* strategy);
+  bool collapsed() const;
   bool found(const char* strategy);
   bool from_other_guesses();
   bool through_other_durations();
@@ -50,10 +51,12 @@ class Search {
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
   double magnitude_ = 0;        ///< of the guess
+  double extent_ = 0;           ///< of the guess, of a periodic problem
   int allowance_ = 0;           ///< of Newton steps
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others
   unsigned seed_ = 0;
+  bool shrank_ = false;    ///< a path, to a point of equilibrium
   bool doubtful_ = false;  ///< the equations of the last path were nearly singular
 };
 

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "analysis/orbit_form.hpp"
-#include "solve/doubled.hpp"
+#include "problem/closing.hpp"
 
 namespace extremal {
 
@@ -20,6 +22,33 @@ void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Flo
   }
 }
 
+/// T/m with the most m for which q(t + T/m) = q(t), within the error. A period that is a multiple of T/m
+/// shows by its prime factors, one after the other. Nothing where it never moves.
+std::optional<double> minimal_period(const Trajectory& path, double error) {
+  constexpr int samples = 64, most = 1 << 16;
+  constexpr int primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31};
+  const double T = path.duration();
+  const std::size_t n = path.coordinates;
+  std::vector<double> here(n), there(n), v(n);
+  const auto repeats = [&](double period) {
+    for (int k = 0; k < samples; ++k) {
+      const double t = T * k / samples, later = t + period;
+      path.at(t, here, v);
+      path.at(std::min(later < T ? later : later - T, T), there, v);
+      for (std::size_t a = 0; a < n; ++a)
+        if (!(std::abs(here[a] - there[a]) <= error)) return false;
+    }
+    return true;
+  };
+  int parts = 1;
+  for (const int prime : primes)
+    while (parts < most && repeats(T / (parts * prime))) parts *= prime;
+  return parts < most ? std::optional(T / parts) : std::nullopt;
+}
+
+/// Of the size of the path: distances that are told from none.
+constexpr double distinct = 1e-6;
+
 }  // namespace
 
 ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
@@ -32,6 +61,9 @@ ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors) {
   if (!problem.periodic) return;
+  const double told = std::max(10 * solution.error_estimate, distinct * size);
+  if (closing_map(problem).identity() && size > 0)
+    solution.minimal_period = minimal_period(solution.trajectory, told);
   if (problem.coordinates() > most_coordinates_for_multipliers) {
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
                                     most_coordinates_for_multipliers);

@@ -12,8 +12,9 @@ namespace extremal {
 /// How an orbit of a periodic problem closes; `relative_error` of its coordinates.
 ClosedOrbit closed_orbit(const Problem& problem, double relative_error);
 
-/// Sets the Floquet multipliers of a converged solution of a periodic problem. `variation` was
-/// assembled for it, perhaps without success. `size` of the solution: that its error is relative to.
+/// Sets the Floquet multipliers and the minimal period of a converged solution of a periodic problem.
+/// `variation` was assembled for it, perhaps without success. `size` of the solution: that its error is
+/// relative to.
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors = true);
 

@@ -1,0 +1,115 @@
+#include <numbers>
+
+#include "solve/scenes.hpp"
+
+/// \file Periodic orbits: their phase, what they are distinguished from, what is said of them.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T, double shift = 0) {
+  const int n = lagrangian->structure().coordinates;
+  Problem problem = with_ends(std::move(lagrangian), T, [&](BoundaryRelation& b) {
+    for (int a = 0; a < n; ++a) {
+      const int row = b.add_row(shift);
+      b.add(row, a, -1);
+      b.add(row, n + a, 1);
+    }
+  });
+  problem.periodic = true;
+  return make_problem(std::move(problem));
+}
+
+/// Swings of period T/turns, begun anywhere.
+Problem swings(double T, double amplitude, int turns, double phase) {
+  return guessed(periodic(systems::pendulum(), T),
+                 [=](double tau) { return Values{amplitude * std::sin(2 * pi * turns * tau + phase)}; });
+}
+
+/// Elements prefer a phase, by as much as they err; the orbit, its index and its nullity do not depend on it.
+TEST(Periodic, AnyPhase) {
+  const double T = 9;  // frequency 1
+  const Solution reference = solve(swings(T, 2, 1, 0), within(1e-12));
+  for (double phase : {0.0, 0.3, 1.0, 2.2, 4.0})
+    for (double tolerance : {1e-3, 1e-5, 1e-8, 1e-11}) {
+      const Solution s = solve(swings(T, 2, 1, phase), within(tolerance));
+      EXPECT_EQ(s.strategy, "newton from the guess") << phase << " " << tolerance;
+      EXPECT_EQ(s.morse_index, 1) << phase << " " << tolerance;
+      EXPECT_EQ(s.nullity, 1) << phase << " " << tolerance;
+      EXPECT_NEAR(s.action, reference.action, 20 * tolerance) << phase << " " << tolerance;
+      EXPECT_LT(s.residual, 1e-7);
+    }
+}
+
+/// It stays near the guess's phase, or the time shift would be found again in q(0).
+TEST(Periodic, NearTheGuess) {
+  for (double phase : {0.3, 1.0, 2.2}) {
+    const Solution s = solve(swings(9, 2, 1, phase), within(1e-10));
+    double distance = 0;
+    for (int k = 0; k < 100; ++k) {
+      const double tau = k / 100.0;
+      distance += at(s.trajectory, tau * s.duration()).v[0] * 2 * std::sin(2 * pi * tau + phase) / 100;
+    }
+    EXPECT_NEAR(distance, 0, 0.2) << phase;  // ∫q'·guess dt = 0 where the distance is least
+  }
+}
+
+/// Energy from dq/dt alone: T = ∫dq/√(2(E + cos q)) over a turn.
+TEST(Periodic, RotatingPendulum) {
+  for (double T : {0.5, 2.0, 4.0, 8.0}) {
+    const Problem problem =
+        guessed(periodic(systems::pendulum(), T, 2 * pi), [](double tau) { return Values{2 * pi * tau}; });
+    const Solution s = solve(problem, within(1e-11));
+    EXPECT_EQ(s.morse_index, 0);
+    EXPECT_EQ(s.nullity, 1);
+    double turn = 0;
+    const int points = 20000;  // exponentially accurate for a periodic integrand
+    for (int k = 0; k < points; ++k)
+      turn += 2 * pi / points / std::sqrt(2 * (*s.energy + std::cos(2 * pi * k / points)));
+    EXPECT_NEAR(turn / T, 1, 1e-8) << T;
+  }
+}
+
+/// The guess is 0.5 % off; another orbit, unstable and of index 3, is near. Action of the reference orbit.
+TEST(Periodic, FigureEightAndNotItsNeighbour) {
+  for (const char* scene : {"figure-eight-near.toml", "figure-eight.toml"})
+    for (double tolerance : {1e-4, 1e-8, 1e-11}) {
+      Study study = load(bench_data(scene));
+      study.options.tolerance = tolerance;
+      const Solution s = run(study);
+      ASSERT_TRUE(s.converged()) << s.message;
+      EXPECT_EQ(s.strategy, "newton from the guess");
+      EXPECT_NEAR(s.action, 24.4270486, 3 * tolerance + 1e-7) << scene << " " << tolerance;
+      EXPECT_EQ(s.morse_index, 2);
+      EXPECT_EQ(s.nullity, 4);
+    }
+}
+
+TEST(Periodic, MinimalPeriod) {
+  for (int turns : {1, 2, 3, 6}) {
+    const Solution s = solve(swings(9.0 * turns, 2, turns, 0.4), within(1e-9));
+    EXPECT_NEAR(s.minimal_period.value(), 9, 1e-12) << turns;
+  }
+  EXPECT_FALSE(solve(fixed_ends(systems::pendulum(), {0}, {1}, 1), within(1e-9)).minimal_period);
+}
+
+/// No swing is shorter than 2π.
+TEST(Periodic, CollapseOntoAnEquilibriumIsAFailure) {
+  const Solution s = Solver().solve(swings(3, 0.5, 1, 0.2), within(1e-8));
+  EXPECT_EQ(s.status, Status::no_solution_near);
+  EXPECT_NE(s.message.find("equilibrium"), std::string::npos) << s.message;
+  EXPECT_TRUE(s.trajectory.nodes.empty());
+}
+
+/// A discretisation that is asked for is stationary, in a phase that it prefers.
+TEST(Periodic, PinnedSchemesAreStationary) {
+  for (const char* name : {"midpoint", "lobatto(2)", "gauss(2)", "lobatto(4)"}) {
+    const Solution s = solve(swings(9, 2, 1, 0.3), pinned(scheme(name), 24));
+    EXPECT_LT(s.residual, 1e-10) << name;
+  }
+}
+
+}  // namespace
+}  // namespace extremal::laws
