@@ -31,7 +31,7 @@ struct SchemeTables {
   std::vector<double> node, weight;  ///< of the quadrature
   std::vector<double> lobatto;       ///< s + 1 nodes of the element
   std::vector<double> value, slope;  ///< points × functions, basis as in element.hpp
-  std::vector<double> end_derivative;        ///< 2 × (s + 1): φ_j' at τ = 0 and τ = 1, through the Lobatto nodes
+  std::vector<double> end_derivative;        ///< 2 × (s + 1): nodal basis, derivatives at τ = 0 and τ = 1
   std::vector<double> stiffness, gyration;
   PointTable value_sum, slope_sum, value_value, slope_value, slope_slope;
   std::vector<double> legendre;  ///< functions × functions: Legendre coefficients from (d, 1 − τ, τ)

@@ -59,7 +59,7 @@ std::string scene_of(const nlohmann::json& c) {
 }
 
 Solution solved(const nlohmann::json& c) {
-  const std::string path = testing::TempDir() + "published-orbit.toml";
+  const std::string path = testing::TempDir() + c["id"].get<std::string>() + ".toml";
   std::ofstream(path) << scene_of(c);
   return run(load(path));
 }
