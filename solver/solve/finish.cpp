@@ -110,8 +110,10 @@ void judge_resolution(const Problem& problem, const SolveOptions& options, const
     // Far away, where forces vanish, next to nothing is left of equations that have no solution.
     solution.status = Status::conjugate_ends;
     solution.message =
-        "away from the guess a path was found along which the second variation is singular: one of a family, "
-        "or none where forces vanish; move an end or the duration, or try a better guess";
+        "away from the guess a path was found along which the second variation is singular: the ends may be "
+        "conjugate, with a family of extremals, or forces vanish along it; move an end or the duration, or "
+        "try a "
+        "better guess";
   }
 }
 
