@@ -45,6 +45,8 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   const bool refuted = bounded && !found.within_longest;
   if (refuted) found = minimality(memory);
   solution.windows = std::move(found.windows);
+  // T as the sum of the elements' lengths may differ by roundoff.
+  if (!solution.windows.empty()) solution.windows.back()[1] = solution.duration();
   solution.conjugate_times_known = found.conjugate_times.has_value();
   if (found.conjugate_times)
     solution.conjugate_times = *std::move(found.conjugate_times);
