@@ -15,7 +15,7 @@ namespace extremal {
 struct BranchRecord {
   std::optional<int> origin = {};  ///< number of the point, among all, that it begins next to; first: none
   BranchEnd end = BranchEnd::none;
-  std::string message;  ///< why it ended
+  std::string message = {};  ///< why it ended
   int points = 0;
   double worst_action_slope = 0, worst_momentum = 0;  ///< see Continuation
 };

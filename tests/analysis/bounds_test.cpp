@@ -35,7 +35,8 @@ TEST(WindowBound, ConvergesWithItsOrder) {
   for (const Scheme& s : schemes_and_families()) {
     if (one_sided(s)) continue;
     const double coarse = std::abs(window_bound(s, 4) - pi), fine = std::abs(window_bound(s, 8) - pi);
-    if (fine > 1e-11) EXPECT_NEAR(std::log2(coarse / fine), s.order, 0.2) << s.name;
+    if (fine <= 1e-11) continue;
+    EXPECT_NEAR(std::log2(coarse / fine), s.order, 0.2) << s.name;
   }
 }
 
