@@ -85,7 +85,8 @@ TEST(MultipliersOfOrbits, FigureEight) {
 
 /// A scene of the orbit that begins at a published state.
 Solution solved(const std::string& text) {
-  const std::string path = testing::TempDir() + "multipliers.toml";
+  const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string path = testing::TempDir() + "multipliers-" + test + ".toml";
   std::ofstream(path) << text;
   const Solution s = run(load(path));
   if (!s.converged() || !s.floquet) throw std::runtime_error(s.message);
