@@ -218,9 +218,9 @@ TEST(Continuation, EndsInACollision) {
   EXPECT_EQ(branch.end(), BranchEnd::collision) << branch.message();
   EXPECT_GT(points.back().parameter, 5);
   EXPECT_LT(points.back().parameter, 2 * pi);
-  // The angular momentum falls all the way.
+  // The angular momentum falls all the way, within what the tolerance leaves of velocities of order 1.
   for (std::size_t k = 1; k < points.size(); ++k)
-    EXPECT_LT(start_of(points[k]).v[1], start_of(points[k - 1]).v[1]);
+    EXPECT_LT(start_of(points[k]).v[1], start_of(points[k - 1]).v[1] + 1e-5);
 }
 
 /// Every point meets the tolerance: each is solved for anew, ten times as accurately.
