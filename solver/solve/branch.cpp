@@ -56,7 +56,7 @@ void Branch::bind() {
 /// Ends, and a duration that is given, are the problem's exactly.
 void Branch::fit_path(const Problem& problem) {
   if (!problem.duration.free) w_.path.set_duration(problem.duration.value);
-  close_ends(problem, w_.path);
+  meet_ends(problem, w_.path);
 }
 
 bool Branch::apply(const Move& move, double factor) {

@@ -85,7 +85,7 @@ int Several::keep() {
 }
 
 int Several::settle(const ElementTables& tables, const char* strategy) {
-  close_ends(problem_, w_.path);
+  meet_ends(problem_, w_.path);
   return search_.settle(tables, strategy) ? keep() : -1;
 }
 
@@ -163,7 +163,7 @@ void Several::wind() {
   EndHomotopy ends(problem_, w_, count, arc_path(arc, search_.ends(), tables, w_.path), 1);
   w_.path.set_duration(duration);
   if (!ends.follow(tables, 1)) return;
-  close_ends(problem_, w_.path);
+  meet_ends(problem_, w_.path);
   DurationHomotopy durations(problem_, w_, count);
   if (problem_.duration.free || !autonomous || durations.follow(tables)) settle(tables, strategy);
 }

@@ -118,8 +118,7 @@ std::vector<double> moved_ends(const Problem& problem, std::vector<double> ends,
 void meet_ends(const Problem& problem, Path& path) {
   const std::size_t n = problem.coordinates();
   const int last = path.elements();
-  std::vector<double> now(path.node(0), path.node(0) + n);
-  now.insert(now.end(), path.node(last), path.node(last) + n);
+  const std::vector<double> now = ends_of(path);
   const std::vector<double> ends = nearest(problem.ends, now);
   for (std::size_t a = 0; a < n; ++a) {
     if (ends[a] != now[a]) path.set_node(0, static_cast<int>(a), ends[a]);
@@ -144,17 +143,6 @@ void start_path(const Problem& problem, const std::vector<double>& ends, const E
     for (std::size_t a = 0; a < n; ++a)
       point[a] += (1 - tau) * (ends[a] - guess_ends[a]) + tau * (ends[n + a] - guess_ends[n + a]);
   });
-}
-
-void close_ends(const Problem& problem, Path& path) {
-  const int n = problem.coordinates();
-  const std::vector<double> ends =
-      problem.ends.free == 0 ? problem.ends.offset : nearest(problem.ends, ends_of(path));
-  for (int a = 0; a < n; ++a) {
-    path.set_node(0, a, ends[a]);
-    path.set_node(path.elements(), a, ends[n + a]);
-  }
-  path.load_ends();
 }
 
 std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, const ElementTables& tables,

@@ -24,9 +24,6 @@ void meet_ends(const Problem& problem, Path& path);
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path);
 
-/// Moves the ends of a path, which are near it already, onto the boundary relation.
-void close_ends(const Problem& problem, Path& path);
-
 /// An arc of a circle about `centre` in the plane of it and the ends, through the angle between those and so
 /// many turns more; its radius is the mean distance of the ends from the centre, times 1 + `excess`. With one
 /// coordinate there is no plane.
@@ -38,20 +35,6 @@ struct Arc {
 /// Fills `path` with it. Returns what its ends differ by from `ends` (2n).
 std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, const ElementTables& tables,
                              Path& path);
-
-/// Moves the ends of a path, which are near it already, onto the boundary relation.
-void close_ends(const Problem& problem, Path& path);
-
-/// Fills `path` with a spiral about the point `centre`, from ends[0 … n − 1] to ends[n … 2n − 1] in the plane
-/// of the three, through the angle between the ends and so many turns more; beyond the mean of their
-/// distances from the centre by `bulge` times that in the middle. With one coordinate there is no plane.
-struct Spiral {
-  std::vector<double> centre;
-  int turns = 0;
-  double bulge = 0;
-};
-void spiral_path(const Spiral& spiral, const std::vector<double>& ends, const ElementTables& tables,
-                 Path& path);
 
 /// Numbers in [-1, 1], the same for the same seed.
 class Noise {

@@ -14,19 +14,6 @@ namespace {
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T) {
-  const int n = lagrangian->structure().coordinates;
-  Problem problem = with_ends(std::move(lagrangian), T, [&](BoundaryRelation& b) {
-    for (int a = 0; a < n; ++a) {
-      const int row = b.add_row(0);
-      b.add(row, a, -1);
-      b.add(row, n + a, 1);
-    }
-  });
-  problem.periodic = true;
-  return make_problem(std::move(problem));
-}
-
 /// At rest: 2⌊Tω/2π⌋ + 1 for each frequency ω, T that of all rounds together.
 TEST(OrbitForm, IteratesOfRest) {
   const double frequencies[] = {1, std::sqrt(3.0)};

@@ -16,19 +16,6 @@ using Complex = std::complex<double>;
 
 constexpr double tolerance = 1e-12;
 
-Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T) {
-  const int n = lagrangian->structure().coordinates;
-  Problem problem = with_ends(std::move(lagrangian), T, [&](BoundaryRelation& b) {
-    for (int a = 0; a < n; ++a) {
-      const int row = b.add_row(0);
-      b.add(row, a, -1);
-      b.add(row, n + a, 1);
-    }
-  });
-  problem.periodic = true;
-  return make_problem(std::move(problem));
-}
-
 /// λ² − μλ + 1 = 0 with the trace μ, driven through resonance: x'' + sin x = 0.8 cos 1.3 t.
 TEST(MultipliersOfOrbits, DrivenPendulum) {
   const auto lagrangian = trace(

@@ -52,6 +52,20 @@ inline Problem with_ends(std::shared_ptr<const Lagrangian> lagrangian, double du
   return make_problem(std::move(problem));
 }
 
+/// q(T) = q(0) + shift, every coordinate alike.
+inline Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T, double shift = 0) {
+  const int n = lagrangian->structure().coordinates;
+  Problem problem = with_ends(std::move(lagrangian), T, [&](BoundaryRelation& b) {
+    for (int a = 0; a < n; ++a) {
+      const int row = b.add_row(shift);
+      b.add(row, a, -1);
+      b.add(row, n + a, 1);
+    }
+  });
+  problem.periodic = true;
+  return make_problem(std::move(problem));
+}
+
 inline Problem guessed(Problem problem, const std::function<Values(double)>& q_of_tau) {
   for (int i = 0; i <= 100; ++i) {
     problem.guess.tau.push_back(i / 100.0);

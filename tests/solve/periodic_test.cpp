@@ -9,19 +9,6 @@ namespace {
 
 using std::numbers::pi;
 
-Problem periodic(std::shared_ptr<const Lagrangian> lagrangian, double T, double shift = 0) {
-  const int n = lagrangian->structure().coordinates;
-  Problem problem = with_ends(std::move(lagrangian), T, [&](BoundaryRelation& b) {
-    for (int a = 0; a < n; ++a) {
-      const int row = b.add_row(shift);
-      b.add(row, a, -1);
-      b.add(row, n + a, 1);
-    }
-  });
-  problem.periodic = true;
-  return make_problem(std::move(problem));
-}
-
 /// Swings of period T/turns, begun anywhere.
 Problem swings(double T, double amplitude, int turns, double phase) {
   return guessed(periodic(systems::pendulum(), T),
