@@ -32,6 +32,14 @@ void Path::set_duration(double duration) {
   }
 }
 
+bool Path::move_mesh(std::span<const double> times, double factor, double least) {
+  for (int k = 0; k < elements_; ++k)
+    if (!(factor * (times[k + 1] - times[k]) > (least - 1) * (mesh_[k + 1] - mesh_[k]))) return false;
+  for (int k = 1; k < elements_; ++k) mesh_[k] += factor * times[k];
+  set_duration(duration_);
+  return true;
+}
+
 void Path::set_element(int k, const double* q) {
   const double *first = q, *last = q + static_cast<std::size_t>(degree_) * n_;
   for (int a = 0; a < n_; ++a) {

@@ -29,6 +29,9 @@ class Path {
   /// Sets the values at the s + 1 Lobatto nodes of element k from q[(j)*n + a].
   void set_element(int k, const double* q);
   void set_duration(double duration);
+  /// Mesh nodes move by factor·times (in τ), inner nodes stay where they are in their elements, and all
+  /// values are kept. False, and nothing is done, if an element shrank to less than `least` of its length.
+  bool move_mesh(std::span<const double> times, double factor, double least);
 
   /// q at mesh node k (n entries), rounded to double.
   const double* node(int k) const { return high_.data() + static_cast<std::size_t>(k) * n_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solve/resolution.hpp"
 
@@ -12,6 +13,12 @@ namespace {
 /// Lengths are relative: root mean square over the nodes by the path's range, and the parameter by its unit.
 constexpr double first_length = 0.1, least_length = 1e-5, largest_approach = 0.2;
 constexpr double on_curve = 1e-2, close_to_curve = 1e-3, farthest_landing = 0.05, landed = 1e-5;
+/// Corrections, by the length of the step: where the second variation is nearly singular, what is left makes
+/// the tangent turn. Those that are shorter than this leave the mesh where it is, for the error of the
+/// elements varies with it.
+constexpr double corrected = 3e-3, slight = 1e-4;
+/// An element keeps so much of its length in one move.
+constexpr double least_element = 0.3;
 /// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
 /// family turns by more than the angle with this cosine.
 constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
@@ -30,6 +37,7 @@ constexpr double strongest_cut = 4;
 void Move::scale(double factor) {
   for (double& x : step.nodes) x *= factor;
   for (double& x : step.inner) x *= factor;
+  for (double& x : times) x *= factor;
   step.duration *= factor;
   parameter *= factor;
 }
@@ -37,6 +45,7 @@ void Move::scale(double factor) {
 void Move::add(const Move& other, double factor) {
   for (std::size_t k = 0; k < step.nodes.size(); ++k) step.nodes[k] += factor * other.step.nodes[k];
   for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] += factor * other.step.inner[k];
+  for (std::size_t k = 0; k < times.size(); ++k) times[k] += factor * other.times[k];
   step.duration += factor * other.step.duration;
   parameter += factor * other.parameter;
 }
@@ -51,6 +60,11 @@ bool ExtremalFamily::linearise() {
     return false;
   }
   if (!solve_linearised(correction_, direction_)) return false;
+  for (Move* move : {&correction_, &direction_}) {
+    move->times.clear();
+    if (!std::isfinite(dot(*move, *move))) return false;
+    comoving_.take_along(w_.path, scale_, move->step, move->times);
+  }
   const double length = dot(direction_, direction_);
   return std::isfinite(dot(correction_, correction_)) && std::isfinite(length) && length > 0;
 }
@@ -61,12 +75,14 @@ double ExtremalFamily::dot(const Move& a, const Move& b) const {
   const double duration = w_.path.duration();
   return sum / (scale_ * scale_ * static_cast<double>(a.step.nodes.size())) +
          a.step.duration * b.step.duration / (duration * duration) +
-         a.parameter * b.parameter / (unit_ * unit_);
+         a.parameter * b.parameter / (unit_ * unit_) + strain_product(w_.path, a.times, b.times);
 }
 
 bool ExtremalFamily::apply(const Move& move, double factor) {
   const double duration = w_.path.duration() + factor * move.step.duration;
-  if (!(duration > 0) || !set_parameter(parameter() + factor * move.parameter)) return false;
+  if (!(duration > 0) || !w_.path.move_mesh(move.times, factor, least_element) ||
+      !set_parameter(parameter() + factor * move.parameter))
+    return false;
   w_.path.add(move.step.nodes, move.step.inner, factor);
   if (move.step.duration != 0) w_.path.set_duration(duration);
   w_.path.load_ends();
@@ -74,8 +90,7 @@ bool ExtremalFamily::apply(const Move& move, double factor) {
 }
 
 void ExtremalFamily::restore() {
-  w_.path.copy_values(saved_);
-  w_.path.load_ends();
+  w_.path = saved_;
   set_parameter(saved_parameter_);
 }
 
@@ -86,6 +101,7 @@ bool ExtremalFamily::begin(const ElementTables& tables, int most_steps) {
   length_ = first_length;
   farthest_ = std::max(farthest * unit_, 2 * std::abs(parameter()));
   refusals_ = 0;
+  last_length_ = 0;
   tangent_ = {};
   w_.iteration.reset(problem(), tables, w_.path.elements());
   first_scale_ = scale_ = scales(w_.path, tables).q;
@@ -121,8 +137,9 @@ bool ExtremalFamily::correct() {
     const double size = std::sqrt(dot(correction_, correction_));
     const bool short_enough =
         size < contraction * before && size < std::max(longest_correction * length_, on_curve);
+    if (size < slight) comoving_.leave_behind(w_.path, correction_.step, correction_.times);
     if (!short_enough || !apply(correction_, 1)) return false;
-    if (size < std::min(on_curve, 0.25 * length_)) return true;
+    if (size < std::min(on_curve, corrected * length_)) return true;
     before = size;
   }
   return false;
@@ -173,6 +190,8 @@ bool ExtremalFamily::resolve() {
   std::swap(w_.path, w_.other);
   w_.iteration.reset(problem(), *tables_, w_.path.elements());
   tangent_.step.nodes = std::move(nodes);
+  tangent_.times.clear();
+  last_length_ = 0;
   if (!linearise()) return false;
   turn();
   std::swap(tangent_, next_);
@@ -181,9 +200,20 @@ bool ExtremalFamily::resolve() {
 
 /// Nearer to the family, where its tangent is known better.
 void ExtremalFamily::polish() {
+  last_length_ = 0;
   if (!approach() || !linearise()) return restore();
   turn();
   std::swap(tangent_, next_);
+}
+
+/// The parabola through the tangents here and before.
+Move ExtremalFamily::ahead() const {
+  Move move = tangent_;
+  if (last_length_ == 0) return move;
+  const double half = 0.5 * length_ / last_length_;
+  move.add(tangent_, half);
+  move.add(previous_, -half);
+  return move;
 }
 
 bool ExtremalFamily::reach() {
@@ -191,7 +221,7 @@ bool ExtremalFamily::reach() {
     saved_ = w_.path;
     saved_parameter_ = parameter();
     const int began = steps_;
-    if (!apply(tangent_, length_) || !correct() || !turn()) {
+    if (!apply(ahead(), length_) || !correct() || !turn()) {
       restore();
       length_ *= 0.4;
       if (++refusals_ == refusals_before_polish) polish();
@@ -206,7 +236,8 @@ bool ExtremalFamily::reach() {
         continue;
       }
     }
-    std::swap(tangent_, next_);
+    previous_ = std::exchange(tangent_, next_);
+    last_length_ = length_;
     if (passed) return true;
     scale_ = scales(w_.path, *tables_).q;
     const bool away = std::abs(parameter()) > farthest_;

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "solve/comoving.hpp"
 #include "solve/workspace.hpp"
 
 /// \file Curves of extremals: one parameter of a problem varies.
@@ -12,6 +13,7 @@ namespace extremal {
 struct Move {
   Step step;
   double parameter = 0;
+  std::vector<double> times = {};  ///< by which the mesh nodes move, in τ; empty: they stay
   void add(const Move& other, double factor);
   void scale(double factor);
 };
@@ -61,6 +63,7 @@ class ExtremalFamily {
  private:
   bool linearise();
   bool correct();
+  Move ahead() const;
   bool turn();
   bool land(double from);
   void polish();
@@ -74,9 +77,12 @@ class ExtremalFamily {
   double unit_, scale_ = 1, first_scale_ = 1, length_ = 0, farthest_ = 0;
   int most_steps_ = 0, steps_ = 0,
       refusals_ = 0;  ///< linearisations; steps refused since the last that was not
+  Comoving comoving_;
   Move correction_, direction_;
-  Move tangent_, next_;  ///< of length one
-  double cosine_ = 1;    ///< between the last two
+  Move tangent_, next_;     ///< of length one
+  Move previous_;           ///< tangent before, on the same elements
+  double last_length_ = 0;  ///< from there; 0 if there is none
+  double cosine_ = 1;       ///< between the last two
   Path saved_, beyond_;
   double saved_parameter_ = 0, beyond_parameter_ = 0;
 };

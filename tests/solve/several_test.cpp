@@ -156,7 +156,7 @@ TEST(Several, LambertWithUpToTwoRevolutions) {
     Values end;
     double duration;
   };
-  for (const Case& c : {Case{{-0.6, 0.9}, 16}, Case{{0, -1.5}, 18}}) {
+  for (const Case& c : {Case{{-0.6, 0.9}, 16}, Case{{0, -1.5}, 18}, Case{{0.23, -0.93}, 13.6}}) {
     const Values start{1, 0}, exact = lambert_energies(start, c.end, c.duration);
     EXPECT_EQ(exact.size(), 10u) << "both ways without a revolution, and twice with one and with two";
     Values energies;
