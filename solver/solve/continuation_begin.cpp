@@ -11,7 +11,7 @@ namespace extremal {
 
 namespace {
 
-constexpr double first_length = 0.02, least_longest = 0.02, most_longest = 0.4;
+constexpr double first_length = 0.02, least_longest = 0.1, most_longest = 0.4;
 /// The longest step, so that so many make up the distance wanted where as many points are allowed.
 constexpr double coverage = 4;
 /// Of the size of the guess: a path smaller than this is at rest.
@@ -21,7 +21,8 @@ constexpr double first_departure = 0.05, least_departure = 1e-4;
 /// Elements are planned for this share of the tolerance.
 constexpr double spare = 0.1;
 constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
-constexpr double strongest_cut = 16;
+/// Elements follow the path from point to point: where it becomes smooth they become longer again.
+constexpr double strongest_cut = 16, strongest_growth = 2;
 /// Elements whose error is below this share of the tolerance are more than needed.
 constexpr double lavish = 1e-4;
 
@@ -112,7 +113,8 @@ Plan Continuation::plan_for(const Scales& size) {
                           .least_degree = least_degree,
                           .highest_degree = highest_degree,
                           .most_elements = most_elements,
-                          .strongest_cut = strongest_cut});
+                          .strongest_cut = strongest_cut,
+                          .strongest_growth = strongest_growth});
 }
 
 /// The path and the tangent on other elements.
