@@ -101,6 +101,8 @@ void NodeSystem::assemble_phases() {
 /// roundoff of its terms is null, and stays so.
 void NodeSystem::scale_border(bool own_row) {
   column_units_.setOnes(border_);
+  row_units_.setOnes(border_);
+  if (border_ == free_) return;
   const double curvature = free_ > 0 ? schur_.topLeftCorner(free_, free_).cwiseAbs().maxCoeff() : 0;
   for (int j = free_; j < border_ && curvature > 0; ++j) {
     const double along = schur_.col(j).head(free_).cwiseAbs().maxCoeff();

@@ -157,6 +157,19 @@ TEST(Families, AxialOrbitsJoinTwoFamilies) {
   }
 }
 
+/// Hénon's family a, whose orbit is next to the libration point.
+TEST(Families, LyapunovOfHillsProblem) {
+  const nlohmann::json orbit = published("other_systems.json", "hill-a-00025");
+  ProblemFamily family = family_scene("hill-lyapunov-family").continuation->family;
+  family.to = -decimal(orbit["refined"]["energy"]) / 2;
+  Continuation branch(family, {.solve = within(1e-11)});
+  const std::vector<BranchPoint> points = follow(branch);
+  ASSERT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  // Beside the point a change of the orbit by 1e-8 changes its energy by 1e-10.
+  EXPECT_LT(distance(orbit, points.back().solution), 1e-8);
+  EXPECT_NEAR(points.back().solution.floquet->multipliers[0].real(), 2013.60193516, 1e-4);
+}
+
 std::vector<double> values(const std::vector<BranchPoint>& points, PointKind kind) {
   std::vector<double> found;
   for (const BranchPoint& point : points)

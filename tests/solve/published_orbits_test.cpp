@@ -57,7 +57,7 @@ TEST(PublishedOrbits, OfSixBodies) {
 TEST(PublishedOrbits, OfOtherSystems) {
   int count = 0;
   for (const nlohmann::json& c : cases_of("other_systems.json")) {
-    // Of families that are followed from elsewhere, or that come back with an error a thousand times larger.
+    // Critical values, and unstable orbits about Hill's libration point, are met along families.
     if (!c["refined"].contains("verified_return_error") || c["family"].get<std::string>().starts_with("a ("))
       continue;
     EXPECT_EQ(wrong(c), "") << c["id"];
