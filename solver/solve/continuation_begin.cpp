@@ -70,8 +70,14 @@ bool Continuation::begin_from_seed() {
       Stand from = here_;
       branch_.respond(here_.tangent, from.tangent);
       from.tangent.scale(side_ / std::sqrt(branch_.dot(from.tangent, from.tangent)));
-      for (double length = first_departure; length > least_departure; length *= 0.4)
-        if (go(from, length)) return true;
+      // What varies changes with the square of the length, perhaps fast: not past the value wanted at once.
+      double past = 0;
+      for (double length = first_departure; length > least_departure; length *= 0.7) {
+        if (!go(from, length)) continue;
+        if ((here_.varied - family_.to) * (from.varied - family_.to) > 0) return true;
+        past = length;
+      }
+      if (past > 0 && go(from, past)) return true;
     }
   }
   return stop(BranchEnd::not_started, "no other branch was found where the equations are singular");

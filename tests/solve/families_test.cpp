@@ -213,6 +213,19 @@ TEST(Families, StraightOrbitsOfHenonAndHeiles) {
   EXPECT_LE(branch.worst_momentum(), 1e-8);
 }
 
+/// Every orbit that begins at one of those points leads on to the energy wanted.
+TEST(Families, OrbitsThatBeginAtStraightOnes) {
+  const Study study = family_scene("henon-heiles-line-family");
+  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 40, .seeds = true});
+  while (diagram.advance()) {
+    const BranchPoint& point = diagram.point();
+    if (point.branch > 0) EXPECT_GT(std::abs(at(point.solution.trajectory, 0.1).q[0]), 1e-4) << point.branch;
+  }
+  ASSERT_GE(diagram.branches().size(), 10u);
+  for (const BranchRecord& record : diagram.branches())
+    EXPECT_EQ(record.end, BranchEnd::target) << record.message;
+}
+
 /// All three families of R. C. Churchill, G. Pecelli and D. L. Rod begin with small circles, ellipses and
 /// lines of the period 2π; members as they were published.
 TEST(Families, BentAndRoundOrbitsOfHenonAndHeiles) {
