@@ -143,6 +143,7 @@ Panel orbit_panel(const std::vector<std::vector<Column>>& solutions, const std::
   Extent x = extent(xs, margin), y = extent(ys, margin);
   const bool places = pairs[0].across != 0;
   if (places && std::max(x.size(), y.size()) <= greatest_elongation * std::min(x.size(), y.size())) {
+    box.width = std::clamp(box.height * x.size() / y.size(), 0.6 * box.height, 1.4 * box.height);
     const double scale = std::max(x.size() / box.width, y.size() / box.height);
     x = {x.centre() - scale * box.width / 2, x.centre() + scale * box.width / 2};
     y = {y.centre() - scale * box.height / 2, y.centre() + scale * box.height / 2};
@@ -196,7 +197,7 @@ Figure layout(const FollowedBranch& branch) {
   const auto add = [&](const std::vector<Pair>& pairs, const std::string& across, const std::string& up) {
     figure.panels.push_back(
         orbit_panel(solutions, pairs, across, up, {figure.width + gap, top, 460, height}));
-    figure.width = figure.panels.back().box.left + 460;
+    figure.width = figure.panels.back().box.left + figure.panels.back().box.width;
   };
   // Paths of bodies in the plane or in space; of other systems the coordinate that moves most against time.
   const std::vector<Family> groups = families(names);
