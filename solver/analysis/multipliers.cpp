@@ -15,8 +15,10 @@ using Eigen::MatrixXd;
 
 /// Relative, over that of coordinates.
 constexpr double momentum_error = 10;
-/// The shift in time has a double multiplier 1, which may be so many times farther off than its accuracy.
+/// A symmetry has a double multiplier 1, which may be so many times farther off than its accuracy.
 constexpr double expected = 1e4;
+/// Of the shift in time after a part of the orbit.
+constexpr double same_shift = 0.1;
 /// Pieces are multiplied until their product is this large.
 constexpr double largest_factor = 100;
 /// Imaginary parts of a double real eigenvalue, relative.
@@ -24,30 +26,77 @@ constexpr double real_within = 1e-12;
 /// Moduli as near as this, relative, are equal in the order of multipliers.
 constexpr double same_modulus = 1e-9;
 
+/// An orthogonal symplectic matrix with v/|v| as its first column, without that and the one beside it.
+MatrixXd across(const Eigen::VectorXd& v) {
+  const auto n = v.size() / 2;
+  const Eigen::MatrixXcd u =
+      Eigen::HouseholderQR<Eigen::MatrixXcd>(v.head(n) + Complex(0, 1) * v.tail(n)).householderQ() *
+      Eigen::MatrixXcd::Identity(n, n);
+  MatrixXd basis(2 * n, 2 * n - 2);
+  basis << u.real().rightCols(n - 1), -u.imag().rightCols(n - 1), u.imag().rightCols(n - 1),
+      u.real().rightCols(n - 1);
+  return basis;
+}
+
+/// The flow over a part of the orbit, from its start to its end, and the shift in time at both.
+struct Factor {
+  MatrixXd flow;
+  Eigen::VectorXd before, after;
+
+  /// The flow of the fields of the energy, but for multiples of the shift: both are known, and with them one
+  /// pair of multipliers 1. Their rows and columns make a Jordan block, which alone costs half of the digits.
+  MatrixXd across_shift() const { return across(after).transpose() * flow * across(before); }
+};
+
 /// Products of some pieces each, then R⁻¹: q ← R⁻¹q, p ← Rᵀp.
-std::vector<MatrixXd> factors(const SecondVariation& variation, const MatrixXd& map) {
+std::vector<Factor> factors(const SecondVariation& variation, const MatrixXd& map) {
   const int n = variation.coordinates();
   const Eigen::VectorXd unit = symplectic_units(variation);
-  std::vector<MatrixXd> result;
+  const auto shift = [&](int k) {
+    Eigen::VectorXd field = variation.shift(k);
+    field.head(n).array() *= unit.array();
+    field.tail(n).array() /= unit.array();
+    return field;
+  };
+  std::vector<Factor> result;
   for (int k = 0; k < variation.count(); ++k) {
     MatrixXd next = transfer(variation.piece(k), unit);
-    if (result.empty() || result.back().norm() > largest_factor)
-      result.push_back(std::move(next));
-    else
-      result.back() = next * result.back();
+    if (result.empty() || result.back().flow.norm() > largest_factor) {
+      const Eigen::VectorXd field = shift(k);
+      if (k > 0) result.back().after = field;
+      result.push_back({std::move(next), field, {}});
+    } else {
+      result.back().flow = next * result.back().flow;
+    }
   }
+  result.back().after = result.front().before;
   if (map.size() > 0) {
     const MatrixXd scaled = unit.asDiagonal() * map * unit.cwiseInverse().asDiagonal();
-    MatrixXd& last = result.back();
+    MatrixXd& last = result.back().flow;
     last.topRows(n) = scaled.partialPivLu().solve(last.topRows(n)).eval();
     last.bottomRows(n) = (scaled.transpose() * last.bottomRows(n)).eval();
   }
   return result;
 }
 
+/// Whether the orbit moves, and its shift in time is what the flow makes of it.
+bool shifts(const std::vector<Factor>& factors) {
+  return std::all_of(factors.begin(), factors.end(), [](const Factor& factor) {
+    const double size = factor.after.norm();
+    return size > 0 && (factor.flow * factor.before - factor.after).norm() <= same_shift * size;
+  });
+}
+
 /// Multipliers as they are found, a pair or four at a time.
 class Collection {
  public:
+  /// The double multiplier 1 of the shift in time.
+  void add_shift() {
+    ++result_.trivial_pairs;
+    add(1, 1, 0);
+    add(1, 1, 0);
+  }
+
   void add_sum(const ReciprocalPair& pair, double accuracy) {
     const Complex half = pair.sum / 2.0;
     if (std::abs(std::abs(half.real()) - 1) <= accuracy / 2 && std::abs(half.imag()) <= accuracy / 2) {
@@ -140,23 +189,31 @@ double doubling_product(const Floquet& floquet) {
 }
 
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {
-  const Dichotomy parts = separate(factors(variation, orbit.map));
+  const std::vector<Factor> flow = factors(variation, orbit.map);
+  const bool shifted = orbit.autonomous && shifts(flow);
+  std::vector<MatrixXd> parts;
+  for (const Factor& factor : flow) parts.push_back(shifted ? factor.across_shift() : factor.flow);
   Collection found;
-  for (const MatrixXd& block : parts.growing) {
+  if (shifted) found.add_shift();
+  if (!parts.front().size()) return found.ordered();
+  const Dichotomy split = separate(parts);
+  for (const MatrixXd& block : split.growing) {
     if (!block.allFinite()) return std::nullopt;
     const auto values = block.rows() == 1 ? Eigen::VectorXcd(block.diagonal().cast<Complex>())
                                           : Eigen::VectorXcd(block.eigenvalues());
     for (const Complex& value : values) found.add_growing(value);
   }
-  if (!parts.centre.allFinite()) return std::nullopt;
-  if (parts.centre.size() > 0) {
-    const ReciprocalPairs centre = reciprocal_pairs(parts.centre);
+  if (!split.centre.allFinite()) return std::nullopt;
+  if (split.centre.size() > 0) {
+    const ReciprocalPairs centre = reciprocal_pairs(split.centre);
     const double accuracy = (sum_accuracy + momentum_error * orbit.relative_error) * centre.scale;
-    const auto shift = std::min_element(
-        centre.pairs.begin(), centre.pairs.end(),
-        [](const auto& a, const auto& b) { return std::abs(a.sum - 2.0) < std::abs(b.sum - 2.0); });
-    for (auto pair = centre.pairs.begin(); pair != centre.pairs.end(); ++pair)
-      found.add_sum(*pair, pair == shift && orbit.autonomous ? expected * accuracy : accuracy);
+    std::vector<ReciprocalPair> pairs = centre.pairs;
+    std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
+      return std::abs(a.sum - 2.0) < std::abs(b.sum - 2.0);
+    });
+    const int trivial = orbit.symmetries + (orbit.autonomous && !shifted);
+    for (int k = 0; k < std::ssize(pairs); ++k)
+      found.add_sum(pairs[k], k < trivial ? expected * accuracy : accuracy);
   }
   return found.ordered();
 }

@@ -76,6 +76,22 @@ Piece SecondVariation::piece(int k) const {
       pieces_[k].start, pieces_[k].length, {forms, n, n}, {forms + n * n, n, n}, {forms + 2 * n * n, n, n}};
 }
 
+/// p' = ∂L/∂q.
+Eigen::VectorXd SecondVariation::shift(int k) const {
+  const int n = coordinates();
+  const double t = k < count() ? pieces_[k].start : trajectory_->duration();
+  std::vector<double> q(n), v(n);
+  trajectory_->at(t, q, v);
+  Scratch memory;
+  const PointValues values = evaluate_at(*lagrangian_, q, v, t, Order::gradient, memory);
+  Eigen::VectorXd field(2 * n);
+  for (int a = 0; a < n; ++a) {
+    field[a] = v[a];
+    field[n + a] = values.dq[a];
+  }
+  return field;
+}
+
 /// Evaluates parts, eight at a time, in the order of time, and halves those that are too long.
 bool SecondVariation::cut() {
   waiting_.clear();  // the next one last

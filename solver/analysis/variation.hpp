@@ -37,6 +37,9 @@ class SecondVariation {
   int count() const { return static_cast<int>(pieces_.size()); }
   Piece piece(int k) const;
   double end(int k) const { return pieces_[k].start + pieces_[k].length; }
+  /// (q', p') at the start of piece k, or, for k = count(), at T: where L does not depend on t, the field of
+  /// the shift in time.
+  Eigen::VectorXd shift(int k) const;
 
   /// The Jacobi fields of piece k at start + tau·length, n × n: those with x_a = I, x_b = 0 and with x_a = 0,
   /// x_b = I.

@@ -113,6 +113,11 @@ std::vector<Column> sampled(const Trajectory& trajectory) {
   return columns;
 }
 
+/// Numbers of two such columns.
+struct Pair {
+  std::size_t across, up;
+};
+
 /// Solutions evenly from the first point to the last.
 std::vector<std::vector<Column>> chosen_solutions(const FollowedBranch& branch) {
   const std::size_t count = branch.points.size(), drawn = std::min(count, most_orbits);
@@ -124,23 +129,60 @@ std::vector<std::vector<Column>> chosen_solutions(const FollowedBranch& branch) 
   return solutions;
 }
 
-/// Two columns of every solution against each other.
-Panel orbit_panel(const std::vector<std::vector<Column>>& solutions, std::size_t across, std::size_t up,
+/// Columns of every solution against others, one pair for each body. Places have equal scales, unless that
+/// would leave a line.
+Panel orbit_panel(const std::vector<std::vector<Column>>& solutions, const std::vector<Pair>& pairs,
                   const std::string& across_label, const std::string& up_label, Box box) {
+  constexpr double greatest_elongation = 12;
   std::vector<const Column*> xs, ys;
-  for (const std::vector<Column>& solution : solutions) {
-    xs.push_back(&solution[across]);
-    ys.push_back(&solution[up]);
+  for (const std::vector<Column>& solution : solutions)
+    for (const Pair& pair : pairs) {
+      xs.push_back(&solution[pair.across]);
+      ys.push_back(&solution[pair.up]);
+    }
+  Extent x = extent(xs, margin), y = extent(ys, margin);
+  const bool places = pairs[0].across != 0;
+  if (places && std::max(x.size(), y.size()) <= greatest_elongation * std::min(x.size(), y.size())) {
+    box.width = std::clamp(box.height * x.size() / y.size(), 0.6 * box.height, 1.4 * box.height);
+    const double scale = std::max(x.size() / box.width, y.size() / box.height);
+    x = {x.centre() - scale * box.width / 2, x.centre() + scale * box.width / 2};
+    y = {y.centre() - scale * box.height / 2, y.centre() + scale * box.height / 2};
   }
   Panel panel;
-  panel.x = axis(across_label, xs, box.width);
-  panel.y = axis(up_label, ys, box.height);
+  panel.x = make_axis(across_label, x.low, x.high, box.width / 75);
+  panel.y = make_axis(up_label, y.low, y.high, box.height / 75);
   const double shift = number_width(panel.y);
-  panel.box = {box.left + shift, box.top, box.width - shift, box.height};
+  panel.box = {box.left + shift, box.top, box.width, box.height};
   const std::vector<Colour> colours = distinct_colours(std::max<std::size_t>(solutions.size(), 7));
   for (std::size_t k = 0; k < solutions.size(); ++k)
-    panel.curves.push_back({solutions[k][across], solutions[k][up], colours[k], 1.3});
+    for (const Pair& pair : pairs)
+      panel.curves.push_back({solutions[k][pair.across], solutions[k][pair.up], colours[k], 1.3});
   return panel;
+}
+
+/// Whether a second column does, in any solution.
+bool moves(const std::vector<std::vector<Column>>& solutions, const std::vector<Pair>& pairs) {
+  std::vector<const Column*> across, up;
+  for (const std::vector<Column>& solution : solutions)
+    for (const Pair& pair : pairs) {
+      across.push_back(&solution[pair.across]);
+      up.push_back(&solution[pair.up]);
+    }
+  const Extent range = extent(up, 0);
+  return !range.constant && range.size() > 1e-9 * extent(across, 0).size();
+}
+
+/// The column that moves most in any solution.
+std::size_t widest(const std::vector<std::vector<Column>>& solutions) {
+  std::size_t best = 1;
+  double most = -1;
+  for (const std::vector<Column>& solution : solutions)
+    for (std::size_t a = 1; a < solution.size(); ++a)
+      if (const double size = extent({&solution[a]}, 0).size(); size > most) {
+        most = size;
+        best = a;
+      }
+  return best;
 }
 
 }  // namespace
@@ -152,18 +194,26 @@ Figure layout(const FollowedBranch& branch) {
   figure.panels.push_back(branch_panel(branch, {gap, top, wide, height}));
   const std::vector<std::vector<Column>> solutions = chosen_solutions(branch);
   const std::vector<std::string>& names = branch.names;
-  const auto add = [&](std::size_t across, std::size_t up, double width) {
-    const std::string label = across == 0 ? "t/T" : names[across - 1];
+  const auto add = [&](const std::vector<Pair>& pairs, const std::string& across, const std::string& up) {
     figure.panels.push_back(
-        orbit_panel(solutions, across, up, label, names[up - 1], {figure.width + gap, top, width, height}));
-    figure.width += gap + width;
+        orbit_panel(solutions, pairs, across, up, {figure.width + gap, top, 460, height}));
+    figure.width = figure.panels.back().box.left + figure.panels.back().box.width;
   };
-  // Paths in the plane and in space; of other systems the first coordinate against time.
-  if (names.size() == 2 || names.size() == 3) {
-    add(1, 2, 460);
-    if (names.size() == 3) add(1, 3, 460);
-  } else {
-    add(0, 1, 460);
+  // Paths of bodies in the plane or in space; of other systems the coordinate that moves most against time.
+  const std::vector<Family> groups = families(names);
+  const std::size_t bodies = groups[0].members.size();
+  const bool of_bodies =
+      (groups.size() == 2 || groups.size() == 3) &&
+      std::all_of(groups.begin(), groups.end(), [&](const Family& f) { return f.members.size() == bodies; });
+  for (std::size_t up = 1; of_bodies && up < groups.size(); ++up) {
+    std::vector<Pair> pairs;
+    for (std::size_t i = 0; i < bodies; ++i)
+      pairs.push_back({groups[0].members[i] + 1, groups[up].members[i] + 1});
+    if (up == 1 || moves(solutions, pairs)) add(pairs, groups[0].name, groups[up].name);
+  }
+  if (!of_bodies) {
+    const std::size_t shown = widest(solutions);
+    add({{0, shown}}, "t/T", names[shown - 1]);
   }
   figure.width += 28;
   return figure;

@@ -65,10 +65,12 @@ bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, do
 /// Newton from the last velocity: one step where L is quadratic in q'.
 bool Flow::solve_newton(std::span<const double> q, std::span<const double> p, double t) {
   double before = std::numeric_limits<double>::infinity();
+  double scale = 0;  // of all terms so far: at rest they vanish
   for (int i = 0; i < most_iterations; ++i) {
     if (!point_.evaluate(q, v_, t, Order::gradient)) return false;
     for (int a = 0; a < n_; ++a) residual_[a] = p[a] - point_.dv()[a];
-    const double error = largest(residual_), scale = largest(p) + mass_.largest() * largest(v_);
+    const double error = largest(residual_);
+    scale = std::max(scale, largest(p) + mass_.largest() * largest(v_));
     if (error <= roundoff * scale || (before <= near * scale && error <= acceptable * scale)) return true;
     if (!point_.evaluate(q, v_, t, Order::hessian) || !mass_.factor(point_.vv())) return false;
     before = error;

@@ -14,7 +14,7 @@ namespace extremal {
 /// Every continuous symmetry, as the shift in time, makes λ = 1 (or −1, where R reverses it) a double
 /// eigenvalue with one eigenvector. An error δ of the matrix moves such an eigenvalue by √δ, but μ = λ + 1/λ
 /// by δ only. Where μ cannot be told from ±2 the pair is given as exactly ±1, and counts as trivial: pairs
-/// nearer to ±1 than √δ are not resolved.
+/// nearer to ±1 than √δ are not resolved. The pair of the shift in time is known, and given as 1.
 struct Floquet {
   std::vector<std::complex<double>> multipliers;  ///< 2n, largest modulus first, then by |argument|, + first
   /// Beside them: sign of i vᴴJv of the eigenvector v = (q, p), J = (0 I; −I 0), for multipliers on the unit

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "machine/simd.hpp"
-#include "solve/doubled.hpp"
 #include "solve/start.hpp"
 
 namespace extremal {
@@ -26,9 +25,6 @@ void add_scaled(std::vector<double>& to, double factor, std::span<const double> 
 Branch::Branch(const ProblemFamily& family, Workspace& workspace)
     : family_(family), w_(workspace), problem_(family.problem), unit_(std::abs(family.to - family.from)) {
   if (by_duration()) problem_.duration = {.value = 0, .free = true, .energy = 0, .where = {}};
-  if (!problem_.periodic) return;
-  const ClosingMap map = closing_map(problem_);
-  if (!map.r.isIdentity(0)) map_ = map.r;
 }
 
 bool Branch::place(double coordinate) {
@@ -94,12 +90,9 @@ double Branch::drift(const Move& tangent) const {
 
 bool Branch::linearise() {
   inertia_.reset();
+  measure_phases(problem_, w_.path, tables_->scheme(), true, phases_);
+  w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   const bool solved = by_duration() ? linearise_duration() : linearise_parameter();
-  if (solved && shifts()) {
-    find_shift();
-    leave_shift_out(correction);
-    leave_shift_out(direction);
-  }
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
 }
@@ -148,20 +141,12 @@ double Branch::energy_change(const Move& move) const {
 }
 
 /// Where the energy has an extremum along the branch, the equations that it closes are singular. So are those
-/// that a displacement of the ends closes, where they do not move; and a displacement along the shift in time
-/// would be the shift.
+/// that a displacement of the ends closes, where they do not move.
 std::vector<double> Branch::closing_row(const Move& onward) const {
   if (!by_duration() || tables_->unknowns() > most_dense_unknowns) return {};
   const std::size_t n = w_.path.coordinates(), last = onward.step.nodes.size() - n;
   std::vector<double> row(onward.step.nodes.begin(), onward.step.nodes.begin() + n);
   row.insert(row.end(), onward.step.nodes.begin() + last, onward.step.nodes.end());
-  if (shifts()) {
-    std::vector<double> shift(shift_.step.nodes.begin(), shift_.step.nodes.begin() + n);
-    shift.insert(shift.end(), shift_.step.nodes.begin() + last, shift_.step.nodes.end());
-    const double square = std::inner_product(shift.begin(), shift.end(), shift.begin(), 0.0);
-    const double product = std::inner_product(shift.begin(), shift.end(), row.begin(), 0.0);
-    for (std::size_t e = 0; e < row.size() && square > 0; ++e) row[e] -= product / square * shift[e];
-  }
   const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
   if (!(length > std::abs(energy_change(onward)) / energy_unit_ * units_.extent)) return {};
   for (double& x : row) x /= length;
@@ -230,34 +215,8 @@ double Branch::change(bool along) const {
 }
 
 const Inertia& Branch::inertia() const {
-  if (!inertia_)
-    inertia_ = w_.iteration.model().inertia_beside(
-        threshold_, shifts() ? std::span<const double>(shift_.step.nodes) : std::span<const double>());
+  if (!inertia_) inertia_ = w_.iteration.model().inertia(threshold_);
   return *inertia_;
-}
-
-/// The velocity, which is a path as well. Extremals that differ by the shift are the same orbit, and the
-/// second variation is null along it but for the error of the elements.
-void Branch::find_shift() {
-  const int n = w_.path.coordinates();
-  const Basis& nodes = lobatto_nodal_basis(w_.path.degree());
-  std::vector<double> slopes(nodes.points.size() * n);
-  rates_.reset(*tables_, w_.path.mesh(), 1);
-  for (int k = 0; k < w_.path.elements(); ++k) {
-    w_.path.element_slopes(k, nodes.derivative, slopes.data());
-    rates_.set_element(k, slopes.data());
-  }
-  Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(rates_.node(0), n);
-  if (map_) end = (*map_ * end).eval();
-  for (int a = 0; a < n; ++a) rates_.set_node(rates_.elements(), a, end[a]);
-  rates_.load_ends();
-  shift_.step.nodes.assign(rates_.nodes().begin(), rates_.nodes().end());
-  shift_.step.inner.assign(rates_.x(0), rates_.x(0) + rates_.batches() * tables_->unknowns() * lanes);
-}
-
-void Branch::leave_shift_out(Move& move) const {
-  const double square = dot(shift_, shift_);
-  if (square > 0) move.add(shift_, -dot(shift_, move) / square);
 }
 
 void Branch::respond(const Move& onward, Move& response) {
@@ -268,21 +227,10 @@ void Branch::respond(const Move& onward, Move& response) {
       const double tau = w_.path.mesh()[k], weight = w_.path.mesh()[k + 1] - w_.path.mesh()[k - 1];
       load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
     }
-  if (shifts()) {
-    // The response to a load along the shift would be large.
-    const std::vector<double>& along = shift_.step.nodes;
-    double product = 0, square = 0;
-    for (std::size_t k = n; k < load.size() - n; ++k) {
-      product += load[k] * along[k];
-      square += along[k] * along[k];
-    }
-    for (std::size_t k = n; k < load.size() - n; ++k) load[k] -= product / square * along[k];
-  }
   ClosingEquation equation;
   const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, w_.path, equation);
   w_.iteration.model().respond(w_.iteration.action(), closing, load, response.step);
   response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
-  if (shifts()) leave_shift_out(response);
   response.add(direction, -dot(onward, response) / dot(onward, direction));
 }
 

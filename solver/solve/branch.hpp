@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <functional>
 #include <optional>
 
@@ -58,6 +57,7 @@ class Branch {
 
   /// Of the path that was linearised.
   double action() const { return action_; }
+  double energy() const { return energy_; }
   /// −∂S/∂q(0), then ∂S/∂q(T).
   std::span<const double> momenta() const { return momenta_; }
   /// The number that varies.
@@ -93,9 +93,6 @@ class Branch {
   void fit_path(const Problem& problem);
   void note_action();
   std::vector<double> ends() const;
-  bool shifts() const { return problem_.periodic && problem_.lagrangian->structure().autonomous; }
-  void find_shift();
-  void leave_shift_out(Move& move) const;
   double weight(int k) const;
 
   const ProblemFamily& family_;
@@ -111,9 +108,8 @@ class Branch {
   double action_ = 0, energy_ = 0, energy_unit_ = 1, action_slope_ = 0;
   int closing_sign_ = 1;
   mutable std::optional<Inertia> inertia_;  ///< of the last linearisation, once asked for
-  Path at_, rates_;
-  Move shift_;  ///< where shifts(): what a path that begins later differs by, per time
-  std::optional<Eigen::MatrixXd> map_;  ///< R of q(T) = R q(0) + c, where it is not the identity
+  Path at_;
+  PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
   std::vector<double> momenta_;
   std::vector<double> ends_;  ///< what the last apply() moved them by besides, 2n
   double stretch_ = 0;        ///< and the duration

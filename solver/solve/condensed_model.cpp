@@ -43,8 +43,8 @@ class CondensedModel final : public QuadraticModel {
     for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] -= left_out_[k];
   }
 
-  Inertia inertia_beside(double threshold, std::span<const double> null) override {
-    Inertia result = system_.inertia(threshold, null);
+  Inertia inertia(double threshold) override {
+    Inertia result = system_.inertia(threshold);
     result.negative += negative_;
     return result;
   }

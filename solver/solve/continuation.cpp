@@ -19,6 +19,9 @@ constexpr double least_length = 1e-7;
 /// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
 /// branch turns by more than the angle with this cosine.
 constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
+/// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
+/// singularity: they may grow so much before they shrink.
+constexpr double small_correction = 0.05, slowest = 4;
 constexpr int most_corrections = 8, most_resolutions = 4;
 /// Corrections below this (relative) that shrink no more are roundoff.
 constexpr double roundoff = 1e-9, least_goal = 1e-14;
@@ -108,7 +111,8 @@ bool Continuation::correct(double length, const double* landing) {
     const double size = std::sqrt(branch_.dot(move, move));
     const double rate = before < INFINITY ? size / before : 1;
     const bool noise = size < roundoff && rate > 0.3;
-    if (!noise && (!(size <= longest_correction * length) || rate > (before < INFINITY ? contraction : 1)))
+    const double fastest = size > small_correction * length ? contraction : slowest;
+    if (!noise && (!(size <= longest_correction * length) || (before < INFINITY && rate > fastest)))
       return false;
     if (!branch_.apply(move, 1)) {
       refusal_ = Refusal::no_problem;
@@ -150,6 +154,7 @@ bool Continuation::turn(bool first) {
   here_.row = branch_.closing_row(here_.tangent);
   here_.rate = onward * branch_.change(true);
   here_.action_rate = onward * branch_.action_slope();
+  here_.energy_time = std::abs(branch_.energy() * w_.path.duration());
   here_.orientation = branch_.orientation(onward);
   here_.index = branch_.inertia().negative;
   return true;
@@ -190,6 +195,11 @@ bool Continuation::go(const Stand& from, double length, bool same_elements) {
   return turn();
 }
 
+/// The same, and onto no other branch that is near.
+bool Continuation::stays(const Stand& from, double length, bool same_elements) {
+  return go(from, length, same_elements) && cosine_ > sharpest_turn;
+}
+
 bool Continuation::give_up(const Stand& from) {
   const double varied = from.varied, graded = grading(from.path);
   if (refusal_ == Refusal::rough && graded > singular_grading) refusal_ = Refusal::crowded;
@@ -217,7 +227,7 @@ bool Continuation::step() {
   const Stand from = here_;
   for (;; length_ *= 0.4) {
     if (length_ < least_length) return give_up(from);
-    if (go(from, length_) && cosine_ > sharpest_turn) break;
+    if (stays(from, length_)) break;
   }
   const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
   const double passed = std::exchange(
@@ -263,7 +273,10 @@ void Continuation::read_momenta(Solution& solution) {
   solution.momentum_start.assign(momenta.begin(), momenta.begin() + n);
   solution.momentum_end.assign(momenta.begin() + n, momenta.end());
   const Trajectory& trajectory = solution.trajectory;
-  double worst = 0, largest = 0;
+  // ∫p·q' dt by the range of q: momenta are small at both ends of a swing between points of rest.
+  const double swept = std::abs(solution.action + solution.energy.value_or(0) * solution.duration());
+  const double range = sizes().range;
+  double worst = 0, largest = range > 0 ? swept / range : 0;
   for (const bool end : {false, true}) {
     const double t = end ? solution.duration() : 0;
     const std::size_t first = end ? trajectory.nodes.size() - n : 0;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <deque>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -79,11 +78,12 @@ class Continuation {
   BranchEnd end() const { return end_; }
   /// Why it ended, with numbers.
   const std::string& message() const { return message_; }
-  /// Largest |∂S/∂s − (−E ∂T/∂s + ∂S/∂p ∂p/∂s)| so far, relative to |S| by the length of the path: at every
-  /// few points differences of the action, that of Newton's method, are held against its derivatives.
+  /// Largest |∂S/∂s − (−E ∂T/∂s + ∂S/∂p ∂p/∂s)| so far, relative to |S| or |E T| by the length of the path:
+  /// at every few points differences of the action, that of Newton's method, are held against its
+  /// derivatives.
   double worst_action_slope() const { return worst_action_slope_; }
-  /// Largest |∂S/∂q(T) − p(T)|, |∂S/∂q(0) + p(0)| so far, relative to the largest of them: derivatives of the
-  /// action against the momenta of the trajectory.
+  /// Largest |∂S/∂q(T) − p(T)|, |∂S/∂q(0) + p(0)| so far, relative to the largest momentum there or the mean
+  /// along the path: derivatives of the action against the momenta of the trajectory.
   double worst_momentum() const { return worst_momentum_; }
 
  private:
@@ -96,6 +96,7 @@ class Continuation {
     std::vector<double> row;  ///< see Branch::closing_row
     double rate = 0;          ///< ∂varied/∂s along the tangent
     double action_rate = 0;   ///< ∂S/∂s as its derivatives tell it
+    double energy_time = 0;   ///< |E T|
     int orientation = 1, index = 0;
     double doubling = 1;  ///< of the sign of ∏ (1 + λ) over all multipliers λ
     void scale(double factor);
@@ -118,6 +119,7 @@ class Continuation {
   bool begin_from_seed();
   bool step();
   bool go(const Stand& from, double length, bool same_elements = false);
+  bool stays(const Stand& from, double length, bool same_elements = false);
   bool correct(double length, const double* landing);
   Elements resolve();
   Plan plan_for(const Scales& size);

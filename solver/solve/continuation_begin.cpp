@@ -11,7 +11,7 @@ namespace extremal {
 
 namespace {
 
-constexpr double first_length = 0.02, least_longest = 0.02, most_longest = 0.4;
+constexpr double first_length = 0.02, least_longest = 0.1, most_longest = 0.4;
 /// The longest step, so that so many make up the distance wanted where as many points are allowed.
 constexpr double coverage = 4;
 /// Of the size of the guess: a path smaller than this is at rest.
@@ -21,7 +21,8 @@ constexpr double first_departure = 0.05, least_departure = 1e-4;
 /// Elements are planned for this share of the tolerance.
 constexpr double spare = 0.1;
 constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
-constexpr double strongest_cut = 16;
+/// Elements follow the path from point to point: where it becomes smooth they become longer again.
+constexpr double strongest_cut = 16, strongest_growth = 2;
 /// Elements whose error is below this share of the tolerance are more than needed.
 constexpr double lavish = 1e-4;
 
@@ -69,8 +70,14 @@ bool Continuation::begin_from_seed() {
       Stand from = here_;
       branch_.respond(here_.tangent, from.tangent);
       from.tangent.scale(side_ / std::sqrt(branch_.dot(from.tangent, from.tangent)));
-      for (double length = first_departure; length > least_departure; length *= 0.4)
-        if (go(from, length)) return true;
+      // What varies changes with the square of the length, perhaps fast: not past the value wanted at once.
+      double past = 0;
+      for (double length = first_departure; length > least_departure; length *= 0.7) {
+        if (!go(from, length)) continue;
+        if ((here_.varied - family_.to) * (from.varied - family_.to) > 0) return true;
+        past = length;
+      }
+      if (past > 0 && go(from, past)) return true;
     }
   }
   return stop(BranchEnd::not_started, "no other branch was found where the equations are singular");
@@ -112,7 +119,8 @@ Plan Continuation::plan_for(const Scales& size) {
                           .least_degree = least_degree,
                           .highest_degree = highest_degree,
                           .most_elements = most_elements,
-                          .strongest_cut = strongest_cut});
+                          .strongest_cut = strongest_cut,
+                          .strongest_growth = strongest_growth});
 }
 
 /// The path and the tangent on other elements.

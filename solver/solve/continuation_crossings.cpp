@@ -34,14 +34,14 @@ struct Continuation::Side {
 /// A crossing, or, where the equations are too singular there, a point next to it: what varies is then
 /// interpolated by the cubic through points on either side.
 std::optional<BranchPoint> Continuation::crossing_at(const Stand& from, double at, double length) {
-  if (go(from, at)) return read(PointKind::branch);
-  for (const double share : {1e-7, 1e-5, 1e-3, 1e-2}) {
+  if (stays(from, at)) return read(PointKind::branch);
+  for (const double share : {1e-7, 1e-5, 1e-3, 1e-2, 3e-2, 0.1}) {
     const double off = share * length;
-    if (!go(from, at + off)) continue;
-    const double after = here_.varied, rate_after = here_.rate;
-    if (!go(from, at - off)) continue;
+    if (!stays(from, at + off)) continue;
+    const Stand after = here_;
+    if (!stays(from, at - off) || !differs(here_, after)) continue;
     BranchPoint point = read(PointKind::branch);
-    point.parameter = 0.5 * (here_.varied + after) - 0.25 * off * (rate_after - here_.rate);
+    point.parameter = 0.5 * (here_.varied + after.varied) - 0.25 * off * (after.rate - here_.rate);
     return point;
   }
   return std::nullopt;
@@ -61,33 +61,43 @@ double Continuation::find_crossing(const Stand& from, const Stand& before, doubl
 double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides)[2]) {
   Move response;
   double last = sides[0].at;
-  bool lower_before = false;
+  bool lower_before = false, balanced = false;
+  std::optional<double> aside_of;
   for (int k = 0; k < most_trials; ++k) {
     const bool known = sides[0].size > 0 && sides[1].size > 0;
     const bool near =
         known && branch_.dot(sides[0].response, sides[1].response) < opposite * sides[0].size * sides[1].size;
     const double a = near ? sides[0].weight / sides[0].size : 1,
                  b = near ? sides[1].weight / sides[1].size : 1;
-    const double guess = (sides[0].at * b + sides[1].at * a) / (a + b);
+    const double secant = (sides[0].at * b + sides[1].at * a) / (a + b);
+    const double guess = aside_of ? *std::exchange(aside_of, std::nullopt) : secant;
     // Where the crossing lies just there, nothing can be solved.
     const double aside = near ? 0.03 : 0.3;
     double at = guess;
-    if (!go(from, at, true) && !go(from, at = guess + aside * (sides[1].at - guess), true) &&
-        !go(from, at = guess - aside * (guess - sides[0].at), true))
+    if (!stays(from, at, true) && !stays(from, at = guess + aside * (sides[1].at - guess), true) &&
+        !stays(from, at = guess - aside * (guess - sides[0].at), true))
       return near ? guess : NAN;
     branch_.respond(here_.tangent, response);
     const double size = std::sqrt(branch_.dot(response, response));
     const bool lower = near ? branch_.dot(response, sides[0].response) > 0 : !differs(here_, before);
-    // At the crossing itself the way along the other branch counts as null and is left out.
+    // At the crossing itself the way along the other branch counts as null and is left out. The secant
+    // between points as far on either side tells where that is.
     const bool gone = near && size < std::min(sides[0].size, sides[1].size);
-    if (!std::isfinite(size) || size == 0 || gone || settled(at - last) || at == last) return at;
+    if (gone && !balanced) {
+      balanced = true;
+      const Side& nearer = at - sides[0].at < sides[1].at - at ? sides[0] : sides[1];
+      aside_of = 2 * at - nearer.at;
+      continue;
+    }
+    // Without a response that grows the index was miscounted, as it may be where elements are very unequal.
+    if (!std::isfinite(size) || size == 0 || gone || settled(at - last) || at == last) return near ? at : NAN;
     last = at;
     // The same side again: the other one counts less (Illinois).
     if (near && lower == lower_before) sides[lower ? 1 : 0].weight *= 0.5;
     sides[lower ? 0 : 1] = {at, 1, response, size};
     lower_before = lower;
   }
-  return last;
+  return NAN;
 }
 
 /// A change of the index alone is a fold of the duration, or of what varies.
@@ -101,18 +111,22 @@ void Continuation::find_crossings(const Stand& from, const Stand& to, double len
   double low = 0;
   for (int k = 0; k < most_crossings && differs(before, to); ++k) {
     Move response;
-    double at = find_crossing(from, before, low, length, response);
+    const double at = find_crossing(from, before, low, length, response);
     if (!std::isfinite(at)) return;
     Stand base = from;
+    double there = at;
     if (auto finer = resolved_for(from, response)) {
-      base = *std::move(finer);
-      if (!go(base, low, true)) return;
-      at = find_crossing(base, Stand(here_), low, length, response);
-      if (!std::isfinite(at)) return;
+      const bool begins = go(*finer, low, true) && !differs(here_, before);
+      const double again = begins ? find_crossing(*finer, Stand(here_), low, length, response) : NAN;
+      if (begins && !std::isfinite(again)) return;  // on those elements alone
+      if (begins) {
+        base = *std::move(finer);
+        there = again;
+      }
     }
-    std::optional<BranchPoint> point = crossing_at(base, at, length);
+    std::optional<BranchPoint> point = crossing_at(base, there, length);
     if (!point) return;
-    met.push_back({at, {*std::move(point), seed_at(PointKind::branch, base, at)}});
+    met.push_back({at, {*std::move(point), seed_at(PointKind::branch, base, there)}});
     low = at + beyond_it * length;
     if (!(low < length) || !go(from, low, true)) return;
     before = here_;

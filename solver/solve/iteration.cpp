@@ -160,6 +160,7 @@ bool NewtonIteration::factor(const Path& path) {
   if (!action_.finite() || !(condensed || approximate())) return false;
   if (condensed && path.elements() * std::pow(tables_->unknowns(), 3) > most_pivoted_work) return false;
   use_sparse(path.elements());
+  model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
   return model_->evaluate(action_, path, closing(path));
 }
 

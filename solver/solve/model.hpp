@@ -49,11 +49,9 @@ class QuadraticModel {
   void set_phases(const PhaseConditions* phases) { phases_ = phases; }
   /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
   void set_refining(bool on) { refining_ = on; }
-  /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null.
-  Inertia inertia(double threshold) { return inertia_beside(threshold, {}); }
-  /// The same where a vector over the nodes, (N + 1) × n, is known to be null but for the error of the
-  /// elements: it counts as null, and the form is taken across it.
-  virtual Inertia inertia_beside(double threshold, std::span<const double> null) = 0;
+  /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null, and so
+  /// do the directions that are held: the form is taken across them.
+  virtual Inertia inertia(double threshold) = 0;
 
  protected:
   bool refining_ = true;

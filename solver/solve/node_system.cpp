@@ -11,6 +11,8 @@ namespace {
 /// What of the border is this small, relative, are null directions: families of extremals, whose
 /// eigenvalue is zero but for the error of the elements.
 constexpr double singular_border = 1e-8;
+/// Of the size of the terms that a row of the border is the difference of.
+constexpr double negligible = 1e-10;
 /// Null directions of the chain, by coordinates, that are believed.
 constexpr std::size_t most_deflated = 4;
 
@@ -95,18 +97,27 @@ void NodeSystem::assemble_phases() {
   }
 }
 
-/// Directions have units of their own; pivots are compared.
-void NodeSystem::scale_phases() {
-  phase_units_.resize(held_);
-  const int others = border_ - held_;
-  const double curvature = others > 0 ? schur_.topLeftCorner(others, others).cwiseAbs().maxCoeff() : 1;
-  for (int j = 0, row = others; j < held_; ++j, ++row) {
-    const double along = others > 0 ? schur_.row(row).head(others).cwiseAbs().maxCoeff() : 0;
-    const double size = std::max(along, std::sqrt(curvature * std::abs(schur_(row, row))));
-    phase_units_[j] = size > 0 ? curvature / size : 1;
+/// The duration and directions that are held have units of their own; pivots are compared. A row that is the
+/// roundoff of its terms is null, and stays so.
+void NodeSystem::scale_border(bool own_row) {
+  column_units_.setOnes(border_);
+  row_units_.setOnes(border_);
+  if (border_ == free_) return;
+  const double curvature = free_ > 0 ? schur_.topLeftCorner(free_, free_).cwiseAbs().maxCoeff() : 0;
+  for (int j = free_; j < border_ && curvature > 0; ++j) {
+    const double along = schur_.col(j).head(free_).cwiseAbs().maxCoeff();
+    const double size = std::max(along, std::sqrt(curvature * std::abs(schur_(j, j))));
+    double terms = std::abs(corner_(j, j));
+    for (std::size_t k = j; k < columns_.size(); k += border_) terms += std::abs(columns_[k] * solved_[k]);
+    if (size > negligible * std::sqrt(curvature * terms)) column_units_[j] = curvature / size;
   }
-  schur_.rightCols(held_).array().rowwise() *= phase_units_.transpose().array();
-  schur_.bottomRows(held_).array().colwise() *= phase_units_.array();
+  schur_.array().rowwise() *= column_units_.transpose().array();
+  row_units_ = column_units_;
+  if (own_row) {
+    const double size = schur_.row(free_).cwiseAbs().maxCoeff();
+    row_units_[free_] = size > 0 && curvature > 0 ? curvature / size : 1;
+  }
+  schur_.array().colwise() *= row_units_.array();
 }
 
 bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases) {
@@ -140,7 +151,7 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
     schur_.row(free_).setZero();
     for (const Triplet& z : ends_->z) schur_(free_, z.column) += closing->row[z.row] * z.value;
   }
-  if (held_ > 0) scale_phases();
+  scale_border(has_own_row(closing));
   if (!schur_.allFinite()) return false;
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
@@ -214,12 +225,12 @@ void NodeSystem::solve_schur(bool own_row, bool refine) {
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)
       if (!(own_row && c == free_)) small_[c] -= columns_[k * border_ + c] * right_[k];
-  if (held_ > 0) small_.tail(held_).array() *= phase_units_.array();
+  small_.array() *= row_units_.array();
   if (least_norm_)
     small_ = least_norm_->solve(small_).eval();
   else
     solve_in_place(lu_, small_, permuted_);
-  if (held_ > 0) small_.tail(held_).array() *= phase_units_.array();
+  small_.array() *= column_units_.array();
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c) right_[k] -= solved_[k * border_ + c] * small_[c];
 }
@@ -235,14 +246,12 @@ void NodeSystem::solve_exactly() {
   small_ = all.tail(border_);
 }
 
-Inertia NodeSystem::inertia(double threshold, std::span<const double> null) const {
+Inertia NodeSystem::inertia(double threshold) const {
   if (elements_ < 2 && free_ == 0) return {};
   if (free_ == 0) return chain_->inertia();
   // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
   // those of the directions across, and as many positive ones.
-  PhaseConditions held = phases_ ? *phases_ : PhaseConditions{};
-  if (!null.empty()) held.add(null);
-  held = independent(held);
+  const PhaseConditions held = phases_ ? independent(*phases_) : PhaseConditions{};
   const int columns = free_ + held.count;
   Chain chain = *chain_;
   Border ends;

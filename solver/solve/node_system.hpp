@@ -30,9 +30,9 @@ class NodeSystem {
 
   /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
   /// are counted by NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
-  /// Schur complement that remains, are null. So is `null`, (N + 1) × n, unless it is empty: what is counted
-  /// is the form across it.
-  Inertia inertia(double threshold, std::span<const double> null = {}) const;
+  /// Schur complement that remains, are null. So are the directions that are held: what is counted is the
+  /// form across them.
+  Inertia inertia(double threshold) const;
 
  private:
   /// Of end coordinate e among the nodes.
@@ -44,7 +44,7 @@ class NodeSystem {
   void solve_exactly();
   void assemble_border(const NodeEquations& nodes);
   void assemble_phases();
-  void scale_phases();
+  void scale_border(bool own_row);
   void add_end(double* column, int stride, int e, double factor, const NodeEquations& nodes) const;
 
   const EndMap* ends_ = nullptr;
@@ -59,7 +59,7 @@ class NodeSystem {
   std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>>
       least_norm_;  ///< where LU is singular
   Eigen::VectorXd small_, permuted_;
-  Eigen::VectorXd phase_units_;  ///< of the phases' rows and columns in schur_
+  Eigen::VectorXd row_units_, column_units_;  ///< that schur_ was multiplied by
 
   bool exact_ = false, regular_ = false;  ///< the chain is singular, and what system_ is for; system_ is not
   Border system_;

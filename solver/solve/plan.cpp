@@ -51,10 +51,11 @@ void Planner::locate(const Resolution& resolution) {
 }
 
 /// h' with size·f'^(s+1) <= limits.aim.q, and its derivative at the end of the element, (s+1)(s+2)/h' times
-/// that, within limits.aim.v. It has no fewer nodes an interval of time than there are: those resolve the
-/// variations of the path too, whatever the path itself may need.
+/// that, within limits.aim.v. Unless the limits allow it there are no fewer nodes an interval of time than
+/// now: those resolve the variations of the path too, whatever the path itself may need.
 double Planner::length(const Place& place, int degree, const PlanLimits& limits) const {
-  const double longest = place.h * degree / degree_, shortest = place.h / limits.strongest_cut;
+  const double longest = limits.strongest_growth * place.h * degree / degree_,
+               shortest = place.h / limits.strongest_cut;
   if (std::isinf(place.log_size)) return longest;
   const double slope = limits.aim.v * place.h / ((degree + 1) * (degree + 2));
   const double log_fall = (std::log(std::min(limits.aim.q, slope)) - place.log_size) / (degree + 1);

@@ -24,7 +24,8 @@ struct PlanLimits {
   int raised_degree;  ///< at least, on the mesh there is
   int least_degree, highest_degree;  ///< on another mesh; the highest on any
   int most_elements;
-  double strongest_cut;  ///< an element becomes at most so many
+  double strongest_cut;         ///< an element becomes at most so many
+  double strongest_growth = 1;  ///< and nodes lie at most so many times farther apart than they do
 };
 
 /// The cheapest elements whose expected error is aimed at. On an element of length h the coefficients fall by

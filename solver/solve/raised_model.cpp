@@ -57,6 +57,7 @@ void RaisedModel::reset(const Problem& problem, const ElementTables& tables, int
 }
 
 bool RaisedModel::evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) {
+  low_.set_phases(phases_);
   low_path_.interpolate_from(path, low_tables_, down_);
   const bool factored = low_.evaluate(low_action_, low_path_, closing);
   evaluate_gradient(action, path);
@@ -112,8 +113,8 @@ void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
   }
 }
 
-Inertia RaisedModel::inertia_beside(double threshold, std::span<const double> null) {
-  Inertia result = low_.inertia_beside(threshold, null);
+Inertia RaisedModel::inertia(double threshold) {
+  Inertia result = low_.inertia(threshold);
   const int per_sign = elements_ * (inner_ - low_inner_);
   for (double m : mass_) (m > 0 ? result.positive : result.negative) += per_sign;
   return result;

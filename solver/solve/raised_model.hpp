@@ -29,7 +29,7 @@ class RaisedModel final : public QuadraticModel {
   void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                Step& step) override;
   /// Of the model; the second variation itself may differ.
-  Inertia inertia_beside(double threshold, std::span<const double> null) override;
+  Inertia inertia(double threshold) override;
 
  private:
   void restrict_batch(const Path& path, int batch, const double* gradient);

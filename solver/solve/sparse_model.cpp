@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "machine/simd.hpp"
 
@@ -27,7 +26,8 @@ void SparseModel::reset(const Problem& problem, const ElementTables& tables, int
   for (const Triplet& z : ends_->z) end_shares_[next[z.row]++] = {nodes + z.column, z.value};
   build_pattern();
   gradient_.resize(unknowns_);
-  border_.resize(free_duration_ ? unknowns_ : 0);
+  by_duration_.resize(free_duration_ ? unknowns_ : 0);
+  phases_ = nullptr;
 }
 
 std::span<const SparseModel::Share> SparseModel::shares(int element, int local) const {
@@ -56,6 +56,11 @@ void SparseModel::build_pattern() {
         }
     source_start_.push_back(static_cast<int>(sources_.size()));
   }
+  // For the unit vectors of the border.
+  for (int u = 0; u < (elements_ - 1) * n_ + ends_->free; ++u) {
+    rows.push_back(u);
+    columns.push_back(u);
+  }
   matrix_.pattern(unknowns_, rows, columns);
 }
 
@@ -76,7 +81,7 @@ void SparseModel::add_gradient(int batch, const double* gradient) {
 void SparseModel::gather(DiscreteAction& action, const Path& path, bool hessian) {
   clear_gradient();
   if (hessian) {
-    std::fill(border_.begin(), border_.end(), 0.0);
+    std::fill(by_duration_.begin(), by_duration_.end(), 0.0);
     corner_ = 0;
   }
   action.visit(path, hessian, [&](int batch, const BatchValues& values) {
@@ -87,19 +92,36 @@ void SparseModel::gather(DiscreteAction& action, const Path& path, bool hessian)
       for (int s = source_start_[k]; s < source_start_[k + 1]; ++s)
         matrix_.values()[s] = sources_[s].factor * values.entries[sources_[s].group];
     if (!free_duration_) return;
-    spread(border_, first, last, values.border);
+    spread(by_duration_, first, last, values.border);
     for (int k = first; k < last; ++k) corner_ += values.corner[k - first];
   });
   slope_ = action.slope_duration();
 }
 
+/// Phases in the unknowns: nodes, and what is free of the ends.
+void SparseModel::hold_phases() {
+  const int count = phases_ ? phases_->count : 0, nodes = (elements_ - 1) * n_;
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(unknowns_, count);
+  for (int j = 0; j < count; ++j) {
+    const std::span<const double> direction = phases_->direction(j);
+    for (int k = 0; k < nodes; ++k) held(k, j) = direction[n_ + k];
+    for (const Triplet& z : ends_->z)
+      held(nodes + z.column, j) += z.value * direction[z.row < n_ ? z.row : nodes + z.row];
+  }
+  border_.hold(std::move(held));
+}
+
 bool SparseModel::evaluate(DiscreteAction& action, const Path& path, const ClosingEquation*) {
   gather(action, path, true);
-  if (!action.finite() || !matrix_.factor()) return false;
-  if (free_duration_) {
-    solved_ = border_;
-    matrix_.solve(solved_.data(), 1);
-  }
+  if (!action.finite()) return false;
+  hold_phases();
+  const std::span<double> entries(matrix_.values(), sources_.size());
+  double largest = 0;
+  for (const double value : entries) largest = std::max(largest, std::abs(value));
+  std::fill_n(matrix_.values() + sources_.size(), (elements_ - 1) * n_ + ends_->free, 0.0);
+  for (const int u : border_.pinned()) matrix_.values()[sources_.size() + u] += largest;
+  if (!matrix_.factor()) return false;
+  border_.factor(matrix_, largest, by_duration_);
   return true;
 }
 
@@ -108,28 +130,16 @@ void SparseModel::evaluate_gradient(DiscreteAction& action, const Path& path) { 
 void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, Step& step) {
   right_.resize(unknowns_);
   std::transform(gradient_.begin(), gradient_.end(), right_.begin(), [](double g) { return -g; });
-  refining_ ? matrix_.solve(right_.data(), 1) : matrix_.solve_step(right_.data());
-  step.duration = 0;
-  if (free_duration_) {
-    // Rows of the closing equation against the solved right-hand side and the solved border.
-    double before = 0, along = 0, value = slope_ + closing->value, corner = corner_;
-    if (closing->row.empty()) {
-      for (int u = 0; u < unknowns_; ++u) {
-        before += border_[u] * right_[u];
-        along += border_[u] * solved_[u];
-      }
-    } else {
-      value = closing->value;
-      corner = 0;
-      for (int e = 0; e < 2 * n_; ++e)
-        for (int s = end_start_[e]; s < end_start_[e + 1]; ++s) {
-          before += closing->row[e] * end_shares_[s].factor * right_[end_shares_[s].unknown];
-          along += closing->row[e] * end_shares_[s].factor * solved_[end_shares_[s].unknown];
-        }
-    }
-    step.duration = (-value - before) / (corner - along);
-    for (int u = 0; u < unknowns_; ++u) right_[u] -= solved_[u] * step.duration;
+  const bool own_row = closing && !closing->row.empty();
+  if (own_row) {
+    row_.assign(unknowns_, 0);
+    for (int e = 0; e < 2 * n_; ++e)
+      for (int s = end_start_[e]; s < end_start_[e + 1]; ++s)
+        row_[end_shares_[s].unknown] += closing->row[e] * end_shares_[s].factor;
   }
+  const double value = !closing ? 0 : own_row ? closing->value : slope_ + closing->value;
+  step.duration =
+      border_.solve(matrix_, right_, own_row ? row_ : by_duration_, own_row ? 0 : corner_, -value, refining_);
   const int m = inner_ + 2 * n_, batches = (elements_ + lanes - 1) / lanes;
   step.nodes.assign(static_cast<std::size_t>(elements_ + 1) * n_, 0);
   step.inner.assign(static_cast<std::size_t>(batches) * m * lanes, 0);
@@ -150,20 +160,6 @@ void SparseModel::respond(DiscreteAction& action, const ClosingEquation* closing
   slope_ = 0;
   const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
   solve(action, closing ? &homogeneous : nullptr, step);
-}
-
-/// Across s the form has a negative square less unless sᵀH⁻¹s > 0.
-Inertia SparseModel::inertia_beside(double, std::span<const double> null) {
-  Inertia result = matrix_.inertia();
-  if (null.empty()) return result;
-  std::vector<double> load(unknowns_, 0);
-  std::copy(null.begin() + n_, null.end() - n_, load.begin());
-  std::vector<double> response = load;
-  matrix_.solve(response.data(), 1);
-  const bool positive = std::inner_product(load.begin(), load.end(), response.begin(), 0.0) > 0;
-  --(positive ? result.positive : result.negative);
-  ++result.zero;
-  return result;
 }
 
 }  // namespace extremal

@@ -5,6 +5,7 @@
 
 #include "linear/sparse.hpp"
 #include "solve/model.hpp"
+#include "solve/sparse_border.hpp"
 
 namespace extremal {
 
@@ -19,7 +20,7 @@ class SparseModel final : public QuadraticModel {
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
   void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                Step& step) override;
-  Inertia inertia_beside(double, std::span<const double> null) override;
+  Inertia inertia(double) override { return border_.inertia(matrix_); }
 
   /// In place of the gradient that was evaluated last, another: add_gradient() for each batch of elements,
   /// over their local unknowns in lanes.
@@ -37,6 +38,7 @@ class SparseModel final : public QuadraticModel {
   void build_pattern();
   void gather(DiscreteAction& action, const Path& path, bool hessian);
   void spread(std::vector<double>& to, int first, int last, const double* batch) const;
+  void hold_phases();
 
   const ElementTables* tables_ = nullptr;
   const EndMap* ends_ = nullptr;
@@ -51,7 +53,8 @@ class SparseModel final : public QuadraticModel {
   std::vector<int> source_start_;  ///< of each element
   std::vector<Source> sources_;
   SparseSymmetric matrix_;
-  std::vector<double> gradient_, border_, right_, solved_;
+  SparseBorder border_;
+  std::vector<double> gradient_, by_duration_, row_, right_;
   double corner_ = 0, slope_ = 0;
 };
 

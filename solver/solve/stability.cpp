@@ -55,7 +55,8 @@ ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
   ClosingMap map = closing_map(problem);
   return {.map = map.r.isIdentity(0) ? Eigen::MatrixXd{} : std::move(map.r),
           .relative_error = relative_error,
-          .autonomous = problem.lagrangian->structure().autonomous};
+          .autonomous = problem.lagrangian->structure().autonomous,
+          .symmetries = static_cast<int>(problem.symmetries.size())};
 }
 
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,

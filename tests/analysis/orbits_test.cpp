@@ -1,10 +1,9 @@
 #include <complex>
-#include <fstream>
 #include <numbers>
 
 #include "analysis/independent.hpp"
 #include "analysis/multipliers.hpp"
-#include "solve/scenes.hpp"
+#include "solve/published.hpp"
 
 /// \file Multipliers of orbits that are solved for, against published values and the linearised flow.
 
@@ -54,6 +53,20 @@ TEST(MultipliersOfOrbits, KeplerEllipse) {
   }
 }
 
+/// On a circle the rotation is the shift in time, and what is left of the others is 1 as well.
+TEST(MultipliersOfOrbits, KeplerCircle) {
+  const auto lagrangian = trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1]) / 2 + 1 / sqrt(q[0] * q[0] + q[1] * q[1]);
+  });
+  const auto circle = [](double tau) { return Values{std::cos(2 * pi * tau), std::sin(2 * pi * tau)}; };
+  for (double accuracy : {1e-6, 1e-9, 1e-12}) {
+    const Solution s = solve(guessed(periodic(lagrangian, 2 * pi), circle), within(accuracy));
+    ASSERT_TRUE(s.floquet);
+    EXPECT_EQ(s.floquet->multipliers, std::vector<Complex>(4, 1.0)) << accuracy;
+    EXPECT_EQ(s.floquet->trivial_pairs, 2) << accuracy;
+  }
+}
+
 /// C. Simó, Dynamical properties of the figure eight solution (2002): exp(±2πi ν), ν = 0.00842272 and
 /// 0.29809253; the others are 1 by two translations, the rotation and the shift in time.
 TEST(MultipliersOfOrbits, FigureEight) {
@@ -70,25 +83,6 @@ TEST(MultipliersOfOrbits, FigureEight) {
   EXPECT_NEAR(std::arg(found[first + 2]) / (2 * pi), 0.29809253, 6e-9);
 }
 
-/// A scene of the orbit that begins at a published state.
-Solution solved(const std::string& text) {
-  const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = testing::TempDir() + "multipliers-" + test + ".toml";
-  std::ofstream(path) << text;
-  const Solution s = run(load(path));
-  if (!s.converged() || !s.floquet) throw std::runtime_error(s.message);
-  return s;
-}
-
-std::string state_text(const std::vector<std::string>& names, const nlohmann::json& state) {
-  std::string text;
-  for (std::size_t a = 0; a < names.size(); ++a) {
-    text += fmt::format("{} = {}, \"{}'\" = {}, ", names[a], decimal(state[a]), names[a],
-                        decimal(state[names.size() + a]));
-  }
-  return "{ " + text.substr(0, text.size() - 2) + " }";
-}
-
 /// Stability index (|λ| + 1/|λ|)/2 of the catalogue, and every multiplier that is not trivial.
 TEST(MultipliersOfOrbits, OfTheRestrictedProblem) {
   for (const char* id :
@@ -96,22 +90,8 @@ TEST(MultipliersOfOrbits, OfTheRestrictedProblem) {
         "cr3bp-sun-earth-halo-1197", "cr3bp-earth-moon-dro-s2", "cr3bp-saturn-enceladus-L1halo-66",
         "cr3bp-earth-moon-vertical-1002"}) {
     const nlohmann::json c = published("cr3bp_periodic_orbits.json", id);
-    const Solution s = solved(fmt::format(
-        R"toml([system]
-coordinates = ["x", "y", "z"]
-parameters = {{ mu = {} }}
-definitions = {{ r1 = "sqrt((x + mu)^2 + y^2 + z^2)", r2 = "sqrt((x - 1 + mu)^2 + y^2 + z^2)" }}
-lagrangian = "((x' - y)^2 + (y' + x)^2 + z'^2)/2 + (1 - mu)/r1 + mu/r2"
-[boundary]
-periodic = true
-duration = {}
-[guess]
-state = {}
-[solve]
-tolerance = 1e-12
-)toml",
-        decimal(c["parameters"]["mu"]), decimal(c["refined"]["period"]),
-        state_text({"x", "y", "z"}, c["refined"]["state"])));
+    const Solution s = solved(c, tolerance);
+    ASSERT_TRUE(s.converged() && s.floquet) << s.message;
     const double largest = std::abs(s.floquet->multipliers[0]);
     EXPECT_NEAR((largest + 1 / largest) / 2 / c["stability_index_computed"].get<double>(), 1, 1e-9) << id;
     EXPECT_EQ(s.floquet->trivial_pairs, 1) << id;
@@ -132,25 +112,8 @@ tolerance = 1e-12
 TEST(MultipliersOfOrbits, OfUnstableChoreographies) {
   for (const char* id : {"3b-simo-004", "3b-simo-003"}) {
     const nlohmann::json c = published("nbody_periodic_orbits.json", id);
-    const Solution s = solved(fmt::format(
-        R"toml([system]
-coordinates = ["x1", "y1", "x2", "y2", "x3", "y3"]
-lagrangian = "kinetic/3 + (1/r12 + 1/r13 + 1/r23)/9"
-[system.definitions]
-kinetic = "(x1'^2 + y1'^2 + x2'^2 + y2'^2 + x3'^2 + y3'^2)/2"
-r12 = "sqrt((x1 - x2)^2 + (y1 - y2)^2)"
-r13 = "sqrt((x1 - x3)^2 + (y1 - y3)^2)"
-r23 = "sqrt((x2 - x3)^2 + (y2 - y3)^2)"
-[boundary]
-periodic = true
-duration = {}
-[guess]
-state = {}
-[solve]
-tolerance = 1e-12
-)toml",
-        decimal(c["refined"]["period"]),
-        state_text({"x1", "y1", "x2", "y2", "x3", "y3"}, c["refined"]["state"])));
+    const Solution s = solved(c, tolerance);
+    ASSERT_TRUE(s.converged() && s.floquet) << s.message;
     EXPECT_NEAR(std::abs(s.floquet->multipliers[0]) / c["max_abs_multiplier"].get<double>(), 1, 1e-8) << id;
     EXPECT_EQ(s.floquet->trivial_pairs, 4) << id;
     EXPECT_LT(s.floquet->symplectic_defect, 1e-14);
@@ -161,7 +124,7 @@ tolerance = 1e-12
 /// A rotating pendulum closes up to 2π; its only multipliers are those of the shift in time. From one lowest
 /// point to the next it is the extremal between these ends.
 TEST(MultipliersOfOrbits, RotatingPendulum) {
-  for (double T : {1.0, 5.0, 10.0}) {
+  for (double T : {1.0, 5.0, 10.0, 15.0, 20.0}) {
     const Solution s = solve(fixed_ends(systems::pendulum(), {0}, {2 * pi}, T), within(tolerance));
     ASSERT_NEAR(s.momentum_start[0], s.momentum_end[0], 1e-11);
     SecondVariation variation;
