@@ -149,13 +149,18 @@ double NewtonIteration::residual_at(const Path& path) {
   return residual();
 }
 
-/// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
-/// element, all unknowns are factored at once with pivoting, if they are not too many.
-bool NewtonIteration::factor(const Path& path) {
+bool NewtonIteration::factor_quickly(const Path& path) {
   measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
   if (!held_.empty()) phases_.add(held_);
   model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
-  if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;
+  return model_->evaluate(action_, path, closing(path)) && action_.finite();
+}
+
+/// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
+/// element, all unknowns are factored at once with pivoting, if they are not too many.
+bool NewtonIteration::factor(const Path& path) {
+  const bool done = factor_quickly(path);
+  if (done && action_.nodes.pivot_ratio > breakdown) return true;
   const bool condensed = model_ == condensed_.get();
   if (!action_.finite() || !(condensed || approximate())) return false;
   if (condensed && path.elements() * std::pow(tables_->unknowns(), 3) > most_pivoted_work) return false;

@@ -56,6 +56,8 @@ class NewtonIteration {
 
   /// Assembles at `path` and factors, without a step; false if that is singular to working precision.
   bool factor(const Path& path);
+  /// The same, but gives up where pivoting would be needed.
+  bool factor_quickly(const Path& path);
 
   /// Whether steps may shift a periodic path in time (no, unless told): elements prefer some phases, by no
   /// more than they err. Forgotten by reset().
