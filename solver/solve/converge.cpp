@@ -36,7 +36,8 @@ bool arrived(const NewtonIteration& newton, const NewtonGoal& goal, bool chord, 
   const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
                         newton.norm() > 0.3 * before;
   const bool enough = report.remaining <= goal.remaining && report.most_remaining <= goal.most_remaining;
-  return report.reached = enough || roundoff;
+  // Or a step stalled at its own roundoff.
+  return report.reached = enough || roundoff || newton.noise() > 0;
 }
 
 /// Whether another step may use the factors of the last.

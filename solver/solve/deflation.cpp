@@ -62,7 +62,7 @@ bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution
   const double first = scale_ = scales(w_.path, tables).q;
   if (scale_ == 0) scale_ = 1;
   for (int k = 0; k < most_steps && count_(); ++k) {
-    if (!model.evaluate(action, w_.path, w_.iteration.closing(w_.path)) || !action.finite()) return false;
+    if (!w_.iteration.factor_quickly(w_.path)) return false;
     model.solve(action, w_.iteration.closing(w_.path), step_);
     const double duration = w_.path.duration();
     const double size = std::hypot(std::sqrt(dot(step_.nodes, step_.nodes)), step_.duration / duration);

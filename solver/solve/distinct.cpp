@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace extremal {
@@ -68,11 +69,15 @@ bool same_path(const Solution& a, const Solution& b, double tolerance, double sc
 }
 
 bool same_continuum(const Solution& a, const Solution& b, double tolerance) {
-  if (a.nullity.value_or(0) == 0 || a.nullity != b.nullity || a.morse_index != b.morse_index) return false;
+  const bool continuum = a.nullity.value_or(0) > 0 && a.nullity == b.nullity;
+  return continuum && a.morse_index == b.morse_index && same_orbit(a, b, tolerance);
+}
+
+bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
   const double size = std::max(extent(a.trajectory), extent(b.trajectory));
   const double error = size > 0 ? (a.error_estimate + b.error_estimate) / size + tolerance : tolerance;
-  if (a.energy && b.energy && !agree(*a.energy, *b.energy, action_size(a) / a.duration(), error))
-    return false;
+  const double energy = 2 * std::numbers::pi * action_size(a) / a.duration();
+  if (a.energy && b.energy && !agree(*a.energy, *b.energy, energy, error)) return false;
   return agree(a.duration(), b.duration(), a.duration(), error) &&
          agree(a.action, b.action, std::max(action_size(a), action_size(b)), error);
 }

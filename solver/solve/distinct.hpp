@@ -17,6 +17,11 @@ bool same_path(const Solution& a, const Solution& b, double tolerance, double sc
 /// continuous symmetry.
 bool same_continuum(const Solution& a, const Solution& b, double tolerance);
 
+/// The same for orbits of an autonomous periodic problem, all of which have shifts of time: what symmetries,
+/// of time and of space, continuous or not, make of one orbit is one, as far as action, duration and energy
+/// tell.
+bool same_orbit(const Solution& a, const Solution& b, double tolerance);
+
 /// Whether two solutions on the same elements are the same to roundoff.
 bool same_discrete(const Solution& a, const Solution& b);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 namespace extremal {
 
@@ -18,6 +19,9 @@ constexpr double pivoted_burden = 100, sparse_burden = 1000;
 constexpr double most_pivoted_work = 1e9;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
 constexpr double amplified_roundoff = 1e-11;
+/// Roundoff of a step is measured where one below the first stalls; a step that is no longer than so many
+/// times it is no more.
+constexpr double loudest = 1e-5, quiet = 10;
 /// A step that is not tested may contract worse than any before by this factor; by so much it does. Steps of
 /// another kind, as after finer elements, may be worse still: δS is taken to bend at least so much.
 constexpr double worst_surprise = 30, surprise = 5, least_curvature = 1e3;
@@ -66,7 +70,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   tables_ = &tables;
   const bool sparse = tables.unknowns() > most_dense_unknowns;
   action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
-  norm_ = contraction_ = 0;
+  norm_ = contraction_ = noise_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
   phase_free_ = false;
@@ -149,13 +153,18 @@ double NewtonIteration::residual_at(const Path& path) {
   return residual();
 }
 
-/// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
-/// element, all unknowns are factored at once with pivoting, if they are not too many.
-bool NewtonIteration::factor(const Path& path) {
+bool NewtonIteration::factor_quickly(const Path& path) {
   measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
   if (!held_.empty()) phases_.add(held_);
   model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
-  if (model_->evaluate(action_, path, closing(path)) && action_.nodes.pivot_ratio > breakdown) return true;
+  return model_->evaluate(action_, path, closing(path)) && action_.finite();
+}
+
+/// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
+/// element, all unknowns are factored at once with pivoting, if they are not too many.
+bool NewtonIteration::factor(const Path& path) {
+  const bool done = factor_quickly(path);
+  if (done && action_.nodes.pivot_ratio > breakdown) return true;
   const bool condensed = model_ == condensed_.get();
   if (!action_.finite() || !(condensed || approximate())) return false;
   if (condensed && path.elements() * std::pow(tables_->unknowns(), 3) > most_pivoted_work) return false;
@@ -194,6 +203,12 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
   for (;; factor /= 2) {
     if (factor < least_damping) {
       path.load_ends();
+      if (step < loudest && step <= quiet * measure_noise(path)) {
+        apply(path, step_, 1);
+        norm_ = remaining_ = noise_;
+        contraction_ = damping_ = predicted_ = 1;
+        return StepResult::ok;
+      }
       model_->evaluate_gradient(action_, path);
       return StepResult::stalled;
     }
@@ -207,7 +222,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
       use_sparse(path.elements());
       return full_step(path, enough, least_damping);
     }
-    if (simplified <= (1 - factor / 4) * step || step < amplified_roundoff) {
+    if (simplified <= (1 - factor / 4) * step || step < std::max(amplified_roundoff, quiet * noise_)) {
       contraction_ = simplified / step;
       damping_ = factor;
       norm_ = simplified;
@@ -226,6 +241,31 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
     remaining_ = norm_ * contraction_;
   }
   return StepResult::ok;
+}
+
+/// By how much step_ changes, relative as it, where all of the path is shifted by some last digits: that
+/// moves the extremal no further, but rounds everything differently.
+double NewtonIteration::measure_noise(Path& path) {
+  const std::size_t n = path.coordinates(), nodes = path.nodes().size();
+  double magnitude = 0;
+  for (double q : path.nodes()) magnitude = std::max(magnitude, std::abs(q));
+  simplified_.nodes.assign(nodes, 0);
+  simplified_.inner.assign(step_.inner.size(), 0);
+  simplified_.duration = 0;
+  std::minstd_rand random;
+  for (std::size_t k = 0; k < nodes; ++k)
+    simplified_.nodes[k] = k < n ? magnitude * 0x1p-50 * (1 + double(random()) / std::minstd_rand::max())
+                                 : simplified_.nodes[k - n];
+  saved_.copy_values(path);
+  apply(path, simplified_, 1);
+  model_->evaluate_gradient(action_, path);
+  const double size = solve_for_step(path, simplified_);
+  double change = 0;
+  for (std::size_t k = 0; k < nodes; ++k)
+    change = std::max(change, std::abs(simplified_.nodes[k] - step_.nodes[k]));
+  path.copy_values(saved_);
+  path.load_ends();
+  return noise_ = std::isnan(size) ? 0 : change / (scale_ > 0 ? scale_ : 1);
 }
 
 /// Inverse iteration from the step, which has most of that direction already.

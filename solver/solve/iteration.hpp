@@ -47,7 +47,9 @@ class NewtonIteration {
   StepResult full_step(Path& path, double enough, double least_damping = strongest_damping);
 
   /// What was learned of the curvature of δS no longer holds: another path.
-  void forget() { curvature_ = largest_curvature_ = 0; }
+  void forget() { curvature_ = largest_curvature_ = noise_ = 0; }
+  /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
+  double noise() const { return noise_; }
 
   /// From now until release() steps leave out the direction in which the path last factored is softest. False
   /// where that cannot be done.
@@ -56,6 +58,8 @@ class NewtonIteration {
 
   /// Assembles at `path` and factors, without a step; false if that is singular to working precision.
   bool factor(const Path& path);
+  /// The same, but gives up where pivoting would be needed.
+  bool factor_quickly(const Path& path);
 
   /// Whether steps may shift a periodic path in time (no, unless told): elements prefer some phases, by no
   /// more than they err. Forgotten by reset().
@@ -103,6 +107,7 @@ class NewtonIteration {
   bool approximate() const { return raised_ && model_ == &*raised_; }
   double solve_for_step(const Path& path, Step& step, bool refine = false);
   void apply(Path& path, const Step& step, double factor);
+  double measure_noise(Path& path);
 
   const Problem* problem_ = nullptr;
   const ElementTables* tables_ = nullptr;
@@ -119,6 +124,7 @@ class NewtonIteration {
   Path saved_;
   mutable std::vector<double> free_;
   double scale_ = 1, norm_ = 0, remaining_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
+  double noise_ = 0;
   double curvature_ = 0;  ///< contraction of the last full step by its length; 0: not known
   double largest_curvature_ = 0;
   int count_ = 0;

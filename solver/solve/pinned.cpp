@@ -82,7 +82,7 @@ bool PinnedSolve::solve_discrete(int elements) {
     for (unsigned seed = 0; !again && seed <= most_bends; ++seed) {
       w_.path.reset(w_.pinned, mesh, problem_.duration.value);
       start_path(problem_, ends, w_.pinned, w_.path);
-      bend_path({seed * 0.1, seed}, w_.pinned, w_.path);
+      bend_path(problem_, {seed * 0.1, seed}, w_.pinned, w_.path);
       w_.iteration.action().evaluate_plain(w_.path);
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }

@@ -202,7 +202,7 @@ void Refinement::refine() {
 }
 
 int Refinement::steps_left(int wanted) const {
-  const double affordable = std::min((most_cost_ - cost_) / step_cost(), 1e6);
+  const double affordable = std::min((share_ * most_cost_ - cost_) / step_cost(), 1e6);
   return std::max(0, std::min({wanted, steps_left(), static_cast<int>(affordable)}));
 }
 

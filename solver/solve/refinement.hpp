@@ -23,13 +23,14 @@ class Refinement {
 
   Refinement(const Problem& problem, const SolveOptions& options, Workspace& workspace, Outcome& outcome);
 
-  /// Steps that all paths from now on may take together.
-  void allow(int steps) {
+  /// Steps that all paths from now on may take together, and that share of the time of one solve.
+  void allow(int steps, double share = 1) {
     most_steps_ = outcome_.iterations + steps;
     cost_ = 0;
+    share_ = share;
   }
   int steps_left() const { return most_steps_ - outcome_.iterations; }
-  bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= most_cost_; }
+  bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= share_ * most_cost_; }
 
   static constexpr int first_degree = 4;
   /// Puts an empty path on `mesh` into the workspace, to be filled by the caller.
@@ -84,7 +85,7 @@ class Refinement {
   Outcome& outcome_;
   Scales scales_;
   int most_steps_ = 0, most_elements_ = 0;
-  double cost_ = 0, most_cost_ = 0;
+  double cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
   ResidualTest test_;
   double longest_ = 0;  ///< undamped step so far, relative

@@ -23,6 +23,10 @@ constexpr int most_first_elements = 1 << 12;
 constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
 constexpr double guess_floor = 0.25;
 constexpr int most_passes = 10, highest_guess_degree = 12;
+/// A path of chance that needs more elements than this comes too near a singularity.
+constexpr int most_launched = 128;
+/// A singularity is near where elements differ so much.
+constexpr double collision = 100;
 /// A mesh whose elements differ less than this is not worth starting again for.
 constexpr double mild_grading = 3;
 /// Newton steps in all, times unknowns of the first mesh: what other guesses may cost.
@@ -35,7 +39,7 @@ constexpr double runaway = 100;
 /// A periodic path that is so much smaller than the guess is at rest.
 constexpr double rest = 1e-6;
 /// Starts with noise that are cheaper than other durations are; and at most.
-constexpr unsigned first_noises = 8, most_noises = 10000;
+constexpr unsigned first_noises = 8, most_noises = 10000, collision_noises = 100;
 /// Of the guess's extent, in turn.
 constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 
@@ -58,7 +62,7 @@ Search::Search(const Problem& problem, const SolveOptions& options, Workspace& w
 void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree) {
   refinement_.open(mesh, degree);
   start_path(*guess_, ends_, refinement_.tables(), w_.path);
-  bend_path(bend, refinement_.tables(), w_.path);
+  bend_path(problem_, bend, refinement_.tables(), w_.path);
 }
 
 /// Puts the guess on a mesh that follows the frequency along it. The default guess is moved aside until L
@@ -73,8 +77,12 @@ bool Search::begin() {
     if (w_.frequency.finite()) break;
     if (guess_->guess.given() || seed == most_bends) return false;
   }
-  const int elements = first_elements(w_.frequency);
+  int elements = first_elements(w_.frequency);
   const double floor = guess_->guess.given() ? guess_floor : 1.0;
+  // A sketch of an orbit may pass a collision; elements that follow it there serve no other path.
+  colliding_ = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
+               w_.frequency.grading(floor) > collision;
+  if (colliding_) elements = most_launched;
   if (elements > lanes || w_.frequency.grading(floor) >= mild_grading) {
     mesh_ = w_.frequency.mesh(elements, floor);
     start(mesh_, bend_);
@@ -128,8 +136,11 @@ Refinement::Result Search::pursue(const char* strategy) {
   // A path far from the guess may be wild, and resolved by accident only.
   const bool far = problem_.ends.free > 0 && magnitude_ > 0 &&
                    scales(w_.path, refinement_.tables()).magnitude > runaway * magnitude_;
-  if (result == Refinement::Result::converged && outcome_.elsewhere &&
-      (far || !refinement_.holds_on_other_elements())) {
+  if (result == Refinement::Result::converged && far && problem_.periodic) {
+    outcome_.message = "the orbit ran away to where forces vanish";
+    result = Refinement::Result::failed;
+  } else if (result == Refinement::Result::converged && outcome_.elsewhere &&
+             (far || !refinement_.holds_on_other_elements())) {
     unheld_ = w_.path;
     result = Refinement::Result::failed;
   }
@@ -140,7 +151,9 @@ Refinement::Result Search::pursue(const char* strategy) {
   }
   const bool converged = result == Refinement::Result::converged;
   doubtful_ = converged ? !refinement_.confirmed() : refinement_.suspicious();
-  return converged && doubtful_ ? Refinement::Result::unreachable : result;
+  // What closes on itself has no ends to be conjugate.
+  const auto doubted = problem_.periodic ? Refinement::Result::failed : Refinement::Result::unreachable;
+  return converged && doubtful_ ? doubted : result;
 }
 
 bool Search::found(const char* strategy) {
@@ -186,7 +199,16 @@ bool Search::from_finer_elements() {
 
 bool Search::from_noise(unsigned tries) {
   for (const unsigned last = seed_ + tries; seed_ < last && !refinement_.exhausted(); ++seed_) {
-    start(mesh_, {noise_sizes[seed_ % std::size(noise_sizes)], seed_});
+    const Bend bend{noise_sizes[seed_ % std::size(noise_sizes)], seed_};
+    const auto fill = [&](const ElementTables& tables, Path& path) {
+      start_path(*guess_, ends_, tables, path);
+      bend_path(problem_, bend, tables, path);
+    };
+    if (!problem_.periodic) start(mesh_, bend);
+    if (problem_.periodic && !place(fill)) {
+      refinement_.count_step();
+      continue;
+    }
     if (found("newton from the guess plus smooth noise")) return true;
   }
   return false;
@@ -215,10 +237,26 @@ bool Search::settle(const ElementTables& tables, const char* strategy) {
   return result;
 }
 
-void Search::renew() { refinement_.allow(allowance_); }
+bool Search::place(const std::function<void(const ElementTables&, Path&)>& fill) {
+  fill(open(uniform_mesh(2 * lanes), Refinement::first_degree), w_.path);
+  measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), w_.path, w_.frequency);
+  const int elements = first_elements(w_.frequency);
+  if (!w_.frequency.finite() || elements > most_launched) return false;
+  fill(open(w_.frequency.mesh(elements, guess_floor), Refinement::first_degree), w_.path);
+  return true;
+}
+
+void Search::be_like(const Search& other) {
+  magnitude_ = other.magnitude_;
+  extent_ = other.extent_;
+  allowance_ = other.allowance_;
+}
+
+void Search::renew(double share) { refinement_.allow(static_cast<int>(share * allowance_), share); }
 
 /// Cheapest first; but where the user has given a guess, what stays near it before noise.
 bool Search::from_other_guesses() {
+  if (colliding_ && from_noise(collision_noises)) return true;
   if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
       found("newton from the guess on finer elements"))
     return true;
@@ -243,6 +281,7 @@ Outcome Search::run() {
   const bool doubtful = doubtful_;
   if (result == Refinement::Result::failed) {
     const std::string failure = outcome_.message;
+    if (colliding_) refinement_.allow(allowance_);
     if (from_other_guesses()) {
       result = Refinement::Result::converged;
     } else {
@@ -263,7 +302,7 @@ Outcome Search::run() {
     }
   }
   if (result == Refinement::Result::converged) outcome_.status = Status::converged;
-  if (result != Refinement::Result::converged && doubtful) {
+  if (result != Refinement::Result::converged && doubtful && !problem_.periodic) {
     outcome_.status = Status::conjugate_ends;
     outcome_.message =
         "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -20,8 +21,13 @@ class Search {
   const ElementTables& open(const std::vector<double>& mesh, int degree);
   /// Pursues the path in the workspace, on elements of `tables`; whether an extremal was found.
   bool settle(const ElementTables& tables, const char* strategy);
-  /// Steps that further paths may take together.
-  void renew();
+  /// Puts the path that `fill` fills on elements that follow it; false if it comes too near a singularity.
+  bool place(const std::function<void(const ElementTables& tables, Path& path)>& fill);
+  const ElementTables& tables() const { return refinement_.tables(); }
+  /// Sizes of paths and effort are those of another search.
+  void be_like(const Search& other);
+  /// Effort that further paths may take together, in shares of that of one solve.
+  void renew(double share = 1);
   /// Counts a step that the caller takes; false if there may be no more.
   bool count_step() { return refinement_.count_step(); }
   bool exhausted() const { return refinement_.exhausted(); }
@@ -56,8 +62,9 @@ class Search {
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others
   unsigned seed_ = 0;
-  bool shrank_ = false;    ///< a path, to a point of equilibrium
-  bool doubtful_ = false;  ///< the equations of the last path were nearly singular
+  bool colliding_ = false;  ///< a guess that comes too near a singularity
+  bool shrank_ = false;     ///< a path, to a point of equilibrium
+  bool doubtful_ = false;   ///< the equations of the last path were nearly singular
 };
 
 }  // namespace extremal

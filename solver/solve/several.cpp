@@ -10,6 +10,8 @@
 #include "solve/distinct.hpp"
 #include "solve/end_homotopy.hpp"
 #include "solve/homotopy.hpp"
+#include "solve/repetition.hpp"
+#include "solve/stability.hpp"
 
 namespace extremal {
 
@@ -23,6 +25,9 @@ constexpr int family_degree = 6;
 constexpr unsigned guesses = 8;
 /// So many in a row that lead to nothing new are enough.
 constexpr int most_in_vain = 100;
+/// Random loops tried instead, and in vain.
+constexpr unsigned loops = 1200;
+constexpr int most_loops_in_vain = 1200;
 /// Rows of the boundary relation that are varied, at most.
 constexpr int most_rows = 12;
 
@@ -56,7 +61,20 @@ Several::Several(const Problem& problem, const SolveOptions& options, Workspace&
       options_(options),
       w_(workspace),
       variation_(variation),
-      search_(problem, options, workspace) {}
+      search_(problem, options, workspace),
+      loops_(problem, options, workspace, search_) {}
+
+/// Whether an orbit is one of a shorter period, run through several times. One that a symmetry of L closes
+/// after m segments may repeat itself after any number of these.
+bool Several::repeats(const Solution& candidate) const {
+  if (!problem_.periodic || !problem_.lagrangian->structure().autonomous) return false;
+  const ClosingMap map = closing_map(problem_);
+  const int segments = segments_to_close(map);
+  if (segments == 0) return false;
+  const double size = scales(w_.path, *w_.final_tables).q;
+  const int parts = repetitions(candidate.trajectory, map, segments, told_apart(candidate, size));
+  return parts == 0 || segments % parts != 0;
+}
 
 /// The number of the extremal in the workspace, which is added if it is new; -1 if it is none.
 int Several::keep() {
@@ -75,7 +93,15 @@ int Several::keep() {
   candidate.seconds_solve = seconds;
   analysing_ += candidate.seconds_analyse;
   if (!candidate.converged()) return -1;
-  number = known([&](const Solution& other) { return same_continuum(candidate, other, options_.tolerance); });
+  if (repeats(candidate)) {
+    if (!repeating_) repeating_ = std::move(candidate);
+    return -1;
+  }
+  const bool closed = problem_.periodic && problem_.lagrangian->structure().autonomous;
+  number = known([&](const Solution& other) {
+    return closed ? same_orbit(candidate, other, options_.tolerance)
+                  : same_continuum(candidate, other, options_.tolerance);
+  });
   if (number < found_.size()) return static_cast<int>(number);
   found_.push_back(std::move(candidate));
   followed_.emplace_back(families_, 0);
@@ -111,7 +137,13 @@ void Several::deflate() {
 }
 
 void Several::guess() {
-  for (unsigned k = 0; k < guesses && wanted(); ++k, ++seed_, ++in_vain_) {
+  const unsigned most = loops_.usable() ? loops : guesses;
+  for (unsigned k = 0; k < most && wanted(); ++k, ++seed_, ++in_vain_) {
+    if (loops_.usable()) {
+      if (loops_.next() && keep() >= 0) loops_.credit();
+      search_.renew();
+      continue;
+    }
     bend();
     if (problem_.coordinates() > 1 && wanted()) wind();
   }
@@ -121,7 +153,7 @@ void Several::bend() {
   const Bend bend = bend_of(seed_);
   const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
   start_path(problem_, moved_ends(problem_, search_.ends(), bend.size, seed_), tables, w_.path);
-  bend_path(bend, tables, w_.path);
+  bend_path(problem_, bend, tables, w_.path);
   settle(tables, "newton from the guess plus smooth noise");
 }
 
@@ -234,7 +266,8 @@ bool Several::follow_families() {
 }
 
 bool Several::wanted() const {
-  return static_cast<int>(found_.size()) < most_ && in_vain_ < most_in_vain && !search_.exhausted();
+  return static_cast<int>(found_.size()) < most_ &&
+         in_vain_ < (loops_.usable() ? most_loops_in_vain : most_in_vain) && !search_.exhausted();
 }
 
 std::vector<Solution> Several::run(int most) {
@@ -242,15 +275,16 @@ std::vector<Solution> Several::run(int most) {
   start_ = Clock::now();
   const Outcome first = search_.run();
   families_ = 1 + (problem_.periodic ? 0 : std::min(problem_.boundary.rows, most_rows));
-  if (first.status != Status::converged || keep() < 0) {
-    found_.assign(1, finish(problem_, options_, first, w_, variation_));
-    return std::move(found_);
-  }
+  const bool begun = first.status == Status::converged && keep() >= 0;
+  std::optional<Solution> failed;
+  if (!begun) failed = repeating_ ? *repeating_ : finish(problem_, options_, first, w_, variation_);
+  if (!begun && !loops_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
-  deflate();
+  if (begun) deflate();
   guess();
   while (wanted())
     if (!follow_families()) guess();
+  if (found_.empty()) return {std::move(*failed)};
   sort_by_action(found_);
   if (static_cast<int>(found_.size()) < most)
     found_.front().message = fmt::format(

@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "solve/finish.hpp"
+#include "solve/loop_search.hpp"
 #include "solve/search.hpp"
 
 /// \file Several extremals of one problem.
@@ -16,7 +18,9 @@ class ExtremalFamily;
 /// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
 /// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
 /// that other durations and other ends make of it, which come past more of the problem's. What finds nothing
-/// new for as many steps as one solve may take ends the search.
+/// new for as many steps as one solve may take ends the search. For a periodic problem, random loops that
+/// close as it asks take the place of arcs, and an orbit that closes after part of the time, so that it is
+/// run through several times, is left out.
 class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace,
@@ -34,6 +38,7 @@ class Several {
   void deflate();
   void guess();
   void bend();
+  bool repeats(const Solution& candidate) const;
   void wind();
   double natural_duration(Arc arc, const ElementTables& tables);
   bool follow_families();
@@ -46,8 +51,10 @@ class Several {
   Workspace& w_;
   SecondVariation& variation_;
   Search search_;
+  LoopSearch loops_;
   std::vector<Solution> found_;
-  double scale_ = 1;  ///< size of the problem
+  std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times
+  double scale_ = 1;                   ///< size of the problem
   int most_ = 1;
   int in_vain_ = 0;    ///< guesses since the last find
   unsigned seed_ = 0;  ///< of the next guess

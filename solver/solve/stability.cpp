@@ -8,6 +8,7 @@
 
 #include "analysis/orbit_form.hpp"
 #include "problem/closing.hpp"
+#include "solve/repetition.hpp"
 
 namespace extremal {
 
@@ -22,34 +23,12 @@ void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Flo
   }
 }
 
-/// T/m with the most m for which q(t + T/m) = q(t), within the error. A period that is a multiple of T/m
-/// shows by its prime factors, one after the other. Nothing where it never moves.
-std::optional<double> minimal_period(const Trajectory& path, double error) {
-  constexpr int samples = 64, most = 1 << 16;
-  constexpr int primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31};
-  const double T = path.duration();
-  const std::size_t n = path.coordinates;
-  std::vector<double> here(n), there(n), v(n);
-  const auto repeats = [&](double period) {
-    for (int k = 0; k < samples; ++k) {
-      const double t = T * k / samples, later = t + period;
-      path.at(t, here, v);
-      path.at(std::min(later < T ? later : later - T, T), there, v);
-      for (std::size_t a = 0; a < n; ++a)
-        if (!(std::abs(here[a] - there[a]) <= error)) return false;
-    }
-    return true;
-  };
-  int parts = 1;
-  for (const int prime : primes)
-    while (parts < most && repeats(T / (parts * prime))) parts *= prime;
-  return parts < most ? std::optional(T / parts) : std::nullopt;
-}
-
-/// Of the size of the path: distances that are told from none.
-constexpr double distinct = 1e-6;
-
 }  // namespace
+
+double told_apart(const Solution& solution, double size) {
+  constexpr double distinct = 1e-6;
+  return std::max(10 * solution.error_estimate, distinct * size);
+}
 
 ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
   ClosingMap map = closing_map(problem);
@@ -62,9 +41,10 @@ ClosedOrbit closed_orbit(const Problem& problem, double relative_error) {
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors) {
   if (!problem.periodic) return;
-  const double told = std::max(10 * solution.error_estimate, distinct * size);
-  if (closing_map(problem).identity() && size > 0)
-    solution.minimal_period = minimal_period(solution.trajectory, told);
+  const double told = told_apart(solution, size);
+  if (const ClosingMap map = closing_map(problem); map.identity() && size > 0)
+    if (const int parts = repetitions(solution.trajectory, map, 1, told); parts > 0)
+      solution.minimal_period = solution.duration() / parts;
   if (problem.coordinates() > most_coordinates_for_multipliers) {
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
                                     most_coordinates_for_multipliers);

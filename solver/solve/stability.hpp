@@ -12,6 +12,9 @@ namespace extremal {
 /// How an orbit of a periodic problem closes; `relative_error` of its coordinates.
 ClosedOrbit closed_orbit(const Problem& problem, double relative_error);
 
+/// Distances along a solution of `size` that are told from none.
+double told_apart(const Solution& solution, double size);
+
 /// Sets the Floquet multipliers and the minimal period of a converged solution of a periodic problem.
 /// `variation` was assembled for it, perhaps without success. `size` of the solution: that its error is
 /// relative to.

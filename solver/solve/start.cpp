@@ -5,12 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "solve/loop.hpp"
+
 namespace extremal {
 
 namespace {
-
-/// Of the largest extent. Every other seed takes coordinates to be of one kind: a line has no extent across.
-constexpr double negligible_extent[] = {0.01, 0.5};
 
 /// The point x of the affine set { offset + Z y } nearest to `target`; ends that no general row couples
 /// are handled one by one, so that only the coupled ones are ever dense.
@@ -41,8 +40,15 @@ std::vector<double> nearest(const EndMap& ends, const std::vector<double>& targe
   return x;
 }
 
-/// Of each coordinate: its range, or its largest absolute value if that is more; where that is next to
-/// nothing, that of the coordinate which has most.
+std::vector<double> ends_of(const Path& path) {
+  const std::size_t n = path.coordinates();
+  std::vector<double> ends(path.node(0), path.node(0) + n);
+  ends.insert(ends.end(), path.node(path.elements()), path.node(path.elements()) + n);
+  return ends;
+}
+
+}  // namespace
+
 std::vector<double> extents(const Path& path, double negligible) {
   const std::size_t n = path.coordinates();
   std::vector<double> low(path.node(0), path.node(0) + n), high = low, extent(n);
@@ -57,36 +63,6 @@ std::vector<double> extents(const Path& path, double negligible) {
     if (x < negligible * most || most == 0) x = most > 0 ? most : 1;
   return extent;
 }
-
-/// The path whose values are at(τ, q), and at the ends those of `ends`.
-template <class At>
-void fill_path(const std::vector<double>& ends, const ElementTables& tables, Path& path, const At& at) {
-  const std::size_t n = path.coordinates();
-  const int degree = path.degree();
-  std::vector<double> q((degree + 1) * n);
-  for (int k = 0; k < path.elements(); ++k) {
-    path.element(k, q.data());
-    const double from = path.mesh()[k], to = path.mesh()[k + 1];
-    // The first node of an element is already where the one before left it.
-    for (int j = k > 0; j <= degree; ++j)
-      at(j == degree ? to : from + tables.scheme().lobatto[j] * (to - from), q.data() + j * n);
-    path.set_element(k, q.data());
-  }
-  for (std::size_t a = 0; a < n; ++a) {
-    path.set_node(0, static_cast<int>(a), ends[a]);
-    path.set_node(path.elements(), static_cast<int>(a), ends[n + a]);
-  }
-  path.load_ends();
-}
-
-std::vector<double> ends_of(const Path& path) {
-  const std::size_t n = path.coordinates();
-  std::vector<double> ends(path.node(0), path.node(0) + n);
-  ends.insert(ends.end(), path.node(path.elements()), path.node(path.elements()) + n);
-  return ends;
-}
-
-}  // namespace
 
 std::vector<double> starting_ends(const Problem& problem) {
   if (problem.ends.free == 0) return problem.ends.offset;
@@ -175,8 +151,8 @@ std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, co
   return displacement;
 }
 
-void bend_path(const Bend& bend, const ElementTables& tables, Path& path) {
-  if (bend.size == 0) return;
+void bend_path(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path) {
+  if (bend.size == 0 || bend_closed(problem, bend, tables, path)) return;
   const std::size_t n = path.coordinates();
   const std::vector<double> extent = extents(path, negligible_extent[bend.seed % 2]);
   Noise noise(bend.seed);

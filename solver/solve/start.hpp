@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -23,6 +24,27 @@ void meet_ends(const Problem& problem, Path& path);
 /// Fills `path` (already reset) from the guess, shifted linearly in t so that its ends are `ends`.
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path);
+
+/// Fills `path` (already reset) with that whose values are at(τ, q), and at the ends those of `ends`.
+template <class At>
+void fill_path(const std::vector<double>& ends, const ElementTables& tables, Path& path, const At& at) {
+  const std::size_t n = path.coordinates();
+  const int degree = path.degree();
+  std::vector<double> q((degree + 1) * n);
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, q.data());
+    const double from = path.mesh()[k], to = path.mesh()[k + 1];
+    // The first node of an element is already where the one before left it.
+    for (int j = k > 0; j <= degree; ++j)
+      at(j == degree ? to : from + tables.scheme().lobatto[j] * (to - from), q.data() + j * n);
+    path.set_element(k, q.data());
+  }
+  for (std::size_t a = 0; a < n; ++a) {
+    path.set_node(0, static_cast<int>(a), ends[a]);
+    path.set_node(path.elements(), static_cast<int>(a), ends[n + a]);
+  }
+  path.load_ends();
+}
 
 /// An arc of a circle about `centre` in the plane of it and the ends, through the angle between those and so
 /// many turns more; its radius is the mean distance of the ends from the centre, times 1 + `excess`. With one
@@ -52,6 +74,13 @@ struct Bend {
   unsigned seed = 0;
   int modes = 3;
 };
-void bend_path(const Bend& bend, const ElementTables& tables, Path& path);
+/// Paths of a periodic problem stay closed: by noise as in ClosedNoise, with their ends.
+void bend_path(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path);
+
+/// Of the largest extent. Every other seed takes coordinates to be of one kind: a line has no extent across.
+inline constexpr double negligible_extent[] = {0.01, 0.5};
+/// Of each coordinate: its range, or its largest absolute value if that is more; where that is next to
+/// nothing, that of the coordinate which has most.
+std::vector<double> extents(const Path& path, double negligible);
 
 }  // namespace extremal
