@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -132,6 +133,7 @@ inline LagrangianGraph bodies(int n) {
 struct Named {
   std::string name;
   LagrangianGraph lagrangian;
+  friend void PrintTo(const Named& system, std::ostream* out) { *out << system.name; }
 };
 
 inline std::vector<Named> all() {
