@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "check.hpp"
+#include "lambert.hpp"
 #include "rows.hpp"
 #include "solve/solve.hpp"
 
@@ -89,11 +90,40 @@ void print(const Row& row, const Tally& tally) {
   std::fflush(stdout);
 }
 
-bool chosen(const Row& row, const Options& options) {
-  const std::string name = row.title + " " + row.from;
+bool chosen(const std::string& name, const Options& options) {
   return options.rows.empty() ||
          std::any_of(options.rows.begin(), options.rows.end(),
                      [&](const std::string& part) { return name.find(part) != std::string::npos; });
+}
+
+/// Several extremals of each problem, of which it is known how many there are.
+bool run_several(const Options& options) {
+  constexpr int problems = 60, most = 30;
+  constexpr const char* title = "Lambert's problem, arcs with up to two revolutions";
+  if (!chosen(title, options)) return true;
+  extremal::Solver solver;
+  extremal::SolveOptions settings;
+  settings.tolerance = options.tolerance;
+  int wanted = 0, found = 0, wrong = 0;
+  double seconds = 0;
+  for (const LambertProblem& test : lambert_problems(options.most > 0 ? options.most : problems)) {
+    std::vector<double> energies;
+    double last = 0;
+    for (const extremal::Solution& s : solver.solve_all(test.problem, settings, most)) {
+      if (!s.converged()) continue;
+      wrong += !disproof(test.problem, s, options.tolerance).empty();
+      energies.push_back(s.energy.value());
+      last = std::max(last, s.seconds_solve);
+    }
+    const int here = arcs_found(test.energies, energies), all = static_cast<int>(test.energies.size());
+    if (options.failures && here < all) fmt::print("  {}: {} of {}\n", describe(test.problem), here, all);
+    wanted += all;
+    found += here;
+    seconds += last;
+  }
+  fmt::print("{}: {} of {} found, {} WRONG, {:.2f} s until the last of each problem, in all\n", title, found,
+             wanted, wrong, seconds);
+  return wrong == 0;
 }
 
 /// Whether every solution withstood.
@@ -102,12 +132,12 @@ bool run(const Options& options) {
              "baseline", "wanted", "median ms", "mean ms", "most ms");
   bool right = true;
   for (const Row& row : all_rows()) {
-    if (!chosen(row, options)) continue;
+    if (!chosen(row.title + " " + row.from, options)) continue;
     const Tally tally = measure(row, options);
     print(row, tally);
     right = right && tally.wrong.empty();
   }
-  return right;
+  return run_several(options) && right;
 }
 
 }  // namespace

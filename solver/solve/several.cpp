@@ -23,6 +23,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int family_degree = 6;
 /// Guesses tried before families are followed, and each time between.
 constexpr unsigned guesses = 8;
+/// Of the effort that one solve may take, for each extremal that is new.
+constexpr double patience = 3;
 /// So many in a row that lead to nothing new are enough.
 constexpr int most_in_vain = 100;
 /// Random loops tried instead, and in vain.
@@ -105,7 +107,7 @@ int Several::keep() {
   if (number < found_.size()) return static_cast<int>(number);
   found_.push_back(std::move(candidate));
   followed_.emplace_back(families_, 0);
-  search_.renew();
+  search_.renew(patience);
   in_vain_ = 0;
   return static_cast<int>(number);
 }
