@@ -92,7 +92,8 @@ std::string stability_text(const Solution& solution) {
   list(floquet.real_pairs, "real pair", "");
   list(floquet.quadruples, "complex quadruple", "");
   list(floquet.circle_pairs, "pair", " on the unit circle");
-  list(floquet.trivial_pairs, "trivial pair", " at ±1 (double, known to √ε)");
+  list(floquet.trivial_pairs, "trivial pair",
+       " at ±1 (double; that of the shift in time is known, others to √ε)");
   return text + fmt::format("; largest modulus {:.9g}", std::abs(floquet.multipliers.front()));
 }
 
