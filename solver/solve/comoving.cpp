@@ -55,13 +55,14 @@ void Comoving::find_times(const Path& path, double extent, const Step& step, std
   for (int k = count - 1; k > 0; --k) times[k] += upper_[k] * times[k + 1];
 }
 
-/// The nodes' steps become those at other times.
-void Comoving::shift(const Path& path, Step& step, const std::vector<double>& times, double sense) const {
+void Comoving::take_along(const Path& path, double extent, Step& step, std::vector<double>& times) {
+  measure_slopes(path);
+  find_times(path, extent, step, times);
   const int n = path.coordinates(), s = path.degree();
   const std::size_t m = static_cast<std::size_t>(s + 1) * n;
   const std::vector<double>& lobatto = lobatto_nodal_basis(s).points;
   for (std::size_t k = 0; k < times.size(); ++k)
-    for (int a = 0; a < n; ++a) step.nodes[k * n + a] += sense * ends_[k * n + a] * times[k];
+    for (int a = 0; a < n; ++a) step.nodes[k * n + a] += ends_[k * n + a] * times[k];
   for (int k = 0; k < path.elements(); ++k) {
     const double* const slope = slopes_.data() + k * m;
     double* const inner = step.inner.data() + static_cast<std::size_t>(k / lanes) * m * lanes + k % lanes;
@@ -70,20 +71,9 @@ void Comoving::shift(const Path& path, Step& step, const std::vector<double>& ti
         const double first = ends_[k * n + a] * times[k], last = ends_[(k + 1) * n + a] * times[k + 1];
         const double time = times[k] + lobatto[j] * (times[k + 1] - times[k]);
         const double chord = first + lobatto[j] * (last - first);
-        inner[((j - 1) * n + a) * lanes] += sense * (slope[j * n + a] * time - chord);
+        inner[((j - 1) * n + a) * lanes] += slope[j * n + a] * time - chord;
       }
   }
-}
-
-void Comoving::take_along(const Path& path, double extent, Step& step, std::vector<double>& times) {
-  measure_slopes(path);
-  find_times(path, extent, step, times);
-  shift(path, step, times, 1);
-}
-
-void Comoving::leave_behind(const Path& path, Step& step, std::vector<double>& times) const {
-  shift(path, step, times, -1);
-  times.assign(times.size(), 0);
 }
 
 double strain_product(const Path& path, const std::vector<double>& a, const std::vector<double>& b) {

@@ -18,11 +18,7 @@ class Comoving {
   /// Rewrites a step of the path; `times` becomes δτ at the mesh nodes.
   void take_along(const Path& path, double extent, Step& step, std::vector<double>& times);
 
-  /// Undoes that, for the path it was done at.
-  void leave_behind(const Path& path, Step& step, std::vector<double>& times) const;
-
  private:
-  void shift(const Path& path, Step& step, const std::vector<double>& times, double sense) const;
   void measure_slopes(const Path& path);
   void find_times(const Path& path, double extent, const Step& step, std::vector<double>& times);
 

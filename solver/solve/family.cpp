@@ -13,10 +13,9 @@ namespace {
 /// Lengths are relative: root mean square over the nodes by the path's range, and the parameter by its unit.
 constexpr double first_length = 0.1, least_length = 1e-5, largest_approach = 0.2;
 constexpr double on_curve = 1e-2, close_to_curve = 1e-3, farthest_landing = 0.05, landed = 1e-5;
-/// Corrections, by the length of the step: where the second variation is nearly singular, what is left makes
-/// the tangent turn. Those that are shorter than this leave the mesh where it is, for the error of the
-/// elements varies with it.
-constexpr double corrected = 3e-3, slight = 1e-4;
+/// Of the last correction, by the length of the step: where the second variation is nearly singular, what is
+/// left makes the tangent turn.
+constexpr double corrected = 3e-3;
 /// An element keeps so much of its length in one move.
 constexpr double least_element = 0.3;
 /// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
@@ -137,7 +136,6 @@ bool ExtremalFamily::correct() {
     const double size = std::sqrt(dot(correction_, correction_));
     const bool short_enough =
         size < contraction * before && size < std::max(longest_correction * length_, on_curve);
-    if (size < slight) comoving_.leave_behind(w_.path, correction_.step, correction_.times);
     if (!short_enough || !apply(correction_, 1)) return false;
     if (size < std::min(on_curve, corrected * length_)) return true;
     before = size;

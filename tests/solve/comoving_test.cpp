@@ -126,19 +126,6 @@ TEST_F(ComovingTest, ThePathIsTheSameToFirstOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1);
 }
 
-TEST_F(ComovingTest, IsUndone) {
-  const Step at_rest = step([](double tau) { return Values{tau * (1 - tau), std::sin(pi * tau)}; });
-  Step moving = at_rest;
-  comoving_.take_along(path_, extent, moving, times_);
-  EXPECT_GT(largest_difference(moving.nodes, at_rest.nodes), 1e-3);
-  comoving_.leave_behind(path_, moving, times_);
-  EXPECT_LT(largest_difference(moving.nodes, at_rest.nodes), 1e-14);
-  EXPECT_LT(largest_difference(Values(moving.inner.begin(), moving.inner.end()),
-                               Values(at_rest.inner.begin(), at_rest.inner.end())),
-            1e-14);
-  EXPECT_EQ(strain_product(path_, times_, times_), 0);
-}
-
 TEST_F(ComovingTest, ElementsKeepAPartOfTheirLength) {
   Values times(elements + 1, 0);
   times[1] = 1.0 / elements;
