@@ -18,6 +18,7 @@ namespace bench {
 namespace {
 
 struct Options {
+  extremal::Method method = extremal::Method::newton;
   std::vector<std::string> rows;  ///< parts of what they are called; empty: all
   double tolerance = 1e-9;
   int most = 0;
@@ -42,6 +43,7 @@ std::string describe(const extremal::Problem& problem) {
 void count(const Case& test, const Options& options, extremal::Solver& solver, Tally& tally) {
   extremal::SolveOptions settings;
   settings.tolerance = options.tolerance;
+  settings.method = options.method;
   const extremal::Solution solution = solver.solve(test.problem, settings);
   ++tally.cases;
   tally.seconds.push_back(solution.seconds_solve);
@@ -104,6 +106,7 @@ bool run_several(const Options& options) {
   extremal::Solver solver;
   extremal::SolveOptions settings;
   settings.tolerance = options.tolerance;
+  settings.method = options.method;
   int wanted = 0, found = 0, wrong = 0;
   double seconds = 0;
   for (const LambertProblem& test : lambert_problems(options.most > 0 ? options.most : problems)) {
@@ -150,6 +153,11 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--tolerance", options.tolerance, "of each solve")->check(CLI::Range(1e-13, 1e-2));
   app.add_option("--cases", options.most, "at most so many of each row")->check(CLI::Range(1, 1000000));
+  const std::map<std::string, extremal::Method> methods{{"newton", extremal::Method::newton},
+                                                        {"ceres", extremal::Method::ceres},
+                                                        {"ipopt", extremal::Method::ipopt}};
+  app.add_option("--method", options.method, "what leads from the guess: newton, ceres, ipopt")
+      ->transform(CLI::CheckedTransformer(methods));
   app.add_flag("--failures", options.failures, "list what was not found");
   CLI11_PARSE(app, argc, argv);
   return bench::run(options) ? 0 : 1;

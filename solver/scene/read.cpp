@@ -110,15 +110,13 @@ SolveTable read_solve_table(const Document& document, const toml::table& table) 
   solve.tolerance = number(document, table, "tolerance");
   solve.scheme = text(document, table, "scheme");
   solve.elements = number(document, table, "elements");
-  if (const auto method = text(document, table, "method")) {
+  solve.method = text(document, table, "method");
+  if (solve.method) {
     std::vector<std::string> names;
-    for (const MethodRecord& m : method_records()) {
-      if (m.name == method->value && !m.available)
-        throw SceneError(position(*method, 0), "method '" + method->value + "' is not available yet");
-      names.emplace_back(m.name);
-    }
-    if (std::find(names.begin(), names.end(), method->value) == names.end())
-      throw UnknownName(position(*method, 0), "unknown method '" + method->value + "'", method->value, names);
+    for (const MethodRecord& m : method_records()) names.emplace_back(m.name);
+    const std::string& method = solve.method->value;
+    if (std::find(names.begin(), names.end(), method) == names.end())
+      throw UnknownName(position(*solve.method, 0), "unknown method '" + method + "'", method, names);
   }
   return solve;
 }

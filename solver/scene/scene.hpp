@@ -73,6 +73,7 @@ struct SolveTable {
   std::optional<Number> tolerance;
   std::optional<Text> scheme;
   std::optional<Number> elements;
+  std::optional<Text> method;  ///< one of method_records()
 };
 
 struct SearchTable {

@@ -78,8 +78,8 @@ constexpr Requirement needs[] = {
 
 constexpr MethodRecord methods[] = {
     {"newton", "damped Newton for the stationary point, mesh and degree raised until the tolerance is met"},
-    {"ipopt", "interior point method, for constraints along the path", false},
-    {"ceres", "least squares of the residual", false},
+    {"ceres", "least squares of the residual lead from the guess to where Newton's method ends it"},
+    {"ipopt", "the same by an interior point method with the equations as constraints"},
 };
 
 }  // namespace

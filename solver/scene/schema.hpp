@@ -58,7 +58,6 @@ std::span<const Requirement> requirements();
 /// A way of solving, for solve.method.
 struct MethodRecord {
   std::string_view name, help;
-  bool available = true;
 };
 std::span<const MethodRecord> method_records();
 

@@ -11,6 +11,7 @@
 #include "solution/observe.hpp"
 #include "solve/conjugate_ends.hpp"
 #include "solve/conservation.hpp"
+#include "solve/method.hpp"
 #include "solve/minimality.hpp"
 #include "solve/stability.hpp"
 
@@ -165,6 +166,8 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
   solution.status = outcome.status;
   solution.message = outcome.message;
   solution.strategy = outcome.strategy;
+  if (options.method != Method::newton)
+    solution.strategy += fmt::format(", led by {}", description(options.method));
   solution.iterations = outcome.iterations;
   if (outcome.status == Status::converged) {
     solution.error_estimate = outcome.error;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/method.hpp"
 #include "solve/start.hpp"
 
 namespace extremal {
@@ -86,6 +87,9 @@ bool PinnedSolve::solve_discrete(int elements) {
       w_.iteration.action().evaluate_plain(w_.path);
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
+    if (!again)
+      lead(options_.method, problem_, w_.pinned, w_.path,
+           [this] { return ++outcome_.iterations < options_.max_iterations; });
     ResidualTest test;
     const NewtonReport report = converge_to_roundoff();
     outcome_.message = report.failure;

@@ -65,10 +65,10 @@ bool RaisedModel::evaluate(DiscreteAction& action, const Path& path, const Closi
 }
 
 void RaisedModel::evaluate_gradient(DiscreteAction& action, const Path& path) {
-  low_.clear_gradient();
+  low_.equations().clear_gradient();
   action.visit(path, false,
                [&](int batch, const BatchValues& values) { restrict_batch(path, batch, values.gradient); });
-  low_.set_slope_duration(action.slope_duration());
+  low_.equations().set_slope_duration(action.slope_duration());
 }
 
 /// The gradient by polynomials of low degree, and the step of the rest.
@@ -91,7 +91,7 @@ void RaisedModel::restrict_batch(const Path& path, int batch, const double* grad
   }
   for (int k = 0; k < inner_ * n_; ++k)
     for (int lane = 0; lane < lanes; ++lane) high[k * lanes + lane] *= h[lane];
-  low_.add_gradient(batch, low);
+  low_.equations().add_gradient(batch, low);
 }
 
 void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, Step& step) {

@@ -8,6 +8,7 @@
 #include "machine/simd.hpp"
 #include "solve/descent.hpp"
 #include "solve/homotopy.hpp"
+#include "solve/method.hpp"
 
 namespace extremal {
 
@@ -132,6 +133,7 @@ bool Search::collapsed() const {
 Refinement::Result Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
   outcome_.elsewhere = strategy != from_guess;
+  lead(options_.method, problem_, refinement_.tables(), w_.path, [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
   const bool far = problem_.ends.free > 0 && magnitude_ > 0 &&

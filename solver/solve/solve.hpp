@@ -13,10 +13,23 @@
 
 namespace extremal {
 
+/// What leads from a guess to where Newton's method ends it.
+enum class Method {
+  newton,  ///< itself
+  ceres,   ///< least squares of δS_h by Levenberg and Marquardt's method (Ceres Solver)
+  ipopt,   ///< δS_h = 0 as constraints of an interior point method with a filter line search (Ipopt)
+};
+
+/// Its name, "newton", "ceres" or "ipopt".
+const char* name(Method method);
+/// Whether this build has it.
+bool available(Method method);
+
 struct SolveOptions {
   double tolerance = 1e-9;       ///< of q(t), relative to the largest range of a coordinate
   std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
   int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
+  Method method = Method::newton;
   int max_iterations = 4000;     ///< Newton steps in all, restarts from other guesses included
   std::function<void(const Iteration&)> progress;
 };

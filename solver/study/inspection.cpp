@@ -47,8 +47,7 @@ Catalogue catalogue() {
   for (const Scheme& s : schemes())
     found.schemes.push_back({s.name, fmt::format("degree {}, order {}; {}", s.degree, s.order, s.source)});
   for (const MethodRecord& m : method_records())
-    found.methods.push_back(
-        {std::string(m.name), std::string(m.help) + (m.available ? "" : " (not available yet)")});
+    found.methods.push_back({std::string(m.name), std::string(m.help)});
   return found;
 }
 

@@ -18,8 +18,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+Method read_method(const Text& text) {
+  Method method = Method::newton;
+  for (const Method other : {Method::ceres, Method::ipopt})
+    if (text.value == name(other)) method = other;
+  if (!available(method))
+    throw SceneError(position(text, 0),
+                     fmt::format("method '{}' is not part of this build; build with EXTREMAL_{}", text.value,
+                                 method == Method::ceres ? "CERES" : "IPOPT"));
+  return method;
+}
+
 SolveOptions read_options(const SolveTable& table) {
   SolveOptions options;
+  if (table.method) options.method = read_method(*table.method);
   if (table.tolerance) options.tolerance = table.tolerance->value;
   if (table.elements) options.elements = static_cast<int>(table.elements->value);
   if (!table.scheme) return options;

@@ -13,6 +13,10 @@ TEST_F(Scenes, SolveOptions) {
   EXPECT_EQ(s.options.scheme->name, "gauss(3)");
   EXPECT_EQ(s.options.elements, 0);
   EXPECT_EQ(study(masses + ends + "[solve]\nelements = 7\nscheme = \"midpoint\"\n").options.elements, 7);
+  EXPECT_EQ(s.options.method, Method::newton);
+  for (const Method method : {Method::ceres, Method::ipopt})
+    if (available(method))
+      EXPECT_EQ(study(masses + ends + "[solve]\nmethod = \"" + name(method) + "\"\n").options.method, method);
   EXPECT_GT(s.seconds_read, 0.0);
   EXPECT_EQ(message(masses + ends + "[solve]\nscheme = \"midpiont\"\n").rfind("scene.toml:11:11: ", 0), 0u);
 }

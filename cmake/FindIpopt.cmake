@@ -1,0 +1,10 @@
+# Ipopt has no CMake file: ipopt::ipopt, by pkg-config, whose flags its headers need.
+include(FindPackageHandleStandardArgs)
+find_package(PkgConfig QUIET)
+if(PKG_CONFIG_FOUND)
+  pkg_check_modules(IPOPT QUIET IMPORTED_TARGET ipopt)
+endif()
+find_package_handle_standard_args(Ipopt REQUIRED_VARS IPOPT_LINK_LIBRARIES VERSION_VAR IPOPT_VERSION)
+if(Ipopt_FOUND AND NOT TARGET ipopt::ipopt)
+  add_library(ipopt::ipopt ALIAS PkgConfig::IPOPT)
+endif()

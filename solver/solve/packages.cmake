@@ -1,0 +1,13 @@
+# Each is used behind a method of its own and may be left out.
+option(EXTREMAL_CERES "Least squares by Ceres Solver: method = \"ceres\"" ON)
+option(EXTREMAL_IPOPT "Interior points by Ipopt: method = \"ipopt\"" ON)
+if(EXTREMAL_CERES)
+  extremal_package(Ceres)
+  target_link_libraries(${target} PRIVATE Ceres::ceres)
+  target_compile_definitions(${target} PRIVATE EXTREMAL_CERES)
+endif()
+if(EXTREMAL_IPOPT)
+  extremal_package(Ipopt)
+  target_link_libraries(${target} PRIVATE ipopt::ipopt)
+  target_compile_definitions(${target} PRIVATE EXTREMAL_IPOPT)
+endif()
