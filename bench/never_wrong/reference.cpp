@@ -103,7 +103,11 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
   if (study.problem.coordinates() > most_reference_coordinates) return std::nullopt;
   extremal::Study again = study;
   again.problem.guess = as_guess(solution.trajectory);
-  if (again.problem.duration.free) again.problem.duration.value = solution.duration();
+  extremal::Duration& duration = again.problem.duration;
+  if (duration.free) duration.value = solution.duration();
+  // A condition that periodic orbits of every energy meet, each at its own phase, leaves a family of them:
+  // that of this duration is as near as any.
+  if (study.problem.periodic && duration.where) duration = {.value = solution.duration()};
   again.options = {};
   extremal::Solution reference;
   for (double tolerance = tightest; tolerance < 1e-10; tolerance *= 10) {
