@@ -80,9 +80,8 @@ Piece SecondVariation::piece(int k) const {
 }
 
 int SecondVariation::piece_at(double t) const {
-  const auto after = std::upper_bound(pieces_.begin(), pieces_.end() - 1, t, [](double time, const Kept& k) {
-    return time < k.start + k.length;
-  });
+  const auto after = std::upper_bound(pieces_.begin(), pieces_.end() - 1, t,
+                                      [](double time, const Kept& k) { return time < k.start + k.length; });
   return static_cast<int>(after - pieces_.begin());
 }
 

@@ -43,12 +43,10 @@ double natural_residual(const Problem& problem, const DiscreteAction& action, co
     left[z.column] += z.value * (start ? action.start_gradient()[a] : action.end_gradient()[a]);
     const std::vector<double>& block = start ? action.nodes.first : action.nodes.last;
     if (block.empty()) continue;  // a sparse matrix
-    for (int b = 0; b < n; ++b)
-      rounding[z.column] += roundoff * std::abs(z.value * block[a * n + b]) * q[b];
+    for (int b = 0; b < n; ++b) rounding[z.column] += roundoff * std::abs(z.value * block[a * n + b]) * q[b];
   }
   double largest = 0;
-  for (std::size_t c = 0; c < left.size(); ++c)
-    largest = std::max(largest, std::abs(left[c]) - rounding[c]);
+  for (std::size_t c = 0; c < left.size(); ++c) largest = std::max(largest, std::abs(left[c]) - rounding[c]);
   return largest;
 }
 

@@ -132,7 +132,8 @@ Refinement::Result Search::pursue(const char* strategy) {
   outcome_.elsewhere = strategy != from_guess;
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
-  const bool far = ran_away(problem_, magnitude_, scales(w_.path, refinement_.tables()).magnitude);
+  const bool far = problem_.ends.free > 0 &&
+                   ran_away(problem_, magnitude_, scales(w_.path, refinement_.tables()).magnitude);
   if (result == Refinement::Result::converged && far && problem_.periodic) {
     outcome_.message = "the orbit ran away to where forces vanish";
     result = Refinement::Result::failed;
