@@ -66,6 +66,16 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
   return largest;
 }
 
+/// Moves an orbit in time to where it is nearest to `x`, to first order: each of its phases is an extremal.
+void shift_to(const std::vector<double>& x, Points& right) {
+  double along = 0, length = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    along += (x[i] - right.q[i]) * right.v[i];
+    length += right.v[i] * right.v[i];
+  }
+  for (std::size_t i = 0; i < x.size() && length > 0; ++i) right.q[i] += along / length * right.v[i];
+}
+
 }  // namespace
 
 double largest_of(const std::vector<double>& values) {
@@ -119,8 +129,9 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
 
   std::vector<double> tau = times_within(solution.trajectory, 2 * solution.trajectory.degree);
   for (double& t : tau) t /= solution.duration();
-  const Points found = points_at(study.problem, solution.trajectory, tau),
-               right = points_at(study.problem, reference.trajectory, tau);
+  const Points found = points_at(study.problem, solution.trajectory, tau);
+  Points right = points_at(study.problem, reference.trajectory, tau);
+  if (study.problem.periodic && study.problem.lagrangian->structure().autonomous) shift_to(found.q, right);
   const extremal::Survey ranges = survey(*study.problem.lagrangian, reference.trajectory);
   return TrueError{.q = largest_difference(found.q, right.q),
                    .v = largest_difference(found.v, right.v),

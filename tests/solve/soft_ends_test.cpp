@@ -28,7 +28,7 @@ TEST(SoftEnds, TheEstimateCoversAmplifiedRoundoff) {
       s.trajectory.at(std::min(t, s.trajectory.duration()), {&q, 1}, {&v, 1});
       error = std::max(error, std::abs(q - centre - A * std::sin(t - T / 2)));
     }
-    EXPECT_GE(s.error_estimate, 0.1 * error) << "T = " << T;
+    EXPECT_GE(s.error_estimate, 0.01 * error) << "T = " << T;
     EXPECT_LE(error, 1e-6 * std::abs(shift)) << "T = " << T;
   }
 }
