@@ -36,7 +36,7 @@ class PinnedSolve {
   Scheme scheme_;
   Outcome outcome_;
   double magnitude_ = 0;  ///< of the guess
-  double cost_ = 0;        ///< nanoseconds so far, by batch_cost()
+  double cost_ = 0;       ///< nanoseconds so far, by batch_cost()
 };
 
 }  // namespace extremal
