@@ -66,6 +66,16 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
   return largest;
 }
 
+/// Moves an orbit in time to where it is nearest to `x`, to first order: each of its phases is an extremal.
+void shift_to(const std::vector<double>& x, Points& right) {
+  double along = 0, length = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    along += (x[i] - right.q[i]) * right.v[i];
+    length += right.v[i] * right.v[i];
+  }
+  for (std::size_t i = 0; i < x.size() && length > 0; ++i) right.q[i] += along / length * right.v[i];
+}
+
 }  // namespace
 
 double largest_of(const std::vector<double>& values) {
@@ -103,7 +113,11 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
   if (study.problem.coordinates() > most_reference_coordinates) return std::nullopt;
   extremal::Study again = study;
   again.problem.guess = as_guess(solution.trajectory);
-  if (again.problem.duration.free) again.problem.duration.value = solution.duration();
+  extremal::Duration& duration = again.problem.duration;
+  if (duration.free) duration.value = solution.duration();
+  // A condition that periodic orbits of every energy meet, each at its own phase, leaves a family of them:
+  // that of this duration is as near as any.
+  if (study.problem.periodic && duration.where) duration = {.value = solution.duration()};
   again.options = {};
   extremal::Solution reference;
   for (double tolerance = tightest; tolerance < 1e-10; tolerance *= 10) {
@@ -115,8 +129,9 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
 
   std::vector<double> tau = times_within(solution.trajectory, 2 * solution.trajectory.degree);
   for (double& t : tau) t /= solution.duration();
-  const Points found = points_at(study.problem, solution.trajectory, tau),
-               right = points_at(study.problem, reference.trajectory, tau);
+  const Points found = points_at(study.problem, solution.trajectory, tau);
+  Points right = points_at(study.problem, reference.trajectory, tau);
+  if (study.problem.periodic && study.problem.lagrangian->structure().autonomous) shift_to(found.q, right);
   const extremal::Survey ranges = survey(*study.problem.lagrangian, reference.trajectory);
   return TrueError{.q = largest_difference(found.q, right.q),
                    .v = largest_difference(found.v, right.v),

@@ -25,6 +25,8 @@ constexpr double least_pivot = 1e-3;
 constexpr std::size_t most_kept = 1 << 23;
 /// Of an element, halved again and again.
 constexpr double shortest_part = 0x1p-12;
+/// Pieces, or so many of an element, at most.
+constexpr int most_pieces = 1 << 14, most_of_element = 16;
 
 /// Values q, n entries, at tau of the polynomial through `nodes`.
 void interpolate(const Barycentric& at, double tau, const double* nodes, int n, double* q) {
@@ -62,6 +64,7 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
   pieces_.clear();
   forms_.clear();
+  too_many_ = false;
   const bool regular = cut();
   if (!regular) pieces_.clear();
   evaluated_ = regular ? pieces_.back().first : -1;
@@ -74,6 +77,12 @@ Piece SecondVariation::piece(int k) const {
   const double* forms = forms_.data() + static_cast<std::size_t>(k) * 3 * n * n;
   return {
       pieces_[k].start, pieces_[k].length, {forms, n, n}, {forms + n * n, n, n}, {forms + 2 * n * n, n, n}};
+}
+
+int SecondVariation::piece_at(double t) const {
+  const auto after = std::upper_bound(pieces_.begin(), pieces_.end() - 1, t,
+                                      [](double time, const Kept& k) { return time < k.start + k.length; });
+  return static_cast<int>(after - pieces_.begin());
 }
 
 /// p' = ∂L/∂q.
@@ -94,6 +103,7 @@ Eigen::VectorXd SecondVariation::shift(int k) const {
 
 /// Evaluates parts, eight at a time, in the order of time, and halves those that are too long.
 bool SecondVariation::cut() {
+  const int most = std::max(most_pieces, most_of_element * trajectory_->elements());
   waiting_.clear();  // the next one last
   for (int k = trajectory_->elements(); k-- > 0;) waiting_.push_back({k, 0, 1});
   while (!waiting_.empty()) {
@@ -104,6 +114,8 @@ bool SecondVariation::cut() {
     waiting_.resize(waiting_.size() - count);
     if (resolved(static_cast<int>(count))) {
       keep(batch_);
+      too_many_ = this->count() + static_cast<int>(waiting_.size()) > most;
+      if (too_many_) return false;
       continue;
     }
     for (auto part = batch_.rbegin(); part != batch_.rend(); ++part) {

@@ -29,14 +29,19 @@ class SecondVariation {
   static constexpr int most_to_find_all = 128;
 
   /// The trajectory must outlive it. False where no piece is short enough: L_vv is not positive definite
-  /// somewhere (Legendre's condition), or the second derivatives of L are not finite; there are no pieces
-  /// then. Throws std::invalid_argument for more than most_coordinates.
+  /// somewhere (Legendre's condition), or the second derivatives of L are not finite; or where it takes too
+  /// many, since elements do not resolve the fields by far. There are no pieces then. Throws
+  /// std::invalid_argument for more than most_coordinates.
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory);
+  /// Whether assemble() failed because there would be too many pieces.
+  bool too_many() const { return too_many_; }
 
   int coordinates() const { return trajectory_->coordinates; }
   int count() const { return static_cast<int>(pieces_.size()); }
   Piece piece(int k) const;
   double end(int k) const { return pieces_[k].start + pieces_[k].length; }
+  /// The first piece that ends after t, or the last.
+  int piece_at(double t) const;
   /// (q', p') at the start of piece k, or, for k = count(), at T: where L does not depend on t, the field of
   /// the shift in time.
   Eigen::VectorXd shift(int k) const;
@@ -69,6 +74,7 @@ class SecondVariation {
   std::unique_ptr<SchemeTables> scheme_;
   ElementTables tables_;
 
+  bool too_many_ = false;
   std::vector<Kept> pieces_;
   std::vector<double> forms_;  ///< A, B, D of each piece
 

@@ -30,8 +30,7 @@ void find_conjugate_times(SecondVariation& variation, Minimality& result) {
 
 /// The first time conjugate to `start`, not after T; infinite if there is none.
 double next_conjugate_time(SecondVariation& variation, double start) {
-  int k = 0;
-  while (k + 1 < variation.count() && variation.end(k) <= start) ++k;
+  int k = variation.piece_at(start);
   JacobiFields fields;
   const Piece piece = variation.piece(k);
   fields.begin(variation, k, std::max(0.0, (start - piece.start) / piece.length));

@@ -13,6 +13,7 @@
 #include "solve/conservation.hpp"
 #include "solve/method.hpp"
 #include "solve/minimality.hpp"
+#include "solve/residual_test.hpp"
 #include "solve/stability.hpp"
 
 namespace extremal {
@@ -26,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 /// Of the largest momentum.
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
-constexpr double least_roundoff = 1e-11;
+constexpr double least_roundoff = 1e-13;
 constexpr double least_null = 1e-8, largest_null = 1e-3;
 double null_threshold(double error, double size) {
   return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
@@ -57,7 +58,7 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
 
 /// Forces so strong that steps are roundoff while δS is not: atoms that overlap.
 bool balanced(const Solution& solution, Workspace& w) {
-  const double roundoff = 1e-12 * w.iteration.stiffness() * scales(w.path, *w.final_tables).magnitude;
+  const double roundoff = 1e-12 * w.iteration.stiffness() * size_at_start(w.path);
   return solution.residual <= largest_residual || w.iteration.residual() <= roundoff;
 }
 
@@ -75,12 +76,11 @@ bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
 
 /// What is left of the natural conditions must be within the error that momenta may have: where forces hardly
 /// change them, that may be far below the momenta.
-bool within_momenta(const Survey& survey, double tolerance, Workspace& w) {
-  const double momentum = w.iteration.action().momentum_scale();
+bool within_momenta(const Problem& problem, const Survey& survey, double tolerance, Workspace& w) {
+  const DiscreteAction& action = w.iteration.action();
   const double range = *std::max_element(survey.p.begin(), survey.p.end());
-  const double roundoff =
-      least_roundoff * momentum + 1e-14 * w.iteration.stiffness() * scales(w.path, *w.final_tables).magnitude;
-  return w.iteration.residual() <= std::max(10 * tolerance * range, roundoff);
+  return natural_residual(problem, action, w.path) <=
+         std::max(10 * tolerance * range, least_roundoff * action.momentum_scale());
 }
 
 /// Whether the elements have seen all of the path, and the equations had a solution.
@@ -99,7 +99,7 @@ void judge_resolution(const Problem& problem, const SolveOptions& options, const
         "elements the path passes a singularity or a kink that they do not resolve; try another tolerance",
         *solution.energy_drift, options.tolerance);
   } else if (found && problem.ends.free > 0 && !options.scheme &&
-             !within_momenta(*found, options.tolerance, w)) {
+             !within_momenta(problem, *found, options.tolerance, w)) {
     solution.status = Status::not_converged;
     solution.message = fmt::format(
         "a residual of {:.1e} of the largest momentum is left, more than momenta change by within the "

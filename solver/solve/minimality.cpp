@@ -35,7 +35,9 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
     return INFINITY;
   }
   if (!memory.assemble(problem.lagrangian, solution.trajectory)) {
-    solution.message += "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
+    solution.message += memory.too_many()
+                            ? "; windows are not found: Jacobi fields vary too fast for its elements"
+                            : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
     return INFINITY;
   }
   const bool bounded = problem.curvature && is_natural(problem.lagrangian->structure());

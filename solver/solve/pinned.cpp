@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/simd.hpp"
 #include "solve/method.hpp"
 #include "solve/start.hpp"
 
@@ -18,12 +19,15 @@ constexpr int most_elements = 1 << 20;
 /// An error below the second (relative) that more elements reduce less than by the first is roundoff.
 constexpr double stagnation = 0.9, near_roundoff = 1e-9;
 constexpr int steps = 100;
+/// From an extremal to its companion, which is near or none.
+constexpr int companion_steps = 25;
 /// Elements become at most so many times more at once.
 constexpr double most_growth = 16;
 /// An error within this factor of what its order lets expect falls regularly.
 constexpr double regular_fall = 0.5;
-/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails.
-constexpr double most_cost = 1e8;
+/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails, and no more of the
+/// steps that are dearer than others; and of one step.
+constexpr double most_cost = 1e8, most_step_cost = 5e8;
 constexpr double roundoff = 1e-15;
 /// Relative to the largest momentum; of periodic paths.
 constexpr double stationary_residual = 1e-10;
@@ -38,16 +42,26 @@ void PinnedSolve::bind(int points) {
   w_.pinned.bind(*w_.pinned_scheme, *problem_.lagrangian);
 }
 
+/// Newton's method on elements of `tables`, at its end where steps need pivoting and cost more than that many
+/// steps without.
+NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, double goal, int most_steps) {
+  const double step = path.batches() * batch_cost(tables, path.degree());
+  const double most = std::max(most_cost, most_steps * step);
+  double cost = 0;
+  const NewtonReport report = converge(w_.iteration, path, tables, {goal, most_steps}, [&] {
+    if (&tables == &w_.pinned) outcome_.record(w_, options_);
+    cost += step * w_.iteration.burden();
+    return cost < most;
+  });
+  cost_ += cost;
+  return report;
+}
+
 /// Each phase of a periodic path is nearly as good as the others. Of those that are stationary the next is
 /// found, perhaps not to many digits.
 NewtonReport PinnedSolve::converge_to_roundoff() {
   const auto run = [&] {
-    return converge(w_.iteration, w_.path, w_.pinned, {roundoff, std::min(steps, options_.max_iterations)},
-                    [this] {
-                      outcome_.record(w_, options_);
-                      cost_ += w_.path.batches() * batch_cost(w_.pinned, scheme_.degree);
-                      return true;
-                    });
+    return run_newton(w_.pinned, w_.path, roundoff, std::min(steps, options_.max_iterations));
   };
   if (!problem_.periodic) return run();
   const auto stationary = [&] {
@@ -87,14 +101,17 @@ bool PinnedSolve::solve_discrete(int elements) {
       w_.iteration.action().evaluate_plain(w_.path);
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
-    if (!again)
+    if (!again) {
+      magnitude_ = scales(w_.path, w_.pinned).magnitude;
       lead(options_.method, problem_, w_.pinned, w_.path,
            [this] { return ++outcome_.iterations < options_.max_iterations; });
+    }
     ResidualTest test;
     const NewtonReport report = converge_to_roundoff();
     outcome_.message = report.failure;
     if (!report.reached) return false;
-    if (!test.passed(problem_, w_.iteration, w_.path, scales(w_.path, w_.pinned).magnitude)) {
+    w_.iteration.residual_at(w_.path);
+    if (!test.passed(problem_, w_.iteration, w_.path)) {
       outcome_.message = test.message();
       return false;
     }
@@ -132,7 +149,7 @@ double PinnedSolve::distance_to_companion() {
     w_.other.interpolate_from(w_.path, tables, w_.levels.raise(w_.path.degree(), degree));
   const Path start = w_.other;
   w_.iteration.reset(problem_, tables, w_.other.elements());
-  const NewtonReport report = converge(w_.iteration, w_.other, tables, {1e-12, steps}, {});
+  const NewtonReport report = run_newton(tables, w_.other, 1e-12, companion_steps);
   if (!report.reached) return INFINITY;
   w_.resolution.measure(w_.other, tables);
   double distance = w_.resolution.at(degree).q + report.remaining * scales(w_.other, tables).q;
@@ -150,9 +167,17 @@ double PinnedSolve::wanted_growth() const {
   return std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order());
 }
 
+/// Elements.
+int PinnedSolve::most_affordable() {
+  bind(scheme_.points);
+  return static_cast<int>(
+      std::min<double>(most_elements, lanes * most_step_cost / batch_cost(w_.pinned, scheme_.degree)));
+}
+
 Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
+  const int most = most_affordable();
   double before = INFINITY, expected = 0;  // errors: the last, and what this one should be
   for (;; before = outcome_.error) {
     if (!solve_discrete(elements)) {
@@ -165,9 +190,15 @@ Outcome PinnedSolve::run() {
     outcome_.tolerance = options_.tolerance * size.q;
     outcome_.tables = &w_.pinned;
     if (!std::isfinite(outcome_.error)) {
-      if (options_.elements == 0 && elements < most_elements) {
+      if (options_.elements == 0 && elements < most && cost_ < most_cost) {
         elements *= 2;
         continue;
+      }
+      if (options_.elements == 0) {
+        outcome_.message = fmt::format(
+            "no extremal was found near that of {} elements with others of higher degree; try another guess",
+            elements);
+        break;
       }
       // No better extremal is near: the discrete one may be an artefact of the mesh.
       outcome_.error = size.q;
@@ -175,6 +206,7 @@ Outcome PinnedSolve::run() {
     if (options_.elements > 0 || outcome_.error <= outcome_.tolerance) {
       outcome_.status = Status::converged;
       outcome_.message = "converged";
+      outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
       break;
     }
     if (outcome_.error > stagnation * before && outcome_.error < near_roundoff * size.q) {
@@ -185,10 +217,10 @@ Outcome PinnedSolve::run() {
     // An error that falls as expected tells what is needed in the end; else what is next.
     const bool regular = outcome_.error > regular_fall * expected && outcome_.error < expected / regular_fall;
     const double growth = wanted_growth();
-    if (elements * (regular ? growth : std::min(growth, most_growth)) > most_elements) {
+    if (elements * (regular ? growth : std::min(growth, most_growth)) > most) {
       outcome_.message =
           fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
-                      scheme_.name, most_elements, options_.tolerance);
+                      scheme_.name, most, options_.tolerance);
       break;
     }
     const double factor = std::clamp(growth, 1.1, most_growth);

@@ -19,11 +19,13 @@ class PinnedSolve {
   Outcome run();
 
  private:
+  NewtonReport run_newton(const ElementTables& tables, Path& path, double goal, int most_steps);
   NewtonReport converge_to_roundoff();
   bool solve_discrete(int elements);
   bool exact_quadrature_settled();
   double distance_to_companion();
   double wanted_growth() const;
+  int most_affordable();
   /// Of the error of q throughout, not of the nodes alone.
   int order() const { return std::min(scheme_.order, scheme_.degree + 1); }
   void bind(int points);
@@ -33,7 +35,8 @@ class PinnedSolve {
   Workspace& w_;
   Scheme scheme_;
   Outcome outcome_;
-  double cost_ = 0;
+  double magnitude_ = 0;  ///< of the guess
+  double cost_ = 0;       ///< nanoseconds so far, by batch_cost()
 };
 
 }  // namespace extremal

@@ -28,7 +28,8 @@ double batch_cost(const ElementTables& tables, int degree) {
   const double n = tables.coordinates(), s = tables.scheme().degree;
   if (tables.unknowns() > most_dense_unknowns) return 2e3 * n * (degree + 1);  // one sparse matrix
   const double assembly = std::min(n, 3.0) * n * (degree + 1) * (degree + 1);
-  const double elimination = tables.condensation().fronts.work() * std::pow((degree - 1) / (s - 1), 3) / 12;
+  const double elimination =
+      s > 1 ? tables.condensation().fronts.work() * std::pow((degree - 1) / (s - 1), 3) / 12 : 0;
   return 200 + assembly + elimination + 1.7 * n * n * n;
 }
 

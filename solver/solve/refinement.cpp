@@ -27,6 +27,8 @@ constexpr double loosest_newton = 1e-6;
 constexpr double most_phase_force = 1e-7;
 /// Steps that end what Newton's method began.
 constexpr int most_polish = 3;
+/// They use the factors there are as long as they contract so much.
+constexpr double worst_chord = 0.5;
 /// Times that elements are planned before all are halved.
 constexpr int most_plans = 6;
 /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
@@ -249,26 +251,45 @@ Refinement::Attempt Refinement::attempt() {
     // What Newton's method had left to do is no error of the elements, or not all of it.
     nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
     const Attempt result = judge(newton, aim, nodes);
-    if (result == Attempt::converged && !solved()) {
-      worst_ = INFINITY;  // what holds the phase is an error of the elements
-      return problem_.periodic && test_.share() <= options_.tolerance ? Attempt::refine : Attempt::failed;
+    if (result == Attempt::converged) {
+      const Attempt settled = settle();
+      if (settled == Attempt::refine) worst_ = INFINITY;
+      return settled;
     }
     if (result != Attempt::refine) return result;
   }
 }
 
-/// Newton's method may have left a residual within the tolerance; few more steps then make it roundoff.
-bool Refinement::solved() {
-  for (int step = 0;; ++step) {
-    const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
-    if (test_.passed(problem_, w_.iteration, w_.path, scales_.magnitude, phase)) return true;
-    const double allowed = std::min(10 * options_.tolerance, loosest_newton);
-    if (step == most_polish || test_.share() > allowed || exhausted()) break;
-    if (w_.iteration.full_step(w_.path, 0) != StepResult::ok) break;
+/// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
+/// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows.
+/// A residual that was left within the tolerance becomes roundoff in a few.
+Refinement::Attempt Refinement::settle() {
+  if (problem_.ends.free == 0) return Attempt::converged;
+  const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
+  NewtonIteration& newton = w_.iteration;
+  bool passed = false;
+  for (int step = 0; step <= most_polish; ++step) {
+    const bool again = step == 0 || newton.contraction() <= worst_chord;
+    const StepResult result = again ? newton.chord_step(w_.path) : newton.full_step(w_.path, 0);
     record();
+    passed = result == StepResult::ok && test_.passed(problem_, newton, w_.path, phase);
+    if (passed && newton.norm() <= options_.tolerance) {
+      outcome_.error += newton.norm() * scales_.q;
+      return Attempt::converged;
+    }
+    const double allowed = std::min(10 * options_.tolerance, loosest_newton);
+    if (result != StepResult::ok || test_.share() > allowed || exhausted()) break;
   }
-  outcome_.message = test_.message();
-  return false;
+  outcome_.message = passed ? hidden(newton.norm()) : test_.message();
+  if (passed) return Attempt::unreachable;
+  // What holds the phase is an error of the elements.
+  return problem_.periodic && test_.share() <= options_.tolerance ? Attempt::refine : Attempt::failed;
+}
+
+/// A tolerance, by what roundoff became.
+std::string Refinement::hidden(double amplified) const {
+  return fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
+                     amplified, options_.tolerance);
 }
 
 /// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
@@ -288,9 +309,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   outcome_.tolerance = options_.tolerance * scales_.q;
   outcome_.error = error.q + newton.most_remaining * scales_.q;
   if (newton.remaining > std::max(options_.tolerance, aim)) {
-    outcome_.message =
-        fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
-                    newton.remaining, options_.tolerance);
+    outcome_.message = hidden(newton.remaining);
     return Attempt::unreachable;
   }
   // Of so many walks the longest is expected to be this much longer than one.

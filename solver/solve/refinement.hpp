@@ -76,7 +76,8 @@ class Refinement {
   void adopt(const Plan& plan);
   void refine();
   void record();
-  bool solved();
+  Attempt settle();
+  std::string hidden(double amplified) const;
   double step_cost() const;
 
   const Problem& problem_;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace extremal {
 
@@ -13,14 +15,49 @@ constexpr double least = 1e-10;
 /// Of a body at rest, relative to forces that cancel.
 constexpr double roundoff = 1e-14;
 
+/// Largest |q| of each coordinate.
+std::vector<double> magnitudes(const Path& path) {
+  const std::size_t n = path.coordinates();
+  std::vector<double> largest(n, 0);
+  for (std::size_t i = 0; i < path.nodes().size(); ++i)
+    largest[i % n] = std::max(largest[i % n], std::abs(path.nodes()[i]));
+  return largest;
+}
+
 }  // namespace
 
-bool ResidualTest::passed(const Problem& problem, NewtonIteration& newton, const Path& path, double magnitude,
+double size_at_start(const Path& path) {
+  double largest = 0;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(path.coordinates()); ++a)
+    largest = std::max(largest, std::abs(path.node(0)[a]));
+  return largest;
+}
+
+double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path) {
+  const int n = path.coordinates();
+  const std::vector<double> q = magnitudes(path);
+  std::vector<double> left(problem.ends.free, 0), rounding(problem.ends.free, 0);
+  for (const Triplet& z : problem.ends.z) {
+    const bool start = z.row < n;
+    const int a = start ? z.row : z.row - n;
+    left[z.column] += z.value * (start ? action.start_gradient()[a] : action.end_gradient()[a]);
+    const std::vector<double>& block = start ? action.nodes.first : action.nodes.last;
+    if (block.empty()) continue;  // a sparse matrix
+    for (int b = 0; b < n; ++b) rounding[z.column] += roundoff * std::abs(z.value * block[a * n + b]) * q[b];
+  }
+  double largest = 0;
+  for (std::size_t c = 0; c < left.size(); ++c) largest = std::max(largest, std::abs(left[c]) - rounding[c]);
+  return largest;
+}
+
+bool ResidualTest::passed(const Problem& problem, const NewtonIteration& newton, const Path& path,
                           double allowed) {
   if (problem.ends.free == 0) return true;
-  const double left = newton.residual_at(path), momentum = newton.action().momentum_scale();
+  const double left = newton.residual(), momentum = newton.action().momentum_scale(),
+               part = std::max(least, allowed) * momentum;
   share_ = left / momentum;
-  return left <= std::max({std::max(least, allowed) * momentum, roundoff * newton.stiffness() * magnitude});
+  return natural_residual(problem, newton.action(), path) <= part &&
+         left <= std::max(part, roundoff * newton.stiffness() * size_at_start(path));
 }
 
 std::string ResidualTest::message() const {

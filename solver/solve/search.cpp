@@ -35,8 +35,6 @@ constexpr double most_work = 1e7;
 constexpr double least_steps = 100;
 /// Tries to move the default guess to where L is finite.
 constexpr unsigned most_bends = 8;
-/// A path so much larger than the guess has run away to where forces vanish.
-constexpr double runaway = 100;
 /// A periodic path that is so much smaller than the guess is at rest.
 constexpr double rest = 1e-6;
 /// Starts with noise that are cheaper than other durations are; and at most.
@@ -136,8 +134,8 @@ Refinement::Result Search::pursue(const char* strategy) {
   lead(options_.method, problem_, refinement_.tables(), w_.path, [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
-  const bool far = problem_.ends.free > 0 && magnitude_ > 0 &&
-                   scales(w_.path, refinement_.tables()).magnitude > runaway * magnitude_;
+  const bool far = problem_.ends.free > 0 &&
+                   ran_away(problem_, magnitude_, scales(w_.path, refinement_.tables()).magnitude);
   if (result == Refinement::Result::converged && far && problem_.periodic) {
     outcome_.message = "the orbit ran away to where forces vanish";
     result = Refinement::Result::failed;
@@ -146,6 +144,7 @@ Refinement::Result Search::pursue(const char* strategy) {
     unheld_ = w_.path;
     result = Refinement::Result::failed;
   }
+  outcome_.elsewhere = outcome_.elsewhere || far;
   if (collapsed()) {
     outcome_.message = "the orbit shrank to a point of equilibrium";
     shrank_ = true;

@@ -11,6 +11,9 @@ namespace extremal {
 
 namespace {
 
+/// A path so much larger than the guess has run away.
+constexpr double runaway = 100;
+
 /// The point x of the affine set { offset + Z y } nearest to `target`; ends that no general row couples
 /// are handled one by one, so that only the coupled ones are ever dense.
 std::vector<double> nearest(const EndMap& ends, const std::vector<double>& target) {
@@ -101,6 +104,10 @@ void meet_ends(const Problem& problem, Path& path) {
     if (ends[n + a] != now[n + a]) path.set_node(last, static_cast<int>(a), ends[n + a]);
   }
   path.load_ends();
+}
+
+bool ran_away(const Problem& problem, double first, double magnitude) {
+  return problem.ends.free > 0 && first > 0 && magnitude > runaway * first;
 }
 
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,

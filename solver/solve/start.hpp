@@ -25,6 +25,10 @@ void meet_ends(const Problem& problem, Path& path);
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path);
 
+/// Whether a path of the largest |q| `magnitude` has run away from a guess of `first`, where the ends let it:
+/// to where forces vanish, most likely.
+bool ran_away(const Problem& problem, double first, double magnitude);
+
 /// Fills `path` (already reset) with that whose values are at(τ, q), and at the ends those of `ends`.
 template <class At>
 void fill_path(const std::vector<double>& ends, const ElementTables& tables, Path& path, const At& at) {

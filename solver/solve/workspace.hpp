@@ -33,9 +33,10 @@ struct Outcome {
   Status status = Status::not_converged;
   std::string message;
   const char* strategy = "newton from the guess";
-  bool elsewhere = false;  ///< reached in another way than by Newton's method from the guess
-  double error = 0;        ///< of q, absolute
-  double tolerance = 0;    ///< absolute
+  /// Reached in another way than by Newton's method from the guess, or far from it.
+  bool elsewhere = false;
+  double error = 0;      ///< of q, absolute
+  double tolerance = 0;  ///< absolute
   int iterations = 0;
   const ElementTables* tables = nullptr;
 

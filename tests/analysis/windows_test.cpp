@@ -72,6 +72,16 @@ TEST(Windows, OfManyCoordinates) {
 }
 
 /// The second variation is positive definite up to the conjugate time, exclusively.
+/// Elements of a pinned scheme may be too long by far for the fields along them: the effort is bounded, and
+/// it is said.
+TEST(Windows, AreNoneWhereFieldsVaryTooFast) {
+  const Problem problem = fixed_ends(systems::oscillator(1e5), {0}, {1}, 1);
+  const Solution s = solve(problem, pinned(scheme("midpoint"), 32));
+  EXPECT_TRUE(s.windows.empty());
+  EXPECT_FALSE(s.conjugate_times_known);
+  EXPECT_NE(s.message.find("Jacobi fields vary too fast"), std::string::npos) << s.message;
+}
+
 TEST(Windows, EndBeforeTheConjugateTime) {
   for (double T : {pi * (1 - 1e-5), pi * (1 + 1e-5)}) {
     const Solution s = solve(fixed_ends(systems::oscillator(1), {0}, {1}, T), within(1e-6));

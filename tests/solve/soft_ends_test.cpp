@@ -1,0 +1,49 @@
+#include "solve/laws.hpp"
+
+/// \file Ends that are free along directions which are nearly null: paths that come to rest beside the
+/// equations are no solutions.
+
+namespace extremal::laws {
+namespace {
+
+/// A sphere in kilometres near its pole: v has hardly a mass there, and what counts as roundoff of the force
+/// on u is no excuse for what is left of its condition.
+TEST(SoftEnds, RoundoffIsThatOfTheRow) {
+  const auto sphere = trace(2, [](auto q, auto v, auto) {
+    const auto across = cos(q[0]) * v[1];
+    return 6378.0 * 6378.0 * (v[0] * v[0] + across * across) / 2.0;
+  });
+  const Problem problem = with_ends(sphere, 0.8354586921666689, [](BoundaryRelation& b) {
+    const int row = b.add_row(-2.2288916287209277);
+    b.add(row, 2, 0.7532838229981538);
+    b.add(row, 3, -1);
+  });
+  const Solution s = Solver().solve(problem, within(2.7e-6));
+  if (!s.converged()) return;
+  const double momentum = std::max(std::abs(s.momentum_start[0]), std::abs(s.momentum_start[1]));
+  EXPECT_LE(momentum, 1e-12 * 6378.0 * 6378.0) << s.message;
+}
+
+/// A charge in the field of a dipole, which vanishes far away: so do all conditions on momenta.
+TEST(SoftEnds, FarAwayNothingIsAnExtremal) {
+  const auto dipole = trace(3, [](auto q, auto v, auto) {
+    const auto r = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+    return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2.0 + (q[0] * v[1] - q[1] * v[0]) / (r * r * r);
+  });
+  const Problem problem = with_ends(dipole, 1.1414026945963431, [](BoundaryRelation& b) {
+    const int z = b.add_row(-0.07790247356864485);
+    b.add(z, 2, 1.0458739576305751);
+    b.fix(0, true, 0.6296938642969294);
+    const int both = b.add_row(1.0478610033430418);
+    b.add(both, 5, 1);
+    b.add(both, 0, 1.83266576468293);
+  });
+  SolveOptions options = within(1.2e-8);
+  options.scheme = lobatto(12);
+  const Solution s = Solver().solve(problem, options);
+  EXPECT_FALSE(s.converged());
+  EXPECT_FALSE(s.message.empty());
+}
+
+}  // namespace
+}  // namespace extremal::laws
