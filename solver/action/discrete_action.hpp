@@ -97,13 +97,28 @@ class DiscreteAction {
  private:
   /// In doubles: what elimination works on, the gradient and the border after it; a vector; a row of points.
   struct Sizes {
-    std::size_t matrix, vector, points;
+    std::size_t matrix, vector, points, sums;
   };
-  ElementBatch batch(const Path& path, int b);
-  void play(const ElementBatch& batch, Order order);
+  /// What a batch leaves to be summed up, in lanes; the gradient at the ends of the elements last.
+  enum Sum { of_action, of_slope, of_corner, of_negative, of_ratio, of_residual, of_ends };
+  double* sums(int b, Sum sum) { return sums_.data() + b * sizes_.sums + sum * lanes; }
+  /// What one batch is evaluated on; each thread has its own.
+  struct Desk {
+    Scratch scratch;
+    AlignedDoubles q, v, t, rows, work;
+  };
+  template <class Evaluate, class Gather>
+  void for_batches(const Evaluate& evaluate, const Gather& gather);
+  ElementBatch batch(const Path& path, int b, Desk& desk);
+  void play(const ElementBatch& batch, Order order, Desk& desk);
+  void condense(const Path& path, int b, Desk& desk);
+  void set_desks(bool condense);
   void evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient, double* row,
                        double* corner);
-  void gather(const Path& path, int b, const double* gradient);
+  void assemble_gradient(const ElementBatch& elements, int b, double* gradient);
+  void keep_gradient(int b, const double* gradient);
+  void gather(const Path& path, int b);
+  void gather_pivots(int b);
   struct Blocks {
     double *start, *end, *lower;
   };
@@ -131,10 +146,9 @@ class DiscreteAction {
   bool border_ = false, finite_ = false;
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
   Sizes sizes_{};
-  Scratch scratch_;
-  AlignedDoubles q_, v_, t_, rows_;                 // of one batch
-  AlignedDoubles matrices_, inverses_, gradients_;  // of every batch
-  AlignedDoubles work_, entries_;
+  std::vector<Desk> desks_;                    // the first of the thread that calls
+  AlignedDoubles matrices_, inverses_, sums_;  // of every batch
+  AlignedDoubles entries_;
   std::vector<double> raw_nodes_, start_gradient_, end_gradient_;
 };
 

@@ -80,7 +80,7 @@ void DiscreteAction::mirror_blocks() {
 
 void DiscreteAction::gather_border(int b) {
   const double* row = reduced(b) + sizes_.vector;
-  const double* corner = gradients_.data() + (b * 3 + 2) * lanes;
+  const double* corner = sums(b, of_corner);
   double taken[lanes];
   eliminated(b, row, row, taken);
   const int first = b * lanes, last = std::min(elements_, first + lanes);

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+
+#include "action/discrete_action.hpp"
+
+/// \file What batches of elements leave, summed up from the first to the last.
+
+namespace extremal {
+
+void DiscreteAction::clear_sums() {
+  action_ = slope_duration_ = residual_ = momentum_scale_ = 0;
+  std::fill(nodes.gradient.begin(), nodes.gradient.end(), 0.0);
+  std::fill(raw_nodes_.begin(), raw_nodes_.end(), 0.0);
+  nodes.border_gradient = 0;
+}
+
+/// Keeps of the gradient of a batch, before condensation, what is summed up.
+void DiscreteAction::keep_gradient(int b, const double* gradient) {
+  double* const largest = sums(b, of_residual);
+  std::fill_n(largest, lanes, 0.0);
+  for (int u = 0; u < inner_; ++u)
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double size = std::abs(gradient[u * lanes + lane]);
+      largest[lane] = size > largest[lane] ? size : largest[lane];
+    }
+  std::copy_n(gradient + inner_ * lanes, 2 * n_ * lanes, sums(b, of_ends));
+}
+
+/// Sums the values and the gradient of a batch as they are, before condensation.
+void DiscreteAction::gather(const Path& path, int b) {
+  const double *action = sums(b, of_action), *slope = sums(b, of_slope), *largest = sums(b, of_residual),
+               *ends = sums(b, of_ends);
+  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  residual_ = std::max(residual_, *std::max_element(largest, largest + lanes));
+  for (int k = first; k < last; ++k) {
+    const int lane = k - first;
+    action_ += action[lane];
+    if (border_) slope_duration_ += slope[lane] * (path.mesh()[k + 1] - path.mesh()[k]);
+    double* node = raw_nodes_.data() + static_cast<std::size_t>(k) * n_;
+    for (int a = 0; a < 2 * n_; ++a) {
+      const double g = ends[a * lanes + lane];
+      node[a] += g;
+      momentum_scale_ = std::max(momentum_scale_, std::abs(g));
+    }
+  }
+}
+
+void DiscreteAction::gather_pivots(int b) {
+  const double *negative = sums(b, of_negative), *ratio = sums(b, of_ratio);
+  for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {
+    nodes.negative += static_cast<int>(negative[lane]);
+    if (!(ratio[lane] >= nodes.pivot_ratio)) nodes.pivot_ratio = ratio[lane];
+  }
+}
+
+void DiscreteAction::gather_gradient(int b) {
+  const double* gradient = reduced(b);
+  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  for (int k = first; k < last; ++k) {
+    double* node = nodes.gradient.data() + static_cast<std::size_t>(k) * n_;
+    for (int a = 0; a < 2 * n_; ++a) node[a] += gradient[(inner_ + a) * lanes + k - first];
+  }
+  if (!border_) return;
+  double taken[lanes];
+  eliminated(b, gradient, gradient + sizes_.vector, taken);
+  for (int k = first; k < last; ++k) nodes.border_gradient -= taken[k - first];
+}
+
+/// Σ x_j y_j / d_j of each lane: what elimination takes from the product of two vectors.
+void DiscreteAction::eliminated(int b, const double* x, const double* y, double* sum) const {
+  const Fronts& fronts = condensation_->fronts;
+  const double* inverse = inverses_.data() + b * sizes_.vector;
+  std::fill_n(sum, lanes, 0.0);
+  for (int f = 0; f < fronts.count(); ++f) {
+    const FrontView& front = fronts.data()[f];
+    for (int j = 0; j < front.pivots; ++j, inverse += lanes) {
+      const int u = front.unknown[j] * lanes;
+      for (int lane = 0; lane < lanes; ++lane) sum[lane] += x[u + lane] * y[u + lane] * inverse[lane];
+    }
+  }
+}
+
+void DiscreteAction::finish_sums() {
+  for (int a = 0; a < n_; ++a) {
+    start_gradient_[a] = raw_nodes_[a];
+    end_gradient_[a] = raw_nodes_[static_cast<std::size_t>(elements_) * n_ + a];
+  }
+  for (std::size_t k = n_; k < static_cast<std::size_t>(elements_) * n_; ++k)
+    residual_ = std::max(residual_, std::abs(raw_nodes_[k]));
+  double sum = action_;
+  for (double g : raw_nodes_) sum += g;
+  finite_ = std::isfinite(sum) && std::isfinite(residual_) && std::isfinite(slope_duration_);
+  nodes.border_gradient += slope_duration_;
+}
+
+}  // namespace extremal
