@@ -1,6 +1,5 @@
 #include "distance.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <vector>
 
@@ -25,29 +24,27 @@ VectorXd first_state(const std::string& csv, const std::vector<std::string>& nam
 /// An orbit and what the symmetries x -> A x + b have made of it so far.
 class MovingOrbit {
  public:
-  MovingOrbit(const extremal::Problem& problem, const extremal::Trajectory& path)
-      : path_(path),
+  MovingOrbit(const extremal::Problem& problem, const Orbit& orbit)
+      : orbit_(orbit),
         generators_(problem.symmetries),
-        n_(path.coordinates),
+        n_(problem.coordinates()),
         a_(MatrixXd::Identity(n_, n_)),
         b_(VectorXd::Zero(n_)) {}
 
   Eigen::Index parameters() const { return 1 + std::ssize(generators_); }
 
   VectorXd state(double by = 0) const {
-    const double T = path_.duration(), wrapped = std::fmod(t_ + by, T);
-    std::vector<double> q(n_), v(n_);
-    path_.at(std::min(wrapped < 0 ? wrapped + T : wrapped, T), q, v);
+    const double T = orbit_.period, wrapped = std::fmod(t_ + by, T);
+    const VectorXd given = orbit_.state(std::min(wrapped < 0 ? wrapped + T : wrapped, T));
     VectorXd result(2 * n_);
-    result << a_ * Eigen::Map<const VectorXd>(q.data(), n_) + b_,
-        a_ * Eigen::Map<const VectorXd>(v.data(), n_);
+    result << a_ * given.head(n_) + b_, a_ * given.tail(n_);
     return result;
   }
 
   /// Of the state, by time and by each generator.
   MatrixXd slopes() const {
     MatrixXd result(2 * n_, parameters());
-    const double small = 1e-6 * path_.duration();
+    const double small = 1e-6 * orbit_.period;
     result.col(0) = (state(small) - state(-small)) / (2 * small);
     const VectorXd here = state();
     for (Eigen::Index j = 1; j < parameters(); ++j)
@@ -79,7 +76,7 @@ class MovingOrbit {
     return Eigen::Map<const VectorXd>(generators_[j - 1].shift.data(), n_);
   }
 
-  const extremal::Trajectory& path_;
+  const Orbit& orbit_;
   const std::vector<extremal::Generator>& generators_;
   Eigen::Index n_;
   double t_ = 0;
@@ -89,14 +86,23 @@ class MovingOrbit {
 
 }  // namespace
 
-double distance_from_orbit(const std::string& csv, const extremal::Study& study,
-                           const extremal::Solution& solution) {
+Orbit orbit_of(const extremal::Solution& solution) {
+  const extremal::Trajectory& path = solution.trajectory;
+  return {path.duration(), [&path](double t) {
+            const auto n = static_cast<std::size_t>(path.coordinates);
+            VectorXd state(2 * path.coordinates);
+            path.at(t, {state.data(), n}, {state.data() + n, n});
+            return state;
+          }};
+}
+
+double distance_from_orbit(const std::string& csv, const extremal::Study& study, const Orbit& orbit) {
   constexpr int steps = 8;  // of Gauss and Newton, from a phase that is near
   const VectorXd wanted = first_state(csv, study.system.names);
-  MovingOrbit orbit(study.problem, solution.trajectory);
+  MovingOrbit moving(study.problem, orbit);
   for (int step = 0; step < steps; ++step)
-    orbit.move(orbit.slopes().completeOrthogonalDecomposition().solve(wanted - orbit.state()));
-  return (wanted - orbit.state()).norm();
+    moving.move(moving.slopes().completeOrthogonalDecomposition().solve(wanted - moving.state()));
+  return (wanted - moving.state()).norm();
 }
 
 }  // namespace bench

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "auto_rival.hpp"
 #include "distance.hpp"
 #include "study/study.hpp"
 
@@ -17,34 +18,70 @@ struct Options {
   std::vector<std::string> scenes{"halo", "lyapunov", "nrho", "figure-eight-near", "figure-eight"};
   std::vector<double> tolerances{1e-4, 1e-8, 1e-11, 1e-12};
   int repeat = 200;
+  AutoInstallation installation;
+  bool alone = false;
 };
 
-void report(const std::string& name, double tolerance, int repeat) {
-  const std::string base = std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/" + name;
-  const extremal::Study study =
-      extremal::load(base + ".toml", {fmt::format("solve.tolerance={}", tolerance)});
+void print_heading() {
+  fmt::print(
+      "{:18} {:>8} {:>8} {:>6} {:>10} {:>11}  {:>8}  {:>8} {:>5} {:>7} {:>12}   {:>9} {:>9} {:>6}  {}\n",
+      "orbit", "tolerance", "elements", "degree", "solve µs", "analyse µs", "distance", "estimate", "index",
+      "nullity", "multiplier", "AUTO µs", "distance", "ratio", "setting");
+}
+
+/// Seconds of the solve; NaN where it fails.
+double print_ours(const std::string& name, const extremal::Study& study, const std::string& csv, int repeat) {
   const extremal::Solution s = extremal::run(study, repeat);
+  fmt::print("{:18} {:8.0e} ", name, study.options.tolerance);
   if (!s.converged()) {
-    fmt::print("{:18} {:8.0e}  {}\n", name, tolerance, s.message);
-    return;
+    fmt::print(" {}", s.message);
+    return NAN;
   }
   const double largest = s.floquet ? std::abs(s.floquet->multipliers.front()) : NAN;
-  fmt::print("{:18} {:8.0e} {:8} {:6} {:10.1f} {:11.1f}  {:8.1e}  {:8.1e} {:5} {:7} {:12.6g}\n", name,
-             tolerance, s.trajectory.elements(), s.trajectory.degree, 1e6 * s.seconds_solve,
-             1e6 * s.seconds_analyse, distance_from_orbit(base + ".csv", study, s), s.error_estimate,
-             s.morse_index.value_or(-1), s.nullity.value_or(-1), largest);
+  fmt::print("{:8} {:6} {:10.1f} {:11.1f}  {:8.1e}  {:8.1e} {:5} {:7} {:12.6g}", s.trajectory.elements(),
+             s.trajectory.degree, 1e6 * s.seconds_solve, 1e6 * s.seconds_analyse,
+             distance_from_orbit(csv, study, orbit_of(s)), s.error_estimate, s.morse_index.value_or(-1),
+             s.nullity.value_or(-1), largest);
+  return s.seconds_solve;
+}
+
+void print_auto(const std::optional<AutoResult>& result, double ours) {
+  if (!result) {
+    fmt::print("   {:>9}", "fails");
+    return;
+  }
+  const AutoSetting& setting = result->setting;
+  fmt::print("   {:9.1f} {:9.1e} {:6.1f}  NTST {}, NCOL {}, EPSL {:.0e}, NWTN {}, {} solve{}",
+             1e6 * result->seconds, result->distance, result->seconds / ours, setting.intervals,
+             setting.degree, setting.tolerance, setting.factored, result->solves,
+             result->solves > 1 ? "s" : "");
+}
+
+void report(const std::string& name, const Options& options) {
+  const std::string base = std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/" + name, csv = base + ".csv";
+  extremal::Study study = extremal::load(base + ".toml");
+  AutoRival rival{.absence = "not wanted", .results = {}};
+  if (!options.alone) rival = measure_auto(options.installation, name, study, csv, options.tolerances);
+  for (std::size_t i = 0; i < options.tolerances.size(); ++i) {
+    study.options.tolerance = options.tolerances[i];
+    const double ours = print_ours(name, study, csv, options.repeat);
+    if (rival.absence.empty())
+      print_auto(rival.results[i], ours);
+    else if (i == 0 && !options.alone)
+      fmt::print("   AUTO left out: {}", rival.absence);
+    fmt::print("\n");
+  }
 }
 
 int run(const Options& options) {
-  fmt::print("{:18} {:>8} {:>8} {:>6} {:>10} {:>11}  {:>8}  {:>8} {:>5} {:>7} {:>12}\n", "orbit", "tolerance",
-             "elements", "degree", "solve µs", "analyse µs", "distance", "estimate", "index", "nullity",
-             "multiplier");
-  for (const std::string& scene : options.scenes)
-    for (const double tolerance : options.tolerances) report(scene, tolerance, options.repeat);
+  print_heading();
+  for (const std::string& scene : options.scenes) report(scene, options);
   fmt::print(
       "\nMedians. distance: of the reference's initial state from the orbit, in phase space, but for "
       "symmetries.\n"
-      "What tuned peers need stands in bench/data/README.md.\n");
+      "AUTO: the setting that is fastest of those whose distance is at most the tolerance; ratio: its time "
+      "over ours.\n"
+      "What other peers need stands in bench/data/README.md.\n");
   return 0;
 }
 
@@ -57,6 +94,9 @@ int main(int count, char** arguments) {
   app.add_option("--scene", options.scenes, "only these scenes");
   app.add_option("--tolerances", options.tolerances, "instead of 1e-4, 1e-8, 1e-11, 1e-12");
   app.add_option("--repeat", options.repeat, "solves for each median")->check(CLI::PositiveNumber);
+  app.add_option("--auto", options.installation.folder, "where AUTO-07p is installed");
+  app.add_option("--fortran", options.installation.compiler, "compiler that AUTO-07p is linked with");
+  app.add_flag("--alone", options.alone, "without AUTO-07p");
   CLI11_PARSE(app, count, arguments);
   return bench::run(options);
 }
