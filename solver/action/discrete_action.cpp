@@ -11,7 +11,7 @@ namespace extremal {
 namespace {
 
 /// Work for a thread, in multiplications or so, that is worth waking it for.
-constexpr double least_share = 1e5;
+constexpr double least_share = 3e5;
 
 }  // namespace
 

@@ -15,6 +15,9 @@ namespace extremal {
 
 namespace {
 
+/// Blocks times the cube of their size, for all pivoted factorisations of one matrix.
+constexpr double most_work = 1e8;
+
 ChainKernels kernels(int size) {
   const auto choose = [&](auto small, auto large) {
     const ChainKernels own = small(size);
@@ -136,8 +139,9 @@ bool Chain::factor(double smallest) {
   std::vector<std::pair<int, double>> saved;
   double suspicion;
   // As a second variation between fixed ends A has no more than n null directions; with many more it is
-  // noise.
-  const int most = std::min(order(), std::max(2 * size_, 16));
+  // noise, and each costs another factorisation.
+  const double work = double(blocks_) * size_ * size_ * size_;
+  const int most = std::min({order(), std::max(2 * size_, 16), int(std::ceil(most_work / work))});
   while ((suspicion = factor_once(smallest)) > calm && int(saved.size()) < most) {
     const int row = null_row(smallest);
     if (row < 0) break;

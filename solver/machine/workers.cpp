@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -27,10 +27,13 @@ int chosen_threads() {
   return static_cast<int>(count);
 }
 
+using Work = void (*)(const void* context, int thread, int piece);
+
 /// Work that comes again soon is spun for, about as long as sleeping and waking take; later work wakes.
 constexpr int most_spins = 1000;
 
-void wait_while(const std::atomic<unsigned>& value, unsigned old) {
+template <class T>
+void wait_while(const std::atomic<T>& value, T old) {
   for (int spin = 0; spin < most_spins; ++spin) {
     if (value.load(std::memory_order_acquire) != old) return;
     __builtin_ia32_pause();
@@ -38,7 +41,8 @@ void wait_while(const std::atomic<unsigned>& value, unsigned old) {
   value.wait(old, std::memory_order_acquire);
 }
 
-/// Lives as long as the process: its threads sleep until that ends.
+/// Threads take piece after piece, so that one which sleeps or has lost its core keeps nobody waiting but for
+/// the piece it is at. Lives as long as the process.
 class Workers {
  public:
   Workers() {
@@ -46,39 +50,53 @@ class Workers {
       std::thread([this, thread] { serve(thread); }).detach();
   }
 
-  bool try_run(int count, void (*work)(const void*, int, int), const void* context) {
-    const std::unique_lock held(mutex_, std::try_to_lock);
-    if (!held || getpid() != process_) return false;
-    count_ = count;
-    work_ = work;
-    context_ = context;
-    busy_.store(threads() - 1, std::memory_order_relaxed);
-    round_.fetch_add(1, std::memory_order_release);
+  bool try_run(int count, Work work, const void* context) {
+    if (getpid() != process_ || taken_.test_and_set(std::memory_order_acquire)) return false;
+    work_.store(work, std::memory_order_relaxed);
+    context_.store(context, std::memory_order_relaxed);
+    count_.store(count, std::memory_order_relaxed);
+    done_.store(0, std::memory_order_relaxed);
+    const unsigned round = round_.load(std::memory_order_relaxed) + 1;
+    ticket_.store(std::uint64_t{round} << 32, std::memory_order_release);
+    round_.store(round, std::memory_order_release);
     round_.notify_all();
-    do_share(0);
-    while (const unsigned left = busy_.load(std::memory_order_acquire)) wait_while(busy_, left);
+    do_pieces(round, 0);
+    for (int done; (done = done_.load(std::memory_order_acquire)) < count;) wait_while(done_, done);
+    taken_.clear(std::memory_order_release);
     return true;
   }
 
  private:
-  void do_share(int thread) const {
-    const long first = long{count_} * thread / threads(), last = long{count_} * (thread + 1) / threads();
-    for (long piece = first; piece < last; ++piece) work_(context_, thread, static_cast<int>(piece));
-  }
   void serve(int thread) {
-    for (unsigned round = 0;; ++round) {
-      wait_while(round_, round);
-      do_share(thread);
-      if (busy_.fetch_sub(1, std::memory_order_release) == 1) busy_.notify_one();
+    for (unsigned seen = 0;;) {
+      wait_while(round_, seen);
+      seen = round_.load(std::memory_order_acquire);
+      do_pieces(seen, thread);
+    }
+  }
+  /// A ticket is the round and the next piece of it. That it is taken as it was read shows that the work
+  /// read with it is that round's.
+  void do_pieces(unsigned round, int thread) {
+    std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
+    while (ticket >> 32 == round) {
+      const int piece = static_cast<int>(ticket), count = count_.load(std::memory_order_relaxed);
+      const Work work = work_.load(std::memory_order_relaxed);
+      const void* const context = context_.load(std::memory_order_relaxed);
+      if (piece >= count) return;
+      if (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel)) continue;
+      work(context, thread, piece);
+      if (done_.fetch_add(1, std::memory_order_release) + 1 == count) done_.notify_one();
+      ticket = ticket_.load(std::memory_order_acquire);
     }
   }
 
   const pid_t process_ = getpid();
-  std::mutex mutex_;
-  std::atomic<unsigned> round_ = 0, busy_ = 0;
-  int count_ = 0;
-  void (*work_)(const void*, int, int) = nullptr;
-  const void* context_ = nullptr;
+  std::atomic_flag taken_;
+  std::atomic<unsigned> round_ = 0;
+  std::atomic<std::uint64_t> ticket_ = 0;
+  std::atomic<int> count_ = 0, done_ = 0;
+  std::atomic<Work> work_ = nullptr;
+  std::atomic<const void*> context_ = nullptr;
 };
 
 }  // namespace
@@ -88,7 +106,7 @@ int threads() {
   return count;
 }
 
-void share_out(int count, void (*work)(const void*, int, int), const void* context) {
+void share_out(int count, Work work, const void* context) {
   if (threads() > 1 && count > 1) {
     static Workers& workers = *new Workers;
     if (workers.try_run(count, work, context)) return;

@@ -8,8 +8,8 @@ namespace extremal {
 /// EXTREMAL_THREADS says. Throws std::runtime_error if that is not a number from 1 to 1024.
 int threads();
 
-/// Calls work(context, thread, piece) for pieces 0 … count − 1, contiguous shares for each of the threads,
-/// 0 <= thread < threads(), and returns when all are done. Work must not throw. The threads are started when
+/// Calls work(context, thread, piece) for pieces 0 … count − 1, 0 <= thread < threads(), and returns when all
+/// are done; which thread does which may differ each time. Work must not throw. The threads are started when
 /// first needed and belong to one caller at a time: all is done by the thread that calls where another has
 /// them, and in a process forked from theirs.
 void share_out(int count, void (*work)(const void* context, int thread, int piece), const void* context);

@@ -193,3 +193,27 @@ TEST_F(Command, ListNamesSchemesMethodsAndSystems) {
   for (const char* text : {"spring", "A spring of its own.", "midpoint", "lobatto", "newton"})
     EXPECT_NE(o.out.find(text), std::string::npos) << text;
 }
+
+TEST_F(Command, ThreadsChangeNothing) {
+  const std::string chain =
+      "[system]\nuse = \"fpu-chain\"\nparameters = { n = 12 }\n[boundary]\n"
+      "start = { q = [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.5, 0.4, 0.3, 0.2, 0.1, 0] }\n"
+      "end = { q = [0.1, 0, -0.1, -0.2, -0.3, -0.4, -0.4, -0.3, -0.2, -0.1, 0, 0.1] }\n"
+      "duration = 20\n[solve]\ntolerance = 1e-12\n";
+  std::vector<Json> results;
+  for (const char* threads : {"1", "2", "3"}) {
+    ::setenv("EXTREMAL_THREADS", threads, 1);
+    const Outcome o = solve(chain, {"--output", "r.json", "--samples", "9"});
+    ::unsetenv("EXTREMAL_THREADS");
+    ASSERT_EQ(o.exit, 0) << o.error << o.out;
+    results.push_back(Json::parse(read_text(folder / "r.json")));
+    results.back().erase("seconds");
+  }
+  EXPECT_EQ(results[1], results[0]);
+  EXPECT_EQ(results[2], results[0]);
+  ::setenv("EXTREMAL_THREADS", "none", 1);
+  const Outcome refused = solve(chain);
+  ::unsetenv("EXTREMAL_THREADS");
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_EQ(refused.error, "error: EXTREMAL_THREADS=none: need a number from 1 to 1024\n");
+}
