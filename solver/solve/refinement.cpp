@@ -9,7 +9,6 @@ namespace extremal {
 
 namespace {
 
-constexpr int highest_degree = 16;
 /// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.
 constexpr int most_elements = 1 << 12, most_cuts = 64;
 /// Coarse elements have done their work when the path is known to this, relative to its range.
@@ -21,18 +20,8 @@ constexpr int coarse_steps = 25;
 constexpr int fine_steps = 12;
 /// Corrections below this (relative) are roundoff.
 constexpr double roundoff = 1e-15;
-/// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
-constexpr double loosest_newton = 1e-6;
-/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large.
-constexpr double most_phase_force = 1e-7;
-/// Steps that end what Newton's method began.
-constexpr int most_polish = 3;
-/// They use the factors there are as long as they contract so much.
-constexpr double worst_chord = 0.5;
 /// Times that elements are planned before all are halved.
 constexpr int most_plans = 6;
-/// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
-constexpr double spare = 0.1;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
 /// Of the size of the path that was started from: a path smaller than this is at rest.
@@ -146,12 +135,6 @@ void Refinement::record() {
   outcome_.record(w_, options_);
 }
 
-/// In units of what the tolerance allows.
-double Refinement::excess(const Resolution::Error& error) const {
-  if (error.q == 0 && error.v == 0) return 0;  // at rest
-  return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
-}
-
 /// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
 Plan Refinement::plan(double aim) {
   const bool last = aim <= options_.tolerance;
@@ -252,75 +235,12 @@ Refinement::Attempt Refinement::attempt() {
     nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
     const Attempt result = judge(newton, aim, nodes);
     if (result == Attempt::converged) {
-      const Attempt settled = settle();
+      const Attempt settled = settle(newton);
       if (settled == Attempt::refine) worst_ = INFINITY;
       return settled;
     }
     if (result != Attempt::refine) return result;
   }
-}
-
-/// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
-/// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows.
-/// A residual that was left within the tolerance becomes roundoff in a few.
-Refinement::Attempt Refinement::settle() {
-  if (problem_.ends.free == 0) return Attempt::converged;
-  const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
-  NewtonIteration& newton = w_.iteration;
-  bool passed = false;
-  for (int step = 0; step <= most_polish; ++step) {
-    const bool again = step == 0 || newton.contraction() <= worst_chord;
-    const StepResult result = again ? newton.chord_step(w_.path) : newton.full_step(w_.path, 0);
-    record();
-    passed = result == StepResult::ok && test_.passed(problem_, newton, w_.path, phase);
-    if (passed && newton.norm() <= options_.tolerance) {
-      outcome_.error += newton.norm() * scales_.q;
-      return Attempt::converged;
-    }
-    const double allowed = std::min(10 * options_.tolerance, loosest_newton);
-    if (result != StepResult::ok || test_.share() > allowed || exhausted()) break;
-  }
-  outcome_.message = passed ? hidden(newton.norm()) : test_.message();
-  if (passed) return Attempt::unreachable;
-  // What holds the phase is an error of the elements.
-  return problem_.periodic && test_.share() <= options_.tolerance ? Attempt::refine : Attempt::failed;
-}
-
-/// A tolerance, by what roundoff became.
-std::string Refinement::hidden(double amplified) const {
-  return fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
-                     amplified, options_.tolerance);
-}
-
-/// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
-/// which comes from the forces and velocities left out and falls with their product (order 2s) from what
-/// the nodes moved when the elements changed; corrections not made; roundoff, a random walk over the points.
-Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {
-  outcome_.message = newton.failure;
-  if (!newton.reached) return Attempt::failed;
-  Resolution::Error error = w_.resolution.at(w_.path.degree());
-  const Resolution::Error& before = nodes.left_out;
-  const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
-  const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
-  const double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
-  const double truncation = error.q + roundoff;
-  const double at_nodes = nodes.moved * std::min(1.0, fall);
-  error.q = truncation + at_nodes;
-  outcome_.tolerance = options_.tolerance * scales_.q;
-  outcome_.error = error.q + newton.most_remaining * scales_.q;
-  if (newton.remaining > std::max(options_.tolerance, aim)) {
-    outcome_.message = hidden(newton.remaining);
-    return Attempt::unreachable;
-  }
-  // Of so many walks the longest is expected to be this much longer than one.
-  error.q += roundoff * (std::sqrt(2 * std::log(points * w_.path.coordinates())) - 1);
-  worst_ = excess(error);
-  if (!(worst_ <= 1)) return Attempt::refine;
-  // Much movement may have been Newton's, not the elements': from this converged path it is not.
-  if (at_nodes > truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
-    return Attempt::refine;
-  outcome_.message = "converged";
-  return Attempt::converged;
 }
 
 }  // namespace extremal

@@ -57,6 +57,11 @@ class Refinement {
 
  private:
   enum class Attempt { converged, refine, failed, unreachable };
+  static constexpr int highest_degree = 16;
+  /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
+  static constexpr double spare = 0.1;
+  /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
+  static constexpr double loosest_newton = 1e-6;
   /// Before the elements changed: what they left out; how far the mesh nodes moved since;
   /// whether Newton's method had gone to the end before.
   struct NodeError {
@@ -76,7 +81,7 @@ class Refinement {
   void adopt(const Plan& plan);
   void refine();
   void record();
-  Attempt settle();
+  Attempt settle(const NewtonReport& report);
   std::string hidden(double amplified) const;
   double step_cost() const;
 

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/refinement.hpp"
+
+/// \file Whether the path that Newton's method left meets the tolerance.
+
+namespace extremal {
+
+namespace {
+
+/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large.
+constexpr double most_phase_force = 1e-7;
+/// Steps that end what Newton's method began.
+constexpr int most_polish = 3;
+/// They use the factors there are as long as they contract so much.
+constexpr double worst_chord = 0.5;
+
+}  // namespace
+
+/// In units of what the tolerance allows.
+double Refinement::excess(const Resolution::Error& error) const {
+  if (error.q == 0 && error.v == 0) return 0;  // at rest
+  return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
+}
+
+/// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
+/// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows:
+/// it tells better than what was expected to remain.
+/// A residual that was left within the tolerance becomes roundoff in a few.
+Refinement::Attempt Refinement::settle(const NewtonReport& report) {
+  if (problem_.ends.free == 0) return Attempt::converged;
+  const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
+  NewtonIteration& newton = w_.iteration;
+  bool passed = false;
+  for (int step = 0; step <= most_polish; ++step) {
+    const bool again = step == 0 || newton.contraction() <= worst_chord;
+    const StepResult result = again ? newton.chord_step(w_.path) : newton.full_step(w_.path, 0);
+    record();
+    passed = result == StepResult::ok && test_.passed(problem_, newton, w_.path, phase);
+    if (passed && newton.norm() <= options_.tolerance) {
+      outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
+      return Attempt::converged;
+    }
+    const double allowed = std::min(10 * options_.tolerance, loosest_newton);
+    if (result != StepResult::ok || test_.share() > allowed || exhausted()) break;
+  }
+  outcome_.message = passed ? hidden(newton.norm()) : test_.message();
+  if (passed) return Attempt::unreachable;
+  // What holds the phase is an error of the elements.
+  return problem_.periodic && test_.share() <= options_.tolerance ? Attempt::refine : Attempt::failed;
+}
+
+/// A tolerance, by what roundoff became.
+std::string Refinement::hidden(double amplified) const {
+  return fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
+                     amplified, options_.tolerance);
+}
+
+/// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
+/// which comes from the forces and velocities left out and falls with their product (order 2s) from what
+/// the nodes moved when the elements changed; corrections not made; roundoff, a random walk over the points.
+Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {
+  outcome_.message = newton.failure;
+  if (!newton.reached) return Attempt::failed;
+  Resolution::Error error = w_.resolution.at(w_.path.degree());
+  const Resolution::Error& before = nodes.left_out;
+  const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
+  const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
+  const double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const double truncation = error.q + roundoff;
+  const double at_nodes = nodes.moved * std::min(1.0, fall);
+  error.q = truncation + at_nodes;
+  outcome_.tolerance = options_.tolerance * scales_.q;
+  outcome_.error = error.q + newton.most_remaining * scales_.q;
+  if (newton.remaining > std::max(options_.tolerance, aim)) {
+    outcome_.message = hidden(newton.remaining);
+    return Attempt::unreachable;
+  }
+  // Of so many walks the longest is expected to be this much longer than one.
+  error.q += roundoff * (std::sqrt(2 * std::log(points * w_.path.coordinates())) - 1);
+  worst_ = excess(error);
+  if (!(worst_ <= 1)) return Attempt::refine;
+  // Much movement may have been Newton's, not the elements': from this converged path it is not.
+  if (at_nodes > truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
+    return Attempt::refine;
+  outcome_.message = "converged";
+  return Attempt::converged;
+}
+
+}  // namespace extremal
