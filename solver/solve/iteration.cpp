@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 
 namespace extremal {
 
@@ -11,10 +10,6 @@ namespace {
 
 /// Pivots this much smaller than the entry they came from are not trusted.
 constexpr double breakdown = 1e-11;
-/// Time of one more damping tried, by that of a step.
-constexpr double trial_burden = 0.4;
-/// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
-constexpr double pivoted_burden = 100, sparse_burden = 1000;
 /// Floating-point operations, elements times the cube of their unknowns, beyond which they are not.
 constexpr double most_pivoted_work = 1e9;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
@@ -122,37 +117,6 @@ void NewtonIteration::apply(Path& path, const Step& step, double factor) {
   path.load_ends();
 }
 
-double NewtonIteration::residual() const {
-  const EndMap& ends = problem_->ends;
-  const int n = problem_->coordinates();
-  free_.assign(ends.free, 0);
-  for (const Triplet& z : ends.z)
-    free_[z.column] +=
-        z.value * (z.row < n ? action_.start_gradient()[z.row] : action_.end_gradient()[z.row - n]);
-  double largest = action_.residual();
-  for (double g : free_) largest = std::max(largest, std::abs(g));
-  return largest;
-}
-
-double NewtonIteration::burden() const {
-  const double tested = 1 + trial_burden * std::max(0, trials_ - 1);
-  if (tables_->unknowns() > most_dense_unknowns) return tested;
-  if (model_ != condensed_.get()) return sparse_burden * tested;
-  const Chain& chain = action_.nodes.chain;
-  return tested * (chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1);
-}
-
-double NewtonIteration::stiffness() const {
-  double most = 0;
-  for (double x : action_.nodes.first) most = std::max(most, std::abs(x));
-  return most;
-}
-
-double NewtonIteration::residual_at(const Path& path) {
-  action_.evaluate_plain(path);
-  return residual();
-}
-
 bool NewtonIteration::factor_quickly(const Path& path) {
   measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
   if (!held_.empty()) phases_.add(held_);
@@ -241,31 +205,6 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
     remaining_ = norm_ * contraction_;
   }
   return StepResult::ok;
-}
-
-/// By how much step_ changes, relative as it, where all of the path is shifted by some last digits: that
-/// moves the extremal no further, but rounds everything differently.
-double NewtonIteration::measure_noise(Path& path) {
-  const std::size_t n = path.coordinates(), nodes = path.nodes().size();
-  double magnitude = 0;
-  for (double q : path.nodes()) magnitude = std::max(magnitude, std::abs(q));
-  simplified_.nodes.assign(nodes, 0);
-  simplified_.inner.assign(step_.inner.size(), 0);
-  simplified_.duration = 0;
-  std::minstd_rand random;
-  for (std::size_t k = 0; k < nodes; ++k)
-    simplified_.nodes[k] = k < n ? magnitude * 0x1p-50 * (1 + double(random()) / std::minstd_rand::max())
-                                 : simplified_.nodes[k - n];
-  saved_.copy_values(path);
-  apply(path, simplified_, 1);
-  model_->evaluate_gradient(action_, path);
-  const double size = solve_for_step(path, simplified_);
-  double change = 0;
-  for (std::size_t k = 0; k < nodes; ++k)
-    change = std::max(change, std::abs(simplified_.nodes[k] - step_.nodes[k]));
-  path.copy_values(saved_);
-  path.load_ends();
-  return noise_ = std::isnan(size) ? 0 : change / (scale_ > 0 ? scale_ : 1);
 }
 
 /// Inverse iteration from the step, which has most of that direction already.

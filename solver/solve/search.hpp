@@ -36,6 +36,8 @@ class Search {
   const std::vector<double>& mesh() const { return mesh_; }
 
  private:
+  static constexpr int most_first_elements = 1 << 12;
+  static int first_elements(const Frequency& frequency);
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   bool begin();
   bool resolve_guess();
