@@ -1,5 +1,9 @@
 #include "solve/method.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace extremal {
 
 const char* name(Method method) {
@@ -37,9 +41,16 @@ bool available([[maybe_unused]] Method method) {
 void lead(Method method, const Problem& problem, const ElementTables& tables, Path& path,
           const std::function<bool()>& count) {
   if (method == Method::newton) return;
+  if (!available(method))
+    throw std::invalid_argument(fmt::format("method '{}' is not part of this build", name(method)));
   Displacement equations(problem, tables, path);
   std::vector<double> z(equations.size(), 0);
-  (method == Method::ceres ? solve_least_squares : solve_interior_point)(equations, z, count);
+#ifdef EXTREMAL_CERES
+  if (method == Method::ceres) solve_least_squares(equations, z, count);
+#endif
+#ifdef EXTREMAL_IPOPT
+  if (method == Method::ipopt) solve_interior_point(equations, z, count);
+#endif
   equations.evaluate(z, false);
 }
 

@@ -13,7 +13,8 @@ namespace extremal {
 const char* description(Method method);
 
 /// Takes the path to where the method comes to rest, which need not be an extremal, or until `count`, called
-/// for each iteration, says that there may be no more.
+/// for each iteration, says that there may be no more. Throws std::invalid_argument for one that this build
+/// lacks.
 void lead(Method method, const Problem& problem, const ElementTables& tables, Path& path,
           const std::function<bool()>& count);
 

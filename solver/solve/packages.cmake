@@ -1,13 +1,17 @@
-# Each is used behind a method of its own and may be left out.
+# Each leads from guesses by a method of its own and may be left out.
 option(EXTREMAL_CERES "Least squares by Ceres Solver: method = \"ceres\"" ON)
 option(EXTREMAL_IPOPT "Interior points by Ipopt: method = \"ipopt\"" ON)
 if(EXTREMAL_CERES)
   extremal_package(Ceres)
   target_link_libraries(${target} PRIVATE Ceres::ceres)
   target_compile_definitions(${target} PRIVATE EXTREMAL_CERES)
+else()
+  set_source_files_properties(solve/least_squares.cpp PROPERTIES HEADER_FILE_ONLY ON)
 endif()
 if(EXTREMAL_IPOPT)
   extremal_package(Ipopt)
   target_link_libraries(${target} PRIVATE ipopt::ipopt)
   target_compile_definitions(${target} PRIVATE EXTREMAL_IPOPT)
+else()
+  set_source_files_properties(solve/interior_point.cpp PROPERTIES HEADER_FILE_ONLY ON)
 endif()
