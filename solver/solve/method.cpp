@@ -39,7 +39,7 @@ bool available([[maybe_unused]] Method method) {
 }
 
 void lead(Method method, const Problem& problem, const ElementTables& tables, Path& path,
-          const std::function<bool()>& count) {
+          [[maybe_unused]] const std::function<bool()>& count) {
   if (method == Method::newton) return;
   if (!available(method))
     throw std::invalid_argument(fmt::format("method '{}' is not part of this build", name(method)));
