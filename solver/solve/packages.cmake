@@ -1,5 +1,12 @@
 # Each leads from guesses by a method of its own and may be left out.
-option(EXTREMAL_CERES "Least squares by Ceres Solver: method = \"ceres\"" ON)
+# Debian's Ceres is a static library with instances of Eigen's templates, which allocate in another way under
+# the address sanitizer: the linker would mix both.
+if(EXTREMAL_SANITIZE MATCHES "address")
+  set(EXTREMAL_CERES_DEFAULT OFF)
+else()
+  set(EXTREMAL_CERES_DEFAULT ON)
+endif()
+option(EXTREMAL_CERES "Least squares by Ceres Solver: method = \"ceres\"" ${EXTREMAL_CERES_DEFAULT})
 option(EXTREMAL_IPOPT "Interior points by Ipopt: method = \"ipopt\"" ON)
 if(EXTREMAL_CERES)
   extremal_package(Ceres)
