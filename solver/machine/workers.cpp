@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
@@ -18,8 +17,7 @@ constexpr int most_threads = 1024;
 
 int chosen_threads() {
   const char* const text = std::getenv("EXTREMAL_THREADS");
-  if (!text || !*text)
-    return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, most_threads);
+  if (!text || !*text) return 1;
   char* end = nullptr;
   const long count = std::strtol(text, &end, 10);
   if (*end != 0 || count < 1 || count > most_threads)

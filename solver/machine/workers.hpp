@@ -4,8 +4,8 @@
 
 namespace extremal {
 
-/// Threads of work to go on at once, the caller's included: as many as the processor runs, or what
-/// EXTREMAL_THREADS says. Throws std::runtime_error if that is not a number from 1 to 1024.
+/// Threads of work to go on at once, the caller's included: what EXTREMAL_THREADS says, or one. Throws
+/// std::runtime_error if that is not a number from 1 to 1024.
 int threads();
 
 /// Calls work(context, thread, piece) for pieces 0 … count − 1, 0 <= thread < threads(), and returns when all

@@ -5,13 +5,17 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <thread>
 #include <vector>
 
 namespace extremal {
 namespace {
 
+[[maybe_unused]] const int chosen = ::setenv("EXTREMAL_THREADS", "3", 1);
+
 TEST(Workers, DoEachPieceOnce) {
+  ASSERT_EQ(threads(), 3);
   for (const int count : {0, 1, 2, 3, 7, 100, 1000}) {
     std::vector<int> done(count, 0), by(count, -1);
     share_out(count, [&](int thread, int piece) {
