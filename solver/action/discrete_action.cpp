@@ -10,7 +10,7 @@ namespace extremal {
 
 namespace {
 
-/// Work for a thread, in multiplications or so, that is worth waking it for.
+/// Work for a thread, in multiplications or so, below which it is left asleep.
 constexpr double least_share = 3e5;
 
 }  // namespace
@@ -56,7 +56,7 @@ void DiscreteAction::substitute(const Lagrangian& lagrangian, const ElementTable
   }
 }
 
-/// One, or where a thread's share is worth it one for each.
+/// One, or where there is that much work one for each thread.
 void DiscreteAction::set_desks(bool condense) {
   const double points = static_cast<double>(lagrangian_->rows(Order::hessian) * sizes_.points);
   const double work = condense ? points + condensation_->fronts.work() : 0;

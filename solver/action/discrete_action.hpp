@@ -95,7 +95,8 @@ class DiscreteAction {
   const double* rows(const Path& path, int batch, Order order);
 
  private:
-  /// In doubles: what elimination works on, the gradient and the border after it; a vector; a row of points.
+  /// In doubles: what elimination works on, the gradient and the border after it; a vector; a row of points;
+  /// what is summed up.
   struct Sizes {
     std::size_t matrix, vector, points, sums;
   };

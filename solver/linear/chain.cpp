@@ -15,7 +15,8 @@ namespace extremal {
 
 namespace {
 
-/// Blocks times the cube of their size, for all pivoted factorisations of one matrix.
+/// Blocks times the cube of their size, for all null directions of one matrix: with more it counts as
+/// singular.
 constexpr double most_work = 1e8;
 
 ChainKernels kernels(int size) {
@@ -139,12 +140,15 @@ bool Chain::factor(double smallest) {
   std::vector<std::pair<int, double>> saved;
   double suspicion;
   // As a second variation between fixed ends A has no more than n null directions; with many more it is
-  // noise, and each costs another factorisation.
+  // noise.
+  const int most = std::min(order(), std::max(2 * size_, 16));
   const double work = double(blocks_) * size_ * size_ * size_;
-  const int most = std::min({order(), std::max(2 * size_, 16), int(std::ceil(most_work / work))});
+  bool affordable = true;
   while ((suspicion = factor_once(smallest)) > calm && int(saved.size()) < most) {
     const int row = null_row(smallest);
     if (row < 0) break;
+    affordable = (saved.size() + 1) * work <= most_work;
+    if (!affordable) break;
     const double amount = 1 / (scale_[row] * scale_[row]);
     saved.emplace_back(row, diagonal_entry(row));
     deflated_.push_back({row, amount});
@@ -152,7 +156,7 @@ bool Chain::factor(double smallest) {
   }
   for (auto entry = saved.rbegin(); entry != saved.rend(); ++entry)
     diagonal_entry(entry->first) = entry->second;
-  factored_ = suspicion >= 0;
+  factored_ = affordable && suspicion >= 0;
   if (!factored_) {
     deflated_.clear();
     return false;

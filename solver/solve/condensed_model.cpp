@@ -43,6 +43,8 @@ class CondensedModel final : public QuadraticModel {
     for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] -= left_out_[k];
   }
 
+  void set_null_below(double threshold) override { system_.set_null_below(threshold); }
+
   Inertia inertia(double threshold) override {
     Inertia result = system_.inertia(threshold);
     result.negative += negative_;

@@ -34,6 +34,7 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
   const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
   NewtonIteration& newton = w_.iteration;
+  newton.model().set_null_below(null_threshold(left_out_, scales_.magnitude));
   bool passed = false;
   for (int step = 0; step <= most_polish; ++step) {
     const bool again = step == 0 || newton.contraction() <= worst_chord;
@@ -72,7 +73,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   const double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
   const double truncation = error.q + roundoff;
   const double at_nodes = nodes.moved * std::min(1.0, fall);
-  error.q = truncation + at_nodes;
+  error.q = left_out_ = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
   outcome_.error = error.q + newton.most_remaining * scales_.q;
   if (newton.remaining > std::max(options_.tolerance, aim)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,6 +13,13 @@
 /// \file The quadratic model of S_h at a path: what a Newton step needs.
 
 namespace extremal {
+
+/// Eigenvalues of the second variation within the error of the discretisation of zero, relative, are null: it
+/// is taken to be a few times that of a trajectory of this size.
+inline double null_threshold(double error, double size) {
+  constexpr double least = 1e-14, largest = 1e-3;
+  return size > 0 ? std::clamp(3 * error / size, least, largest) : least;
+}
 
 /// The equation that closes a free duration: row over (q(0), q(T)) and its value, or, where the row is
 /// empty, ∂S/∂T + energy = 0, whose row is the border itself.
@@ -47,6 +55,9 @@ class QuadraticModel {
                        Step& step) = 0;
   /// Directions that evaluate() and solve() hold from now until reset(); null for none.
   void set_phases(const PhaseConditions* phases) { phases_ = phases; }
+  /// From now until reset() steps have nothing along directions whose eigenvalue is so small, relative, or
+  /// smaller, where ends are free; the factors there are follow.
+  virtual void set_null_below(double) {}
   /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
   void set_refining(bool on) { refining_ = on; }
   /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null, and so

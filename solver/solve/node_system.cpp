@@ -8,9 +8,9 @@ namespace extremal {
 
 namespace {
 
-/// What of the border is this small, relative, are null directions: families of extremals, whose
-/// eigenvalue is zero but for the error of the elements.
-constexpr double singular_border = 1e-8;
+/// What of the border is this small, relative, are null directions unless told otherwise: families of
+/// extremals, whose eigenvalue is zero but for the error of the elements.
+constexpr double usual_null = 1e-8;
 /// Of the size of the terms that a row of the border is the difference of.
 constexpr double negligible = 1e-10;
 /// Null directions of the chain, by coordinates, that are believed.
@@ -46,6 +46,7 @@ void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool f
   elements_ = elements;
   free_ = ends.free;
   free_duration_ = free_duration;
+  null_below_ = usual_null;
   right_.resize(static_cast<std::size_t>(std::max(elements - 1, 0)) * n_);
 }
 
@@ -153,19 +154,27 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
   }
   scale_border(has_own_row(closing));
   if (!schur_.allFinite()) return false;
+  factor_border();
+  return true;
+}
+
+void NodeSystem::set_null_below(double threshold) {
+  null_below_ = threshold;
+  if (border_ > 0 && !exact_) factor_border();
+}
+
+void NodeSystem::factor_border() {
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
   // All pivots are roundoff where large entries stand beside a null row and column alone.
   const double largest = schur_.cwiseAbs().maxCoeff();
-  if (pivots.minCoeff() > singular_border * pivots.maxCoeff() &&
-      pivots.maxCoeff() > singular_border * largest) {
+  if (pivots.minCoeff() > null_below_ * pivots.maxCoeff() && pivots.maxCoeff() > null_below_ * largest) {
     least_norm_.reset();
-    return true;
+    return;
   }
   // A family of extremals: of all steps the shortest.
   least_norm_.emplace(schur_.rows(), schur_.cols());
-  least_norm_->setThreshold(singular_border).compute(schur_);
-  return true;
+  least_norm_->setThreshold(null_below_).compute(schur_);
 }
 
 /// The ends are conjugate as if both were fixed, but are not both fixed: the system may be regular all the
@@ -187,7 +196,7 @@ bool NodeSystem::factor_exactly(const ClosingEquation* closing) {
   regular_ = system_.factor(*chain_);
   const Eigen::VectorXd sizes = system_.singular_values();
   if (sizes.size() == 0) return false;
-  regular_ = regular_ && sizes.minCoeff() > singular_border;
+  smallest_ = sizes.minCoeff();
   return true;
 }
 
@@ -238,10 +247,10 @@ void NodeSystem::solve_schur(bool own_row, bool refine) {
 void NodeSystem::solve_exactly() {
   Eigen::VectorXd all(right_.size() + border_);
   all << Eigen::Map<const Eigen::VectorXd>(right_.data(), right_.size()), small_;
-  if (regular_)
+  if (regular_ && smallest_ > null_below_)
     system_.solve(*chain_, all.data(), 1);
   else
-    system_.solve_least_norm(*chain_, all.data(), 1, singular_border);
+    system_.solve_least_norm(*chain_, all.data(), 1, null_below_);
   std::copy_n(all.begin(), right_.size(), right_.begin());
   small_ = all.tail(border_);
 }

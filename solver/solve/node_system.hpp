@@ -23,6 +23,10 @@ class NodeSystem {
   /// working precision.
   bool factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases = nullptr);
 
+  /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing along
+  /// them. From now until reset(); the factors there are follow.
+  void set_null_below(double threshold);
+
   /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds; `refine` as
   /// QuadraticModel::set_refining.
   void solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
@@ -38,6 +42,7 @@ class NodeSystem {
   /// Of end coordinate e among the nodes.
   std::size_t end_place(int e) const { return e < n_ ? e : std::size_t(elements_) * n_ + e - n_; }
   bool factor_schur(const ClosingEquation* closing);
+  void factor_border();
   bool factor_exactly(const ClosingEquation* closing);
   void border_right(const NodeEquations& nodes, const ClosingEquation* closing);
   void solve_schur(bool own_row, bool refine);
@@ -52,6 +57,7 @@ class NodeSystem {
   const PhaseConditions* phases_ = nullptr;
   int held_ = 0, border_ = 0;  ///< columns: free ends, the duration, directions that are held
   bool free_duration_ = false;
+  double null_below_ = 0;
   Chain* chain_ = nullptr;
   std::vector<double> columns_, solved_, right_;
   Eigen::MatrixXd corner_, schur_;
@@ -63,6 +69,7 @@ class NodeSystem {
 
   bool exact_ = false, regular_ = false;  ///< the chain is singular, and what system_ is for; system_ is not
   Border system_;
+  double smallest_ = 0;  ///< singular value of what remains of system_
 };
 
 }  // namespace extremal

@@ -48,8 +48,7 @@ Refinement::Result Search::pursue(const char* strategy) {
   lead(options_.method, problem_, refinement_.tables(), w_.path, [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
-  const bool far = problem_.ends.free > 0 &&
-                   ran_away(problem_, magnitude_, scales(w_.path, refinement_.tables()).magnitude);
+  const bool far = ran_away(problem_, magnitude_, scales(w_.path, refinement_.tables()).magnitude);
   if (result == Refinement::Result::converged && far && problem_.periodic) {
     outcome_.message = "the orbit ran away to where forces vanish";
     result = Refinement::Result::failed;

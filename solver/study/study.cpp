@@ -24,8 +24,8 @@ Method read_method(const Text& text) {
     if (text.value == name(other)) method = other;
   if (!available(method))
     throw SceneError(position(text, 0),
-                     fmt::format("method '{}' is not part of this build; build with EXTREMAL_{}", text.value,
-                                 method == Method::ceres ? "CERES" : "IPOPT"));
+                     fmt::format("method '{}' is not part of this build; build with -DEXTREMAL_{}=ON",
+                                 text.value, method == Method::ceres ? "CERES" : "IPOPT"));
   return method;
 }
 

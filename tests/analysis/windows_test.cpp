@@ -71,7 +71,6 @@ TEST(Windows, OfManyCoordinates) {
   EXPECT_NE(s.message.find("conjugate times are only found"), std::string::npos);
 }
 
-/// The second variation is positive definite up to the conjugate time, exclusively.
 /// Elements of a pinned scheme may be too long by far for the fields along them: the effort is bounded, and
 /// it is said.
 TEST(Windows, AreNoneWhereFieldsVaryTooFast) {
@@ -82,6 +81,7 @@ TEST(Windows, AreNoneWhereFieldsVaryTooFast) {
   EXPECT_NE(s.message.find("Jacobi fields vary too fast"), std::string::npos) << s.message;
 }
 
+/// The second variation is positive definite up to the conjugate time, exclusively.
 TEST(Windows, EndBeforeTheConjugateTime) {
   for (double T : {pi * (1 - 1e-5), pi * (1 + 1e-5)}) {
     const Solution s = solve(fixed_ends(systems::oscillator(1), {0}, {1}, T), within(1e-6));
