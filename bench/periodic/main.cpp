@@ -1,12 +1,14 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "auto_rival.hpp"
 #include "distance.hpp"
+#include "family.hpp"
 #include "study/study.hpp"
 
 // Periodic orbits from guesses that are disturbed: time against the distance of the reference from the orbit.
@@ -18,6 +20,7 @@ struct Options {
   std::vector<std::string> scenes{"halo", "lyapunov", "nrho", "figure-eight-near", "figure-eight"};
   std::vector<double> tolerances{1e-4, 1e-8, 1e-11, 1e-12};
   int repeat = 200;
+  double family_to = -1.5;
   AutoInstallation installation;
   bool alone = false;
 };
@@ -73,9 +76,24 @@ void report(const std::string& name, const Options& options) {
   }
 }
 
+/// From the halo orbit on, as far as the energy that is asked for.
+void report_family(const Options& options) {
+  extremal::Study study = extremal::load(std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/halo.toml");
+  for (const double tolerance : options.tolerances) {
+    study.options.tolerance = tolerance;
+    const FamilyCost cost = measure_family(study, options.family_to, std::max(options.repeat / 10, 1));
+    fmt::print(
+        "{:18} {:8.0e} {:8.1f} µs a point with index and multipliers, {} points; dS = -E dT to {:.0e}, "
+        "dS/dq = p to {:.0e}; {}\n",
+        "halo family", tolerance, 1e6 * cost.seconds, cost.points, cost.worst_action_slope,
+        cost.worst_momentum, cost.end);
+  }
+}
+
 int run(const Options& options) {
   print_heading();
   for (const std::string& scene : options.scenes) report(scene, options);
+  report_family(options);
   fmt::print(
       "\nMedians. distance: of the reference's initial state from the orbit, in phase space, but for "
       "symmetries.\n"
@@ -96,6 +114,7 @@ int main(int count, char** arguments) {
   app.add_option("--repeat", options.repeat, "solves for each median")->check(CLI::PositiveNumber);
   app.add_option("--auto", options.installation.folder, "where AUTO-07p is installed");
   app.add_option("--fortran", options.installation.compiler, "compiler that AUTO-07p is linked with");
+  app.add_option("--family-to", options.family_to, "energy that the family of halo orbits is followed to");
   app.add_flag("--alone", options.alone, "without AUTO-07p");
   CLI11_PARSE(app, count, arguments);
   return bench::run(options);

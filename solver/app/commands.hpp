@@ -31,6 +31,7 @@ struct CompareArguments {
   std::string scene;
   std::vector<std::string> sets;
   std::string output, plot;  ///< paths; empty: not asked for
+  bool quiet = false;
 };
 int compare(const CompareArguments& arguments);
 
@@ -38,6 +39,7 @@ struct ContinueArguments {
   std::string scene;
   std::vector<std::string> sets;
   std::string output, csv, plot;  ///< paths; empty: not asked for
+  bool quiet = false;
 };
 int follow(const ContinueArguments& arguments);
 

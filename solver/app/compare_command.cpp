@@ -26,13 +26,13 @@ int compare(const CompareArguments& a) {
   if (!a.plot.empty()) check_plot_path(a.plot);
   const Study study = load(a.scene, a.sets);
   CompareOptions options;
-  const bool terminal = ::isatty(STDERR_FILENO);
+  const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   if (terminal) options.progress = show;
   const Comparison found = extremal::compare(study, options);
   if (terminal) fmt::print(stderr, "\r\x1b[K");
   if (!a.output.empty()) write_json(a.output, found);
   if (!a.plot.empty() && found.any()) write_plot(a.plot, found);
-  fmt::print("{}", summary(found));
+  if (!a.quiet) fmt::print("{}", summary(found));
   if (found.any()) return Exit::done;
   fmt::print(stderr, "error: {}: {}\n", a.scene, found.message);
   return Exit::not_converged;

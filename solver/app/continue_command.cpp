@@ -28,7 +28,7 @@ int follow(const ContinueArguments& a) {
   check_writable("--plot", a.plot);
   if (!a.plot.empty()) check_plot_path(a.plot);
   const Study study = load(a.scene, a.sets);
-  const bool terminal = ::isatty(STDERR_FILENO);
+  const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   std::function<void(const BranchPoint&)> progress;
   if (terminal) progress = show;
   const FollowedBranch branch = extremal::follow(study, progress);
@@ -40,7 +40,7 @@ int follow(const ContinueArguments& a) {
   }
   if (!a.csv.empty()) write_csv(a.csv, branch);
   if (!a.plot.empty()) write_plot(a.plot, branch);
-  fmt::print("{}", summary(branch));
+  if (!a.quiet) fmt::print("{}", summary(branch));
   return Exit::done;
 }
 

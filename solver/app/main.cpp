@@ -12,6 +12,10 @@ namespace {
 
 using namespace extremal::app;
 
+void add_quiet(CLI::App& command, bool& quiet) {
+  command.add_flag("--quiet", quiet, "write nothing but errors");
+}
+
 /// Every --set takes one value, so that the scene may follow it.
 void add_scene(CLI::App& command, std::string& scene, std::vector<std::string>& sets) {
   command.add_option("scene", scene, "the scene, a TOML file")->required()->type_name("SCENE");
@@ -31,7 +35,7 @@ void add_solve(CLI::App& app, SolveArguments& a, std::function<int()>& chosen) {
       ->type_name("N");
   command.add_option("--at", a.at, "samples at these times")->type_name("T1,T2,…");
   command.add_option("--repeat", a.repeat, "solve so many times and report the median time")->type_name("N");
-  command.add_flag("--quiet", a.quiet, "write nothing but errors");
+  add_quiet(command, a.quiet);
   command.callback([&a, &chosen, &command] {
     if (command.count("--samples") && a.samples < 2)
       throw OptionError(fmt::format("--samples {}: need at least 2", a.samples));
@@ -44,6 +48,7 @@ void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& chose
   add_scene(command, a.scene, a.sets);
   command.add_option("--output", a.output, "write the comparison as JSON")->type_name("C.json");
   command.add_option("--plot", a.plot, "draw time against error")->type_name("P.svg|P.png");
+  add_quiet(command, a.quiet);
   command.callback([&a, &chosen] { chosen = [&a] { return compare(a); }; });
 }
 
@@ -53,6 +58,7 @@ void add_continue(CLI::App& app, ContinueArguments& a, std::function<int()>& cho
   command.add_option("--output", a.output, "write the branch as JSON")->type_name("B.json");
   command.add_option("--csv", a.csv, "write its points as CSV")->type_name("B.csv");
   command.add_option("--plot", a.plot, "draw the branch")->type_name("P.svg|P.png");
+  add_quiet(command, a.quiet);
   command.callback([&a, &chosen] { chosen = [&a] { return follow(a); }; });
 }
 

@@ -20,9 +20,13 @@ TEST_F(Command, SolvesAndSummarises) {
 }
 
 TEST_F(Command, QuietWritesNothing) {
-  const Outcome o = solve(pendulum, {"--quiet"});
-  EXPECT_EQ(o.exit, 0);
-  EXPECT_EQ(o.out + o.error, "");
+  const std::string family = pendulum + "[continuation]\nparameter = \"duration\"\nto = 2.5\npoints = 3\n";
+  for (const char* command : {"solve", "compare", "continue"}) {
+    write("scene.toml", family);
+    const Outcome o = extremal({command, "scene.toml", "--quiet"});
+    EXPECT_EQ(o.exit, 0) << o.error;
+    EXPECT_EQ(o.out + o.error, "") << command;
+  }
 }
 
 TEST_F(Command, WritesJsonWithSamples) {

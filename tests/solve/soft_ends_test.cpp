@@ -1,3 +1,6 @@
+#include <cmath>
+#include <string>
+
 #include "solve/laws.hpp"
 
 /// \file Ends that are free along directions which are nearly null: paths that come to rest beside the
@@ -22,6 +25,41 @@ TEST(SoftEnds, RoundoffIsThatOfTheRow) {
   if (!s.converged()) return;
   const double momentum = std::max(std::abs(s.momentum_start[0]), std::abs(s.momentum_start[1]));
   EXPECT_LE(momentum, 1e-12 * 6378.0 * 6378.0) << s.message;
+}
+
+/// x is led from 0 to 1, y is free at both ends and rests where nothing pulls: at 1/2. It is pulled there by
+/// 1e-10 of what the second variation is across, ten times less than the residual that may be left.
+TEST(SoftEnds, WeakForcesCount) {
+  const auto pulled = trace(2, [](auto q, auto v, auto) {
+    const auto off = q[1] - 0.5;
+    return (v[0] * v[0] + v[1] * v[1] - 1e-10 * off * off) / 2.0;
+  });
+  const Problem problem = with_ends(pulled, 1, [](BoundaryRelation& b) {
+    b.fix(0, false, 0);
+    b.fix(0, true, 1);
+  });
+  const Solution s = Solver().solve(problem, within(1e-4));
+  ASSERT_TRUE(s.converged()) << s.message;
+  for (std::size_t k = 1; k < s.trajectory.nodes.size(); k += 2)
+    EXPECT_NEAR(s.trajectory.nodes[k], 0.5, 1e-4);
+}
+
+/// The same with roundoff amplified to more than is allowed: that is said, or the place is right.
+TEST(SoftEnds, AmplifiedRoundoffIsToldOf) {
+  const auto pulled = trace(2, [](auto q, auto v, auto) {
+    const auto off = q[1] - sin(q[0]);
+    return (v[0] * v[0] + v[1] * v[1] - 1e-10 * off * off) / 2.0;
+  });
+  const Problem problem = with_ends(pulled, 1, [](BoundaryRelation& b) {
+    b.fix(0, false, 0);
+    b.fix(0, true, 1);
+  });
+  const Solution s = Solver().solve(problem, within(1e-9));
+  if (s.converged()) {
+    EXPECT_NEAR(s.trajectory.nodes[1], 1 - std::cos(1.0), 1e-8);
+  } else {
+    EXPECT_NE(s.message.find("roundoff"), std::string::npos) << s.message;
+  }
 }
 
 /// A charge in the field of a dipole, which vanishes far away: so do all conditions on momenta.

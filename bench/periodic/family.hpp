@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "study/study.hpp"
+
+/// \file What the points of a family of orbits cost.
+
+namespace bench {
+
+struct FamilyCost {
+  int points = 0;      ///< after the first
+  double seconds = 0;  ///< median for one of them, with its index and multipliers
+  double worst_action_slope = 0, worst_momentum = 0;  ///< see extremal::Continuation
+  std::string end;                                    ///< why the family ended
+};
+
+/// From the orbit of a study, whose energy is given, to the energy `to`, `repeat` times.
+FamilyCost measure_family(const extremal::Study& study, double to, int repeat);
+
+}  // namespace bench
