@@ -38,8 +38,8 @@ class Chain {
   /// most `smallest` were found, after scaling rows and columns to a largest entry of 1; `smallest` is raised
   /// to roundoff, so by default this says that A is singular to working precision. Each such eigenvalue is
   /// counted as zero. It is then moved to about 1 by adding to one diagonal entry, where its eigenvector is
-  /// largest, and that is listed in deflated(): the factorisation is an exact one of a nonsingular matrix that
-  /// is known.
+  /// largest, and that is listed in deflated(): the factorisation is an exact one of a nonsingular matrix
+  /// that is known.
   bool factor(double smallest = 0);
 
   /// X := (A + Σ amount e_row e_rowᵀ over deflated())⁻¹ X; that is A⁻¹ X after factor() has returned true.

@@ -23,8 +23,8 @@ class NodeSystem {
   /// working precision.
   bool factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases = nullptr);
 
-  /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing along
-  /// them. From now until reset(); the factors there are follow.
+  /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing
+  /// along them. From now until reset(); the factors there are follow.
   void set_null_below(double threshold);
 
   /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds; `refine` as
