@@ -26,6 +26,12 @@ using Clock = std::chrono::steady_clock;
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
 constexpr double least_roundoff = 1e-13;
+/// Eigenvalues within the error of the discretisation of zero, relative, count in the nullity; it is taken to
+/// be that of the trajectory, and within these bounds.
+constexpr double least_null = 1e-8, largest_null = 1e-3;
+double null_threshold(double error, double size) {
+  return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
+}
 
 /// Momenta, residual, index and nullity from one evaluation at the path found.
 void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {

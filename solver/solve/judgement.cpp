@@ -13,6 +13,8 @@ namespace {
 
 /// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large.
 constexpr double most_phase_force = 1e-7;
+/// Eigenvalues above this, relative to the largest, are never taken for null.
+constexpr double largest_soft = 1e-8;
 /// Steps that end what Newton's method began.
 constexpr int most_polish = 3;
 /// They use the factors there are as long as they contract so much.
@@ -26,6 +28,14 @@ double Refinement::excess(const Resolution::Error& error) const {
   return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
 }
 
+/// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft then,
+/// not null. Periodic problems have families that come no nearer to zero.
+double Refinement::softest() const {
+  const double roundoff = 8 * 0x1p-52 * w_.path.elements();
+  const double error = scales_.magnitude > 0 ? 3 * left_out_ / scales_.magnitude : 0;
+  return std::clamp(error, roundoff, largest_soft);
+}
+
 /// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
 /// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows:
 /// it tells better than what was expected to remain.
@@ -34,7 +44,7 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
   const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
   NewtonIteration& newton = w_.iteration;
-  newton.model().set_null_below(null_threshold(left_out_, scales_.magnitude));
+  if (!problem_.periodic) newton.model().set_null_below(softest());
   bool passed = false;
   for (int step = 0; step <= most_polish; ++step) {
     const bool again = step == 0 || newton.contraction() <= worst_chord;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,13 +12,6 @@
 /// \file The quadratic model of S_h at a path: what a Newton step needs.
 
 namespace extremal {
-
-/// Eigenvalues of the second variation within the error of the discretisation of zero, relative, are null: it
-/// is taken to be a few times that of a trajectory of this size.
-inline double null_threshold(double error, double size) {
-  constexpr double least = 1e-14, largest = 1e-3;
-  return size > 0 ? std::clamp(3 * error / size, least, largest) : least;
-}
 
 /// The equation that closes a free duration: row over (q(0), q(T)) and its value, or, where the row is
 /// empty, ∂S/∂T + energy = 0, whose row is the border itself.

@@ -83,6 +83,7 @@ class Refinement {
   void record();
   Attempt settle(const NewtonReport& report);
   std::string hidden(double amplified) const;
+  double softest() const;
   double step_cost() const;
 
   const Problem& problem_;
