@@ -28,8 +28,8 @@ double Refinement::excess(const Resolution::Error& error) const {
   return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
 }
 
-/// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft then,
-/// not null. Periodic problems have families that come no nearer to zero.
+/// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft
+/// then, not null. Periodic problems have families that come no nearer to zero.
 double Refinement::softest() const {
   const double roundoff = 8 * 0x1p-52 * w_.path.elements();
   const double error = scales_.magnitude > 0 ? 3 * left_out_ / scales_.magnitude : 0;
