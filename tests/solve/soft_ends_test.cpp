@@ -28,7 +28,7 @@ TEST(SoftEnds, RoundoffIsThatOfTheRow) {
 }
 
 /// x is led from 0 to 1, y is free at both ends and rests where nothing pulls: at 1/2. It is pulled there by
-/// 1e-10 of what the second variation is across, ten times less than the residual that may be left.
+/// 1e-10 of what the second variation is across: at the guess, y = 0, by half the residual that may be left.
 TEST(SoftEnds, WeakForcesCount) {
   const auto pulled = trace(2, [](auto q, auto v, auto) {
     const auto off = q[1] - 0.5;
