@@ -29,7 +29,8 @@ double Refinement::excess(const Resolution::Error& error) const {
 }
 
 /// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft
-/// then, not null. Not so in periodic problems: families there, as about Kepler's circle, would count as soft.
+/// then, not null. Not so in periodic problems: families there, as about Kepler's circle, would count as
+/// soft.
 double Refinement::softest() const {
   const double roundoff = 8 * 0x1p-52 * w_.path.elements();
   const double error = scales_.magnitude > 0 ? 3 * left_out_ / scales_.magnitude : 0;

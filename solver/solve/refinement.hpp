@@ -95,9 +95,9 @@ class Refinement {
   double cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
   ResidualTest test_;
-  double longest_ = 0;  ///< undamped step so far, relative
+  double longest_ = 0;   ///< undamped step so far, relative
   double left_out_ = 0;  ///< of q, by the elements that were judged last
-  double worst_ = 0;    ///< error in units of the tolerance, when elements were last judged
+  double worst_ = 0;     ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 
