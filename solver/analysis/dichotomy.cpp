@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -27,7 +29,7 @@ class OrthogonalIteration {
     MatrixXcd start(n_, n_);
     for (Eigen::Index i = 0; i < start.size(); ++i)
       start.data()[i] = {std::cos(1 + 2.4 * i), std::sin(2 + 3.1 * i)};
-    bases_.back() = Eigen::HouseholderQR<MatrixXcd>(start).householderQ();
+    bases_.back() = unitary(start).q;
   }
 
   Dichotomy run() {
@@ -53,10 +55,10 @@ class OrthogonalIteration {
       complex_.resize(n_, n_);
       complex_.real() = image_.topRows(n_);
       complex_.imag() = image_.bottomRows(n_);
-      qr_.compute(complex_);
-      bases_[k + 1] = qr_.householderQ();
+      UnitaryBasis basis = unitary(complex_);
+      bases_[k + 1] = std::move(basis.q);
       for (Eigen::Index j = 0; j < n_; ++j) {
-        const std::complex<double> pivot = qr_.matrixQR()(j, j);
+        const std::complex<double> pivot = basis.pivots[j];
         const double size = std::abs(pivot);
         if (size > 0) bases_[k + 1].col(j) *= pivot / size;
         growth_[j] += std::log(size);
@@ -133,7 +135,6 @@ class OrthogonalIteration {
   std::vector<Eigen::Index> first_;
   MatrixXd frame_, image_;
   MatrixXcd complex_;
-  Eigen::HouseholderQR<MatrixXcd> qr_;
 };
 
 }  // namespace

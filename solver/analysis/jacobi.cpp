@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/units.hpp"
+#include "linear/dense.hpp"
 
 namespace extremal {
 
@@ -63,11 +64,6 @@ double zero(F f, double a, double fa, double b, double fb, double tolerance) {
   }
 }
 
-VectorXd eigenvalues(const MatrixXd& symmetric) {
-  if (symmetric.size() == 0) return {};
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
 }  // namespace
 
 /// The fields are those with x_a = I (x_b = I) where `tau` is nearer the end (start), and so far from zero.
@@ -81,10 +77,10 @@ void JacobiFields::begin(SecondVariation& variation, int k, double tau) {
   }
   variation.fields(k, tau, from_start_, from_end_);
   if (normalised_) {
-    p_ = even(piece.d - piece.b * from_start_.partialPivLu().solve(from_end_));
+    p_ = even(piece.d - piece.b * solved(from_start_, from_end_));
     return;
   }
-  x_ = -from_end_.partialPivLu().solve(from_start_);
+  x_ = -solved(from_end_, from_start_);
   p_ = piece.b + piece.d * x_;
 }
 
@@ -94,7 +90,7 @@ const std::vector<double>& JacobiFields::advance(SecondVariation& variation, int
   if (normalised_ && step(piece)) return times_;
   split(piece);
   whole_ = form(variation, k, 1);
-  eigenvalues_ = eigenvalues(whole_);
+  eigenvalues_ = symmetric_eigenvalues(whole_);
   const int inside = static_cast<int>((eigenvalues_.array() < -at_end).count());
   const int reached = static_cast<int>((eigenvalues_.array() <= at_end).count());
   find(variation, k, first_only ? std::min(inside, 1) : inside);
@@ -127,7 +123,7 @@ MatrixXd JacobiFields::orthonormal(const VectorXd& unit) const {
   both.topRows(n) = unit.asDiagonal() * (normalised_ ? MatrixXd::Identity(n, n) : x_);
   both.bottomRows(n) = unit.cwiseInverse().asDiagonal() * p_;
   both.colwise().normalize();
-  return Eigen::HouseholderQR<MatrixXd>(both).householderQ() * MatrixXd::Identity(2 * n, n);
+  return extremal::orthonormal(both);
 }
 
 double JacobiFields::distance(SecondVariation& variation, int k) {
@@ -136,11 +132,11 @@ double JacobiFields::distance(SecondVariation& variation, int k) {
     const Piece piece = variation.piece(k);
     const VectorXd inverse = units(piece).cwiseInverse();
     const MatrixXd scaled = inverse.asDiagonal() * (p_ + piece.a) * inverse.asDiagonal();
-    if (eigenvalues(scaled).cwiseAbs().minCoeff() > far) return INFINITY;
+    if (symmetric_eigenvalues(scaled).cwiseAbs().minCoeff() > far) return INFINITY;
   }
   split(variation.piece(k));
-  const VectorXd last = eigenvalues(form(variation, k, 1)),
-                 before = eigenvalues(form(variation, k, 1 - step));
+  const VectorXd last = symmetric_eigenvalues(form(variation, k, 1)),
+                 before = symmetric_eigenvalues(form(variation, k, 1 - step));
   double nearest = INFINITY;
   for (Eigen::Index i = 0; i < last.size(); ++i)
     nearest = std::min(nearest, std::abs(step * last[i] / (before[i] - last[i])));
@@ -153,14 +149,14 @@ void JacobiFields::split(const Piece& piece) {
   const int n = static_cast<int>(piece.a.rows());
   unit_ = units(piece);
   const MatrixXd both = orthonormal(unit_);
-  const Eigen::BDCSVD<MatrixXd> svd(both.topRows(n), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const SingularValues svd = singular_value_decomposition(both.topRows(n));
   x_ = unit_.cwiseInverse().asDiagonal() * both.topRows(n);
   p_ = unit_.asDiagonal() * both.bottomRows(n);
   normalised_ = false;
   const int r = n - vanishing_;
-  const VectorXd root = svd.singularValues().head(r).cwiseSqrt();
-  range_ = svd.matrixU().leftCols(r) * root.asDiagonal();
-  share_ = svd.matrixU().leftCols(r).transpose() * both.bottomRows(n) * svd.matrixV().leftCols(r);
+  const VectorXd root = svd.values.head(r).cwiseSqrt();
+  range_ = svd.u.leftCols(r) * root.asDiagonal();
+  share_ = svd.u.leftCols(r).transpose() * both.bottomRows(n) * svd.v.leftCols(r);
   // Σ UᵀPV is symmetric: of two mirrored entries, the one in the row of the smaller singular value is exact.
   for (int i = 0; i < r; ++i)
     for (int j = 0; j <= i; ++j)
@@ -173,7 +169,7 @@ MatrixXd JacobiFields::form(SecondVariation& variation, int k, double tau) {
   MatrixXd a = piece.a;
   if (tau < 1) {
     variation.fields(k, tau, from_start_, from_end_);
-    a -= piece.b.transpose() * from_end_.partialPivLu().solve(from_start_);
+    a -= piece.b.transpose() * solved(from_end_, from_start_);
   }
   const VectorXd inverse = unit_.cwiseInverse();
   return share_ + range_.transpose() * even(inverse.asDiagonal() * a * inverse.asDiagonal()) * range_;
@@ -182,7 +178,7 @@ MatrixXd JacobiFields::form(SecondVariation& variation, int k, double tau) {
 /// Eigenvalues times tau, which at first is about the form A of the piece.
 void JacobiFields::find(SecondVariation& variation, int k, int count) {
   if (count == 0) return;
-  const double first = std::max(eigenvalues(whole_ - share_)[0], at_end);
+  const double first = std::max(symmetric_eigenvalues(whole_ - share_)[0], at_end);
   samples_.clear();
   samples_.push_back({0, VectorXd::Constant(eigenvalues_.size(), first)});
   samples_.push_back({1, eigenvalues_});
@@ -201,7 +197,7 @@ double JacobiFields::crossing(SecondVariation& variation, int k, int index) {
   const double from = low->tau, to = high->tau, value_from = low->values[index],
                value_to = high->values[index];
   const auto value = [&](double tau) {
-    samples_.push_back({tau, tau * eigenvalues(form(variation, k, tau))});
+    samples_.push_back({tau, tau * symmetric_eigenvalues(form(variation, k, tau))});
     return samples_.back().values[index];
   };
   return zero(value, from, value_from, to, value_to, resolution);
@@ -209,11 +205,10 @@ double JacobiFields::crossing(SecondVariation& variation, int k, int index) {
 
 /// The fields at the end: B⁻ᵀ(P + A X) = −X there.
 void JacobiFields::carry(const Piece& piece) {
-  const MatrixXd next = -piece.b.transpose().partialPivLu().solve(p_ + piece.a * x_);
+  const MatrixXd next = -solved(piece.b.transpose(), p_ + piece.a * x_);
   p_ = (piece.b * x_ + piece.d * next).eval();
   x_ = next;
-  const Eigen::PartialPivLU<MatrixXd> lu(x_.transpose());
-  const MatrixXd w = lu.solve(p_.transpose());
+  const MatrixXd w = solved(x_.transpose(), p_.transpose());
   const VectorXd inverse = units(piece).cwiseInverse();
   normalised_ = (inverse.asDiagonal() * w * inverse.asDiagonal()).cwiseAbs().maxCoeff() < moderate;
   if (normalised_) p_ = even(w);

@@ -5,6 +5,7 @@
 
 #include "analysis/dichotomy.hpp"
 #include "analysis/symplectic.hpp"
+#include "linear/dense.hpp"
 
 namespace extremal {
 
@@ -29,9 +30,7 @@ constexpr double same_modulus = 1e-9;
 /// An orthogonal symplectic matrix with v/|v| as its first column, without that and the one beside it.
 MatrixXd across(const Eigen::VectorXd& v) {
   const auto n = v.size() / 2;
-  const Eigen::MatrixXcd u =
-      Eigen::HouseholderQR<Eigen::MatrixXcd>(v.head(n) + Complex(0, 1) * v.tail(n)).householderQ() *
-      Eigen::MatrixXcd::Identity(n, n);
+  const Eigen::MatrixXcd u = unitary(v.head(n) + Complex(0, 1) * v.tail(n)).q;
   MatrixXd basis(2 * n, 2 * n - 2);
   basis << u.real().rightCols(n - 1), -u.imag().rightCols(n - 1), u.imag().rightCols(n - 1),
       u.real().rightCols(n - 1);
@@ -73,7 +72,7 @@ std::vector<Factor> factors(const SecondVariation& variation, const MatrixXd& ma
   if (map.size() > 0) {
     const MatrixXd scaled = unit.asDiagonal() * map * unit.cwiseInverse().asDiagonal();
     MatrixXd& last = result.back().flow;
-    last.topRows(n) = scaled.partialPivLu().solve(last.topRows(n)).eval();
+    last.topRows(n) = solved(scaled, last.topRows(n));
     last.bottomRows(n) = (scaled.transpose() * last.bottomRows(n)).eval();
   }
   return result;
@@ -199,8 +198,8 @@ std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrb
   const Dichotomy split = separate(parts);
   for (const MatrixXd& block : split.growing) {
     if (!block.allFinite()) return std::nullopt;
-    const auto values = block.rows() == 1 ? Eigen::VectorXcd(block.diagonal().cast<Complex>())
-                                          : Eigen::VectorXcd(block.eigenvalues());
+    const auto values =
+        block.rows() == 1 ? Eigen::VectorXcd(block.diagonal().cast<Complex>()) : general_eigenvalues(block);
     for (const Complex& value : values) found.add_growing(value);
   }
   if (!split.centre.allFinite()) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "analysis/symplectic.hpp"
+#include "linear/dense.hpp"
 
 namespace extremal {
 
@@ -37,11 +38,11 @@ std::optional<OrbitForm> OrbitForm::make(const SecondVariation& variation, const
       form.a_ = a, form.b_ = b, form.d_ = d;
       continue;
     }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> node(form.d_ + a);
-    const VectorXd& values = node.eigenvalues();
+    const SymmetricEigen node = symmetric_eigen(form.d_ + a);
+    const VectorXd& values = node.values;
     if (!(values.cwiseAbs().minCoeff() > regular * values.cwiseAbs().maxCoeff())) return std::nullopt;
     form.inner_ += static_cast<int>((values.array() < 0).count());
-    const MatrixXd left = node.eigenvectors().transpose() * form.b_, right = b * node.eigenvectors();
+    const MatrixXd left = node.vectors.transpose() * form.b_, right = b * node.vectors;
     const auto weights = values.cwiseInverse().asDiagonal();
     form.a_ -= left.transpose() * weights * left;
     form.d_ = d - right * weights * right.transpose();
@@ -61,8 +62,7 @@ MatrixXcd OrbitForm::form(std::complex<double> lambda) const {
 
 int OrbitForm::index(double alpha, double threshold) const {
   const MatrixXcd matrix = form(std::polar(1.0, alpha));
-  const VectorXd values =
-      Eigen::SelfAdjointEigenSolver<MatrixXcd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd values = hermitian_eigenvalues(matrix);
   const double null = threshold * (a_.cwiseAbs().maxCoeff() + d_.cwiseAbs().maxCoeff());
   return inner_ + static_cast<int>((values.array() < -null).count());
 }
@@ -78,8 +78,7 @@ std::vector<int> OrbitForm::iterates(int most, double threshold) const {
 }
 
 VectorXcd OrbitForm::eigenvector(std::complex<double> lambda) const {
-  const Eigen::JacobiSVD<MatrixXcd> svd(form(lambda), Eigen::ComputeFullV);
-  const VectorXcd x = svd.matrixV().rightCols(1);
+  const VectorXcd x = null_vector(form(lambda));
   const VectorXcd p = -(a_ * x + lambda * (b_.transpose() * x));
   VectorXcd state(2 * x.size());
   state << unit_.cwiseInverse().asDiagonal() * x, unit_.asDiagonal() * p;

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "analysis/units.hpp"
+#include "linear/dense.hpp"
 
 namespace extremal {
 
 namespace {
 
 using Eigen::MatrixXd;
+using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 /// Sums this near to each other, relative, share their eigenvectors.
@@ -83,15 +85,12 @@ void find_signs(std::vector<ReciprocalPair>& pairs, std::size_t first, std::size
                 const MatrixXd& fields) {
   const auto n = c.rows() / 2, count = static_cast<Eigen::Index>(end - first);
   MatrixXd x = fields.middleCols(static_cast<Eigen::Index>(first), count);
-  if (count > 1)
-    x = (Eigen::HouseholderQR<MatrixXd>(x).householderQ() * MatrixXd::Identity(2 * n, count)).eval();
+  if (count > 1) x = orthonormal(x);
   const MatrixXd image = c * x;
   MatrixXd form = x.topRows(n).transpose() * image.bottomRows(n);
   form -= x.bottomRows(n).transpose() * image.topRows(n);
   form = ((form + form.transpose()) / 2).eval();
-  const VectorXd values =
-      count == 1 ? VectorXd(form.diagonal())
-                 : Eigen::SelfAdjointEigenSolver<MatrixXd>(form, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd values = count == 1 ? VectorXd(form.diagonal()) : symmetric_eigenvalues(form);
   for (std::size_t k = first; k < end; ++k)
     pairs[k].sign = values[static_cast<Eigen::Index>(k - first)] < 0 ? -1 : 1;
 }
@@ -122,11 +121,10 @@ MatrixXd transfer(const Piece& piece, const VectorXd& unit) {
     return inverse.asDiagonal() * form * inverse.asDiagonal();
   };
   // p_a = −(A q_a + Bᵀq_b) gives q_b, and then p_b = B q_a + D q_b.
-  const Eigen::PartialPivLU<MatrixXd> lu(scaled(-piece.b.transpose()));
   MatrixXd result(2 * n, 2 * n);
   result.topLeftCorner(n, n) = scaled(piece.a);
   result.topRightCorner(n, n).setIdentity();
-  result.topRows(n) = lu.solve(result.topRows(n)).eval();
+  result.topRows(n) = solved(scaled(-piece.b.transpose()), result.topRows(n));
   result.bottomRows(n).noalias() = scaled(piece.d) * result.topRows(n);
   result.bottomLeftCorner(n, n) += scaled(piece.b);
   return result;
@@ -139,20 +137,19 @@ ReciprocalPairs reciprocal_pairs(const MatrixXd& c) {
   const SkewHamiltonian reduced(sum);
   ReciprocalPairs result;
   result.scale = c.norm();
-  const Eigen::EigenSolver<MatrixXd> solver(reduced.half());
+  const GeneralEigen found = general_eigen(reduced.half());
   const double resolved = std::sqrt(sum_accuracy * result.scale);
   const auto n = c.rows() / 2;
   std::vector<Eigen::Index> order(n);
   for (Eigen::Index k = 0; k < n; ++k) order[k] = k;
-  const auto& values = solver.eigenvalues();
+  const VectorXcd& values = found.values;
   std::stable_sort(order.begin(), order.end(),
                    [&](auto i, auto j) { return values[i].real() < values[j].real(); });
   MatrixXd vectors(n, n);  // of a double μ that came out complex, real and imaginary part
-  const MatrixXd real_vectors = solver.pseudoEigenvectors();
   for (Eigen::Index k = 0; k < n; ++k) {
     const std::complex<double> value = values[order[k]];
     result.pairs.push_back({std::abs(value.imag()) <= resolved ? value.real() : value});
-    vectors.col(k) = real_vectors.col(order[k]).normalized();
+    vectors.col(k) = found.vectors.col(order[k]).normalized();
   }
   const MatrixXd fields = reduced.basis() * vectors;
   for (std::size_t first = 0, end; first < result.pairs.size(); first = end) {

@@ -16,13 +16,6 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 /// Parts this much larger than the solution they add up to cost digits that refinement brings back.
 constexpr double cancellation = 4;
 
-/// An orthonormal basis of the columns.
-Eigen::MatrixXd basis(const Eigen::MatrixXd& m) {
-  if (m.cols() == 0) return m;
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(m).householderQ() *
-         Eigen::MatrixXd::Identity(m.rows(), m.cols());
-}
-
 }  // namespace
 
 void Border::resize(int order, int columns, bool symmetric) {
@@ -155,8 +148,8 @@ int Border::solve_least_norm(const Chain& a, double* x, int columns, double thre
   if (!finite_) throw std::logic_error("border: solve without a factorisation of finite blocks");
   if (columns < 1 || order() == 0) return 0;
   if (extended_ == 0) return a.solve(x, columns), 0;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(schur_, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::VectorXd& values = svd.singularValues();
+  const SingularValues svd = singular_value_decomposition(schur_);
+  const Eigen::VectorXd& values = svd.values;
   const int rank = int((values.array() > std::max(threshold, 64 * eps)).count()), null = extended_ - rank;
   // Null vectors of the whole: x = −A'⁻¹ [C E] y for y in the null space of S; on the left likewise.
   const auto whole = [&](const RowMatrix& w, const Eigen::MatrixXd& vectors) {
@@ -164,15 +157,15 @@ int Border::solve_least_norm(const Chain& a, double* x, int columns, double thre
     Eigen::MatrixXd v(order(), null);
     v.topRows(order_).noalias() = -(w * y);
     v.bottomRows(columns_) = y.topRows(columns_);
-    return basis(v);
+    return orthonormal(v);
   };
-  const Eigen::MatrixXd right = whole(w_, svd.matrixV());
+  const Eigen::MatrixXd right = whole(w_, svd.v);
   RowMatrix w = w_;
   if (!symmetric_) extend(a, r_, w);
-  const Eigen::MatrixXd left = whole(w, svd.matrixU());
+  const Eigen::MatrixXd left = whole(w, svd.u);
   const auto with_svd = [&](const RowMatrix& b, RowMatrix& y) {
-    const Eigen::MatrixXd part = svd.matrixU().leftCols(rank).transpose() * b;
-    y = svd.matrixV().leftCols(rank) * (values.head(rank).cwiseInverse().asDiagonal() * part);
+    const Eigen::MatrixXd part = svd.u.leftCols(rank).transpose() * b;
+    y = svd.v.leftCols(rank) * (values.head(rank).cwiseInverse().asDiagonal() * part);
   };
   Eigen::Map<RowMatrix> solution(x, order(), columns);
   const auto project = [](auto&& vectors, const Eigen::MatrixXd& out) {
@@ -197,8 +190,7 @@ Inertia Border::inertia(double threshold) const {
   if (extended_ == 0) return result;
   const double zero = std::max(threshold, 64 * eps * std::sqrt(double(order())));
   const Eigen::MatrixXd s = (schur_ + schur_.transpose()) / 2;
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(s, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd values = symmetric_eigenvalues(s);
   for (double v : values) ++(v > zero ? result.positive : v < -zero ? result.negative : result.zero);
   result.positive -= extended_ - columns_;
   return result;
@@ -206,7 +198,7 @@ Inertia Border::inertia(double threshold) const {
 
 Eigen::VectorXd Border::singular_values() const {
   if (!finite_ || extended_ == 0) return {};
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(schur_).singularValues();
+  return extremal::singular_values(schur_);
 }
 
 double Border::smallest_singular_value() const {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <vector>
 
 #include "linear/chain.hpp"
+#include "linear/dense.hpp"
 
 /// \file A chain with a dense border of few columns.
 

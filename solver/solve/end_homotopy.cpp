@@ -1,6 +1,6 @@
 #include "solve/end_homotopy.hpp"
 
-#include <Eigen/Dense>
+#include "linear/dense.hpp"
 
 namespace extremal {
 
@@ -14,8 +14,7 @@ constexpr double small = 1e-6;
 std::vector<double> unit_displacement(const BoundaryRelation& relation, int row) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(relation.rows, 2 * relation.coordinates);
   for (const Triplet& entry : relation.matrix) matrix(entry.row, entry.column) += entry.value;
-  const Eigen::VectorXd x =
-      matrix.completeOrthogonalDecomposition().solve(Eigen::VectorXd::Unit(relation.rows, row));
+  const Eigen::VectorXd x = least_norm(matrix, Eigen::VectorXd::Unit(relation.rows, row));
   return {x.begin(), x.end()};
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "action/discrete_action.hpp"
+#include "linear/dense.hpp"
 
 namespace extremal {
 
@@ -34,9 +35,8 @@ struct SimplePath {
 };
 SimplePath simple_path(const ClosingMap& map, const VectorXd& mean) {
   const MatrixXd a = MatrixXd::Identity(map.r.rows(), map.r.cols()) - map.r;
-  const auto qr = a.completeOrthogonalDecomposition();
-  const VectorXd drift = map.c - a * qr.solve(map.c);
-  return {mean - qr.solve(a * mean - (map.c - drift)), drift};
+  const VectorXd drift = map.c - a * least_norm(a, map.c);
+  return {mean - least_norm(a, a * mean - (map.c - drift)), drift};
 }
 
 /// Extents that are alike for all coordinates that R mixes, so that they commute with R.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <optional>
 #include <span>
 #include <vector>

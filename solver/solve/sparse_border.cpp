@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -87,8 +89,7 @@ Inertia SparseBorder::inertia(SparseSymmetric& a) const {
   // The last diagonal entries are zero where H is null along what is held.
   const Eigen::VectorXd unit = s.rowwise().lpNorm<Eigen::Infinity>().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = unit.asDiagonal() * (s + s.transpose()) * unit.asDiagonal();
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd values = symmetric_eigenvalues(scaled);
   for (const double value : values) ++(value < 0 ? result.negative : result.positive);
   result.negative -= h;
   result.positive -= 2 * h;

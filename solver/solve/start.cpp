@@ -1,10 +1,10 @@
 #include "solve/start.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "linear/dense.hpp"
 #include "solve/loop.hpp"
 
 namespace extremal {
@@ -36,7 +36,7 @@ std::vector<double> nearest(const EndMap& ends, const std::vector<double>& targe
       matrix(z.row, dense[z.column]) += z.value;
       right[z.row] = target[z.row] - ends.offset[z.row];
     }
-  const Eigen::VectorXd y = matrix.completeOrthogonalDecomposition().solve(right);
+  const Eigen::VectorXd y = least_norm(matrix, right);
   const Eigen::VectorXd moved = matrix * y;
   for (std::size_t e = 0; e < x.size(); ++e)
     if (right[e] != 0 || moved[e] != 0) x[e] = ends.offset[e] + moved[e];

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
 #include "machine/simd.hpp"
 #include "study/nearby.hpp"
 
@@ -22,11 +22,11 @@ double regularity(Eigen::MatrixXd mass, int& weak) {
     for (double& r : row) r = r > 0 ? 1 / std::sqrt(r) : 1;
     mass = row.asDiagonal() * mass * row.asDiagonal();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(mass);
-  const Eigen::VectorXd size = eigen.eigenvalues().cwiseAbs();
+  const SymmetricEigen eigen = symmetric_eigen(mass);
+  const Eigen::VectorXd size = eigen.values.cwiseAbs();
   Eigen::Index smallest;
   const double least = size.minCoeff(&smallest);
-  eigen.eigenvectors().col(smallest).cwiseAbs().maxCoeff(&weak);
+  eigen.vectors.col(smallest).cwiseAbs().maxCoeff(&weak);
   return size.maxCoeff() > 0 ? least / size.maxCoeff() : 0;
 }
 

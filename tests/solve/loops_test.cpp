@@ -1,4 +1,5 @@
 #include <chrono>
+#include <fstream>
 #include <numbers>
 
 #include "problem/closing.hpp"

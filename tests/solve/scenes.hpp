@@ -1,8 +1,6 @@
 #pragma once
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "solve/laws.hpp"
@@ -19,44 +17,17 @@ struct Table {
 };
 
 /// Columns t, the n coordinates, their n velocities.
-inline Table read_table(const std::string& path, int n) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  Table table;
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    Values row;
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
-    if (static_cast<int>(row.size()) != 2 * n + 1)
-      throw std::runtime_error(fmt::format("{}: {} columns; need {}", path, row.size(), 2 * n + 1));
-    table.t.push_back(row[0]);
-    table.states.push_back(
-        {Values(row.begin() + 1, row.begin() + 1 + n), Values(row.begin() + 1 + n, row.end())});
-  }
-  if (table.t.empty()) throw std::runtime_error(path + ": no rows");
-  return table;
-}
+Table read_table(const std::string& path, int n);
 
 inline std::string bench_data(const std::string& name) {
   return std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/" + name;
 }
 
 /// The case of a file of tests/data/reference.
-inline nlohmann::json published(const std::string& file, const std::string& id) {
-  std::ifstream in(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/reference/" + file);
-  const nlohmann::json cases = nlohmann::json::parse(in).at("cases");
-  for (const auto& c : cases)
-    if (c.at("id") == id) return c;
-  throw std::runtime_error(id + " is not in " + file);
-}
+nlohmann::json published(const std::string& file, const std::string& id);
 
-/// A list of decimal strings.
-inline Values decimals(const nlohmann::json& list) {
-  Values result;
-  for (const auto& x : list) result.push_back(std::stod(x.get<std::string>()));
-  return result;
-}
-inline double decimal(const nlohmann::json& text) { return std::stod(text.get<std::string>()); }
+/// A decimal string, a list of them.
+double decimal(const nlohmann::json& text);
+Values decimals(const nlohmann::json& list);
 
 }  // namespace extremal::laws

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+/// \file Dense factorisations, each instantiated once: Eigen's templates would cost every file that uses one
+/// several seconds to compile, and half a minute under sanitizers.
+
+extern template class Eigen::PartialPivLU<Eigen::MatrixXd>;
+extern template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
+extern template class Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
+
+namespace extremal {
+
+/// Orthonormal columns that span those of `m`, r × c with c <= r.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& m);
+
+/// m = q (R over zeros): q is r × r and unitary, `pivots` the diagonal of R.
+struct UnitaryBasis {
+  Eigen::MatrixXcd q;
+  Eigen::VectorXcd pivots;
+};
+UnitaryBasis unitary(const Eigen::MatrixXcd& m);
+
+/// A⁻¹ B by LU with partial pivoting; not finite where A is singular.
+Eigen::MatrixXd solved(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The shortest x that minimises |Ax − b|.
+Eigen::VectorXd least_norm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+/// In ascending order; of a symmetric (Hermitian) matrix the lower triangle is read.
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& m);
+Eigen::VectorXd hermitian_eigenvalues(const Eigen::MatrixXcd& m);
+
+struct SymmetricEigen {
+  Eigen::VectorXd values;  ///< ascending
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& m);
+
+/// Of a general matrix; two columns beside each other are real and imaginary part of the vectors of a complex
+/// pair of values.
+struct GeneralEigen {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXd vectors;
+};
+GeneralEigen general_eigen(const Eigen::MatrixXd& m);
+Eigen::VectorXcd general_eigenvalues(const Eigen::MatrixXd& m);
+
+/// m = u diag(values) vᵀ, all of u and v, values descending.
+struct SingularValues {
+  Eigen::MatrixXd u;
+  Eigen::VectorXd values;
+  Eigen::MatrixXd v;
+};
+SingularValues singular_value_decomposition(const Eigen::MatrixXd& m);
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& m);
+
+/// The right singular vector of the smallest singular value.
+Eigen::VectorXcd null_vector(const Eigen::MatrixXcd& m);
+
+}  // namespace extremal
