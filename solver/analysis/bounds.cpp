@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -10,11 +9,13 @@
 #include <stdexcept>
 
 #include "action/tables.hpp"
+#include "linear/dense.hpp"
 
 namespace extremal {
 
 namespace {
 
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 /// Stiffness and mass of one element of unit length, functions in the order of element.hpp.
@@ -36,10 +37,8 @@ Element element(const Scheme& scheme) {
 }
 
 /// √ of the least z² with K − z² M singular, for K positive definite and M ≥ 0.
-template <class Matrix>
-double least_frequency(const Matrix& stiffness, const Matrix& mass) {
-  const auto values =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(mass, stiffness, Eigen::EigenvaluesOnly).eigenvalues();
+double least_frequency(const MatrixXcd& stiffness, const MatrixXcd& mass) {
+  const Eigen::VectorXd values = hermitian_eigenvalues(mass, stiffness);
   const double largest = values[values.size() - 1];
   const double roundoff = 1e-14 * mass.cwiseAbs().maxCoeff() / stiffness.cwiseAbs().maxCoeff();
   return largest > roundoff ? 1 / std::sqrt(largest) : std::numeric_limits<double>::infinity();
@@ -49,11 +48,10 @@ double least_frequency(const Matrix& stiffness, const Matrix& mass) {
 /// the start value, so one element tells all.
 double bloch_frequency(const Element& e, double theta) {
   const Eigen::Index inner = e.stiffness.rows() - 2;
-  Eigen::MatrixXcd closed = Eigen::MatrixXcd::Zero(inner + 2, inner + 1);
+  MatrixXcd closed = MatrixXcd::Zero(inner + 2, inner + 1);
   closed.topRows(inner + 1).setIdentity();
   closed(inner + 1, inner) = std::polar(1.0, theta);
-  return least_frequency<Eigen::MatrixXcd>(closed.adjoint() * e.stiffness * closed,
-                                           closed.adjoint() * e.mass * closed);
+  return least_frequency(closed.adjoint() * e.stiffness * closed, closed.adjoint() * e.mass * closed);
 }
 
 }  // namespace
@@ -66,8 +64,8 @@ double window_bound(const Scheme& scheme, int elements) {
   if (elements > 1) return elements * bloch_frequency(e, std::numbers::pi / elements);
   const Eigen::Index inner = e.stiffness.rows() - 2;
   if (inner == 0) return std::numeric_limits<double>::infinity();
-  return least_frequency<MatrixXd>(e.stiffness.topLeftCorner(inner, inner),
-                                   e.mass.topLeftCorner(inner, inner));
+  return least_frequency(e.stiffness.topLeftCorner(inner, inner).cast<std::complex<double>>(),
+                         e.mass.topLeftCorner(inner, inner).cast<std::complex<double>>());
 }
 
 }  // namespace extremal

@@ -39,6 +39,10 @@ VectorXd hermitian_eigenvalues(const MatrixXcd& m) {
   return Eigen::SelfAdjointEigenSolver<MatrixXcd>(m, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
+VectorXd hermitian_eigenvalues(const MatrixXcd& a, const MatrixXcd& b) {
+  return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXcd>(a, b, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 SymmetricEigen symmetric_eigen(const MatrixXd& m) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(m);
   return {solver.eigenvalues(), solver.eigenvectors()};

@@ -31,6 +31,8 @@ Eigen::VectorXd least_norm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 /// In ascending order; of a symmetric (Hermitian) matrix the lower triangle is read.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& m);
 Eigen::VectorXd hermitian_eigenvalues(const Eigen::MatrixXcd& m);
+/// λ of A x = λ B x, B positive definite.
+Eigen::VectorXd hermitian_eigenvalues(const Eigen::MatrixXcd& a, const Eigen::MatrixXcd& b);
 
 struct SymmetricEigen {
   Eigen::VectorXd values;  ///< ascending

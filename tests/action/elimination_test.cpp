@@ -93,9 +93,9 @@ struct Dense {
 };
 
 /// `lengths` elements, random values everywhere.
-class Discretisation {
+class Elements {
  public:
-  Discretisation(std::shared_ptr<const Lagrangian> given, const Scheme& scheme, int elements)
+  Elements(std::shared_ptr<const Lagrangian> given, const Scheme& scheme, int elements)
       : lagrangian(std::move(given)), scheme_(scheme, scheme.points), random_(3) {
     tables.bind(scheme_, *lagrangian);
     action.reset(*lagrangian, tables, elements, true);
@@ -157,7 +157,7 @@ TEST_P(Elimination, IsThatOfTheDenseMatrix) {
   for (const char* term : terms)
     for (const Scheme& scheme : {lobatto(2), lobatto(5), gauss(3)}) {
       const std::string what = std::string(term) + ' ' + scheme.name;
-      Discretisation d(coupled(GetParam(), term), scheme, 11);
+      Elements d(coupled(GetParam(), term), scheme, 11);
       const int n = d.tables.coordinates(), inner = d.tables.inner(), m = d.tables.unknowns();
       const std::vector<Dense> before = d.dense();
       d.action.evaluate(d.path);

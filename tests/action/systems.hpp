@@ -56,4 +56,16 @@ inline std::shared_ptr<const Lagrangian> driven() {
   });
 }
 
+inline std::shared_ptr<const Lagrangian> henon_heiles() {
+  return trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - q[1] * q[1]) / 2 - q[0] * q[0] * q[1] +
+           q[1] * q[1] * q[1] / 3;
+  });
+}
+
+/// q'' = −λ eᑫ: from 0 to 0 in T there are two extremals where λT² < 3.5138, none where it is more.
+inline std::shared_ptr<const Lagrangian> bratu(double lambda) {
+  return trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - lambda * exp(q[0]); });
+}
+
 }  // namespace extremal::systems

@@ -9,8 +9,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double tolerance = 1e-11;
-
 std::shared_ptr<const Lagrangian> oscillators(const Values& omega) {
   return trace(static_cast<int>(omega.size()), [&](auto q, auto v, auto) {
     auto l = 0 * v[0];
@@ -111,7 +109,7 @@ TEST(ConjugateTimes, OfGreatCircles) {
   };
   const Problem problem = guessed(fixed_ends(ellipsoid(1, 1, 1), point(0), point(1), 1), point);
   const Solution s = solve(problem, within(1e-11));
-  expect_times(s, {pi / length}, tolerance);
+  expect_times(s, {pi / length}, 1e-11);
   EXPECT_EQ(s.morse_index, 1);
   EXPECT_FALSE(s.minimizing);
   ASSERT_EQ(s.windows.size(), 2);

@@ -20,13 +20,14 @@ const std::set<std::string> point_keys = {"branch", "parameter",   "duration", "
                                           "action", "morse_index", "nullity",  "multipliers",
                                           "krein",  "kind",        "start"};
 
-std::string with(const std::string& from, const std::string& to) {
+std::string bratu_with(const std::string& from, const std::string& to) {
   std::string s = bratu;
   return s.replace(s.find(from), from.size(), to);
 }
 
 std::string continued(const std::string& parameter, const std::string& to) {
-  return with("parameter = \"lambda\"\nto = 4.0\n", "parameter = \"" + parameter + "\"\nto = " + to + "\n");
+  return bratu_with("parameter = \"lambda\"\nto = 4.0\n",
+                    "parameter = \"" + parameter + "\"\nto = " + to + "\n");
 }
 
 }  // namespace
@@ -70,7 +71,7 @@ TEST_F(Command, ContinuesAFamily) {
 }
 
 TEST_F(Command, ContinuesToTheValueAsked) {
-  write("scene.toml", with("to = 4.0", "to = 2.0"));
+  write("scene.toml", bratu_with("to = 4.0", "to = 2.0"));
   const Outcome o = extremal({"continue", "scene.toml", "--output", "b.json"});
   ASSERT_EQ(o.exit, 0) << o.error;
   EXPECT_NE(o.out.find("the branch leads to 2"), std::string::npos) << o.out;
@@ -79,7 +80,7 @@ TEST_F(Command, ContinuesToTheValueAsked) {
 
 TEST_F(Command, ContinuesWithoutAFirstPoint) {
   // There is none beyond the fold.
-  write("scene.toml", with("lambda = 1.0", "lambda = 3.8"));
+  write("scene.toml", bratu_with("lambda = 1.0", "lambda = 3.8"));
   const Outcome o = extremal({"continue", "scene.toml", "--output", "b.json", "--plot", "b.svg"});
   EXPECT_EQ(o.exit, 1);
   EXPECT_NE(o.error.find("error: scene.toml: no extremal to begin with: "), std::string::npos) << o.error;

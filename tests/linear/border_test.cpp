@@ -11,10 +11,9 @@
 namespace extremal {
 namespace {
 
+using dense::eps;
 using dense::Matrix;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double near_roundoff = 2 * mild_growth * eps;  // growth below is not refined
+using dense::near_roundoff;
 
 /// A chain with a border, and both as one dense matrix.
 struct Bordered {

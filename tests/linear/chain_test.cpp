@@ -11,10 +11,10 @@
 namespace extremal {
 namespace {
 
+using dense::eps;
 using dense::Matrix;
+using dense::near_roundoff;
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double near_roundoff = 2 * mild_growth * eps;  // growth below is not refined
 const int sizes[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 20};
 const int lengths[] = {1, 2, 3, 4, 5, 6, 7, 15, 31, 60};
 

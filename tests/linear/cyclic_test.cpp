@@ -12,10 +12,9 @@
 namespace extremal {
 namespace {
 
+using dense::eps;
 using dense::Matrix;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double near_roundoff = 2 * mild_growth * eps;  // growth below is not refined
+using dense::near_roundoff;
 
 void add(Matrix& full, int row, int column, const Matrix& b) {
   const auto n = b.rows();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <limits>
 #include <random>
 
 #include "linear/chain.hpp"
@@ -8,6 +9,9 @@
 /// \file The dense oracle of the structured algebra, and random matrices.
 
 namespace extremal::dense {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr double near_roundoff = 2 * mild_growth * eps;  ///< growth below is not refined
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

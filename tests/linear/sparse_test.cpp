@@ -12,10 +12,9 @@
 namespace extremal {
 namespace {
 
+using dense::eps;
 using dense::Matrix;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double near_roundoff = 2 * mild_growth * eps;
+using dense::near_roundoff;
 
 /// A symmetric matrix by entries of either triangle, with values that are refilled.
 struct Entries {

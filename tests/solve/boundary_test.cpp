@@ -16,14 +16,12 @@ void couple(BoundaryRelation& relation, const std::vector<std::pair<int, double>
   for (const auto& [e, coefficient] : terms) relation.add(row, e, coefficient);
 }
 
-const SolveOptions tight = within(1e-12);
-
 TEST(NaturalEnds, OscillatorFreeAtOneEnd) {
   const double w = 1.3, T = 2, a = 0.7;
   const auto truth = [=](double t) { return Values{a * std::cos(w * (T - t)) / std::cos(w * T)}; };
   const auto end_free = with_ends(systems::oscillator(w), T, [=](auto& b) { b.fix(0, false, a); });
   const auto start_free = with_ends(systems::oscillator(w), T, [=](auto& b) { b.fix(0, true, a); });
-  const Solution forward = solve(end_free, tight), backward = solve(start_free, tight);
+  const Solution forward = solve(end_free, within(1e-12)), backward = solve(start_free, within(1e-12));
   EXPECT_LT(distance(forward.trajectory, truth), 1e-12);
   EXPECT_LT(distance(backward.trajectory, [&](double t) { return truth(T - t); }), 1e-12);
   EXPECT_LT(std::abs(forward.momentum_end[0]), 1e-14);
@@ -35,7 +33,7 @@ TEST(NaturalEnds, DrivenOscillatorFreeAtBothEnds) {
   const double T = 2.5;
   const auto lagrangian =
       trace(1, [](auto q, auto v, auto t) { return (v[0] * v[0] - q[0] * q[0]) / 2 + t * q[0]; });
-  const Solution s = solve(with_ends(lagrangian, T, [](auto&) {}), tight);
+  const Solution s = solve(with_ends(lagrangian, T, [](auto&) {}), within(1e-12));
   EXPECT_LT(distance(s.trajectory,
                      [=](double t) { return Values{t - std::sin(t) + std::tan(T / 2) * std::cos(t)}; }),
             1e-12);
@@ -130,7 +128,7 @@ TEST(MixedEnds, EachCoordinateItsOwn) {
                                        b.fix(0, true, -0.4);
                                        b.fix(1, false, 1.0);
                                      }),
-                           tight);
+                           within(1e-12));
   EXPECT_LT(distance(s.trajectory, truth), 1e-12);
   EXPECT_EQ(at(s.trajectory, 0).q[0], 0.2);
   EXPECT_EQ(at(s.trajectory, Trio::T).q[0], -0.4);
@@ -151,7 +149,7 @@ TEST(CoupledEnds, NaturalConditionsAreThoseOfTheRelation) {
                                        couple(b, {{1, 1}, {2, 1}}, 0);
                                        couple(b, {{4, 1}, {5, -2}}, 1);
                                      }),
-                           tight);
+                           within(1e-12));
   EXPECT_LT(distance(s.trajectory, truth), 2e-12);
   EXPECT_NEAR(s.momentum_end[0], -s.momentum_start[0], 1e-14);
   EXPECT_NEAR(s.momentum_start[1], s.momentum_start[2], 1e-14);
@@ -164,7 +162,11 @@ TEST(CoupledEnds, ForcedPeriodicOscillation) {
   const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
     return (v[0] * v[0] - w * w * q[0] * q[0]) / 2 + q[0] * cos(rate * t);
   });
-  const Solution s = solve(with_ends(lagrangian, T, [](auto& b) { couple(b, {{1, 1}, {0, -1}}, 0); }), tight);
+  const Solution s = solve(with_ends(lagrangian, T,
+                                     [](auto& b) {
+                                       couple(b, {{1, 1}, {0, -1}}, 0);
+                                     }),
+                           within(1e-12));
   EXPECT_LT(
       distance(s.trajectory, [=](double t) { return Values{std::cos(rate * t) / (w * w - rate * rate)}; }),
       1e-12);

@@ -1,9 +1,7 @@
-#include "solve/continuation.hpp"
-
 #include <cmath>
 #include <numbers>
 
-#include "solve/laws.hpp"
+#include "solve/branches.hpp"
 
 /// \file Families of extremals against closed forms: amplitudes, periods, folds, crossings, closed curves.
 
@@ -25,25 +23,6 @@ double bratu_theta(double slope) {
   }
   return (low + high) / 2;
 }
-
-ProblemFamily varied(const std::function<Problem(double)>& at, double from, double to) {
-  return {at(from), Varied::parameter, from, to, [at](double p) { return std::optional<Problem>(at(p)); }};
-}
-
-std::vector<BranchPoint> follow(Continuation& branch) {
-  std::vector<BranchPoint> points;
-  while (branch.advance()) points.push_back(branch.point());
-  return points;
-}
-
-std::vector<double> values(const std::vector<BranchPoint>& points, PointKind kind) {
-  std::vector<double> found;
-  for (const BranchPoint& point : points)
-    if (point.kind == kind) found.push_back(point.parameter);
-  return found;
-}
-
-State start_of(const BranchPoint& point) { return at(point.solution.trajectory, 0); }
 
 TEST(Continuation, BratuFoldAndBothBranches) {
   const auto problem = [](double lambda) {

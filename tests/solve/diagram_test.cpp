@@ -1,9 +1,8 @@
-#include "solve/diagram.hpp"
-
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 
+#include "solve/branches.hpp"
 #include "solve/scenes.hpp"
 
 /// \file Branches that bifurcate, against closed forms, characteristic values and published orbits.
@@ -32,19 +31,13 @@ struct Followed {
   }
 };
 
-Followed follow(const ProblemFamily& family, double tolerance, int points) {
+Followed follow_branches(const ProblemFamily& family, double tolerance, int points) {
   Diagram diagram(family, {.solve = within(tolerance), .points = points, .seeds = true});
   Followed followed;
   while (diagram.advance()) followed.points.push_back(diagram.point());
   followed.branches = diagram.branches();
   return followed;
 }
-
-ProblemFamily varied(const std::function<Problem(double)>& at, double from, double to) {
-  return {at(from), Varied::parameter, from, to, [at](double p) { return std::optional<Problem>(at(p)); }};
-}
-
-State start_of(const BranchPoint& point) { return at(point.solution.trajectory, 0); }
 
 /// q'' = −λ sin q with q(0) = q(1) = 0, Euler's buckled rod: m half waves of modulus k have √λ = 2m K(k) and
 /// q'(0) = 2k√λ.
@@ -53,7 +46,7 @@ TEST(Diagram, BuckledRods) {
     return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 + lambda * cos(q[0]); }),
                       {0}, {0}, 1);
   };
-  const Followed found = follow(varied(problem, 5, 50), 1e-10, 50);
+  const Followed found = follow_branches(varied(problem, 5, 50), 1e-10, 50);
   const std::vector<double> loads = found.values(PointKind::branch);
   ASSERT_EQ(loads.size(), 2u);
   EXPECT_NEAR(loads[0], pi * pi, 1e-8);
@@ -106,7 +99,7 @@ TEST(Diagram, MathieusEquation) {
     periodic.periodic = true;
     return guessed(std::move(periodic), [](double) { return Values{0}; });
   };
-  const Followed found = follow(varied(problem, -1, 5), 1e-10, 40);
+  const Followed found = follow_branches(varied(problem, -1, 5), 1e-10, 40);
   const Values even = characteristic(false, false), odd = characteristic(false, true);
   const std::vector<double> crossings = found.values(PointKind::branch);
   ASSERT_EQ(crossings.size(), 3u);
@@ -148,7 +141,7 @@ TEST(Diagram, HaloOrbits) {
   const Study study =
       load(std::string(EXTREMAL_SOURCE_DIR) + "/problems/scenes/lyapunov-family.toml", {"continuation.to=3"});
   const ProblemFamily& family = study.continuation->family;
-  const Followed found = follow(family, 1e-11, 30);
+  const Followed found = follow_branches(family, 1e-11, 30);
   EXPECT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
   ASSERT_EQ(found.branches.size(), 3u);
   double heights[2] = {0, 0};

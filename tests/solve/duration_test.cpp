@@ -9,8 +9,6 @@ namespace {
 
 using std::numbers::pi;
 
-const SolveOptions tight = within(1e-12);
-
 Problem at_energy(Problem problem, double energy, double guess) {
   problem.duration = {.value = guess, .free = true, .energy = energy, .where = {}};
   return make_problem(std::move(problem));
@@ -19,12 +17,12 @@ Problem at_energy(Problem problem, double energy, double guess) {
 /// q = √(2E) sin t reaches 1 at asin(1/√(2E)) and on the way back.
 TEST(FreeDuration, OscillatorAtGivenEnergy) {
   const Problem fixed = fixed_ends(systems::oscillator(1), {0}, {1}, 1);
-  const Solution first = solve(at_energy(fixed, 2, 0.7), tight);
+  const Solution first = solve(at_energy(fixed, 2, 0.7), within(1e-12));
   EXPECT_NEAR(first.duration(), pi / 6, 1e-13);
   EXPECT_NEAR(*first.energy, 2, 1e-12);
   const Problem far =
       guessed(at_energy(fixed, 2, 2.4), [](double tau) { return Values{2 * std::sin(2.5 * tau)}; });
-  const Solution second = solve(far, tight);
+  const Solution second = solve(far, within(1e-12));
   EXPECT_NEAR(second.duration(), 5 * pi / 6, 1e-12);
   EXPECT_NEAR(second.momentum_start[0], 2, 1e-12);
 }
@@ -38,7 +36,7 @@ TEST(FreeDuration, ProjectileAtGivenEnergy) {
   for (double angle : {flat, steep}) {
     const double T = 2 * speed * std::sin(angle) / g;
     const Problem problem = at_energy(fixed_ends(lagrangian, {0, 0}, {d, 0}, 1), speed * speed / 2, 1.1 * T);
-    const Solution s = solve(problem, tight);
+    const Solution s = solve(problem, within(1e-12));
     EXPECT_NEAR(s.duration(), T, 1e-12);
     EXPECT_NEAR(s.momentum_start[0], speed * std::cos(angle), 1e-11);
     EXPECT_NEAR(s.momentum_start[1], speed * std::sin(angle), 1e-11);
@@ -48,7 +46,7 @@ TEST(FreeDuration, ProjectileAtGivenEnergy) {
 /// With any scheme, T is where the slope of the discrete action is −E.
 TEST(FreeDuration, SlopeOfTheDiscreteActionIsMinusTheEnergy) {
   const Problem fixed = fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8);
-  const double energy = *solve(fixed, tight).energy;
+  const double energy = *solve(fixed, within(1e-12)).energy;
   for (const Scheme& scheme : schemes_and_families())
     for (int elements : {6, 24}) {
       if (one_sided(scheme) && elements < 20) continue;  // so coarse, no path has that energy
@@ -79,7 +77,7 @@ TEST(FreeDuration, ThrowThatComesToRestWhereItShould) {
         return end[0] - h;
       },
       0.5);
-  const Solution s = solve(problem, tight);
+  const Solution s = solve(problem, within(1e-12));
   EXPECT_NEAR(s.duration(), std::sqrt(2 * h / g), 1e-13);
   EXPECT_NEAR(s.momentum_start[0], std::sqrt(2 * g * h), 1e-12);
 }
@@ -96,7 +94,7 @@ TEST(FreeDuration, PendulumReleasedWhereItShould) {
         },
         1.05 * T);
     problem = guessed(problem, [=](double tau) { return Values{0.95 * amplitude * std::cos(pi * tau / 2)}; });
-    const Solution s = solve(problem, tight);
+    const Solution s = solve(problem, within(1e-12));
     EXPECT_NEAR(s.duration(), T, 2e-12 * T) << amplitude;
     EXPECT_NEAR(at(s.trajectory, 0).q[0], amplitude, 1e-12);
     EXPECT_NEAR(s.momentum_end[0], -2 * std::sin(amplitude / 2), 4e-12);

@@ -25,11 +25,11 @@ void expect_finite(const Solution& s) {
     EXPECT_TRUE(std::isfinite(i.residual) && std::isfinite(i.step) && std::isfinite(i.damping));
 }
 
-const double tolerances[] = {1e-3, 1e-6, 1e-9, 1e-13};
+const double asked[] = {1e-3, 1e-6, 1e-9, 1e-13};
 
 std::vector<SolveOptions> adaptive() {
   std::vector<SolveOptions> list;
-  for (double tolerance : tolerances) list.push_back(within(tolerance));
+  for (double tolerance : asked) list.push_back(within(tolerance));
   return list;
 }
 

@@ -1,7 +1,7 @@
 #include <complex>
 #include <numbers>
 
-#include "solve/diagram.hpp"
+#include "solve/branches.hpp"
 #include "solve/published.hpp"
 
 /// \file Families that begin with the linear motion about a point of rest, followed to published orbits.
@@ -18,12 +18,6 @@ nlohmann::json orbit_of_earth_and_moon(const std::string& id) {
 }
 
 double period_of(const nlohmann::json& orbit) { return decimal(orbit["refined"]["period"]); }
-
-std::vector<BranchPoint> follow(Continuation& branch) {
-  std::vector<BranchPoint> points;
-  while (branch.advance()) points.push_back(branch.point());
-  return points;
-}
 
 /// To the published orbit, where the branch has its duration, or energy.
 void expect_led_to(const Study& study, const nlohmann::json& orbit) {
@@ -168,13 +162,6 @@ TEST(Families, LyapunovOfHillsProblem) {
   // Beside the point a change of the orbit by 1e-8 changes its energy by 1e-10.
   EXPECT_LT(distance(orbit, points.back().solution), 1e-8);
   EXPECT_NEAR(points.back().solution.floquet->multipliers[0].real(), 2013.60193516, 1e-4);
-}
-
-std::vector<double> values(const std::vector<BranchPoint>& points, PointKind kind) {
-  std::vector<double> found;
-  for (const BranchPoint& point : points)
-    if (point.kind == kind) found.push_back(point.parameter);
-  return found;
 }
 
 /// y = y₁ + (y₂ − y₁) sn²(ωt | k²) between the two lower roots of 2E − y² + 2y³/3: the period is 2K/ω.

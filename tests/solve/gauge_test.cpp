@@ -108,7 +108,7 @@ Shift shift(const Gauge& gauge, const Scheme& scheme, int elements) {
   return result;
 }
 
-constexpr double plateau = 2e-13;
+constexpr double gauge_plateau = 2e-13;
 
 TEST(Gauge, MovesTheDiscretePathByTheOrderOnly) {
   for (const Gauge& gauge : gauges())
@@ -123,9 +123,9 @@ TEST(Gauge, MovesTheDiscretePathByTheOrderOnly) {
         momenta.add(1.0 / elements, s.momenta);
       }
       const double least = scheme.order * 0.95;
-      EXPECT_GT(path.slope(plateau), least) << gauge.name << ' ' << scheme.name;
-      EXPECT_GT(action.slope(plateau), least) << gauge.name << ' ' << scheme.name;
-      EXPECT_GT(momenta.slope(plateau), least) << gauge.name << ' ' << scheme.name;
+      EXPECT_GT(path.slope(gauge_plateau), least) << gauge.name << ' ' << scheme.name;
+      EXPECT_GT(action.slope(gauge_plateau), least) << gauge.name << ' ' << scheme.name;
+      EXPECT_GT(momenta.slope(gauge_plateau), least) << gauge.name << ' ' << scheme.name;
     }
 }
 

@@ -13,12 +13,12 @@ namespace {
 using std::numbers::pi;
 
 /// The guess of a problem on equal elements of degree 8, as a solve would begin.
-struct Begun {
+struct Family {
   const Problem& problem;
   Workspace w;
   const ElementTables* tables;
 
-  explicit Begun(const Problem& of) : problem(of) {
+  explicit Family(const Problem& of) : problem(of) {
     w.levels.bind(problem.lagrangian);
     tables = &w.levels.at(8);
     const std::vector<double> mesh = uniform_mesh(8);
@@ -41,7 +41,7 @@ TEST(NaturalDurations, OfAnArcOfACircle) {
   for (double angle : {4.0, 5.0, 5.8})
     for (double wanted : {0.5, 4.0, 20.0}) {
       const Problem problem = circle(angle, wanted);
-      Begun begun(problem);
+      Family begun(problem);
       const std::vector<double> durations = natural_durations(problem, begun.w, *begun.tables);
       ASSERT_FALSE(durations.empty());
       EXPECT_LE(std::abs(std::log2(durations.front() / angle)), 0.26) << angle << ", " << wanted;
@@ -51,7 +51,7 @@ TEST(NaturalDurations, OfAnArcOfACircle) {
 /// Along a straight line the distance from a motion grows with the duration: short ones are natural.
 TEST(NaturalDurations, OfAStraightLine) {
   const Problem problem = fixed_ends(systems::pendulum(), {0}, {1}, 40);
-  Begun begun(problem);
+  Family begun(problem);
   const std::vector<double> durations = natural_durations(problem, begun.w, *begun.tables);
   ASSERT_FALSE(durations.empty());
   EXPECT_LT(durations.front(), 3);
@@ -62,7 +62,7 @@ TEST(NaturalDurations, OfAStraightLine) {
 TEST(DurationHomotopy, LeadsToTheDurationWanted) {
   for (double wanted : {2.0, 9.0}) {
     const Problem problem = circle(4, wanted);
-    Begun begun(problem);
+    Family begun(problem);
     begun.w.path.set_duration(4);
     ASSERT_TRUE(DurationHomotopy(problem, begun.w, [] { return true; }).follow(*begun.tables));
     EXPECT_EQ(begun.w.path.duration(), wanted);
@@ -79,7 +79,7 @@ TEST(DurationHomotopy, LeadsToTheDurationWanted) {
 TEST(DurationHomotopy, TurnsAtAFold) {
   const auto bratu = trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 - exp(q[0]); });
   const Problem problem = fixed_ends(bratu, {0}, {0}, 2);
-  Begun begun(problem);
+  Family begun(problem);
   for (double& x : std::span(begun.w.path.x(0), 8 * 7)) x = 0.05;  // a path without extent has no scale
   begun.w.path.set_duration(0.5);
   double longest = 0;
@@ -95,7 +95,7 @@ TEST(DurationHomotopy, TurnsAtAFold) {
 
 TEST(DurationHomotopy, StopsWhenToldTo) {
   const Problem problem = circle(4, 9);
-  Begun begun(problem);
+  Family begun(problem);
   begun.w.path.set_duration(4);
   int steps = 0;
   EXPECT_FALSE(DurationHomotopy(problem, begun.w, [&] { return ++steps < 5; }).follow(*begun.tables));

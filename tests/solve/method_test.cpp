@@ -11,9 +11,9 @@
 namespace extremal::laws {
 namespace {
 
-struct Case {
+struct EndsCase {
   std::string name, text;
-  friend void PrintTo(const Case& test, std::ostream* to) { *to << test.name; }
+  friend void PrintTo(const EndsCase& test, std::ostream* to) { *to << test.name; }
 };
 
 std::string repeated(const std::string& text, int times) {
@@ -22,7 +22,7 @@ std::string repeated(const std::string& text, int times) {
   return result;
 }
 
-std::vector<Case> cases() {
+std::vector<EndsCase> ends_cases() {
   const std::string kepler = "[system]\nuse = \"kepler\"\n[boundary]\n";
   const std::string pendulum = "[system]\nuse = \"pendulum\"\nparameters = { g = 1.0 }\n[boundary]\n";
   return {
@@ -47,7 +47,7 @@ Study study_of(const std::string& text, const std::string& name) {
   return load(path);
 }
 
-class Methods : public ::testing::TestWithParam<Case> {};
+class Methods : public ::testing::TestWithParam<EndsCase> {};
 
 TEST_P(Methods, FindTheSameExtremal) {
   Study study = study_of(GetParam().text, GetParam().name);
@@ -76,7 +76,7 @@ TEST_P(Methods, FindTheSameExtremal) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Methods, ::testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Cases, Methods, ::testing::ValuesIn(ends_cases()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(MethodEffort, IsBounded) {
@@ -96,7 +96,7 @@ TEST(MethodEffort, IsBounded) {
 
 /// F' beside differences of F.
 TEST(Displacement, DerivativesAreThoseOfTheEquations) {
-  for (const Case& test : cases()) {
+  for (const EndsCase& test : ends_cases()) {
     const Study study = study_of(test.text, test.name);
     const Problem& problem = study.problem;
     Levels levels;

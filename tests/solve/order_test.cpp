@@ -5,14 +5,14 @@
 namespace extremal::laws {
 namespace {
 
-struct Case {
+struct NonlinearCase {
   const char* name;
   Problem problem;
   bool separable;  ///< L = T(q') − V(q): the one-sided rectangles then are Störmer-Verlet at the nodes
   int fineness;    ///< where the errors begin to fall with the order, relative to the easiest case
 };
 
-std::vector<Case> cases() {
+std::vector<NonlinearCase> nonlinear_cases() {
   return {
       {"pendulum", fixed_ends(systems::pendulum(), {0}, {1.5}, 2), true, 1},
       {"Kepler arc", fixed_ends(systems::kepler(), {1, 0}, {-0.6, 0.9}, 2.5), true, 1},
@@ -21,7 +21,7 @@ std::vector<Case> cases() {
 }
 
 /// Errors at and below this are roundoff: the reference is good to a few times 1e-15.
-constexpr double plateau = 2e-14;
+constexpr double order_plateau = 2e-14;
 /// Coarsest meshes in the asymptotic range, by order.
 int first_elements(int order) {
   const int by_order[] = {0, 64, 24, 0, 10, 0, 6, 0, 4};
@@ -33,13 +33,13 @@ class Order : public ::testing::TestWithParam<std::string> {
  protected:
   const Scheme tested = scheme(GetParam());
 
-  int node_order(const Case& c) const { return one_sided(tested) && c.separable ? 2 : tested.order; }
+  int node_order(const NonlinearCase& c) const { return one_sided(tested) && c.separable ? 2 : tested.order; }
   /// Chen-Guo-Wu (2.28): h² with linear elements; (2.53): h³ with quadratic ones.
-  int dense_order(const Case& c) const { return std::min(node_order(c), tested.degree + 1); }
+  int dense_order(const NonlinearCase& c) const { return std::min(node_order(c), tested.degree + 1); }
 };
 
 TEST_P(Order, OfNodesAndOfDenseOutput) {
-  for (const Case& c : cases()) {
+  for (const NonlinearCase& c : nonlinear_cases()) {
     const Trajectory truth = solve(c.problem, within(1e-13)).trajectory;
     Refinement nodes, dense;
     for (int elements : refinements(c.fineness * first_elements(tested.order), levels)) {
@@ -49,18 +49,18 @@ TEST_P(Order, OfNodesAndOfDenseOutput) {
       nodes.add(1.0 / elements, node_distance(path, truth));
       dense.add(1.0 / elements, l2_distance(path, truth));
     }
-    EXPECT_NEAR(nodes.slope(plateau), node_order(c), 0.05 * node_order(c)) << c.name;
-    EXPECT_NEAR(dense.slope(plateau), dense_order(c), 0.05 * dense_order(c)) << c.name;
+    EXPECT_NEAR(nodes.slope(order_plateau), node_order(c), 0.05 * node_order(c)) << c.name;
+    EXPECT_NEAR(dense.slope(order_plateau), dense_order(c), 0.05 * dense_order(c)) << c.name;
   }
 }
 
 TEST_P(Order, ErrorEstimateIsHonest) {
-  for (const Case& c : cases()) {
+  for (const NonlinearCase& c : nonlinear_cases()) {
     const Trajectory truth = solve(c.problem, within(1e-13)).trajectory;
     for (int elements : {4, 12, 40}) {
       const Solution solution = solve(c.problem, pinned(tested, elements));
       const double error = sup_distance(solution.trajectory, truth);
-      if (error < plateau) continue;
+      if (error < order_plateau) continue;
       EXPECT_LT(solution.error_estimate, 10 * error) << c.name << ", " << elements << " elements";
       EXPECT_GT(solution.error_estimate, 0.1 * error) << c.name << ", " << elements << " elements";
     }
@@ -69,7 +69,7 @@ TEST_P(Order, ErrorEstimateIsHonest) {
 
 /// δS_h = 0 to roundoff, as `residual` says.
 TEST_P(Order, DiscreteEquationsHoldToRoundoff) {
-  for (const Case& c : cases())
+  for (const NonlinearCase& c : nonlinear_cases())
     for (int elements : {1, 7, 50})
       EXPECT_LT(solve(guided(c.problem), pinned(tested, elements)).residual, 1e-14)
           << c.name << ' ' << elements;
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Schemes, Order, ::testing::ValuesIn(names()), test_name
 
 /// With a tolerance, N is what the scheme needs: not met by luck, not wasted.
 TEST(OrderAdapted, SchemesMeetTheTolerance) {
-  for (const Case& c : cases()) {
+  for (const NonlinearCase& c : nonlinear_cases()) {
     const Trajectory truth = solve(c.problem, within(1e-13)).trajectory;
     double range = 0;
     for (int a = 0; a < truth.coordinates; ++a) {

@@ -11,7 +11,7 @@
 namespace extremal::laws {
 namespace {
 
-constexpr int particles = 170, elements = 8, low_degree = 4, high_degree = 10;
+constexpr int particles = 170, chain_elements = 8, low_degree = 4, high_degree = 10;
 
 /// Of particles between walls; springs have stiffness k and harden.
 template <class Q>
@@ -52,8 +52,8 @@ struct Converged {
   Converged(const Problem& problem, bool raised, const Path* from = nullptr) {
     levels.bind(problem.lagrangian);
     const ElementTables& tables = levels.at(high_degree);
-    newton.reset(problem, tables, elements, raised ? &levels.at(low_degree) : nullptr);
-    path.reset(tables, uniform_mesh(elements), problem.duration.value);
+    newton.reset(problem, tables, chain_elements, raised ? &levels.at(low_degree) : nullptr);
+    path.reset(tables, uniform_mesh(chain_elements), problem.duration.value);
     start_path(problem, starting_ends(problem), tables, path);
     if (from) path.copy_values(*from);
     path.set_duration(problem.duration.value);

@@ -1,9 +1,8 @@
 #include <numbers>
 #include <random>
 
-#include "rivals/shooting.hpp"
 #include "rivals/verify.hpp"
-#include "solve/laws.hpp"
+#include "solve/motions.hpp"
 
 /// \file Extremals from poor guesses: found, verified by integration, the same each time, at bounded cost.
 
@@ -11,25 +10,6 @@ namespace extremal::laws {
 namespace {
 
 using std::numbers::pi;
-
-std::shared_ptr<const Lagrangian> henon_heiles() {
-  return trace(2, [](auto q, auto v, auto) {
-    return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - q[1] * q[1]) / 2 - q[0] * q[0] * q[1] +
-           q[1] * q[1] * q[1] / 3;
-  });
-}
-
-/// q'' = −λ eᑫ: from 0 to 0 in T there are two extremals where λT² < 3.5138, none where it is more.
-std::shared_ptr<const Lagrangian> bratu(double lambda) {
-  return trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - lambda * exp(q[0]); });
-}
-
-/// The ends of the motion from a state; no guess.
-Problem ends_of_motion(std::shared_ptr<const Lagrangian> lagrangian, const Values& q, const Values& v,
-                       double duration) {
-  const Flight flight = fly(*lagrangian, q, v, Values{duration});
-  return fixed_ends(std::move(lagrangian), q, flight.q, duration);
-}
 
 void expect_found(const Problem& problem, double tolerance = 1e-9) {
   Solver solver;
@@ -51,7 +31,7 @@ TEST(Search, PendulumThatTurnsOver) {
 
 TEST(Search, HenonHeiles) {
   for (int k = 0; k < 6; ++k)
-    expect_found(ends_of_motion(henon_heiles(), {0.2 * std::sin(2.0 * k), 0.2 * std::cos(3.0 * k)},
+    expect_found(ends_of_motion(systems::henon_heiles(), {0.2 * std::sin(2.0 * k), 0.2 * std::cos(3.0 * k)},
                                 {0.4 * std::cos(5.0 * k), 0.25 * std::sin(7.0 * k)}, 20));
 }
 
@@ -110,7 +90,7 @@ TEST(Search, KeplerArcOnTheSideOfTheGuess) {
 
 /// Both extremals of Bratu's problem have their maximum θ in the middle: θ = 2 ln cosh(√(λ e^θ / 8)).
 TEST(Search, BratuNearItsFold) {
-  const Problem problem = fixed_ends(bratu(3.5), {0}, {0}, 1);
+  const Problem problem = fixed_ends(systems::bratu(3.5), {0}, {0}, 1);
   const double peak = at(solve(problem, within(1e-10)).trajectory, 0.5).q[0];
   EXPECT_NEAR(peak, 2 * std::log(std::cosh(std::sqrt(3.5 * std::exp(peak) / 8))), 1e-8);
 }
@@ -119,7 +99,7 @@ TEST(Search, SaysWhatWasTriedWhereNothingIsFound) {
   SolveOptions options = within(1e-9);
   options.max_iterations = 600;
   Solver solver;
-  const Solution solution = solver.solve(fixed_ends(bratu(4), {0}, {0}, 1), counted(options));
+  const Solution solution = solver.solve(fixed_ends(systems::bratu(4), {0}, {0}, 1), counted(options));
   EXPECT_EQ(solution.status, Status::iteration_limit);
   EXPECT_EQ(solution.iterations, 600);
   for (const char* words :
@@ -130,7 +110,7 @@ TEST(Search, SaysWhatWasTriedWhereNothingIsFound) {
 
 TEST(Search, IsTheSameEachTime) {
   Solver used;
-  for (const Problem& problem : {ends_of_motion(henon_heiles(), {0.1, 0.2}, {0.4, 0.1}, 40),
+  for (const Problem& problem : {ends_of_motion(systems::henon_heiles(), {0.1, 0.2}, {0.4, 0.1}, 40),
                                  ends_of_motion(systems::pendulum(), {0.3}, {1.9}, 60)}) {
     const Solution first = solve(problem, within(1e-9)), again = solve(used, problem, within(1e-9));
     EXPECT_EQ(first.trajectory.nodes, again.trajectory.nodes);

@@ -1,8 +1,7 @@
 #include <numbers>
 
-#include "rivals/shooting.hpp"
 #include "rivals/verify.hpp"
-#include "solve/laws.hpp"
+#include "solve/motions.hpp"
 
 /// \file Several extremals of one problem: all that exist where their number is known, each verified, none
 /// twice.
@@ -11,23 +10,6 @@ namespace extremal::laws {
 namespace {
 
 using std::numbers::pi;
-
-std::shared_ptr<const Lagrangian> henon_heiles() {
-  return trace(2, [](auto q, auto v, auto) {
-    return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - q[1] * q[1]) / 2 - q[0] * q[0] * q[1] +
-           q[1] * q[1] * q[1] / 3;
-  });
-}
-
-std::shared_ptr<const Lagrangian> bratu(double lambda) {
-  return trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 - lambda * exp(q[0]); });
-}
-
-Problem ends_of_motion(std::shared_ptr<const Lagrangian> lagrangian, const Values& q, const Values& v,
-                       double duration) {
-  const Flight flight = fly(*lagrangian, q, v, Values{duration});
-  return fixed_ends(std::move(lagrangian), q, flight.q, duration);
-}
 
 /// q(T) = q(0).
 Problem closed(std::shared_ptr<const Lagrangian> lagrangian, double duration) {
@@ -179,7 +161,7 @@ TEST(Several, OfAnOscillatorThereIsOne) {
 /// q'' = −λ eᑫ between zeros: 2 ln cosh(√(λ e^θ/8)) = θ for the maximum θ of each.
 TEST(Several, BothSolutionsOfBratu) {
   for (double lambda : {1.0, 2.0, 3.3}) {
-    const std::vector<Solution> found = solve_all(fixed_ends(bratu(lambda), {0}, {0}, 1), 5);
+    const std::vector<Solution> found = solve_all(fixed_ends(systems::bratu(lambda), {0}, {0}, 1), 5);
     ASSERT_EQ(found.size(), 2u);
     Values grid;
     for (int i = 0; i <= 2000; ++i) grid.push_back(0.01 * i);
@@ -193,7 +175,8 @@ TEST(Several, BothSolutionsOfBratu) {
 
 TEST(Several, WhereThereIsNone) {
   Solver solver;
-  const std::vector<Solution> found = solver.solve_all(fixed_ends(bratu(4), {0}, {0}, 1), within(1e-9), 3);
+  const std::vector<Solution> found =
+      solver.solve_all(fixed_ends(systems::bratu(4), {0}, {0}, 1), within(1e-9), 3);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_FALSE(found[0].converged());
   EXPECT_TRUE(found[0].trajectory.nodes.empty());
@@ -210,7 +193,7 @@ TEST(Several, AsManyAsAreWanted) {
 
 TEST(Several, ChaoticSystems) {
   EXPECT_EQ(solve_all(ends_of_motion(systems::double_pendulum(), {0, 0}, {1, 2}, 3), 6).size(), 6u);
-  EXPECT_EQ(solve_all(ends_of_motion(henon_heiles(), {0.1, 0.2}, {0.4, 0.1}, 10), 6).size(), 6u);
+  EXPECT_EQ(solve_all(ends_of_motion(systems::henon_heiles(), {0.1, 0.2}, {0.4, 0.1}, 10), 6).size(), 6u);
 }
 
 /// The times at which a pendulum of energy 1/2 passes 1, from either start.
@@ -251,7 +234,7 @@ TEST(Several, NaturalEnds) {
 
 /// Time shifts of one orbit are one solution.
 TEST(Several, PeriodicOrbitsCountOnce) {
-  Problem problem = closed(henon_heiles(), 6.5);
+  Problem problem = closed(systems::henon_heiles(), 6.5);
   problem.duration.free = true;
   problem.duration.energy = 0.08;
   const std::vector<Solution> found =

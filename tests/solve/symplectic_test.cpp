@@ -9,7 +9,7 @@
 namespace extremal::laws {
 namespace {
 
-struct Case {
+struct NeighboursCase {
   const char* name;
   std::shared_ptr<const Lagrangian> lagrangian;
   Values start, end;
@@ -27,13 +27,13 @@ struct Case {
   }
 };
 
-std::vector<Case> cases() {
+std::vector<NeighboursCase> neighbours_cases() {
   return {{"double pendulum", systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8},
           {"magnetic", systems::magnetic(), {0.3, -0.2}, {0.9, 0.5}, 1.5}};
 }
 
 /// The solution with end e (q(0), then q(T)) moved by `step`.
-Solution moved(const Case& c, const SolveOptions& options, int e, double step) {
+Solution moved(const NeighboursCase& c, const SolveOptions& options, int e, double step) {
   const int n = static_cast<int>(c.start.size());
   Values q0 = c.start, q1 = c.end;
   (e < n ? q0[e] : q1[e - n]) += step;
@@ -41,7 +41,7 @@ Solution moved(const Case& c, const SolveOptions& options, int e, double step) {
 }
 
 TEST(GeneratingFunction, SlopesInTheEndsAreTheMomenta) {
-  for (const Case& c : cases())
+  for (const NeighboursCase& c : neighbours_cases())
     for (const Scheme& scheme : schemes_and_families())
       for (int elements : {1, 5}) {
         const SolveOptions options = pinned(scheme, elements);
@@ -57,7 +57,7 @@ TEST(GeneratingFunction, SlopesInTheEndsAreTheMomenta) {
 }
 
 TEST(GeneratingFunction, SlopeInTheDurationIsMinusTheEnergy) {
-  for (const Case& c : cases()) {
+  for (const NeighboursCase& c : neighbours_cases()) {
     const auto action = [&](double h) {
       Problem p = c.problem(c.start, c.end);
       p.duration.value += h;
@@ -114,7 +114,7 @@ struct EndHessian {
 };
 
 /// Of the discrete extremal of a case.
-EndHessian end_hessian(const Case& c, const Scheme& scheme, int elements) {
+EndHessian end_hessian(const NeighboursCase& c, const Scheme& scheme, int elements) {
   const Problem problem = c.problem(c.start, c.end);
   const int n = problem.coordinates(), s = scheme.degree;
   const Solution solution = solve(problem, pinned(scheme, elements));
@@ -144,7 +144,7 @@ Eigen::MatrixXd canonical_form(Eigen::Index n) {
 }
 
 TEST(Symplecticity, TangentMapPreservesTheCanonicalForm) {
-  for (const Case& c : cases())
+  for (const NeighboursCase& c : neighbours_cases())
     for (const Scheme& scheme : schemes_and_families())
       for (int elements : {1, 4, 20}) {
         const Eigen::MatrixXd m = end_hessian(c, scheme, elements).tangent();
@@ -159,7 +159,7 @@ TEST(Symplecticity, TangentMapPreservesTheCanonicalForm) {
 
 /// The tangent map is that of the solutions themselves: momenta of neighbouring ones, differenced.
 TEST(Symplecticity, MomentaOfNeighboursFollowTheTangentMap) {
-  for (const Case& c : cases())
+  for (const NeighboursCase& c : neighbours_cases())
     for (const Scheme& scheme : {lobatto(1), lobatto(3), gauss(2), extremal::scheme("rectangle")})
       for (int elements : {1, 4}) {
         const EndHessian hessian = end_hessian(c, scheme, elements);

@@ -6,7 +6,7 @@
 namespace extremal {
 namespace {
 
-std::string name(int k) { return fmt::format("d{}", k); }
+std::string numbered(int k) { return fmt::format("d{}", k); }
 
 const std::string free_particle = "x'^2/2";
 
@@ -166,7 +166,7 @@ TEST(FormulaNames, DefinitionsDoNotSeeTheIndexOfASum) {
 
 TEST(FormulaNames, LongChainsOfDefinitionsAreBounded) {
   SystemText text{.coordinates = {"x"}, .definitions = {{"d0", "x"}}};
-  for (int k = 1; k <= 100'000; ++k) text.definitions[name(k)] = name(k - 1) + " + x";
+  for (int k = 1; k <= 100'000; ++k) text.definitions[numbered(k)] = numbered(k - 1) + " + x";
   text.lagrangian = "d400";
   EXPECT_EQ(value_of(text, {0.5}, {0}), 200.5);
   text.lagrangian = "d100000";
@@ -176,8 +176,8 @@ TEST(FormulaNames, LongChainsOfDefinitionsAreBounded) {
 TEST(FormulaNames, DefinitionsThatDoubleAreReadOnce) {
   SystemText text{.coordinates = {"x"}, .definitions = {{"d0", "x"}}, .lagrangian = "d60"};
   for (int k = 1; k <= 60; ++k) {
-    const std::string before = name(k - 1);
-    text.definitions[name(k)] = "sin(" + before + ") + " + before + "/2";
+    const std::string before = numbered(k - 1);
+    text.definitions[numbered(k)] = "sin(" + before + ") + " + before + "/2";
   }
   EXPECT_LT(graph_of(text).graph.size(), 300u);
 }
