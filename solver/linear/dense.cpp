@@ -1,6 +1,7 @@
 #include "linear/dense.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
+#include <Eigen/SVD>
 
 template class Eigen::PartialPivLU<Eigen::MatrixXd>;
 template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
@@ -18,6 +19,11 @@ MatrixXd orthonormal(const MatrixXd& m) {
   return Eigen::HouseholderQR<MatrixXd>(m).householderQ() * MatrixXd::Identity(m.rows(), m.cols());
 }
 
+MatrixXd complement(const MatrixXd& m) {
+  const auto rows = m.rows(), rest = rows - m.cols();
+  return Eigen::HouseholderQR<MatrixXd>(m).householderQ() * MatrixXd::Identity(rows, rows).rightCols(rest);
+}
+
 UnitaryBasis unitary(const MatrixXcd& m) {
   const Eigen::HouseholderQR<MatrixXcd> qr(m);
   return {qr.householderQ(), qr.matrixQR().diagonal()};
@@ -27,34 +33,6 @@ MatrixXd solved(const MatrixXd& a, const MatrixXd& b) { return Eigen::PartialPiv
 
 VectorXd least_norm(const MatrixXd& a, const VectorXd& b) {
   return a.completeOrthogonalDecomposition().solve(b);
-}
-
-VectorXd symmetric_eigenvalues(const MatrixXd& m) {
-  if (m.size() == 0) return {};
-  return Eigen::SelfAdjointEigenSolver<MatrixXd>(m, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-VectorXd hermitian_eigenvalues(const MatrixXcd& m) {
-  if (m.size() == 0) return {};
-  return Eigen::SelfAdjointEigenSolver<MatrixXcd>(m, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-VectorXd hermitian_eigenvalues(const MatrixXcd& a, const MatrixXcd& b) {
-  return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXcd>(a, b, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-SymmetricEigen symmetric_eigen(const MatrixXd& m) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(m);
-  return {solver.eigenvalues(), solver.eigenvectors()};
-}
-
-GeneralEigen general_eigen(const MatrixXd& m) {
-  const Eigen::EigenSolver<MatrixXd> solver(m);
-  return {solver.eigenvalues(), solver.pseudoEigenvectors()};
-}
-
-VectorXcd general_eigenvalues(const MatrixXd& m) {
-  return Eigen::EigenSolver<MatrixXd>(m, false).eigenvalues();
 }
 
 SingularValues singular_value_decomposition(const MatrixXd& m) {

@@ -15,6 +15,9 @@ namespace extremal {
 /// Orthonormal columns that span those of `m`, r × c with c <= r.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& m);
 
+/// Orthonormal columns across those of `m`, r × (r − c).
+Eigen::MatrixXd complement(const Eigen::MatrixXd& m);
+
 /// m = q (R over zeros): q is r × r and unitary, `pivots` the diagonal of R.
 struct UnitaryBasis {
   Eigen::MatrixXcd q;
@@ -48,6 +51,13 @@ struct GeneralEigen {
 };
 GeneralEigen general_eigen(const Eigen::MatrixXd& m);
 Eigen::VectorXcd general_eigenvalues(const Eigen::MatrixXd& m);
+
+struct ComplexEigen {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd vectors;
+};
+/// Of a matrix that is normal within `accuracy` vectors are orthonormal, also where values coincide.
+ComplexEigen complex_eigen(const Eigen::MatrixXd& m, double accuracy);
 
 /// m = u diag(values) vᵀ, all of u and v, values descending.
 struct SingularValues {

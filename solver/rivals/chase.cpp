@@ -188,11 +188,11 @@ bool Chase::end_piece(double start, double end, Verification& result) {
   Eigen::VectorXd unit(size);
   unit << Eigen::VectorXd::Constant(size / 2, scales_.q), Eigen::VectorXd::Constant(size / 2, scales_.p);
   MotionPiece piece{.start = start,
-              .end = end,
-              .transition = {},
-              .defect = {},
-              .by_duration = {},
-              .waypoints = std::exchange(waypoints_, {})};
+                    .end = end,
+                    .transition = {},
+                    .defect = {},
+                    .by_duration = {},
+                    .waypoints = std::exchange(waypoints_, {})};
   piece.transition =
       unit.cwiseInverse().asDiagonal() * Eigen::Map<const Eigen::MatrixXd>(y_.data() + size, size, size);
   piece.defect = (vector(y.first(2 * n_)) - vector(next_)).cwiseQuotient(unit);

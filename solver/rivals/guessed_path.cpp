@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -27,7 +29,7 @@ Eigen::VectorXd guessed_ends(const Problem& problem) {
   }
   Eigen::MatrixXd z = Eigen::MatrixXd::Zero(2 * n, problem.ends.free);
   for (const Triplet& e : problem.ends.z) z(e.row, e.column) += e.value;
-  return offset + z * z.completeOrthogonalDecomposition().solve(target - offset);
+  return offset + z * least_norm(z, target - offset);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #include "rivals/lane_flow.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "linear/dense.hpp"
 
 namespace extremal {
 

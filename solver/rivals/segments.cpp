@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "linear/dense.hpp"
 #include "rivals/guessed_path.hpp"
 
 namespace extremal {
@@ -97,9 +98,8 @@ void Segments::free_start(Course& course) {
     }
     return;
   }
-  course.states.col(0) -= rows.transpose().completeOrthogonalDecomposition().solve(miss);
-  basis_ = Eigen::HouseholderQR<Eigen::MatrixXd>(rows).householderQ() *
-           Eigen::MatrixXd::Identity(2 * n_, 2 * n_).rightCols(2 * n_ - count);
+  course.states.col(0) -= least_norm(rows.transpose(), miss);
+  basis_ = complement(rows);
 }
 
 /// Each segment's variations are dealt out to `split` legs.

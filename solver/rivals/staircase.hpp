@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <vector>
+
+#include "linear/dense.hpp"
 
 /// \file The linear system of multiple shooting.
 

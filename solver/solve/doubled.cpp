@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -12,8 +14,7 @@ using Eigen::VectorXd;
 
 /// A function of q(0) and q(T), given q(2T).
 EndFunction halfway(EndFunction where, const ClosingMap& map) {
-  const auto back = map.r.partialPivLu();
-  const MatrixXd inverse = back.inverse();
+  const MatrixXd inverse = solved(map.r, MatrixXd::Identity(map.r.rows(), map.r.cols()));
   return [where = std::move(where), inverse, c = map.c](
              std::span<const double> start, std::span<const double> end, std::span<double> gradient) {
     const auto n = static_cast<Eigen::Index>(start.size());

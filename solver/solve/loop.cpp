@@ -1,6 +1,5 @@
 #include "solve/loop.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -67,14 +66,8 @@ ClosedNoise::ClosedNoise(const Problem& problem) {
   if (map.r.isIdentity(0)) {
     for (int a = 0; a < n; ++a) add(Eigen::VectorXcd::Unit(n, a), 1);
   } else {
-    // Of a normal matrix the Schur vectors are eigenvectors, and orthogonal where eigenvalues coincide.
-    const Eigen::ComplexSchur<MatrixXd> schur(map.r);
-    const Eigen::MatrixXcd& t = schur.matrixT();
-    const bool normal = (t - Eigen::MatrixXcd(t.diagonal().asDiagonal())).norm() < same_frequency;
-    const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> general(map.r.cast<std::complex<double>>(), !normal);
-    for (int k = 0; k < n; ++k)
-      normal ? add(schur.matrixU().col(k), t(k, k))
-             : add(general.eigenvectors().col(k), general.eigenvalues()[k]);
+    const ComplexEigen eigen = complex_eigen(map.r, same_frequency);
+    for (int k = 0; k < n; ++k) add(eigen.vectors.col(k), eigen.values[k]);
   }
   for (std::size_t v = 0; v < vectors_.size(); ++v)
     for (int k = -most_turns; k <= most_turns; ++k) {

@@ -68,7 +68,7 @@ std::vector<Solution> found(const Problem& problem, int most) {
     const int segments = segments_to_close(map);
     const int parts = repetitions(s.trajectory, map, segments, 1e-5);
     EXPECT_GT(parts, 0) << "at rest";
-    if (parts > 0) EXPECT_EQ(segments % parts, 0) << parts << " times";
+    EXPECT_EQ(segments % std::max(parts, 1), 0) << parts << " times";
     for (std::size_t j = 0; j < k; ++j) EXPECT_GT(std::abs(s.action - all[j].action), 1e-7);
   }
   return all;
