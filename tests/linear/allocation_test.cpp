@@ -5,9 +5,9 @@
 #include <new>
 #include <vector>
 
-#include "dense.hpp"
 #include "linear/border.hpp"
 #include "linear/sparse.hpp"
+#include "oracle.hpp"
 
 namespace {
 std::atomic<long> allocations{0};

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "dense.hpp"
+#include "oracle.hpp"
 
 namespace extremal {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "dense.hpp"
+#include "oracle.hpp"
 
 namespace extremal {
 namespace {

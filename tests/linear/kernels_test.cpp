@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "dense.hpp"
 #include "linear/chain_kernels.hpp"
 #include "machine/simd.hpp"
+#include "oracle.hpp"
 
 namespace extremal {
 namespace {

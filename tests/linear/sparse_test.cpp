@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dense.hpp"
+#include "oracle.hpp"
 
 namespace extremal {
 namespace {
