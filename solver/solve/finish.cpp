@@ -176,7 +176,10 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
     solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
     read_off(problem, outcome, w, solution);
     w.final_tables = outcome.tables;
-    if (!balanced(solution, w)) {
+    if (!std::isfinite(solution.action) || !std::isfinite(solution.residual)) {
+      solution.status = Status::not_converged;
+      solution.message = "the path runs through a singularity of L; try another guess";
+    } else if (!balanced(solution, w)) {
       solution.status = Status::not_converged;
       solution.message = fmt::format(
           "a residual of {:.1e} of the largest momentum is left: forces are too strong for what they move; "
