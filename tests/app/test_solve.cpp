@@ -29,6 +29,18 @@ TEST_F(Command, QuietWritesNothing) {
   }
 }
 
+/// The equations of one element that passes the centre at its middle hold by symmetry, with an infinite
+/// action.
+TEST_F(Command, PathsThroughASingularityAreNoSolutions) {
+  const Outcome o = solve(
+      "[system]\nuse = \"kepler\"\n"
+      "[boundary]\nperiodic = true\nmap = { x = \"-x\", y = \"-y\" }\nduration = 0.025\n"
+      "[guess]\nx = \"-0.16 - 0.1*sin(2*pi*t/T)\"\ny = \"-0.14 + 0.38*sin(2*pi*t/T + 3)\"\n"
+      "[solve]\nscheme = \"simpson\"\nelements = 1\n");
+  EXPECT_EQ(o.exit, 1) << o.out;
+  EXPECT_NE((o.out + o.error).find("singularity"), std::string::npos) << o.out << o.error;
+}
+
 TEST_F(Command, WritesJsonWithSamples) {
   const Outcome o =
       solve(pendulum, {"--output", "r.json", "--samples", "5", "--set", "solve.tolerance=1e-12"});
