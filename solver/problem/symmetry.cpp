@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "problem/closing.hpp"
 #include "problem/problem.hpp"
 
 namespace extremal {
@@ -56,13 +55,14 @@ class Cloud {
   std::minstd_rand random_{7};
 };
 
-/// Linear equations for the unknowns: entries of G row by row, then c and b, both in units of the extent.
+/// Linear equations for the unknowns: entries of G row by row, then c in units of the extent, and b in units
+/// of momentum.
 class Equations {
  public:
-  Equations(const Problem& problem, const ClosingMap& closure)
+  explicit Equations(const Problem& problem)
       : n_(problem.coordinates()),
         matrices_(n_ <= most_coordinates_for_rotations ? n_ * n_ : 0),
-        columns_(matrices_ + n_ + (closure.identity() ? n_ : 0)) {}
+        columns_(matrices_ + 2 * n_) {}
 
   /// Invariance of L at so many points; false if L is finite at too few.
   bool add_invariance(const Problem& problem, Cloud& cloud) {
@@ -72,15 +72,18 @@ class Equations {
     Scratch scratch;
     const auto span = [&](const VectorXd& x) { return std::span(x.data(), std::size_t(n_)); };
     int found = 0;
+    double momentum = 1;
     for (int tries = 0; found < points && tries < most_tries * points; ++tries) {
       cloud.draw(q, v);
       const PointValues at =
           evaluate_at(*problem.lagrangian, span(q), span(v), 0.1 * tries, Order::gradient, scratch);
+      if (const double p = Eigen::Map<const VectorXd>(at.dv.data(), n_).norm(); found == 0 && p > 0)
+        momentum = p;
       auto row = rows_.row(found);
       for (int a = 0; a < n_; ++a) {
         for (int b = 0; b < n_ && matrices_ > 0; ++b) row[a * n_ + b] = at.dq[a] * q[b] + at.dv[a] * v[b];
         row[matrices_ + a] = cloud.extent() * at.dq[a];
-        if (matrices_ + n_ < columns_) row[matrices_ + n_ + a] = -cloud.extent() * v[a];
+        row[matrices_ + n_ + a] = -momentum * v[a];
       }
       const double size = row.norm();
       if (!std::isfinite(size)) continue;
@@ -90,24 +93,32 @@ class Equations {
     return found == points;
   }
 
-  /// A path that is moved must close as before: R G = G R and R c = G shift + c.
-  void add_closure(const ClosingMap& closure, double extent) {
-    if (closure.identity()) return;
-    const auto& r = closure.r;
-    const int before = static_cast<int>(rows_.rows());
-    rows_.conservativeResize(before + matrices_ + n_, columns_);
-    rows_.bottomRows(matrices_ + n_).setZero();
-    for (int a = 0; a < n_ && matrices_ > 0; ++a)
-      for (int b = 0; b < n_; ++b)
-        for (int k = 0; k < n_; ++k) {
-          rows_(before + a * n_ + b, k * n_ + b) += r(a, k);
-          rows_(before + a * n_ + b, a * n_ + k) -= r(k, b);
-        }
-    for (int a = 0; a < n_; ++a)
-      for (int k = 0; k < n_; ++k) {
-        rows_(before + matrices_ + a, matrices_ + k) += r(a, k) - (a == k);
-        if (matrices_ > 0) rows_(before + matrices_ + a, a * n_ + k) -= closure.c[k] / extent;
+  /// With ends x = offset + Z y that satisfy B x = value, ends that are moved must, too: B (G⊕G) Z = 0 and
+  /// B ((G⊕G) offset + (c, c)) = 0; and b · (q(T) − q(0)) must not depend on y.
+  void add_ends(const Problem& problem, double extent) {
+    const EndMap& ends = problem.ends;
+    MatrixXd y = MatrixXd::Zero(2 * n_, ends.free + 1);
+    y.col(ends.free) = Eigen::Map<const VectorXd>(ends.offset.data(), 2 * n_) / extent;
+    for (const Triplet& z : ends.z) y(z.row, z.column) += z.value;
+    const int relations = problem.boundary.rows;
+    MatrixXd added = MatrixXd::Zero(relations * (ends.free + 1) + ends.free, columns_);
+    for (int j = 0; j <= ends.free; ++j)
+      for (const Triplet& entry : problem.boundary.matrix) {
+        auto row = added.row(j * relations + entry.row);
+        const int a = entry.column % n_, end = entry.column - a;
+        for (int k = 0; k < n_ && matrices_ > 0; ++k) row[a * n_ + k] += entry.value * y(end + k, j);
+        if (j == ends.free) row[matrices_ + a] += entry.value;
       }
+    for (int j = 0; j < ends.free; ++j)
+      for (int a = 0; a < n_; ++a)
+        added(relations * (ends.free + 1) + j, matrices_ + n_ + a) = y(n_ + a, j) - y(a, j);
+    // Of closed paths most are satisfied anyway.
+    const Eigen::Index before = rows_.rows();
+    Eigen::Index count = before;
+    rows_.conservativeResize(before + added.rows(), columns_);
+    for (Eigen::Index k = 0; k < added.rows(); ++k)
+      if (added.row(k).cwiseAbs().maxCoeff() > null) rows_.row(count++) = added.row(k);
+    rows_.conservativeResize(count, columns_);
   }
 
   std::vector<Generator> solutions(double extent) const {
@@ -135,12 +146,10 @@ class Equations {
 }  // namespace
 
 std::vector<Generator> continuous_symmetries(const Problem& problem) {
-  const ClosingMap closure = closing_map(problem);
-  if (!closure.r.allFinite()) return {};
   Cloud cloud(problem);
-  Equations equations(problem, closure);
+  Equations equations(problem);
   if (!equations.add_invariance(problem, cloud)) return {};
-  equations.add_closure(closure, cloud.extent());
+  equations.add_ends(problem, cloud.extent());
   return equations.solutions(cloud.extent());
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-/// \file Continuous symmetries of a closed problem, found from its Lagrangian.
+/// \file Continuous symmetries of a problem, found from its Lagrangian.
 
 namespace extremal {
 
@@ -17,9 +17,10 @@ struct Generator {
 /// Above this many coordinates only translations are looked for.
 inline constexpr int most_coordinates_for_rotations = 12;
 
-/// Independent affine motions of configuration space that leave the action of every path with q(T) = R q(0) +
-/// c unchanged: ∂L/∂q · δq + ∂L/∂q' · δq' = 0, or b · q' where R = 1 and c = 0, at random points about the
-/// guess. The momenta ∂L/∂q' · δq are constants of the motion (Noether).
+/// Independent affine motions of configuration space that leave the boundary relation and the action of every
+/// path that satisfies it unchanged: ∂L/∂q · δq + ∂L/∂q' · δq' = 0, or b · q' where the relation holds
+/// b · (q(T) − q(0)), at random points about the guess. The momenta ∂L/∂q' · δq − b · q are constants of the
+/// motion (Noether).
 std::vector<Generator> continuous_symmetries(const Problem& problem);
 
 }  // namespace extremal

@@ -94,6 +94,44 @@ TEST(Symmetry, OfThePathsThatClose) {
   EXPECT_EQ(count(closed(free, {}, {2 * pi, 0})), 2u);
 }
 
+/// Momenta of 1e12 beside coordinates of 1.
+TEST(Symmetry, InUnitsFarApart) {
+  const auto heavy = trace(
+      2, [](auto q, auto v, auto) { return 1e12 * (v[0] * v[0] + cos(q[0]) * cos(q[0]) * v[1] * v[1]) / 2; });
+  EXPECT_EQ(count(closed(heavy, {}, {0, 2 * pi})), 1u);
+  EXPECT_EQ(count(closed(heavy)), 1u);
+}
+
+/// A ball in a plane pulled along x: where y is free at both ends, it may be moved along y; where they are
+/// tied to x as well, not. About the centre of Kepler's problem a line through it may be turned, a point may
+/// not.
+TEST(Symmetry, OfTheEnds) {
+  const auto with = [](std::shared_ptr<const Lagrangian> lagrangian, auto&& set) {
+    Problem problem;
+    problem.boundary.coordinates = lagrangian->structure().coordinates;
+    problem.lagrangian = std::move(lagrangian);
+    set(problem.boundary);
+    problem.duration.value = 1;
+    return continuous_symmetries(make_problem(std::move(problem))).size();
+  };
+  const auto ball =
+      trace(2, [](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1]) / 2 - q[0] * q[0]; });
+  const auto fix_x = [](BoundaryRelation& b) {
+    b.fix(0, false, 1);
+    b.fix(0, true, 2);
+  };
+  EXPECT_EQ(with(ball, fix_x), 1u);
+  EXPECT_EQ(with(ball,
+                 [](BoundaryRelation& b) {
+                   const int row = b.add_row(1);
+                   b.add(row, 0, 1);
+                   b.add(row, 3, 0.5);
+                 }),
+            0u);
+  EXPECT_EQ(with(systems::kepler(), [](BoundaryRelation&) {}), 1u);
+  EXPECT_EQ(with(systems::kepler(), fix_x), 0u);
+}
+
 /// ∂L/∂q·δq + ∂L/∂q'·δq' = 0 at points that were not drawn.
 TEST(Symmetry, LeavesTheLagrangianAlone) {
   const Problem problem = closed(three_bodies());
