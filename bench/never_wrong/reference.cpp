@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "action/scheme.hpp"
 #include "rivals/verify.hpp"
 #include "solution/observe.hpp"
 #include "study/phase.hpp"
@@ -119,6 +120,9 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
   // that of this duration is as near as any.
   if (study.problem.periodic && duration.where) duration = {.value = solution.duration()};
   again.options = {};
+  // Where orbits are a family, coarse elements on the way to the tolerance would move along it.
+  if (study.problem.periodic && solution.nullity.value_or(1) > 1)
+    again.options.scheme = extremal::lobatto(12);
   extremal::Solution reference;
   for (double tolerance = tightest; tolerance < 1e-10; tolerance *= 10) {
     again.options.tolerance = tolerance;

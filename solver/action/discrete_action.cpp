@@ -50,10 +50,8 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
 void DiscreteAction::substitute(const Lagrangian& lagrangian, const ElementTables& tables) {
   lagrangian_ = &lagrangian;
   tables_ = &tables;
-  for (Desk& desk : desks_) {
-    desk.v.resize(std::max(desk.v.size(), tables.shape().velocity_free ? 0 : n_ * sizes_.points));
-    desk.rows.resize(std::max(desk.rows.size(), lagrangian.rows(Order::hessian) * sizes_.points));
-  }
+  sizes_.points = static_cast<std::size_t>(tables.shape().points) * lanes;
+  for (Desk& desk : desks_) make_room(desk);
 }
 
 /// One, or where there is that much work one for each thread.
@@ -62,13 +60,15 @@ void DiscreteAction::set_desks(bool condense) {
   const double work = condense ? points + condensation_->fronts.work() : 0;
   const bool shared = batches_ > 1 && batches_ * work > least_share * threads();
   desks_.resize(shared ? threads() : 1);
-  for (Desk& desk : desks_) {
-    desk.q.resize(n_ * sizes_.points);
-    desk.v.resize(tables_->shape().velocity_free ? 0 : n_ * sizes_.points);
-    desk.t.resize(sizes_.points);
-    desk.rows.resize(lagrangian_->rows(Order::hessian) * sizes_.points);
-    desk.work.resize(2 * sizes_.vector + 2 * lanes);
-  }
+  for (Desk& desk : desks_) make_room(desk);
+}
+
+void DiscreteAction::make_room(Desk& desk) const {
+  desk.q.resize(n_ * sizes_.points);
+  desk.v.resize(tables_->shape().velocity_free ? 0 : n_ * sizes_.points);
+  desk.t.resize(sizes_.points);
+  desk.rows.resize(lagrangian_->rows(Order::hessian) * sizes_.points);
+  desk.work.resize(2 * sizes_.vector + 2 * lanes);
 }
 
 /// evaluate(desk, b) for each batch in any order, gather(b) from the first to the last: sums do not depend on

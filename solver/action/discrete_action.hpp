@@ -46,8 +46,9 @@ class DiscreteAction {
   void reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements, bool border,
              bool condense = true);
 
-  /// From now on values and gradients are those of another Lagrangian of as many coordinates, on tables of
-  /// the same scheme bound to it; the factors stay. evaluate() needs the one that reset() was given.
+  /// From now on values and gradients are those of another Lagrangian of as many coordinates or of another
+  /// quadrature, on tables of the same degree bound to it; the factors stay. evaluate() needs what reset()
+  /// was given.
   void substitute(const Lagrangian& lagrangian, const ElementTables& tables);
 
   /// S_h and its gradient; condensed with the factors there are into `nodes`.
@@ -114,6 +115,7 @@ class DiscreteAction {
   void play(const ElementBatch& batch, Order order, Desk& desk);
   void condense(const Path& path, int b, Desk& desk);
   void set_desks(bool condense);
+  void make_room(Desk& desk) const;
   void evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient, double* row,
                        double* corner);
   void assemble_gradient(const ElementBatch& elements, int b, double* gradient);

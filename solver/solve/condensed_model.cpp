@@ -45,6 +45,8 @@ class CondensedModel final : public QuadraticModel {
 
   void set_null_below(double threshold) override { system_.set_null_below(threshold); }
 
+  int left_out() const override { return system_.left_out(); }
+
   Inertia inertia(double threshold) override {
     Inertia result = system_.inertia(threshold);
     result.negative += negative_;

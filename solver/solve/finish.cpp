@@ -13,6 +13,7 @@
 #include "solve/conservation.hpp"
 #include "solve/method.hpp"
 #include "solve/minimality.hpp"
+#include "solve/refinement.hpp"
 #include "solve/residual_test.hpp"
 #include "solve/stability.hpp"
 
@@ -22,6 +23,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// What an error may be by its estimate.
+constexpr double honest = 10;
+constexpr const char* through_singularity = "the path runs through a singularity of L; try another guess";
 /// Of the largest momentum.
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
@@ -118,6 +122,57 @@ void judge_resolution(const Problem& problem, const SolveOptions& options, const
   }
 }
 
+/// Ends that are moved by symmetries of the problem leave a family of extremals; otherwise directions that
+/// are null, or look so, mean that nothing tells the path found from those beside it.
+bool told_apart(const Problem& problem, Workspace& w) {
+  const int null = w.iteration.model().left_out();
+  return problem.periodic || null == 0 || problem.coordinates() > most_coordinates_for_rotations ||
+         null <= std::ssize(continuous_symmetries(problem));
+}
+
+/// What points other than those of the elements tell of a path: they see forces that those may not, and
+/// their roundoff is another.
+struct OtherPoints {
+  double moved = 0;  ///< q, to where the path is stationary with them
+  bool told_apart = true;
+};
+
+OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, Workspace& w) {
+  const Scales size = scales(w.path, *outcome.tables);
+  if (size.range < size.q || size.q == 0) return {};  // at rest, where all points see the same
+  w.iteration.set_scale(size.q);
+  if (!problem.periodic)
+    w.iteration.model().set_null_below(Refinement::softest(outcome.error, w.path, size.magnitude));
+  const double moved = size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path);
+  return {moved, told_apart(problem, w)};
+}
+
+void judge_by_other_points(const OtherPoints& found, const SolveOptions& options, const Outcome& outcome,
+                           Solution& solution) {
+  if (!found.told_apart) {
+    solution.status = Status::conjugate_ends;
+    solution.message =
+        "the second variation is singular along the path found, though no symmetry makes it so: the ends may "
+        "be conjugate, with a family of extremals, or forces vanish along it; move an end or the duration, "
+        "or "
+        "try a better guess";
+    return;
+  }
+  if (!std::isfinite(found.moved)) {
+    solution.status = Status::not_converged;
+    solution.message = through_singularity;
+    return;
+  }
+  if (found.moved <= honest * solution.error_estimate) return;
+  solution.error_estimate = found.moved;
+  if (options.elements > 0 || found.moved <= outcome.tolerance) return;
+  solution.status = Status::not_converged;
+  solution.message = fmt::format(
+      "with other points in each element the path moves by {:.1e}, {:.0f} times what the tolerance {:.1e} "
+      "allows: they see other forces, or amplify roundoff; try another tolerance",
+      found.moved, found.moved / outcome.tolerance, options.tolerance);
+}
+
 /// What is left of a solution that turned out to be none.
 Solution without_path(Solution solution) {
   Solution failed;
@@ -178,7 +233,7 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
     w.final_tables = outcome.tables;
     if (!std::isfinite(solution.action) || !std::isfinite(solution.residual)) {
       solution.status = Status::not_converged;
-      solution.message = "the path runs through a singularity of L; try another guess";
+      solution.message = through_singularity;
     } else if (!balanced(solution, w)) {
       solution.status = Status::not_converged;
       solution.message = fmt::format(
@@ -187,9 +242,11 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
           solution.residual);
     } else if (closed(problem, options, w)) {
       judge_resolution(problem, options, outcome, w, solution);
+      const OtherPoints others = try_other_points(problem, outcome, w);
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);
+      if (solution.converged()) judge_by_other_points(others, options, outcome, solution);
     } else {
       solution.status = Status::no_solution_near;
       solution.message = "the duration ran away: no extremal near the guess meets what closes it";

@@ -67,6 +67,9 @@ class NewtonIteration {
 
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
+  /// The length of that correction where another quadrature on the same elements tells the gradient, and of
+  /// what roundoff makes of it. action() then has that gradient.
+  double step_under(const ElementTables& quadrature, const Path& path);
 
   /// The error to be expected after a full step of this length and the simplified one, from the last that
   /// was tested.

@@ -14,6 +14,16 @@ namespace {
 constexpr double trial_burden = 0.4;
 /// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
 constexpr double pivoted_burden = 100, sparse_burden = 1000;
+/// Of two terms that cancel, half the last digit of one.
+constexpr double half_a_digit = 0x1p-54;
+
+/// The largest change of q by `scale` or of T by `duration`.
+double difference(const Step& a, const Step& b, double scale, double duration) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.nodes.size(); ++k)
+    largest = std::max(largest, std::abs(a.nodes[k] - b.nodes[k]));
+  return std::max(scale > 0 ? largest / scale : largest, std::abs(a.duration - b.duration) / duration);
+}
 
 }  // namespace
 
@@ -71,6 +81,24 @@ double NewtonIteration::measure_noise(Path& path) {
   path.copy_values(saved_);
   path.load_ends();
   return noise_ = std::isnan(size) ? 0 : change / (scale_ > 0 ? scale_ : 1);
+}
+
+/// The step, and how it changes by the roundoff of the equation that closes the duration.
+double NewtonIteration::step_under(const ElementTables& quadrature, const Path& path) {
+  action_.substitute(*problem_->lagrangian, quadrature);
+  model_->evaluate_gradient(action_, path);
+  double length = solve_for_step(path, step_, true);
+  if (closing(path)) {
+    double terms = std::abs(closing_.value) + std::abs(action_.slope_duration());
+    const std::size_t n = path.coordinates();
+    for (std::size_t e = 0; e < closing_.row.size(); ++e)
+      terms += std::abs(closing_.row[e] * (e < n ? path.node(0)[e] : path.node(path.elements())[e - n]));
+    closing_.value += half_a_digit * terms;
+    model_->solve(action_, &closing_, simplified_);
+    length += difference(simplified_, step_, scale_, path.duration());
+  }
+  action_.substitute(*problem_->lagrangian, *tables_);
+  return length;
 }
 
 }  // namespace extremal

@@ -31,10 +31,9 @@ double Refinement::excess(const Resolution::Error& error) const {
 /// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft
 /// then, not null. Not so in periodic problems: families there, as about Kepler's circle, would count as
 /// soft.
-double Refinement::softest() const {
-  const double roundoff = 8 * 0x1p-52 * w_.path.elements();
-  const double error = scales_.magnitude > 0 ? 3 * left_out_ / scales_.magnitude : 0;
-  return std::clamp(error, roundoff, largest_soft);
+double Refinement::softest(double error, const Path& path, double magnitude) {
+  const double roundoff = 8 * 0x1p-52 * path.elements();
+  return std::clamp(magnitude > 0 ? 3 * error / magnitude : 0, roundoff, largest_soft);
 }
 
 /// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
@@ -45,7 +44,7 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
   const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
   NewtonIteration& newton = w_.iteration;
-  if (!problem_.periodic) newton.model().set_null_below(softest());
+  if (!problem_.periodic) newton.model().set_null_below(softest(left_out_, w_.path, scales_.magnitude));
   bool passed = false;
   for (int step = 0; step <= most_polish; ++step) {
     const bool again = step == 0 || newton.contraction() <= worst_chord;

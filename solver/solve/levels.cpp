@@ -5,18 +5,34 @@ namespace extremal {
 void Levels::bind(std::shared_ptr<const Lagrangian> lagrangian) {
   if (lagrangian == lagrangian_) return;
   lagrangian_ = std::move(lagrangian);
-  for (auto& level : levels_)
-    if (level) level->bound = false;
+  for (Ladder* ladder : {&levels_, &finer_})
+    for (auto& level : *ladder)
+      if (level) level->bound = false;
+}
+
+const ElementTables& Levels::bound(Level& level) {
+  if (!level.bound) {
+    level.tables.bind(level.scheme, *lagrangian_);
+    level.bound = true;
+  }
+  return level.tables;
 }
 
 const ElementTables& Levels::at(int degree) {
   auto& level = levels_[degree];
-  if (!level) level = std::make_unique<Level>(degree);
-  if (!level->bound) {
-    level->tables.bind(level->scheme, *lagrangian_);
-    level->bound = true;
+  if (!level) level = std::make_unique<Level>(lobatto(degree));
+  return bound(*level);
+}
+
+const ElementTables& Levels::finer(const SchemeTables& rule) {
+  auto& level = finer_[rule.degree];
+  const int points = rule.points + rule.degree;
+  if (!level || level->scheme.points != points) {
+    Scheme scheme = gauss(rule.degree);
+    scheme.points = points;
+    level = std::make_unique<Level>(scheme);
   }
-  return level->tables;
+  return bound(*level);
 }
 
 const std::vector<double>& Levels::raise(int from, int to) {

@@ -17,6 +17,8 @@ class Levels {
 
   /// lobatto(degree), made when first asked for.
   const ElementTables& at(int degree);
+  /// The same elements under Gauss's rule with `degree` points more; likewise.
+  const ElementTables& finer(const SchemeTables& rule);
 
   /// From Lobatto(from) nodal values to the Lobatto(to) nodes.
   const std::vector<double>& raise(int from, int to);
@@ -29,10 +31,12 @@ class Levels {
     SchemeTables scheme;
     ElementTables tables;
     bool bound = false;
-    explicit Level(int degree) : scheme(lobatto(degree)) {}
+    explicit Level(const Scheme& scheme) : scheme(scheme) {}
   };
+  using Ladder = std::array<std::unique_ptr<Level>, max_degree + 1>;
+  const ElementTables& bound(Level& level);
   std::shared_ptr<const Lagrangian> lagrangian_;
-  std::array<std::unique_ptr<Level>, max_degree + 1> levels_;
+  Ladder levels_, finer_;
   std::array<std::vector<double>, (max_degree + 1) * (max_degree + 1)> raise_;
   std::array<std::vector<double>, max_degree + 1> halve_;
 };

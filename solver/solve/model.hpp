@@ -50,6 +50,8 @@ class QuadraticModel {
   /// From now until reset() steps have nothing along directions whose eigenvalue is so small, relative, or
   /// smaller, where ends are free; the factors there are follow.
   virtual void set_null_below(double) {}
+  /// How many such directions the last step had nothing along.
+  virtual int left_out() const { return 0; }
   /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
   void set_refining(bool on) { refining_ = on; }
   /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null, and so

@@ -230,14 +230,16 @@ void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closin
 void NodeSystem::solve_schur(bool own_row, bool refine) {
   const std::size_t inner = right_.size();
   if (elements_ > 1) refine ? chain_->solve(right_.data(), 1) : chain_->solve_step(right_.data());
+  left_out_ = 0;
   if (border_ == 0) return;
   for (std::size_t k = 0; k < inner; ++k)
     for (int c = 0; c < border_; ++c)
       if (!(own_row && c == free_)) small_[c] -= columns_[k * border_ + c] * right_[k];
   small_.array() *= row_units_.array();
-  if (least_norm_)
+  if (least_norm_) {
+    left_out_ = static_cast<int>(least_norm_->cols() - least_norm_->rank());
     small_ = least_norm_->solve(small_).eval();
-  else
+  } else
     solve_in_place(lu_, small_, permuted_);
   small_.array() *= column_units_.array();
   for (std::size_t k = 0; k < inner; ++k)
@@ -247,17 +249,18 @@ void NodeSystem::solve_schur(bool own_row, bool refine) {
 void NodeSystem::solve_exactly() {
   Eigen::VectorXd all(right_.size() + border_);
   all << Eigen::Map<const Eigen::VectorXd>(right_.data(), right_.size()), small_;
+  left_out_ = 0;
   if (regular_ && smallest_ > null_below_)
     system_.solve(*chain_, all.data(), 1);
   else
-    system_.solve_least_norm(*chain_, all.data(), 1, null_below_);
+    left_out_ = system_.solve_least_norm(*chain_, all.data(), 1, null_below_);
   std::copy_n(all.begin(), right_.size(), right_.begin());
   small_ = all.tail(border_);
 }
 
 Inertia NodeSystem::inertia(double threshold) const {
   if (elements_ < 2 && free_ == 0) return {};
-  if (free_ == 0) return chain_->inertia();
+  if (free_ == 0 && chain_->deflated().empty()) return chain_->inertia();
   // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
   // those of the directions across, and as many positive ones.
   const PhaseConditions held = phases_ ? independent(*phases_) : PhaseConditions{};

@@ -25,6 +25,8 @@ class NodeSystem {
   /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing
   /// along them. From now until reset(); the factors there are follow.
   void set_null_below(double threshold);
+  /// How many directions the last step had nothing along.
+  int left_out() const { return left_out_; }
 
   /// Newton step of the nodes, (N + 1) × n, and of T, from the gradient that `nodes` holds; `refine` as
   /// QuadraticModel::set_refining.
@@ -69,6 +71,7 @@ class NodeSystem {
   bool exact_ = false, regular_ = false;  ///< the chain is singular, and what system_ is for; system_ is not
   Border system_;
   double smallest_ = 0;  ///< singular value of what remains of system_
+  int left_out_ = 0;
 };
 
 }  // namespace extremal
