@@ -76,27 +76,15 @@ VectorXd AutoOrbit::state(double t) const {
 }
 
 AutoProgram::AutoProgram(const AutoInstallation& installation, const AutoEquations& equations,
-                         const extremal::Study& study)
-    : folder_((fs::temp_directory_path() / "extremal-auto-XXXXXX").string()) {
-  if (mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  try {
-    compile(installation, equations.name, folder_);
-    write_guess(study, equations.unfolding);
-  } catch (...) {
-    fs::remove_all(folder_);
-    throw;
-  }
-}
-
-AutoProgram::~AutoProgram() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+                         const extremal::Study& study) {
+  compile(installation, equations.name, folder_.path());
+  write_guess(study, equations.unfolding);
 }
 
 void AutoProgram::write_guess(const extremal::Study& study, int unfolding) {
   const extremal::GuessedPath path(study.problem);
   const double T = study.problem.duration.value;
-  std::ofstream file(folder_ + "/guess.dat");
+  std::ofstream file(folder_ / "guess.dat");
   for (const double tau : study.problem.guess.tau) {
     VectorXd state(2 * study.problem.coordinates());
     state << path.at(tau), path.slope(tau) / T;
@@ -107,15 +95,15 @@ void AutoProgram::write_guess(const extremal::Study& study, int unfolding) {
 }
 
 std::vector<AutoOrbit> AutoProgram::run(const AutoSetting& setting) const {
-  fs::remove(folder_ + "/solutions");
-  std::ofstream(folder_ + "/fort.2") << constants_
-                                     << fmt::format("NTST={}, NCOL={}, NWTN={}, EPSL={}, EPSU={}\n",
-                                                    setting.intervals, setting.degree, setting.factored,
-                                                    setting.tolerance, setting.tolerance);
+  fs::remove(folder_ / "solutions");
+  std::ofstream(folder_ / "fort.2") << constants_
+                                    << fmt::format("NTST={}, NCOL={}, NWTN={}, EPSL={}, EPSU={}\n",
+                                                   setting.intervals, setting.degree, setting.factored,
+                                                   setting.tolerance, setting.tolerance);
   std::vector<AutoOrbit> orbits;
   // its exit status tells nothing
-  (void)succeeds(fmt::format("cd {} && OMP_NUM_THREADS=1 timeout 60 ./program >log 2>&1", folder_));
-  std::ifstream file(folder_ + "/solutions");
+  (void)succeeds(fmt::format("cd {} && OMP_NUM_THREADS=1 timeout 60 ./program >log 2>&1", folder_.path()));
+  std::ifstream file(folder_ / "solutions");
   double spent = 0;
   int intervals = 0;
   for (AutoOrbit orbit; file >> orbit.seconds >> intervals >> orbit.degree >> orbit.period;) {

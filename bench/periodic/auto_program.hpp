@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "distance.hpp"
+#include "report/temporary_folder.hpp"
 #include "study/study.hpp"
 
 /// \file AUTO-07p on one scene: built, started from the scene's guess, and read.
@@ -47,9 +48,6 @@ class AutoProgram {
   /// not compile.
   AutoProgram(const AutoInstallation& installation, const AutoEquations& equations,
               const extremal::Study& study);
-  ~AutoProgram();
-  AutoProgram(const AutoProgram&) = delete;
-  AutoProgram& operator=(const AutoProgram&) = delete;
 
   /// The orbits after one, two and three solves, each but the first from the one before on a mesh that was
   /// adapted to it; ends early where Newton's iteration does not converge. Time is processor time of AUTO's
@@ -60,7 +58,8 @@ class AutoProgram {
  private:
   void write_guess(const extremal::Study& study, int unfolding);
 
-  std::string folder_, constants_;
+  extremal::TemporaryFolder folder_;
+  std::string constants_;
   int states_ = 0;
 };
 

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "report/sample_results.hpp"
+#include "report/temporary_folder.hpp"
 
 namespace extremal {
 namespace {

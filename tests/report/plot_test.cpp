@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "report/sample_results.hpp"
+#include "report/temporary_folder.hpp"
 #include "report/well_formed.hpp"
 
 namespace extremal {
