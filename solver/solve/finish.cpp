@@ -108,22 +108,20 @@ void judge_resolution(const Problem& problem, const SolveOptions& options, const
     solution.message = fmt::format(
         "a residual of {:.1e} of the largest momentum is left, more than momenta change by within the "
         "tolerance {:.1e}: forces all but vanish along the path, and there may be no extremal near; try "
-        "another "
-        "guess",
+        "another guess",
         solution.residual, options.tolerance);
   } else if (outcome.elsewhere && !problem.periodic && solution.nullity.value_or(0) > 0) {
     // Far away, where forces vanish, next to nothing is left of equations that have no solution.
     solution.status = Status::conjugate_ends;
     solution.message =
-        "away from the guess a path was found along which the second variation is singular: the ends may be "
-        "conjugate, with a family of extremals, or forces vanish along it; move an end or the duration, or "
-        "try a "
-        "better guess";
+        "away from the guess a path was found along which the second variation is singular: the ends may "
+        "be conjugate, with a family of extremals, or forces vanish along it; move an end or the "
+        "duration, or try a better guess";
   }
 }
 
-/// Ends that are moved by symmetries of the problem leave a family of extremals; otherwise directions that
-/// are null, or look so, mean that nothing tells the path found from those beside it.
+/// Directions that are null because symmetries of the problem move its ends belong to a family of extremals.
+/// Others, or what looks null beside stronger forces, tell nothing of the path found from those beside it.
 bool told_apart(const Problem& problem, Workspace& w) {
   const int null = w.iteration.model().left_out();
   return problem.periodic || null == 0 || problem.coordinates() > most_coordinates_for_rotations ||
@@ -137,9 +135,10 @@ struct OtherPoints {
   bool told_apart = true;
 };
 
-OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, Workspace& w) {
+OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, bool factored, Workspace& w) {
   const Scales size = scales(w.path, *outcome.tables);
-  if (size.range < size.q || size.q == 0) return {};  // at rest, where all points see the same
+  const bool at_rest = size.range < size.q || size.q == 0;
+  if (!factored || at_rest) return {};
   w.iteration.set_scale(size.q);
   if (!problem.periodic)
     w.iteration.model().set_null_below(Refinement::softest(outcome.error, w.path, size.magnitude));
@@ -152,10 +151,9 @@ void judge_by_other_points(const OtherPoints& found, const SolveOptions& options
   if (!found.told_apart) {
     solution.status = Status::conjugate_ends;
     solution.message =
-        "the second variation is singular along the path found, though no symmetry makes it so: the ends may "
-        "be conjugate, with a family of extremals, or forces vanish along it; move an end or the duration, "
-        "or "
-        "try a better guess";
+        "the second variation is singular along the path found, though no symmetry makes it so: forces "
+        "vanish along it, or the ends are conjugate, with a family of extremals; move an end or the "
+        "duration, or try a better guess";
     return;
   }
   if (!std::isfinite(found.moved)) {
@@ -242,7 +240,7 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
           solution.residual);
     } else if (closed(problem, options, w)) {
       judge_resolution(problem, options, outcome, w, solution);
-      const OtherPoints others = try_other_points(problem, outcome, w);
+      const OtherPoints others = try_other_points(problem, outcome, solution.nullity.has_value(), w);
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);

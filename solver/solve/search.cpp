@@ -192,15 +192,14 @@ Outcome Search::run() {
     } else {
       outcome_.status = Status::iteration_limit;
       outcome_.message = fmt::format(
-          "{} Newton steps from the guess ({}), through other durations and from smooth noise "
-          "found no extremal; try a better guess or a shorter duration",
+          "{} Newton steps from the guess ({}) and from others found no extremal; try a better guess or a "
+          "shorter duration",
           outcome_.iterations, failure);
       if (shrank_) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =
-            "the orbit shrank to a point of equilibrium from the guess and from others; try a larger guess "
-            "or "
-            "another duration";
+            "the orbit shrank to a point of equilibrium from the guess and from others; try a larger "
+            "guess or another duration";
       }
       // Where ends are conjugate, elements tell different members of a family.
       if (unheld_) std::swap(w_.path, *unheld_);
