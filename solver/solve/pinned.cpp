@@ -16,8 +16,9 @@ namespace {
 constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
 constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
 constexpr int most_elements = 1 << 20;
-/// An error below the second (relative) that more elements reduce less than by the first is roundoff.
-constexpr double stagnation = 0.9, near_roundoff = 1e-9;
+/// An error below the second, relative to the range, or the third, to the values, that more elements reduce
+/// less than by the first is roundoff.
+constexpr double stagnation = 0.9, near_roundoff = 1e-9, at_roundoff = 1e-14;
 constexpr int steps = 100;
 /// From an extremal to its companion, which is near or none.
 constexpr int companion_steps = 25;
@@ -209,7 +210,8 @@ Outcome PinnedSolve::run() {
       outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
       break;
     }
-    if (outcome_.error > stagnation * before && outcome_.error < near_roundoff * size.q) {
+    const double noise = std::max(near_roundoff * size.q, at_roundoff * size.magnitude);
+    if (outcome_.error > stagnation * before && outcome_.error < noise) {
       outcome_.message = fmt::format("roundoff hides the tolerance {:.1e} from {} elements on; loosen it",
                                      options_.tolerance, elements);
       break;
