@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "action/scheme.hpp"
+#include "linear/dense.hpp"
 #include "rivals/verify.hpp"
 #include "solution/observe.hpp"
 #include "study/phase.hpp"
@@ -18,6 +19,8 @@ constexpr double negligible = 1e-12;
 /// A path this small beside guess and ends has come to rest at zero.
 constexpr double vanished = 1e-9;
 constexpr int most_reference_coordinates = 40;
+/// Between orbits of a family, relative, in duration.
+constexpr double neighbouring = 1e-5;
 
 /// Times within every element, ends included.
 std::vector<double> times_within(const extremal::Trajectory& trajectory, int points) {
@@ -67,14 +70,17 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
   return largest;
 }
 
-/// Moves an orbit in time to where it is nearest to `x`, to first order: each of its phases is an extremal.
-void shift_to(const std::vector<double>& x, Points& right) {
-  double along = 0, length = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    along += (x[i] - right.q[i]) * right.v[i];
-    length += right.v[i] * right.v[i];
-  }
-  for (std::size_t i = 0; i < x.size() && length > 0; ++i) right.q[i] += along / length * right.v[i];
+/// Moves an orbit along directions in which its neighbours are extremals, too, to where it is nearest to `x`,
+/// to first order.
+void move_to(const std::vector<double>& x, const std::vector<std::vector<double>>& directions,
+             Points& right) {
+  const auto vector = [](const std::vector<double>& values) {
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
+  };
+  Eigen::MatrixXd along(std::ssize(x), std::ssize(directions));
+  for (std::size_t k = 0; k < directions.size(); ++k) along.col(k) = vector(directions[k]);
+  const Eigen::VectorXd moved = along * extremal::least_norm(along, vector(x) - vector(right.q));
+  for (std::size_t i = 0; i < x.size(); ++i) right.q[i] += moved[i];
 }
 
 }  // namespace
@@ -116,13 +122,13 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
   again.problem.guess = as_guess(solution.trajectory);
   extremal::Duration& duration = again.problem.duration;
   if (duration.free) duration.value = solution.duration();
-  // A condition that periodic orbits of every energy meet, each at its own phase, leaves a family of them:
-  // that of this duration is as near as any.
-  if (study.problem.periodic && duration.where) duration = {.value = solution.duration()};
+  // A condition that periodic orbits of every energy meet, each at its own phase, leaves a family of them,
+  // one for each duration.
+  const bool family = study.problem.periodic && duration.where;
+  if (family) duration = {.value = solution.duration()};
   again.options = {};
-  // Where orbits are a family, coarse elements on the way to the tolerance would move along it.
-  if (study.problem.periodic && solution.nullity.value_or(1) > 1)
-    again.options.scheme = extremal::lobatto(12);
+  // Coarse elements on the way to the tolerance would move along a family of orbits, or in time.
+  if (study.problem.periodic) again.options.scheme = extremal::lobatto(12);
   extremal::Solution reference;
   for (double tolerance = tightest; tolerance < 1e-10; tolerance *= 10) {
     again.options.tolerance = tolerance;
@@ -135,7 +141,19 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
   for (double& t : tau) t /= solution.duration();
   const Points found = points_at(study.problem, solution.trajectory, tau);
   Points right = points_at(study.problem, reference.trajectory, tau);
-  if (study.problem.periodic && study.problem.lagrangian->structure().autonomous) shift_to(found.q, right);
+  if (study.problem.periodic && study.problem.lagrangian->structure().autonomous) {
+    std::vector<std::vector<double>> directions{right.v};
+    if (family) {
+      again.problem.guess = as_guess(reference.trajectory);
+      duration.value *= 1 + neighbouring;
+      const extremal::Solution neighbour = run(again);
+      if (neighbour.converged()) {
+        directions.push_back(points_at(study.problem, neighbour.trajectory, tau).q);
+        for (std::size_t i = 0; i < right.q.size(); ++i) directions.back()[i] -= right.q[i];
+      }
+    }
+    move_to(found.q, directions, right);
+  }
   const extremal::Survey ranges = survey(*study.problem.lagrangian, reference.trajectory);
   return TrueError{.q = largest_difference(found.q, right.q),
                    .v = largest_difference(found.v, right.v),
