@@ -10,8 +10,6 @@ namespace {
 
 /// Drift by what explains it.
 constexpr double margin = 10;
-/// Of p in tolerances of its range, by contract.
-constexpr double momentum_tolerances = 10;
 constexpr double eps = std::numeric_limits<double>::epsilon();
 /// Units in the last place of what the energy is made up of, and of q.
 constexpr double roundoff_of_terms = 1e3 * eps, roundoff_of_q = 4 * eps;

@@ -8,6 +8,9 @@
 
 namespace extremal {
 
+/// What p may err by, in tolerances of its range: by contract.
+inline constexpr double momentum_tolerances = 10;
+
 /// Whether the drift is no more than a tolerance explains, relative to the ranges of q and, ten times, p.
 bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double tolerance);
 

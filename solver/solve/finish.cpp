@@ -13,7 +13,7 @@
 #include "solve/conservation.hpp"
 #include "solve/method.hpp"
 #include "solve/minimality.hpp"
-#include "solve/refinement.hpp"
+#include "solve/other_points.hpp"
 #include "solve/residual_test.hpp"
 #include "solve/stability.hpp"
 
@@ -23,9 +23,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What an error may be by its estimate.
-constexpr double honest = 10;
-constexpr const char* through_singularity = "the path runs through a singularity of L; try another guess";
 /// Of the largest momentum.
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
@@ -84,13 +81,12 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
   const DiscreteAction& action = w.iteration.action();
   const double range = *std::max_element(survey.p.begin(), survey.p.end());
   return natural_residual(problem, action, w.path) <=
-         std::max(10 * tolerance * range, least_roundoff * action.momentum_scale());
+         std::max(momentum_tolerances * tolerance * range, least_roundoff * action.momentum_scale());
 }
 
 /// Whether the elements have seen all of the path, and the equations had a solution.
 void judge_resolution(const Problem& problem, const SolveOptions& options, const Outcome& outcome,
-                      Workspace& w, Solution& solution) {
-  const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
+                      const std::optional<Survey>& found, Workspace& w, Solution& solution) {
   const double estimate = solution.error_estimate;
   if (found) solution.error_estimate = error_behind_drift(*found, solution.trajectory, estimate);
   const bool raised = solution.error_estimate > estimate;
@@ -118,57 +114,6 @@ void judge_resolution(const Problem& problem, const SolveOptions& options, const
         "be conjugate, with a family of extremals, or forces vanish along it; move an end or the "
         "duration, or try a better guess";
   }
-}
-
-/// Directions that are null because symmetries of the problem move its ends belong to a family of extremals.
-/// Others, or what looks null beside stronger forces, tell nothing of the path found from those beside it.
-bool told_apart(const Problem& problem, Workspace& w) {
-  const int null = w.iteration.model().left_out();
-  return problem.periodic || null == 0 || problem.coordinates() > most_coordinates_for_rotations ||
-         null <= std::ssize(continuous_symmetries(problem));
-}
-
-/// What points other than those of the elements tell of a path: they see forces that those may not, and
-/// their roundoff is another.
-struct OtherPoints {
-  double moved = 0;  ///< q, to where the path is stationary with them
-  bool told_apart = true;
-};
-
-OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, bool factored, Workspace& w) {
-  const Scales size = scales(w.path, *outcome.tables);
-  const bool at_rest = size.range < size.q || size.q == 0;
-  if (!factored || at_rest) return {};
-  w.iteration.set_scale(size.q);
-  if (!problem.periodic)
-    w.iteration.model().set_null_below(Refinement::softest(outcome.error, w.path, size.magnitude));
-  const double moved = size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path);
-  return {moved, told_apart(problem, w)};
-}
-
-void judge_by_other_points(const OtherPoints& found, const SolveOptions& options, const Outcome& outcome,
-                           Solution& solution) {
-  if (!found.told_apart) {
-    solution.status = Status::conjugate_ends;
-    solution.message =
-        "the second variation is singular along the path found, though no symmetry makes it so: forces "
-        "vanish along it, or the ends are conjugate, with a family of extremals; move an end or the "
-        "duration, or try a better guess";
-    return;
-  }
-  if (!std::isfinite(found.moved)) {
-    solution.status = Status::not_converged;
-    solution.message = through_singularity;
-    return;
-  }
-  if (found.moved <= honest * solution.error_estimate) return;
-  solution.error_estimate = found.moved;
-  if (options.elements > 0 || found.moved <= outcome.tolerance) return;
-  solution.status = Status::not_converged;
-  solution.message = fmt::format(
-      "with other points in each element the path moves by {:.1e}, {:.0f} times what the tolerance {:.1e} "
-      "allows: they see other forces, or amplify roundoff; try another tolerance",
-      found.moved, found.moved / outcome.tolerance, options.tolerance);
 }
 
 /// What is left of a solution that turned out to be none.
@@ -231,7 +176,7 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
     w.final_tables = outcome.tables;
     if (!std::isfinite(solution.action) || !std::isfinite(solution.residual)) {
       solution.status = Status::not_converged;
-      solution.message = through_singularity;
+      solution.message = "the path runs through a singularity of L; try another guess";
     } else if (!balanced(solution, w)) {
       solution.status = Status::not_converged;
       solution.message = fmt::format(
@@ -239,8 +184,9 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
           "try another guess",
           solution.residual);
     } else if (closed(problem, options, w)) {
-      judge_resolution(problem, options, outcome, w, solution);
-      const OtherPoints others = try_other_points(problem, outcome, solution.nullity.has_value(), w);
+      const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
+      judge_resolution(problem, options, outcome, found, w, solution);
+      const OtherPoints others = try_other_points(problem, outcome, found, solution, w);
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);

@@ -96,6 +96,7 @@ bool Search::through_other_durations() {
   for (const double duration : natural_durations(problem_, w_, refinement_.tables())) {
     start(mesh_, bend_, homotopy_degree);
     w_.path.set_duration(duration);
+    continued_ = true;
     if (!homotopy.follow(refinement_.tables())) continue;
     refinement_.rebind();
     if (found("homotopy in the duration")) return true;
@@ -123,6 +124,7 @@ bool Search::from_noise(unsigned tries) {
       refinement_.count_step();
       continue;
     }
+    bent_ = true;
     if (found("newton from the guess plus smooth noise")) return true;
   }
   return false;
@@ -192,9 +194,10 @@ Outcome Search::run() {
     } else {
       outcome_.status = Status::iteration_limit;
       outcome_.message = fmt::format(
-          "{} Newton steps from the guess ({}) and from others found no extremal; try a better guess or a "
-          "shorter duration",
-          outcome_.iterations, failure);
+          "{} Newton steps from the guess ({}){}{} found no extremal; try a better guess or a shorter "
+          "duration",
+          outcome_.iterations, failure, continued_ ? ", through other durations" : "",
+          bent_ ? " and from smooth noise" : "");
       if (shrank_) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =

@@ -66,6 +66,8 @@ class Search {
   unsigned seed_ = 0;
   bool colliding_ = false;  ///< a guess that comes too near a singularity
   bool shrank_ = false;     ///< a path, to a point of equilibrium
+  bool continued_ = false;  ///< extremals of other durations were followed
+  bool bent_ = false;       ///< guesses were bent by noise
   bool doubtful_ = false;   ///< the equations of the last path were nearly singular
 };
 

@@ -102,10 +102,20 @@ TEST(Search, SaysWhatWasTriedWhereNothingIsFound) {
   const Solution solution = solver.solve(fixed_ends(systems::bratu(4), {0}, {0}, 1), counted(options));
   EXPECT_EQ(solution.status, Status::iteration_limit);
   EXPECT_EQ(solution.iterations, 600);
-  for (const char* words :
-       {"600 Newton steps from the guess (", "other durations", "smooth noise", "try a better guess"})
+  for (const char* words : {"600 Newton steps from the guess (", "smooth noise", "try a better guess"})
     EXPECT_NE(solution.message.find(words), std::string::npos) << solution.message;
   EXPECT_TRUE(solution.trajectory.nodes.empty());
+}
+
+/// Where the duration is free there are no others to go through.
+TEST(Search, SaysNothingOfWhatWasNotTried) {
+  SolveOptions options = within(1e-9);
+  options.max_iterations = 300;
+  Problem problem = fixed_ends(systems::pendulum(), {0}, {1}, 1);
+  problem.duration = {.value = 1, .free = true, .energy = -2, .where = {}};
+  const Solution solution = Solver().solve(make_problem(problem), options);
+  EXPECT_FALSE(solution.converged());
+  EXPECT_EQ(solution.message.find("other durations"), std::string::npos) << solution.message;
 }
 
 TEST(Search, IsTheSameEachTime) {

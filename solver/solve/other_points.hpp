@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "solution/observe.hpp"
+#include "solve/workspace.hpp"
+
+/// \file A path that was found, under a quadrature with other points and more: they see forces that the
+/// points of its elements may not, and round otherwise.
+
+namespace extremal {
+
+struct OtherPoints {
+  double moved = 0;        ///< q, absolute: to where the path is stationary under them, to first order
+  double kicked = 0;       ///< momenta at its ends, relative to their range
+  bool told_apart = true;  ///< from the paths beside it
+};
+
+/// `solution` holds what was read off the path in the workspace, whose iteration factored it last; the action
+/// is then the one under other points. Nothing is told of a path at rest, or of one that could not be
+/// factored.
+OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
+                             const std::optional<Survey>& survey, const Solution& solution,
+                             Workspace& workspace);
+
+/// Raises the error estimate of a converged solution where others tell a larger one, and refuses what misses
+/// the tolerance by them.
+void judge_by_other_points(const OtherPoints& others, const SolveOptions& options, const Outcome& outcome,
+                           Solution& solution);
+
+}  // namespace extremal
