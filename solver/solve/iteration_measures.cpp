@@ -14,6 +14,8 @@ namespace {
 constexpr double trial_burden = 0.4;
 /// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
 constexpr double pivoted_burden = 100, sparse_burden = 1000;
+/// Roundoff of a step is the most that so many shifts make of it: one may meet little by chance.
+constexpr int shifts = 3;
 /// Of two terms that cancel, half the last digit of one.
 constexpr double half_a_digit = 0x1p-54;
 
@@ -64,23 +66,27 @@ double NewtonIteration::measure_noise(Path& path) {
   const std::size_t n = path.coordinates(), nodes = path.nodes().size();
   double magnitude = 0;
   for (double q : path.nodes()) magnitude = std::max(magnitude, std::abs(q));
-  simplified_.nodes.assign(nodes, 0);
-  simplified_.inner.assign(step_.inner.size(), 0);
-  simplified_.duration = 0;
   std::minstd_rand random;
-  for (std::size_t k = 0; k < nodes; ++k)
-    simplified_.nodes[k] = k < n ? magnitude * 0x1p-50 * (1 + double(random()) / std::minstd_rand::max())
-                                 : simplified_.nodes[k - n];
   saved_.copy_values(path);
-  apply(path, simplified_, 1);
-  model_->evaluate_gradient(action_, path);
-  const double size = solve_for_step(path, simplified_);
-  double change = 0;
-  for (std::size_t k = 0; k < nodes; ++k)
-    change = std::max(change, std::abs(simplified_.nodes[k] - step_.nodes[k]));
-  path.copy_values(saved_);
-  path.load_ends();
-  return noise_ = std::isnan(size) ? 0 : change / (scale_ > 0 ? scale_ : 1);
+  noise_ = 0;
+  for (int shift = 0; shift < shifts; ++shift) {
+    simplified_.nodes.assign(nodes, 0);
+    simplified_.inner.assign(step_.inner.size(), 0);
+    simplified_.duration = 0;
+    for (std::size_t k = 0; k < nodes; ++k)
+      simplified_.nodes[k] = k < n ? magnitude * 0x1p-50 * (1 + double(random()) / std::minstd_rand::max())
+                                   : simplified_.nodes[k - n];
+    apply(path, simplified_, 1);
+    model_->evaluate_gradient(action_, path);
+    const double size = solve_for_step(path, simplified_);
+    double change = 0;
+    for (std::size_t k = 0; k < nodes && !std::isnan(size); ++k)
+      change = std::max(change, std::abs(simplified_.nodes[k] - step_.nodes[k]));
+    noise_ = std::max(noise_, change / (scale_ > 0 ? scale_ : 1));
+    path.copy_values(saved_);
+    path.load_ends();
+  }
+  return noise_;
 }
 
 /// The step, and how it changes by the roundoff of the equation that closes the duration.

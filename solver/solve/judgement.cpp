@@ -55,8 +55,9 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
       outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
       return Attempt::converged;
     }
+    // What is left was told before the step; the first may follow one that was damped.
     const double allowed = std::min(10 * options_.tolerance, loosest_newton);
-    if (result != StepResult::ok || test_.share() > allowed || exhausted()) break;
+    if (result != StepResult::ok || (step > 0 && test_.share() > allowed) || exhausted()) break;
   }
   outcome_.message = passed ? hidden(newton.norm()) : test_.message();
   if (passed) return Attempt::unreachable;
