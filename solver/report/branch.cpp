@@ -146,7 +146,7 @@ void write_csv(std::ostream& out, const FollowedBranch& branch) {
   std::string text = "branch,parameter,duration,energy,action,morse_index,nullity,kind";
   const std::size_t count = periodic(branch) ? 2 * branch.names.size() : 0;
   for (const std::string& name : branch.names) text += "," + name;
-  for (const std::string& name : branch.names) text += "," + velocity_key(name);
+  for (const std::string& name : branch.names) text += fmt::format(",{}", velocity_key(name));
   for (std::size_t k = 1; k <= count; ++k) text += fmt::format(",multiplier_re[{0}],multiplier_im[{0}]", k);
   text += "\n";
   for (const BranchPoint& point : branch.points) {
