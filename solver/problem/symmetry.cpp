@@ -100,18 +100,20 @@ class Equations {
     MatrixXd y = MatrixXd::Zero(2 * n_, ends.free + 1);
     y.col(ends.free) = Eigen::Map<const VectorXd>(ends.offset.data(), 2 * n_) / extent;
     for (const Triplet& z : ends.z) y(z.row, z.column) += z.value;
-    const int relations = problem.boundary.rows;
-    MatrixXd added = MatrixXd::Zero(relations * (ends.free + 1) + ends.free, columns_);
-    for (int j = 0; j <= ends.free; ++j)
+    // Without G only the last is an equation.
+    const int relations = problem.boundary.rows, first = matrices_ > 0 ? 0 : ends.free,
+              moved = relations * (ends.free + 1 - first);
+    MatrixXd added = MatrixXd::Zero(moved + ends.free, columns_);
+    for (int j = first; j <= ends.free; ++j)
       for (const Triplet& entry : problem.boundary.matrix) {
-        auto row = added.row(j * relations + entry.row);
+        auto row = added.row((j - first) * relations + entry.row);
         const int a = entry.column % n_, end = entry.column - a;
         for (int k = 0; k < n_ && matrices_ > 0; ++k) row[a * n_ + k] += entry.value * y(end + k, j);
         if (j == ends.free) row[matrices_ + a] += entry.value;
       }
     for (int j = 0; j < ends.free; ++j)
       for (int a = 0; a < n_; ++a)
-        added(relations * (ends.free + 1) + j, matrices_ + n_ + a) = y(n_ + a, j) - y(a, j);
+        added(moved + j, matrices_ + n_ + a) = y(n_ + a, j) - y(a, j);
     // Of closed paths most are satisfied anyway.
     const Eigen::Index before = rows_.rows();
     Eigen::Index count = before;
