@@ -129,10 +129,15 @@ void DiscreteAction::evaluate_plain(const Path& path) {
 void DiscreteAction::evaluate_gradient(const Path& path) {
   const Fronts& fronts = condensation_->fronts;
   clear_sums();
+  extended_ready_ = extended_on_ && extended_.evaluate(*lagrangian_, *tables_, path);
   const auto evaluate = [&](Desk& desk, int b) {
-    const ElementBatch elements = batch(path, b, desk);
-    play(elements, Order::gradient, desk);
-    assemble_gradient(elements, b, reduced(b));
+    if (extended_ready_) {
+      take_extended(b, reduced(b));
+    } else {
+      const ElementBatch elements = batch(path, b, desk);
+      play(elements, Order::gradient, desk);
+      assemble_gradient(elements, b, reduced(b));
+    }
     elimination_->reduce(fronts.data(), fronts.count(), matrix(b), inverses_.data() + b * sizes_.vector,
                          reduced(b), desk.work.data());
   };
@@ -183,6 +188,7 @@ void DiscreteAction::condense(const Path& path, int b, Desk& desk) {
   play(elements, Order::hessian, desk);
   double* const gradient = reduced(b);
   assemble_gradient(elements, b, gradient);
+  if (extended_ready_) take_extended(b, gradient);
   elimination_->clear(fronts.data(), fronts.count(), matrix(b), fronts.ends(), 2 * n_);
   assembly_->hessian(tables_->shape(), elements, condensation_->slots.data(), matrix(b));
   if (border_) evaluate_border(path, elements, gradient, gradient + sizes_.vector, sums(b, of_corner));
@@ -193,6 +199,7 @@ void DiscreteAction::condense(const Path& path, int b, Desk& desk) {
 
 void DiscreteAction::evaluate(const Path& path) {
   clear_sums();
+  extended_ready_ = extended_on_ && extended_.evaluate(*lagrangian_, *tables_, path);
   std::fill_n(nodes.chain.diagonal(0), static_cast<std::size_t>(nodes.chain.blocks()) * n_ * n_, 0.0);
   for (auto* block : {&nodes.first, &nodes.last, &nodes.border}) std::fill(block->begin(), block->end(), 0.0);
   nodes.corner = 0;

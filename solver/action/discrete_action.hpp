@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "action/extended.hpp"
 #include "action/path.hpp"
 #include "linear/chain.hpp"
 #include "machine/simd.hpp"
@@ -24,9 +25,13 @@ struct NodeEquations {
   std::vector<double> gradient;     ///< (N + 1) × n, condensed
   std::vector<double> border;       ///< (N + 1) × n: t
   double border_gradient = 0;       ///< ∂S/∂T, condensed
-  double corner = 0;                ///< τ
-  int negative = 0;                 ///< negative pivots among the inner unknowns
-  double pivot_ratio = 1;           ///< least pivot against the entry it came from
+  /// Of gradients in extended precision, what must be added to those by q(0) and q(T) (2n), and by T:
+  /// numbers that cancel in the equations of the ends, and would take the digits of what is left with them.
+  std::vector<double> end_parts;
+  double border_part = 0;
+  double corner = 0;       ///< τ
+  int negative = 0;        ///< negative pivots among the inner unknowns
+  double pivot_ratio = 1;  ///< least pivot against the entry it came from
 };
 
 /// The uncondensed values of eight elements, a lane each.
@@ -50,6 +55,9 @@ class DiscreteAction {
   /// quadrature, on tables of the same degree bound to it; the factors stay. evaluate() needs what reset()
   /// was given.
   void substitute(const Lagrangian& lagrangian, const ElementTables& tables);
+
+  /// From now on evaluate() and evaluate_gradient() take gradients in extended precision, where they can.
+  void extend(bool on) { extended_on_ = on; }
 
   /// S_h and its gradient; condensed with the factors there are into `nodes`.
   void evaluate_gradient(const Path& path);
@@ -120,6 +128,8 @@ class DiscreteAction {
                        double* corner);
   void assemble_gradient(const ElementBatch& elements, int b, double* gradient);
   void keep_gradient(int b, const double* gradient);
+  void take_extended(int b, double* gradient);
+  void finish_extended();
   void gather(const Path& path, int b);
   void gather_pivots(int b);
   struct Blocks {
@@ -147,6 +157,8 @@ class DiscreteAction {
   const ElementTables::Condensation* condensation_ = nullptr;
   int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
   bool border_ = false, finite_ = false;
+  bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path
+  ExtendedGradient extended_;
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
   Sizes sizes_{};
   std::vector<Desk> desks_;                    // the first of the thread that calls

@@ -35,6 +35,8 @@ class Path {
 
   /// q at mesh node k (n entries), rounded to double.
   const double* node(int k) const { return high_.data() + static_cast<std::size_t>(k) * n_; }
+  /// What rounding left of it.
+  const double* rest(int k) const { return low_.data() + static_cast<std::size_t>(k) * n_; }
   std::span<const double> nodes() const { return high_; }  ///< (N + 1) × n
   void set_node(int k, int a, double value);
 

@@ -11,7 +11,9 @@ void DiscreteAction::clear_sums() {
   action_ = slope_duration_ = residual_ = momentum_scale_ = 0;
   std::fill(nodes.gradient.begin(), nodes.gradient.end(), 0.0);
   std::fill(raw_nodes_.begin(), raw_nodes_.end(), 0.0);
-  nodes.border_gradient = 0;
+  nodes.border_gradient = nodes.border_part = 0;
+  nodes.end_parts.clear();
+  extended_ready_ = false;
 }
 
 /// Keeps of the gradient of a batch, before condensation, what is summed up.
@@ -24,6 +26,46 @@ void DiscreteAction::keep_gradient(int b, const double* gradient) {
       largest[lane] = size > largest[lane] ? size : largest[lane];
     }
   std::copy_n(gradient + inner_ * lanes, 2 * n_ * lanes, sums(b, of_ends));
+}
+
+/// Puts the gradient of a batch there as rounded from extended precision. Where elements meet, the difference
+/// of their momenta is rounded, not they: the element before has it, the one behind has nothing. At the ends
+/// of the path the digits that do not fit a double stay.
+void DiscreteAction::take_extended(int b, double* gradient) {
+  double *action = sums(b, of_action), *slope = sums(b, of_slope);
+  std::fill_n(gradient, sizes_.vector, 0.0);
+  std::fill_n(action, lanes, 0.0);
+  std::fill_n(slope, lanes, 0.0);
+  const auto rest = [](Real x) { return static_cast<double>(x - static_cast<double>(x)); };
+  const std::span<const Real> nodes = extended_.nodes();
+  for (int k = b * lanes, lane = 0; lane < lanes && k < elements_; ++k, ++lane) {
+    const std::span<const Real> inner = extended_.inner(k);
+    for (int u = 0; u < inner_; ++u) gradient[u * lanes + lane] = static_cast<double>(inner[u]);
+    const Real* left = nodes.data() + static_cast<std::size_t>(k) * n_;
+    for (int a = 0; a < n_; ++a) {
+      const Real right = left[n_ + a];
+      if (k == 0) gradient[(inner_ + a) * lanes + lane] = rest(left[a]);
+      gradient[(inner_ + n_ + a) * lanes + lane] =
+          k + 1 == elements_ ? rest(right) : static_cast<double>(right);
+    }
+  }
+  keep_gradient(b, gradient);
+}
+
+/// What take_extended() left out.
+void DiscreteAction::finish_extended() {
+  const std::span<const Real> g = extended_.nodes();
+  const std::size_t last = g.size() - n_;
+  nodes.end_parts.resize(2 * static_cast<std::size_t>(n_));
+  for (int a = 0; a < n_; ++a) {
+    start_gradient_[a] = nodes.end_parts[a] = static_cast<double>(g[a]);
+    end_gradient_[a] = nodes.end_parts[n_ + a] = static_cast<double>(g[last + a]);
+  }
+  action_ = static_cast<double>(extended_.action());
+  slope_duration_ = static_cast<double>(extended_.slope_duration());
+  momentum_scale_ = static_cast<double>(extended_.momentum_scale());
+  nodes.border_part = slope_duration_;
+  nodes.border_gradient += static_cast<double>(extended_.slope_duration() - slope_duration_);
 }
 
 /// Sums the values and the gradient of a batch as they are, before condensation.
@@ -87,10 +129,13 @@ void DiscreteAction::finish_sums() {
   }
   for (std::size_t k = n_; k < static_cast<std::size_t>(elements_) * n_; ++k)
     residual_ = std::max(residual_, std::abs(raw_nodes_[k]));
+  if (extended_ready_)
+    finish_extended();
+  else
+    nodes.border_gradient += slope_duration_;
   double sum = action_;
   for (double g : raw_nodes_) sum += g;
   finite_ = std::isfinite(sum) && std::isfinite(residual_) && std::isfinite(slope_duration_);
-  nodes.border_gradient += slope_duration_;
 }
 
 }  // namespace extremal

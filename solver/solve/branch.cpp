@@ -128,7 +128,9 @@ bool Branch::linearise_duration() {
   solve(1, direction);
   direction.add(correction, -1);
   along_ = by_energy ? energy_unit_ : energy_change(direction);
-  off_ = by_energy ? 0 : energy_change(correction) - action.nodes.border_gradient - energy_;
+  off_ = by_energy
+             ? 0
+             : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
   action_slope_ = -energy_ * direction.parameter;
   return true;
 }

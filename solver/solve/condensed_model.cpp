@@ -34,7 +34,8 @@ class CondensedModel final : public QuadraticModel {
     const std::size_t n = action.start_gradient().size();
     nodes.gradient.assign(load.size(), 0);
     for (std::size_t k = n; k + n < load.size(); ++k) nodes.gradient[k] = -load[k];
-    nodes.border_gradient = 0;
+    nodes.border_gradient = nodes.border_part = 0;
+    nodes.end_parts.clear();
     const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
     system_.solve(nodes, closing ? &homogeneous : nullptr, step.nodes, step.duration);
     action.expand_step(step.nodes, step.duration, step.inner);

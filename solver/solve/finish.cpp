@@ -187,6 +187,8 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
       const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
       judge_resolution(problem, options, outcome, found, w, solution);
       const OtherPoints others = try_other_points(problem, outcome, found, solution, w);
+      const bool missed = !options.scheme && others.moved > outcome.tolerance;
+      if (missed && polish(w)) return finish(problem, options, outcome, w, variation);
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);
@@ -205,6 +207,7 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
         "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
         outcome.message + ")";
   }
+  w.iteration.forget();
   solution.seconds_analyse = std::chrono::duration<double>(Clock::now() - start).count();
   return solution;
 }

@@ -81,6 +81,20 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   }
 }
 
+void NewtonIteration::forget() {
+  curvature_ = largest_curvature_ = noise_ = 0;
+  extended_ = false;
+  action_.extend(false);
+}
+
+bool NewtonIteration::extend() {
+  if (extended_ || model_ != condensed_.get()) return false;
+  noise_ = 0;
+  extended_ = true;
+  action_.extend(true);
+  return true;
+}
+
 void NewtonIteration::use_low(const ElementTables& low, int elements) {
   if (!low_) low_.emplace();
   model_ = &*low_;
@@ -221,7 +235,8 @@ bool NewtonIteration::hold_softest(const Path& path) {
     return x;
   };
   action_.nodes.gradient = weigh(step_.nodes);
-  action_.nodes.border_gradient = 0;
+  action_.nodes.border_gradient = action_.nodes.border_part = 0;
+  action_.nodes.end_parts.clear();
   ClosingEquation closed;
   if (const ClosingEquation* equation = closing(path)) closed.row = equation->row;
   model_->solve(action_, problem_->duration.free ? &closed : nullptr, step_);

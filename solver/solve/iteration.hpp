@@ -47,7 +47,10 @@ class NewtonIteration {
   StepResult full_step(Path& path, double enough, double least_damping = strongest_damping);
 
   /// What was learned of the curvature of δS no longer holds: another path.
-  void forget() { curvature_ = largest_curvature_ = noise_ = 0; }
+  void forget();
+  /// From now until forget() gradients are in extended precision, where the system has them. False if they
+  /// were, or where the Hessian is a large sparse matrix.
+  bool extend();
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
   double noise() const { return noise_; }
 
@@ -122,7 +125,7 @@ class NewtonIteration {
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
-  bool phase_free_ = false;
+  bool phase_free_ = false, extended_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   mutable std::vector<double> free_;

@@ -59,6 +59,7 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
     const double allowed = std::min(10 * options_.tolerance, loosest_newton);
     if (result != StepResult::ok || (step > 0 && test_.share() > allowed) || exhausted()) break;
   }
+  if (passed && newton.extend()) return settle(report);
   outcome_.message = passed ? hidden(newton.norm()) : test_.message();
   if (passed) return Attempt::unreachable;
   // What holds the phase is an error of the elements.

@@ -204,10 +204,14 @@ bool NodeSystem::factor_exactly(const ClosingEquation* closing) {
 void NodeSystem::border_right(const NodeEquations& nodes, const ClosingEquation* closing) {
   const std::size_t last = static_cast<std::size_t>(elements_) * n_;
   small_.setZero(border_);
+  if (!nodes.end_parts.empty())
+    for (const Triplet& z : ends_->z) small_[z.column] -= z.value * nodes.end_parts[z.row];
   for (const Triplet& z : ends_->z)
     small_[z.column] -= z.value * (z.row < n_ ? nodes.gradient[z.row] : nodes.gradient[last + z.row - n_]);
-  if (free_duration_)
-    small_[free_] = has_own_row(closing) ? -closing->value : -(nodes.border_gradient + closing->value);
+  if (!free_duration_) return;
+  small_[free_] = -closing->value;
+  if (!has_own_row(closing)) small_[free_] -= nodes.border_part;
+  if (!has_own_row(closing)) small_[free_] -= nodes.border_gradient;
 }
 
 void NodeSystem::solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,

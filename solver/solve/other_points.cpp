@@ -54,6 +54,18 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
   return {moved, kick(w.iteration.action(), survey, solution), told_apart(problem, model.left_out())};
 }
 
+bool polish(Workspace& w) {
+  constexpr int most_steps = 5;
+  if (!w.iteration.extend()) return false;
+  double before = INFINITY;
+  for (int step = 0; step < most_steps; ++step) {
+    if (w.iteration.full_step(w.path, 0) != StepResult::ok) return false;
+    if (!(w.iteration.norm() < 0.5 * before)) break;
+    before = w.iteration.norm();
+  }
+  return true;
+}
+
 void judge_by_other_points(const OtherPoints& others, const SolveOptions& options, const Outcome& outcome,
                            Solution& solution) {
   if (!others.told_apart)

@@ -23,6 +23,10 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
                              const std::optional<Survey>& survey, const Solution& solution,
                              Workspace& workspace);
 
+/// Ends Newton's method at a path that other points move, with gradients in extended precision: what moved it
+/// may be roundoff. False if that cannot be done, or was.
+bool polish(Workspace& workspace);
+
 /// Raises the error estimate of a converged solution where others tell a larger one, and refuses what misses
 /// the tolerance by them.
 void judge_by_other_points(const OtherPoints& others, const SolveOptions& options, const Outcome& outcome,

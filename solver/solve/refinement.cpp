@@ -233,7 +233,14 @@ Refinement::Attempt Refinement::attempt() {
       nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
     // What Newton's method had left to do is no error of the elements, or not all of it.
     nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
-    const Attempt result = judge(newton, aim, nodes);
+    Attempt result = judge(newton, aim, nodes);
+    // With gradients that have digits to spare, steps shrink as long as the factors allow.
+    for (double before = 0;
+         result == Attempt::unreachable && (w_.iteration.extend() || newton.remaining < 0.5 * before);) {
+      before = newton.remaining;
+      newton = converge_to(aim, false);
+      result = judge(newton, aim, nodes);
+    }
     if (result == Attempt::converged) {
       const Attempt settled = settle(newton);
       if (settled == Attempt::refine) worst_ = INFINITY;

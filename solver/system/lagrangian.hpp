@@ -61,6 +61,12 @@ struct Scratch {
   double* reserve(std::size_t doubles);  ///< 64-byte aligned; contents undefined
 };
 
+/// The same for one point in extended precision.
+struct ExtendedScratch {
+  std::vector<long double> memory;
+  std::vector<long double*> operands;
+};
+
 /// Immutable once made; evaluation may run in several threads, each with its own Scratch.
 class Lagrangian {
  public:
@@ -76,6 +82,15 @@ class Lagrangian {
   /// Rows ∂R/∂p, then ∂²R/∂z∂p for each structure().gradient, at each point.
   /// Rows of M, C, a never depend on an active parameter.
   virtual void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const = 0;
+
+  /// The rows of Order::gradient at one point (n coordinates, n velocities, time), in extended precision.
+  /// Numbers of the system itself are as they were rounded to double. False, and nothing is written, where
+  /// that is not known.
+  virtual bool evaluate_extended(const long double* q, const long double* v, long double t, long double* out,
+                                 ExtendedScratch& scratch) const {
+    (void)q, (void)v, (void)t, (void)out, (void)scratch;
+    return false;
+  }
 
   int rows(Order order) const {
     const int g = static_cast<int>(structure_.gradient.size()),

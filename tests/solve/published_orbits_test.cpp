@@ -49,25 +49,33 @@ TEST(PublishedOrbits, ThatAreVeryUnstable) {
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
 }
 
-/// Encounters within a hundredth of the size of the orbit amplify roundoff.
+/// Encounters within a hundredth of the size of the orbit amplify roundoff, that of double beyond the
+/// tolerance.
 TEST(PublishedOrbits, WithCloseEncounters) {
   for (const char* id :
        {"3b-sd-IIC2b-yinyangI", "3b-sd-IIC2a-yinyangI", "3b-ll-IB13", "3b-ll-IIC22", "3b-ll-IA6",
-        "3b-ll-IIC71", "3b-sheen-7", "3b-sheen-10", "3b-sd-IB4-mothIII", "3b-sd-IA3-bumblebee"})
-    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-10), "") << id;
+        "3b-ll-IIC71", "3b-sheen-7", "3b-sheen-10", "3b-sd-IB4-mothIII", "3b-sd-IA3-bumblebee",
+        "3b-sd-IA2-butterflyII", "3b-llu-IA10-m0.5", "3b-ff-F2_0_393_0_288_0_662_"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
 }
 
-/// Closer, to 3e-4 of it; free fall begins and ends at rest.
+TEST(PublishedOrbits, AsCloselyAsCanBe) {
+  for (const char* id : {"3b-ll-IA6", "3b-ll-IIC71"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-13), "") << id;
+}
+
+/// To 3e-4 of the size of the orbit; free fall begins and ends at rest.
 TEST(PublishedOrbits, WithVeryCloseEncounters) {
-  for (const char* id : {"3b-ll-IB2", "3b-ll-IA12", "3b-sd-IA2-butterflyII", "3b-sd-IB3-butterflyIII",
-                         "3b-llu-IA10-m0.5", "3b-ff-F1_1_1_1_", "3b-ff-F2_1_1_1_"})
+  for (const char* id : {"3b-ll-IB2", "3b-sd-IB3-butterflyIII"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-11), "") << id;
+  for (const char* id : {"3b-ll-IA12", "3b-ff-F1_1_1_1_", "3b-ff-F2_1_1_1_"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-8), "") << id;
 }
 
 /// What roundoff hides is said, and by how much.
 TEST(PublishedOrbits, BeyondRoundoff) {
-  for (const char* id : {"3b-ll-IB2", "3b-ll-IA6", "3b-sd-IA2-butterflyII"}) {
-    const std::string said = wrong(published("nbody_periodic_orbits.json", id), 1e-13);
+  for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII"}) {
+    const std::string said = wrong(published("nbody_periodic_orbits.json", id), 1e-14);
     EXPECT_NE(said.find("roundoff, amplified to"), std::string::npos) << id << ": " << said;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "machine/aligned.hpp"
@@ -145,6 +146,32 @@ TEST_P(EveryLevel, OverwritesAnOperand) {
       EXPECT_NEAR(values[batches * lanes + i], x * x + x, 2e-15);
     }
   }
+}
+
+TEST(Extended, PlaysEveryInstruction) {
+  std::mt19937 random(11);
+  for (const Expected& e : instructions()) {
+    std::uniform_real_distribution<Real> uniform(e.low, e.high);
+    for (int i = 0; i < 20; ++i) {
+      Real values[4] = {0, uniform(random), uniform(random), uniform(random)};
+      Real* const operands[] = {values, values + 1, values + 2, values + 3};
+      const Instruction instruction{e.code, 0, 1, 2, 3, 0};
+      const double s = 1.37;
+      play_extended(&instruction, 1, operands, &s);
+      const Real a = values[1], b = values[2], c = values[3], exact = e.value(a, b, c, s);
+      // Without fused operations the product is rounded on its own.
+      const Real terms = std::abs(exact) + std::abs(a * b) + std::abs(s * a);
+      ASSERT_LE(std::abs(values[0] - exact), 2 * std::numeric_limits<Real>::epsilon() * terms)
+          << "instruction " << static_cast<int>(e.code) << " of " << a << " " << b << " " << c;
+    }
+  }
+  Real angle = 0.7L, cosine = 0;
+  Real* const operands[] = {&angle, &cosine};
+  const Instruction both{Code::sine_cosine, 0, 0, 0, 1, 0};  // in place
+  const double none = 0;
+  play_extended(&both, 1, operands, &none);
+  EXPECT_EQ(angle, std::sin(0.7L));
+  EXPECT_EQ(cosine, std::cos(0.7L));
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, EveryLevel, testing::ValuesIn(levels()),

@@ -1,0 +1,154 @@
+#include "action/extended.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "action/discrete_action.hpp"
+#include "action/systems.hpp"
+
+namespace extremal {
+namespace {
+
+constexpr int elements = 11;
+
+/// Two bodies on a line.
+std::shared_ptr<const Lagrangian> two_bodies() {
+  return trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1]) / 2 + 1 / sqrt((q[0] - q[1]) * (q[0] - q[1]));
+  });
+}
+
+/// A path on elements of a scheme. Ends of elements are multiples of 2^-30, so that they may be shifted
+/// exactly.
+struct Discretised {
+  SchemeTables scheme;
+  ElementTables tables;
+  Path path;
+
+  Discretised(const Scheme& name, const Lagrangian& lagrangian, double size = 1) : scheme(name) {
+    tables.bind(scheme, lagrangian);
+    std::vector<double> mesh{0};
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(0.7, 1.3);
+    for (int k = 0; k < elements; ++k) mesh.push_back(mesh.back() + uniform(random));
+    for (double& tau : mesh) tau /= mesh.back();
+    path.reset(tables, mesh, 0.7);
+    const int n = tables.coordinates();
+    std::vector<double> q((scheme.degree + 1) * n);
+    for (int k = 0; k < elements; ++k) {
+      for (int j = 0; j <= scheme.degree; ++j)
+        for (int a = 0; a < n; ++a) {
+          const double tau = mesh[k] + scheme.lobatto[j] * (mesh[k + 1] - mesh[k]);
+          const double value = size * (a + 1 + 0.3 * std::sin(3 * tau + a));
+          q[j * n + a] = j % scheme.degree == 0 ? std::round(0x1p30 * value) * 0x1p-30 : value;
+        }
+      path.set_element(k, q.data());
+    }
+    path.load_ends();
+  }
+};
+
+std::vector<Scheme> rules() {
+  Scheme finer = gauss(4);
+  finer.points = 9;  // the middle point is a node
+  return {lobatto(1), lobatto(4), lobatto(9), gauss(5), finer};
+}
+
+TEST(Extended, IsTheGradientToRoundoff) {
+  for (const auto& lagrangian : {systems::kepler(), systems::double_pendulum(), systems::magnetic(),
+                                 systems::restricted_three_body(), systems::driven()})
+    for (const Scheme& rule : rules()) {
+      Discretised d(rule, *lagrangian);
+      const int n = d.tables.coordinates(), inner = d.tables.inner();
+      ExtendedGradient extended;
+      ASSERT_TRUE(extended.evaluate(*lagrangian, d.tables, d.path));
+      DiscreteAction action;
+      action.reset(*lagrangian, d.tables, elements, true, false);
+      action.evaluate_plain(d.path);
+      const double scale = action.momentum_scale();
+      EXPECT_NEAR(double(extended.action()), action.action(), 1e-12 * scale);
+      EXPECT_NEAR(double(extended.slope_duration()), action.slope_duration(), 1e-12 * scale);
+      EXPECT_NEAR(double(extended.momentum_scale()), scale, 1e-12 * scale);
+      for (int a = 0; a < n; ++a) {
+        EXPECT_NEAR(double(extended.nodes()[a]), action.start_gradient()[a], 1e-12 * scale);
+        EXPECT_NEAR(double(extended.nodes()[elements * n + a]), action.end_gradient()[a], 1e-12 * scale);
+      }
+      action.visit(d.path, false, [&](int batch, const BatchValues& values) {
+        for (int k = 8 * batch; k < std::min(8 * batch + 8, elements); ++k)
+          for (int u = 0; u < inner; ++u)
+            EXPECT_NEAR(double(extended.inner(k)[u]), values.gradient[u * 8 + k % 8], 1e-11 * scale);
+      });
+    }
+}
+
+TEST(Extended, RefusesOtherRules) {
+  const auto lagrangian = systems::kepler();
+  Discretised d(scheme("simpson"), *lagrangian);
+  EXPECT_FALSE(ExtendedGradient().evaluate(*lagrangian, d.tables, d.path));
+}
+
+/// Bodies that are close together far from the origin: the gradient is the same as near to it.
+TEST(Extended, FeelsForcesThatAreDifferences) {
+  const auto lagrangian = two_bodies();
+  Discretised d(lobatto(6), *lagrangian, 0x1p-10);
+  Path shifted = d.path;
+  for (int k = 0; k <= elements; ++k)
+    for (int a = 0; a < 2; ++a) shifted.set_node(k, a, d.path.node(k)[a] + 4);
+  shifted.load_ends();
+  ExtendedGradient here, there;
+  ASSERT_TRUE(here.evaluate(*lagrangian, d.tables, d.path) && there.evaluate(*lagrangian, d.tables, shifted));
+  DiscreteAction action;
+  action.reset(*lagrangian, d.tables, elements, false, false);
+  std::vector<double> plain;
+  double plain_change = 0;
+  for (const Path* path : {&d.path, &shifted})
+    action.visit(*path, false, [&](int batch, const BatchValues& values) {
+      for (int u = 0; u < d.tables.inner(); ++u) {
+        const double g = values.gradient[u * 8], before = path == &d.path ? g : plain[batch * 10 + u];
+        if (path == &d.path) plain.push_back(g);
+        plain_change = std::max(plain_change, std::abs(g - before));
+      }
+    });
+  double change = 0;
+  for (int k = 0; k < elements; k += 8)
+    for (int u = 0; u < d.tables.inner(); ++u)
+      change = std::max(change, std::abs(double(here.inner(k)[u] - there.inner(k)[u])));
+  EXPECT_GT(plain_change, 1e-13 * action.momentum_scale());
+  EXPECT_LT(change, 2e-3 * plain_change);
+}
+
+/// Condensed as always, but for digits of momenta at the ends, which stand apart.
+TEST(Extended, CondensesTheSame) {
+  const auto lagrangian = systems::restricted_three_body();
+  Discretised d(lobatto(5), *lagrangian);
+  DiscreteAction plain, extended;
+  for (auto* action : {&plain, &extended}) action->reset(*lagrangian, d.tables, elements, true);
+  extended.extend(true);
+  const auto expect_same = [&] {
+    const NodeEquations &a = plain.nodes, &b = extended.nodes;
+    const std::size_t last = a.gradient.size() - 3;
+    const double scale = plain.momentum_scale();
+    ASSERT_EQ(b.end_parts.size(), 6u);
+    for (std::size_t k = 0; k < a.gradient.size(); ++k) {
+      const double part = k < 3 ? b.end_parts[k] : k >= last ? b.end_parts[k - last + 3] : 0;
+      EXPECT_NEAR(a.gradient[k], b.gradient[k] + part, 1e-12 * (1 + scale)) << k;
+    }
+    EXPECT_NEAR(a.border_gradient, b.border_gradient + b.border_part, 1e-12 * (1 + scale));
+    EXPECT_NEAR(plain.residual(), extended.residual(), 1e-12 * (1 + scale));
+  };
+  plain.evaluate(d.path);
+  extended.evaluate(d.path);
+  expect_same();
+  plain.evaluate_gradient(d.path);
+  extended.evaluate_gradient(d.path);
+  expect_same();
+  extended.extend(false);
+  extended.evaluate_gradient(d.path);
+  EXPECT_TRUE(extended.nodes.end_parts.empty());
+  EXPECT_EQ(extended.nodes.gradient, plain.nodes.gradient);
+}
+
+}  // namespace
+}  // namespace extremal
