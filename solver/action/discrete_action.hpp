@@ -75,6 +75,8 @@ class DiscreteAction {
   double slope_duration() const { return slope_duration_; }  ///< ∂S_h/∂T, not condensed
   double residual() const { return residual_; }              ///< largest inner or nodal gradient component
   double momentum_scale() const { return momentum_scale_; }  ///< largest end gradient of an element
+  /// Largest range of a momentum over the ends of elements; 0 where gradients were extended.
+  double momentum_range() const;
   bool finite() const { return finite_; }
   std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
   std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n
@@ -112,6 +114,7 @@ class DiscreteAction {
   /// What a batch leaves to be summed up, in lanes; the gradient at the ends of the elements last.
   enum Sum { of_action, of_slope, of_corner, of_negative, of_ratio, of_residual, of_ends };
   double* sums(int b, Sum sum) { return sums_.data() + b * sizes_.sums + sum * lanes; }
+  const double* sums(int b, Sum sum) const { return sums_.data() + b * sizes_.sums + sum * lanes; }
   /// What one batch is evaluated on; each thread has its own.
   struct Desk {
     Scratch scratch;

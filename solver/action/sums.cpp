@@ -87,6 +87,20 @@ void DiscreteAction::gather(const Path& path, int b) {
   }
 }
 
+double DiscreteAction::momentum_range() const {
+  double range = 0;
+  for (int a = 0; a < n_ && !extended_ready_; ++a) {
+    double low = -start_gradient_[a], high = low;
+    for (int k = 0; k < elements_; ++k) {
+      const double p = sums(k / lanes, of_ends)[(n_ + a) * lanes + k % lanes];
+      low = std::min(low, p);
+      high = std::max(high, p);
+    }
+    range = std::max(range, high - low);
+  }
+  return range;
+}
+
 void DiscreteAction::gather_pivots(int b) {
   const double *negative = sums(b, of_negative), *ratio = sums(b, of_ratio);
   for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {

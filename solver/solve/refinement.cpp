@@ -71,6 +71,7 @@ double Refinement::step_cost() const {
 
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
+  inertia_ = inertia();
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
@@ -195,7 +196,20 @@ void Refinement::measure() {
   scales_ = scales(w_.path, *tables_);
   scales_.q = std::max(scales_.q, rest * first_magnitude_);
   scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
+  // Momenta may vary much less than velocities do, as those of slow bodies in a frame that rotates.
+  const double range = inertia_ > 0 ? w_.iteration.action().momentum_range() : 0;
+  if (range > 0) scales_.v = std::min(scales_.v, std::max(range / inertia_, scales_.slowest));
   w_.resolution.measure(w_.path, *tables_);
+}
+
+/// Of momenta by velocities in a frame that rotates or a magnetic field; 0 elsewhere.
+double Refinement::inertia() const {
+  const Structure& structure = problem_.lagrangian->structure();
+  double largest = 0;
+  if (!structure.gyroscopic.empty())
+    for (const Triplet& m : structure.mass)
+      if (m.row == m.column) largest = std::max(largest, std::abs(m.value));
+  return largest;
 }
 
 NewtonReport Refinement::converge_to(double error, bool reuse) {

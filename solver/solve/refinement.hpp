@@ -76,6 +76,7 @@ class Refinement {
   Attempt attempt();
   Attempt judge(const NewtonReport& newton, double aim, const NodeError& nodes);
   void measure();
+  double inertia() const;
   /// Newton until what is left to do is below `error`, relative; `reuse`: with the factors there are.
   NewtonReport converge_to(double error, bool reuse);
   int steps_left(int wanted) const;
@@ -97,6 +98,7 @@ class Refinement {
   int most_steps_ = 0, most_elements_ = 0;
   double cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
+  double inertia_ = 0;  ///< of momenta by velocities where these are not all of momenta
   ResidualTest test_;
   double longest_ = 0;   ///< undamped step so far, relative
   double left_out_ = 0;  ///< of q, by the elements that were judged last

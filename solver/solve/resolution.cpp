@@ -67,7 +67,8 @@ Scales scales(const Path& path, const ElementTables& tables) {
   result.range = result.q;
   if (result.q <= negligible * result.magnitude) result.q = result.magnitude;
   // A motion that is nearly uniform has hardly a range of velocity.
-  if (path.duration() > 0) result.v = std::max(result.v, nearly_uniform * result.q / path.duration());
+  if (path.duration() > 0) result.slowest = nearly_uniform * result.q / path.duration();
+  result.v = std::max(result.v, result.slowest);
   return result;
 }
 

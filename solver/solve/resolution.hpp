@@ -13,6 +13,7 @@ namespace extremal {
 struct Scales {
   double q = 0;  ///< the range, or the magnitude where that is negligible
   double v = 0, magnitude = 0, range = 0;
+  double slowest = 0;  ///< v is taken to be no smaller
 };
 Scales scales(const Path& path, const ElementTables& tables);
 

@@ -1,3 +1,4 @@
+#include <complex>
 #include <numbers>
 
 #include "solve/scenes.hpp"
@@ -114,6 +115,31 @@ TEST(AccuracyKepler, MomentumToTheLastDigits) {
   const Values v = truth.states[0].v;
   EXPECT_LE(largest_difference(s.momentum_start, v), 2e-15 * std::hypot(v[0], v[1]));
   EXPECT_LE(largest_difference(s.momentum_end, truth.states.back().v), 2e-15 * std::hypot(v[0], v[1]));
+}
+
+/// A slow body far out in a frame that rotates: z = (a + bt) e^−it, where z = x + iy, and p_x + i p_y = b
+/// e^−it. Momenta have a 50,000th of the range of the velocities, and a tolerance of their own.
+TEST(AccuracyInARotatingFrame, OfMomentaByTheirOwnRange) {
+  using Complex = std::complex<double>;
+  const auto frame = trace(2, [](auto q, auto v, auto) {
+    const auto a = v[0] - q[1], b = v[1] + q[0];
+    return (a * a + b * b) / 2;
+  });
+  const double T = 4, tolerance = 1e-6, drift = 2e-4;
+  const auto exact = [&](double t) { return Complex(10 + drift * t, 0.2 * drift * t) * std::polar(1.0, -t); };
+  const Problem problem =
+      fixed_ends(frame, {exact(0).real(), exact(0).imag()}, {exact(T).real(), exact(T).imag()}, T);
+  const Solution s = Solver().solve(problem, within(tolerance));
+  ASSERT_TRUE(s.converged()) << s.message;
+  double error = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const double t = T * i / 200;
+    Values q(2), v(2);
+    s.trajectory.at(t, q, v);
+    const Complex p = Complex(drift, 0.2 * drift) * std::polar(1.0, -t);
+    error = std::max(error, std::abs(Complex(v[0] - q[1], v[1] + q[0]) - p));
+  }
+  EXPECT_LE(error, 10 * tolerance * 2 * drift);
 }
 
 /// A circular arc of `angle` in the plane of the ends, turned about r1 × r2, or about its opposite where the
