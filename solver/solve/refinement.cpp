@@ -72,6 +72,7 @@ double Refinement::step_cost() const {
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
   inertia_ = inertia();
+  momentum_range_ = 0;
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
@@ -193,13 +194,15 @@ int Refinement::steps_left(int wanted) const {
 }
 
 void Refinement::measure() {
+  w_.resolution.measure(w_.path, *tables_);
   scales_ = scales(w_.path, *tables_);
   scales_.q = std::max(scales_.q, rest * first_magnitude_);
   scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
+  if (inertia_ == 0) return;
   // Momenta may vary much less than velocities do, as those of slow bodies in a frame that rotates.
-  const double range = inertia_ > 0 ? w_.iteration.action().momentum_range() : 0;
-  if (range > 0) scales_.v = std::min(scales_.v, std::max(range / inertia_, scales_.slowest));
-  w_.resolution.measure(w_.path, *tables_);
+  if (const double range = w_.iteration.action().momentum_range(); range > 0) momentum_range_ = range;
+  if (momentum_range_ > 0)
+    scales_.v = std::min(scales_.v, std::max(momentum_range_ / inertia_, scales_.slowest));
 }
 
 /// Of momenta by velocities in a frame that rotates or a magnetic field; 0 elsewhere.

@@ -98,7 +98,8 @@ class Refinement {
   int most_steps_ = 0, most_elements_ = 0;
   double cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
-  double inertia_ = 0;  ///< of momenta by velocities where these are not all of momenta
+  double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
+  double momentum_range_ = 0;   ///< when last known
   ResidualTest test_;
   double longest_ = 0;   ///< undamped step so far, relative
   double left_out_ = 0;  ///< of q, by the elements that were judged last
