@@ -70,6 +70,20 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
   return largest;
 }
 
+/// To the tightest tolerance that is met.
+extremal::Solution most_accurate(extremal::Study& study) {
+  extremal::Solution solution;
+  for (double tolerance = tightest; tolerance < 1e-10 && !solution.converged(); tolerance *= 10) {
+    study.options.tolerance = tolerance;
+    solution = run(study);
+  }
+  return solution;
+}
+
+bool from_guess(const extremal::Solution& solution) {
+  return solution.converged() && solution.strategy == "newton from the guess";
+}
+
 /// Moves an orbit along directions in which its neighbours are extremals, too, to where it is nearest to `x`,
 /// to first order.
 void move_to(const std::vector<double>& x, const std::vector<std::vector<double>>& directions,
@@ -129,13 +143,12 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
   again.options = {};
   // Coarse elements on the way to the tolerance would move along a family of orbits, or in time.
   if (study.problem.periodic) again.options.scheme = extremal::lobatto(12);
-  extremal::Solution reference;
-  for (double tolerance = tightest; tolerance < 1e-10; tolerance *= 10) {
-    again.options.tolerance = tolerance;
-    reference = run(again);
-    if (reference.converged()) break;
+  extremal::Solution reference = most_accurate(again);
+  if (!from_guess(reference) && !study.problem.periodic) {
+    again.options.scheme = extremal::lobatto(12);
+    reference = most_accurate(again);
   }
-  if (!reference.converged() || reference.strategy != "newton from the guess") return std::nullopt;
+  if (!from_guess(reference)) return std::nullopt;
 
   std::vector<double> tau = times_within(solution.trajectory, 2 * solution.trajectory.degree);
   for (double& t : tau) t /= solution.duration();

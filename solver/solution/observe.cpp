@@ -54,7 +54,8 @@ class Surveyor {
   double* q() { return q_ + count_; }
   double* v() { return v_ + count_; }
 
-  void take(double t) {
+  void take(double t, bool end) {
+    end_[count_] = end;
     t_[count_++] = t;
     if (count_ == batch) evaluate();
   }
@@ -116,7 +117,7 @@ class Surveyor {
     }
     found_.speed = std::max(found_.speed, speed);
     found_.momentum = std::max(found_.momentum, momentum);
-    found_.force = std::max(found_.force, force);
+    if (!end_[i]) found_.force = std::max(found_.force, force);
     found_.terms = std::max(found_.terms, products + std::abs(energy - products));
     if (std::exchange(first_, false)) found_.energy = energy;
     found_.finite = found_.finite && std::isfinite(energy);
@@ -127,6 +128,7 @@ class Surveyor {
   std::size_t n_;
   Scratch storage_, scratch_;
   double *q_, *v_, *t_, *out_;
+  bool end_[batch] = {};  ///< of the trajectory
   int count_ = 0;
   bool first_ = true;
   Survey found_;
@@ -167,7 +169,8 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
     const double start = trajectory.times[k], h = trajectory.times[k + 1] - start;
     for (std::size_t i = 0; i < basis.points.size(); ++i) {
       element_point(trajectory, k, basis, static_cast<int>(i), surveyor.q(), surveyor.v(), batch);
-      surveyor.take(start + h * basis.points[i]);
+      const bool end = (k == 0 && i == 0) || (k + 1 == trajectory.elements() && i + 1 == basis.points.size());
+      surveyor.take(start + h * basis.points[i], end);
     }
   }
   return surveyor.finish();

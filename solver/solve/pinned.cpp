@@ -137,8 +137,8 @@ bool PinnedSolve::exact_quadrature_settled() {
 }
 
 /// Largest distance of the path from the extremal of elements of higher degree on the same mesh, or of halved
-/// elements where there is no higher degree, started from it; the companion's own truncation is added.
-/// Infinite if it does not converge.
+/// elements where there is no higher degree, started from it; the companion's own truncation is added, and
+/// what other points in its elements would move. Infinite if it does not converge.
 double PinnedSolve::distance_to_companion() {
   const int n = problem_.coordinates();
   const bool halved = scheme_.degree + 3 > max_degree;
@@ -153,7 +153,11 @@ double PinnedSolve::distance_to_companion() {
   const NewtonReport report = run_newton(tables, w_.other, 1e-12, companion_steps);
   if (!report.reached) return INFINITY;
   w_.resolution.measure(w_.other, tables);
-  double distance = w_.resolution.at(degree).q + report.remaining * scales(w_.other, tables).q;
+  const double range = scales(w_.other, tables).q;
+  w_.iteration.set_scale(range);
+  const double unseen = w_.iteration.step_under(w_.levels.finer(tables.scheme()), w_.other);
+  if (!std::isfinite(unseen)) return INFINITY;
+  double distance = w_.resolution.at(degree).q + (report.remaining + unseen) * range;
   std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
   for (int k = 0; k < start.elements(); ++k) {
     start.element(k, a.data());

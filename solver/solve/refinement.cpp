@@ -26,8 +26,9 @@ constexpr int most_plans = 6;
 constexpr double suspicious_step = 1e6;
 /// Of the size of the path that was started from: a path smaller than this is at rest.
 constexpr double rest = 1e-12;
-/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh.
-constexpr double most_cost = 1e8, most_first_steps = 200;
+/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
+/// guess that asks for more elements may make of it.
+constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
 /// Errors below this (relative) may be roundoff.
@@ -60,7 +61,9 @@ void Refinement::take(const ElementTables& tables) {
   tables_ = &tables;
   rebind();
   most_elements_ = std::max(most_elements, most_cuts * w_.path.elements());
-  most_cost_ = std::max({most_cost_, most_cost, most_first_steps * step_cost()});
+  const double wanted = std::max(most_cost, most_first_steps * step_cost());
+  if (first_cost_ == 0) first_cost_ = wanted;
+  most_cost_ = std::max(most_cost_, std::min(wanted, most_cost_growth * first_cost_));
 }
 
 double Refinement::step_cost() const {

@@ -96,7 +96,7 @@ class Refinement {
   Outcome& outcome_;
   Scales scales_;
   int most_steps_ = 0, most_elements_ = 0;
-  double cost_ = 0, most_cost_ = 0, share_ = 1;
+  double cost_ = 0, first_cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
   double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
   double momentum_range_ = 0;   ///< when last known

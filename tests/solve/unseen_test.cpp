@@ -60,6 +60,27 @@ TEST(Unseen, MomentumAtAWall) {
   }
 }
 
+/// From rest at the wall the body would arrive too early by more than half: there is no extremal, though
+/// elements of given schemes that step over the wall, and finer ones on the same mesh, find the same path.
+TEST(Unseen, NoMotionFromAWall) {
+  const double start = 0.075, end = 40;
+  const auto from_wall = [&](double potential) {
+    const double strength = potential * end * end / 2 * std::pow(start, 12);
+    const auto wall = trace(1, [&](auto q, auto v, auto) {
+      const auto q2 = q[0] * q[0], q4 = q2 * q2;
+      return v[0] * v[0] / 2 - strength / (q4 * q4 * q4);
+    });
+    return fixed_ends(wall, {start}, {end}, 1);
+  };
+  for (const char* name : {"linear", "rectangle", "quadratic", "lobatto(3)", "gauss(4)"})
+    for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-6}) {
+      SolveOptions options = within(tolerance);
+      options.scheme = scheme(name);
+      EXPECT_FALSE(Solver().solve(from_wall(4), options).converged()) << name << ' ' << tolerance;
+      if (tolerance == 1e-6) EXPECT_TRUE(Solver().solve(from_wall(0.9), options).converged()) << name;
+    }
+}
+
 /// To fall by 1 with energy E = v0²/2 takes √(v0² + 2) − v0, with v0 of either sign; √2 at E = 0, the least,
 /// where a last digit of E is half the digits of T.
 TEST(Unseen, RoundoffOfTheEnergyAtAFold) {
