@@ -45,6 +45,11 @@ bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double
   return survey.energy_drift <= margin * (explained + noise(survey, trajectory));
 }
 
+bool conserves_energy(const Survey& survey, const Trajectory& trajectory, const Resolution::Error& left_out) {
+  const double explained = survey.momentum * left_out.v + survey.force * left_out.q;
+  return survey.energy_drift <= margin * (explained + noise(survey, trajectory));
+}
+
 double error_behind_drift(const Survey& survey, const Trajectory& trajectory, double estimate) {
   const double explained = estimate * (survey.momentum * amplification(trajectory) + survey.force);
   if (survey.energy_drift <= margin * (explained + noise(survey, trajectory))) return estimate;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solution/observe.hpp"
+#include "solve/resolution.hpp"
 #include "solve/solve.hpp"
 
 /// \file What the elements do not see, a close passage, a kink or a layer between their points, shows as
@@ -13,6 +14,9 @@ inline constexpr double momentum_tolerances = 10;
 
 /// Whether the drift is no more than a tolerance explains, relative to the ranges of q and, ten times, p.
 bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double tolerance);
+
+/// Whether the drift is no more than what the elements leave out of q and q' explains.
+bool conserves_energy(const Survey& survey, const Trajectory& trajectory, const Resolution::Error& left_out);
 
 /// The error of q, in its units, with a drift that the smooth error `estimate` does not explain: slopes at
 /// the ends of an element of degree s and length h amplify that by s(s + 1)/h. A kink makes slopes wrong over

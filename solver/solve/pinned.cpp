@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/conservation.hpp"
+#include "solve/finish.hpp"
 #include "solve/method.hpp"
 #include "solve/start.hpp"
 
@@ -27,8 +29,8 @@ constexpr double most_growth = 16;
 /// An error within this factor of what its order lets expect falls regularly.
 constexpr double regular_fall = 0.5;
 /// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails, and no more of the
-/// steps that are dearer than others; and of one step.
-constexpr double most_cost = 1e8, most_step_cost = 5e8;
+/// steps that are dearer than others; or of one step.
+constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
 /// Relative to the largest momentum; of periodic paths.
 constexpr double stationary_residual = 1e-10;
@@ -136,9 +138,18 @@ bool PinnedSolve::exact_quadrature_settled() {
   return std::abs(check.action() - action) <= 1e-15 * std::abs(action);
 }
 
+/// Whether the companion's energy drifts no more than its elements explain.
+bool PinnedSolve::holds_energy(const Resolution::Error& left_out) {
+  if (!problem_.lagrangian->structure().autonomous) return true;
+  const Trajectory companion = trajectory_of(w_.other);
+  const Survey found = survey(*problem_.lagrangian, companion);
+  return found.finite && conserves_energy(found, companion, left_out);
+}
+
 /// Largest distance of the path from the extremal of elements of higher degree on the same mesh, or of halved
 /// elements where there is no higher degree, started from it; the companion's own truncation is added, and
-/// what other points in its elements would move. Infinite if it does not converge.
+/// what other points in its elements would move. Infinite if it does not converge or does not hold its
+/// energy.
 double PinnedSolve::distance_to_companion() {
   const int n = problem_.coordinates();
   const bool halved = scheme_.degree + 3 > max_degree;
@@ -156,8 +167,9 @@ double PinnedSolve::distance_to_companion() {
   const double range = scales(w_.other, tables).q;
   w_.iteration.set_scale(range);
   const double unseen = w_.iteration.step_under(w_.levels.finer(tables.scheme()), w_.other);
-  if (!std::isfinite(unseen)) return INFINITY;
-  double distance = w_.resolution.at(degree).q + (report.remaining + unseen) * range;
+  const Resolution::Error left_out = w_.resolution.at(degree);
+  if (!std::isfinite(unseen) || !holds_energy(left_out)) return INFINITY;
+  double distance = left_out.q + (report.remaining + unseen) * range;
   std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
   for (int k = 0; k < start.elements(); ++k) {
     start.element(k, a.data());
@@ -176,7 +188,7 @@ double PinnedSolve::wanted_growth() const {
 int PinnedSolve::most_affordable() {
   bind(scheme_.points);
   return static_cast<int>(
-      std::min<double>(most_elements, lanes * most_step_cost / batch_cost(w_.pinned, scheme_.degree)));
+      std::min<double>(most_elements, lanes * most_cost / batch_cost(w_.pinned, scheme_.degree)));
 }
 
 Outcome PinnedSolve::run() {
@@ -201,7 +213,8 @@ Outcome PinnedSolve::run() {
       }
       if (options_.elements == 0) {
         outcome_.message = fmt::format(
-            "no extremal was found near that of {} elements with others of higher degree; try another guess",
+            "no extremal that holds its energy was found near that of {} elements with others of higher "
+            "degree; try another guess",
             elements);
         break;
       }

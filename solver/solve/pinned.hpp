@@ -23,6 +23,7 @@ class PinnedSolve {
   NewtonReport converge_to_roundoff();
   bool solve_discrete(int elements);
   bool exact_quadrature_settled();
+  bool holds_energy(const Resolution::Error& left_out);
   double distance_to_companion();
   double wanted_growth() const;
   int most_affordable();
