@@ -37,22 +37,27 @@ double noise(const Survey& survey, const Trajectory& trajectory) {
          roundoff_of_q * largest(trajectory.nodes) * amplification(trajectory) * survey.momentum;
 }
 
+/// Whether the energy drifts by no more than that.
+bool drifts_within(double explained, const Survey& survey, const Trajectory& trajectory) {
+  return survey.energy_drift <= margin * (explained + noise(survey, trajectory));
+}
+
 }  // namespace
 
 bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double tolerance) {
   const double explained =
       tolerance * (momentum_tolerances * survey.speed * largest(survey.p) + survey.force * largest(survey.q));
-  return survey.energy_drift <= margin * (explained + noise(survey, trajectory));
+  return drifts_within(explained, survey, trajectory);
 }
 
 bool conserves_energy(const Survey& survey, const Trajectory& trajectory, const Resolution::Error& left_out) {
   const double explained = survey.momentum * left_out.v + survey.force * left_out.q;
-  return survey.energy_drift <= margin * (explained + noise(survey, trajectory));
+  return drifts_within(explained, survey, trajectory);
 }
 
 double error_behind_drift(const Survey& survey, const Trajectory& trajectory, double estimate) {
   const double explained = estimate * (survey.momentum * amplification(trajectory) + survey.force);
-  if (survey.energy_drift <= margin * (explained + noise(survey, trajectory))) return estimate;
+  if (drifts_within(explained, survey, trajectory)) return estimate;
   return std::max(estimate,
                   survey.energy_drift / (survey.momentum / shortest_element(trajectory) + survey.force));
 }

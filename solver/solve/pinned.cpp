@@ -214,7 +214,7 @@ Outcome PinnedSolve::run() {
       if (options_.elements == 0) {
         outcome_.message = fmt::format(
             "no extremal that holds its energy was found near that of {} elements with others of higher "
-            "degree; try another guess",
+            "degree; try another tolerance or guess, or let the program choose the scheme",
             elements);
         break;
       }

@@ -60,8 +60,9 @@ TEST(Unseen, MomentumAtAWall) {
   }
 }
 
-/// From rest at the wall the body would arrive too early by more than half: there is no extremal, though
-/// elements of given schemes that step over the wall, and finer ones on the same mesh, find the same path.
+/// From rest at the wall the body would arrive in about half the time: there is no extremal, though elements
+/// of given schemes that step over the wall, and others of higher degree on the same mesh, find the same
+/// path.
 TEST(Unseen, NoMotionFromAWall) {
   const double start = 0.075, end = 40;
   const auto from_wall = [&](double potential) {
