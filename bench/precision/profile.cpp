@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "machine/simd.hpp"
+#include "solve/ends.hpp"
 #include "solve/iteration.hpp"
 #include "solve/levels.hpp"
 #include "solve/node_system.hpp"

@@ -52,9 +52,9 @@ void Path::set_element(int k, const double* q) {
       x[((j - 1) * n_ + a) * lanes] = q[j * n_ + a] - (first[a] + lobatto_[j] * (last[a] - first[a]));
 }
 
-void Path::set_node(int k, int a, double value) {
-  high_[static_cast<std::size_t>(k) * n_ + a] = value;
-  low_[static_cast<std::size_t>(k) * n_ + a] = 0;
+void Path::set_node(int k, int a, double high, double low) {
+  high_[static_cast<std::size_t>(k) * n_ + a] = high;
+  low_[static_cast<std::size_t>(k) * n_ + a] = low;
 }
 
 void Path::add(std::span<const double> node_step, const AlignedDoubles& inner_step, double factor) {

@@ -38,7 +38,7 @@ class Path {
   /// What rounding left of it.
   const double* rest(int k) const { return low_.data() + static_cast<std::size_t>(k) * n_; }
   std::span<const double> nodes() const { return high_; }  ///< (N + 1) × n
-  void set_node(int k, int a, double value);
+  void set_node(int k, int a, double high, double low = 0);
 
   /// x += factor·step, with nodes' steps (N + 1) × n and inner steps in lanes as x() is laid out.
   void add(std::span<const double> node_step, const AlignedDoubles& inner_step, double factor);

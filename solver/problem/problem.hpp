@@ -36,6 +36,7 @@ struct EndMap {
   std::vector<double> offset;  ///< 2n
   std::vector<Triplet> z;      ///< (e, f, coefficient); identity for an end coordinate that is free
   std::vector<char> fixed;     ///< 2n: the coordinate does not depend on y
+  std::vector<int> home;       ///< y_f is this end coordinate
 };
 
 /// Throws RelationError if the rows contradict each other or one follows from the others.

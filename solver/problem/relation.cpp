@@ -253,7 +253,10 @@ class Elimination {
   void number_free() {
     std::vector<int> number(pin_.size(), -1);
     for (std::size_t e = 0; e < pin_.size(); ++e)
-      if (!map_.fixed[e]) number[e] = map_.free++;
+      if (!map_.fixed[e]) {
+        number[e] = map_.free++;
+        map_.home.push_back(static_cast<int>(e));
+      }
     for (std::size_t e = 0; e < pin_.size(); ++e) {
       if (number[e] >= 0) map_.z.push_back({static_cast<int>(e), number[e], 1.0});
       for (auto term = dependent_[e].rbegin(); term != dependent_[e].rend(); ++term)

@@ -112,8 +112,7 @@ class Equations {
         if (j == ends.free) row[matrices_ + a] += entry.value;
       }
     for (int j = 0; j < ends.free; ++j)
-      for (int a = 0; a < n_; ++a)
-        added(moved + j, matrices_ + n_ + a) = y(n_ + a, j) - y(a, j);
+      for (int a = 0; a < n_; ++a) added(moved + j, matrices_ + n_ + a) = y(n_ + a, j) - y(a, j);
     // Of closed paths most are satisfied anyway.
     const Eigen::Index before = rows_.rows();
     Eigen::Index count = before;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "machine/simd.hpp"
-#include "solve/start.hpp"
+#include "solve/ends.hpp"
 
 namespace extremal {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "solve/ends.hpp"
+
 namespace extremal {
 
 namespace {
@@ -127,6 +129,7 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
 
 void NewtonIteration::apply(Path& path, const Step& step, double factor) {
   path.add(step.nodes, step.inner, factor);
+  keep_ends(problem_->ends, path);
   if (problem_->duration.free) path.set_duration(path.duration() + factor * step.duration);
   path.load_ends();
 }

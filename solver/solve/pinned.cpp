@@ -7,6 +7,7 @@
 
 #include "machine/simd.hpp"
 #include "solve/conservation.hpp"
+#include "solve/ends.hpp"
 #include "solve/finish.hpp"
 #include "solve/method.hpp"
 #include "solve/start.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solve/descent.hpp"
+#include "solve/ends.hpp"
 #include "solve/homotopy.hpp"
 #include "solve/method.hpp"
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/ends.hpp"
 #include "solve/search.hpp"
 
 /// \file Guesses put on elements that follow them.

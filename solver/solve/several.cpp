@@ -9,6 +9,7 @@
 #include "solve/deflation.hpp"
 #include "solve/distinct.hpp"
 #include "solve/end_homotopy.hpp"
+#include "solve/ends.hpp"
 #include "solve/homotopy.hpp"
 #include "solve/repetition.hpp"
 #include "solve/stability.hpp"

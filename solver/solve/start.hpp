@@ -11,16 +11,6 @@
 
 namespace extremal {
 
-/// q(0) and q(T) (2n) to start from: the guess's, moved onto the boundary relation; without a guess
-/// the shortest line: a coordinate given at one end stays constant, coupled ends have least norm.
-std::vector<double> starting_ends(const Problem& problem);
-
-/// Those ends moved as the boundary relation allows: what it leaves free by noise of `size`, relative.
-std::vector<double> moved_ends(const Problem& problem, std::vector<double> ends, double size, unsigned seed);
-
-/// Moves the ends of a path back onto the boundary relation: many steps along it leave it by roundoff.
-void meet_ends(const Problem& problem, Path& path);
-
 /// Fills `path` (already reset) from the guess, shifted linearly in t so that its ends are `ends`.
 void start_path(const Problem& problem, const std::vector<double>& ends, const ElementTables& tables,
                 Path& path);

@@ -1,6 +1,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "solve/ends.hpp"
 #include "solve/iteration.hpp"
 #include "solve/laws.hpp"
 #include "solve/start.hpp"

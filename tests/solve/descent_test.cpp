@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "solve/ends.hpp"
 #include "solve/laws.hpp"
 #include "solve/start.hpp"
 

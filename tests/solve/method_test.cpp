@@ -2,6 +2,7 @@
 #include <random>
 
 #include "solve/displacement.hpp"
+#include "solve/ends.hpp"
 #include "solve/levels.hpp"
 #include "solve/scenes.hpp"
 #include "solve/start.hpp"

@@ -1,6 +1,7 @@
 #include "solve/raised_model.hpp"
 
 #include "solve/converge.hpp"
+#include "solve/ends.hpp"
 #include "solve/laws.hpp"
 #include "solve/levels.hpp"
 #include "solve/mesh.hpp"
