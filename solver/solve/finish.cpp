@@ -27,12 +27,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
 constexpr double least_roundoff = 1e-13;
-/// Eigenvalues within the error of the discretisation of zero, relative, count in the nullity; it is taken to
-/// be that of the trajectory, and within these bounds.
 constexpr double least_null = 1e-8, largest_null = 1e-3;
-double null_threshold(double error, double size) {
-  return size > 0 ? std::clamp(3 * error / size, least_null, largest_null) : least_null;
-}
 
 /// Momenta, residual, index and nullity from one evaluation at the path found.
 void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
@@ -51,7 +46,7 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   solution.residual = newton.residual() / (momentum > 0 ? momentum : 1);
   if (!factored) return;
   const double size = scales(w.path, *outcome.tables).q;
-  const Inertia inertia = newton.model().inertia(null_threshold(outcome.error, size));
+  const Inertia inertia = newton.model().inertia(null_threshold(outcome.error, size, w.path.elements()));
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
@@ -141,6 +136,10 @@ std::string irregularity(const Problem& problem) {
 
 }  // namespace
 
+double null_threshold(double error, double size, int elements) {
+  return size > 0 ? std::clamp(3 * error / (size * elements), least_null, largest_null) : least_null;
+}
+
 Trajectory trajectory_of(const Path& path) {
   Trajectory t;
   t.coordinates = path.coordinates();
@@ -187,8 +186,8 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
       const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
       judge_resolution(problem, options, outcome, found, w, solution);
       const OtherPoints others = try_other_points(problem, outcome, found, solution, w);
-      const bool missed = !options.scheme && others.moved > outcome.tolerance;
-      if (missed && polish(w)) return finish(problem, options, outcome, w, variation);
+      if (!options.scheme && others.missed(options, outcome) && polish(w))
+        return finish(problem, options, outcome, w, variation);
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);

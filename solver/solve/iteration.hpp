@@ -74,6 +74,9 @@ class NewtonIteration {
   /// what roundoff makes of it. action() then has that gradient.
   double step_under(const ElementTables& quadrature, const Path& path);
 
+  /// Of the velocities that such a step changes, the mean over an element, the most.
+  double steepness(const Path& path) const;
+
   /// The error to be expected after a full step of this length and the simplified one, from the last that
   /// was tested.
   double expected(double step) const { return curvature_ * curvature_ * step * step * step; }
@@ -114,6 +117,7 @@ class NewtonIteration {
   double solve_for_step(const Path& path, Step& step, bool refine = false);
   void apply(Path& path, const Step& step, double factor);
   double measure_noise(Path& path);
+  bool round_equations(const Path& path);
 
   const Problem* problem_ = nullptr;
   const ElementTables* tables_ = nullptr;

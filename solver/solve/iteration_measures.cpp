@@ -17,7 +17,7 @@ constexpr double pivoted_burden = 100, sparse_burden = 1000;
 /// Roundoff of a step is the most that so many shifts make of it: one may meet little by chance.
 constexpr int shifts = 3;
 /// Of two terms that cancel, half the last digit of one.
-constexpr double half_a_digit = 0x1p-54;
+constexpr double half_a_digit = 0x1p-54, half_an_extended_digit = 0x1p-65;
 
 /// The largest change of q by `scale` or of T by `duration`.
 double difference(const Step& a, const Step& b, double scale, double duration) {
@@ -76,7 +76,8 @@ double NewtonIteration::measure_noise(Path& path) {
     for (std::size_t k = 0; k < nodes; ++k)
       simplified_.nodes[k] = k < n ? magnitude * 0x1p-50 * (1 + double(random()) / std::minstd_rand::max())
                                    : simplified_.nodes[k - n];
-    apply(path, simplified_, 1);
+    path.add(simplified_.nodes, simplified_.inner, 1);
+    path.load_ends();
     model_->evaluate_gradient(action_, path);
     const double size = solve_for_step(path, simplified_);
     double change = 0;
@@ -89,22 +90,47 @@ double NewtonIteration::measure_noise(Path& path) {
   return noise_;
 }
 
-/// The step, and how it changes by the roundoff of the equation that closes the duration.
+/// The step, and how it changes by the roundoff of the equations that close what is free: it may have met
+/// little of it by chance.
 double NewtonIteration::step_under(const ElementTables& quadrature, const Path& path) {
   action_.substitute(*problem_->lagrangian, quadrature);
   model_->evaluate_gradient(action_, path);
   double length = solve_for_step(path, step_, true);
-  if (closing(path)) {
-    double terms = std::abs(closing_.value) + std::abs(action_.slope_duration());
-    const std::size_t n = path.coordinates();
-    for (std::size_t e = 0; e < closing_.row.size(); ++e)
-      terms += std::abs(closing_.row[e] * (e < n ? path.node(0)[e] : path.node(path.elements())[e - n]));
-    closing_.value += half_a_digit * terms;
-    model_->solve(action_, &closing_, simplified_);
+  if (round_equations(path)) {
+    model_->solve(action_, problem_->duration.free ? &closing_ : nullptr, simplified_);
     length += difference(simplified_, step_, scale_, path.duration());
   }
   action_.substitute(*problem_->lagrangian, *tables_);
   return length;
+}
+
+double NewtonIteration::steepness(const Path& path) const {
+  const std::size_t n = path.coordinates();
+  double most = 0;
+  for (std::size_t k = 0; k + n < step_.nodes.size(); ++k)
+    most = std::max(
+        most, std::abs(step_.nodes[k + n] - step_.nodes[k]) / (path.mesh()[k / n + 1] - path.mesh()[k / n]));
+  return most / path.duration();
+}
+
+/// Moves the equation that closes the duration, and the momenta at free ends, by half a digit of their terms;
+/// those to where step_ points, which is what they resist least. False if nothing is free.
+bool NewtonIteration::round_equations(const Path& path) {
+  const std::size_t n = path.coordinates();
+  if (closing(path)) {
+    double terms = std::abs(closing_.value) + std::abs(action_.slope_duration());
+    for (std::size_t e = 0; e < closing_.row.size(); ++e)
+      terms += std::abs(closing_.row[e] * (e < n ? path.node(0)[e] : path.node(path.elements())[e - n]));
+    closing_.value += half_a_digit * terms;
+  }
+  const double digit = (extended_ ? half_an_extended_digit : half_a_digit) * action_.momentum_scale();
+  std::vector<double>& parts = action_.nodes.end_parts;
+  parts.resize(2 * n);
+  for (const Triplet& z : problem_->ends.z) {
+    const std::size_t at = z.row < path.coordinates() ? z.row : step_.nodes.size() - 2 * n + z.row;
+    parts[z.row] -= std::copysign(digit, step_.nodes[at]);
+  }
+  return problem_->duration.free || problem_->ends.free > 0;
 }
 
 }  // namespace extremal

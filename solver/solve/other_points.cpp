@@ -51,7 +51,12 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
   QuadraticModel& model = w.iteration.model();
   if (!problem.periodic) model.set_null_below(Refinement::softest(outcome.error, w.path, size.magnitude));
   const double moved = size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path);
-  return {moved, kick(w.iteration.action(), survey, solution), told_apart(problem, model.left_out())};
+  return {moved, size.v > 0 ? w.iteration.steepness(w.path) / size.v : 0,
+          kick(w.iteration.action(), survey, solution), told_apart(problem, model.left_out())};
+}
+
+bool OtherPoints::missed(const SolveOptions& options, const Outcome& outcome) const {
+  return moved > outcome.tolerance || turned > honest * momentum_tolerances * options.tolerance;
 }
 
 bool polish(Workspace& w) {
@@ -77,6 +82,13 @@ void judge_by_other_points(const OtherPoints& others, const SolveOptions& option
     return refuse(solution, Status::not_converged,
                   "with other points in each element the action is not finite: the path runs through a "
                   "singularity of L; try another guess");
+  if (!options.scheme && !(others.turned <= honest * momentum_tolerances * options.tolerance))
+    return refuse(
+        solution, Status::not_converged,
+        fmt::format("with other points in each element velocities differ by {:.1e} of their range, more than "
+                    "the tolerance {:.1e} allows: bodies all but collide, and roundoff is amplified; try "
+                    "another tolerance",
+                    others.turned, options.tolerance));
   if (!options.scheme && !(others.kicked <= momentum_tolerances * options.tolerance))
     return refuse(
         solution, Status::not_converged,

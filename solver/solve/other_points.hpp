@@ -12,8 +12,12 @@ namespace extremal {
 
 struct OtherPoints {
   double moved = 0;        ///< q, absolute: to where the path is stationary under them, to first order
+  double turned = 0;       ///< q' there, relative to the range of velocities
   double kicked = 0;       ///< momenta at its ends, relative to their range
   bool told_apart = true;  ///< from the paths beside it
+
+  /// Whether a path of the elements that the tolerance asked for is moved by more than that allows.
+  bool missed(const SolveOptions& options, const Outcome& outcome) const;
 };
 
 /// `solution` holds what was read off the path in the workspace, whose iteration factored it last; the action

@@ -33,6 +33,8 @@ constexpr double regular_fall = 0.5;
 /// steps that are dearer than others; or of one step.
 constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
+/// Of the largest value.
+constexpr double half_a_digit = 0x1p-53;
 /// Relative to the largest momentum; of periodic paths.
 constexpr double stationary_residual = 1e-10;
 
@@ -165,12 +167,13 @@ double PinnedSolve::distance_to_companion() {
   const NewtonReport report = run_newton(tables, w_.other, 1e-12, companion_steps);
   if (!report.reached) return INFINITY;
   w_.resolution.measure(w_.other, tables);
-  const double range = scales(w_.other, tables).q;
+  const Scales size = scales(w_.other, tables);
+  const double range = size.q;
   w_.iteration.set_scale(range);
   const double unseen = w_.iteration.step_under(w_.levels.finer(tables.scheme()), w_.other);
   const Resolution::Error left_out = w_.resolution.at(degree);
   if (!std::isfinite(unseen) || !holds_energy(left_out)) return INFINITY;
-  double distance = left_out.q + (report.remaining + unseen) * range;
+  double distance = std::max(left_out.q + (report.remaining + unseen) * range, half_a_digit * size.magnitude);
   std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
   for (int k = 0; k < start.elements(); ++k) {
     start.element(k, a.data());

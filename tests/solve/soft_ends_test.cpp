@@ -83,5 +83,29 @@ TEST(SoftEnds, FarAwayNothingIsAnExtremal) {
   EXPECT_FALSE(s.message.empty());
 }
 
+/// A Morse oscillator that flies by a distance d in no time, its momenta at both ends alike: V(x0) = V(x0 +
+/// d), e^x0 = (1 + e^−d)/2. That hardly moves x0: roundoff of p is amplified by 1e4, of which one solve may
+/// meet nothing.
+TEST(SoftEnds, EstimatesKnowTheRoundoffOfMomenta) {
+  const auto morse = trace(1, [](auto q, auto v, auto) {
+    const auto rise = 1 - exp(-q[0]);
+    return v[0] * v[0] / 2 - 0.5 * rise * rise;
+  });
+  for (const double d : {1.7, 2.498362795421397, 3.1})
+    for (const double T : {0.02, 0.036653317835412872, 0.07})
+      for (const double tolerance : {1e-6, 7.4e-9, 1e-11}) {
+        const Problem problem = with_ends(morse, T, [&](BoundaryRelation& b) {
+          const int row = b.add_row(d);
+          b.add(row, 0, -1);
+          b.add(row, 1, 1);
+        });
+        const Solution s = Solver().solve(problem, within(tolerance));
+        ASSERT_TRUE(s.converged()) << s.message;
+        const double error = std::abs(s.trajectory.nodes[0] - std::log((1 + std::exp(-d)) / 2));
+        EXPECT_LT(error, 100 * s.error_estimate) << d << ' ' << T << ' ' << tolerance;
+        EXPECT_LT(error, tolerance * d);
+      }
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -142,6 +142,8 @@ TEST(Unseen, ScenesThatAreRefused) {
   const Solution apart = refused("lennard-jones-apart");
   EXPECT_NE(apart.message.find("roundoff"), std::string::npos) << apart.message;
   EXPECT_LT(apart.iterations, 100);
+  const Solution encounter = refused("nbody-near-collision");
+  EXPECT_NE(encounter.message.find("velocities differ"), std::string::npos) << encounter.message;
 }
 
 }  // namespace
