@@ -38,6 +38,8 @@ class Border {
 
   /// Factors the chain and S. False if the system is singular to working precision or not finite.
   bool factor(Chain& a, double deflated = deflated_below);
+  /// Whether it was finite, and its inertia can be told.
+  bool finite() const { return finite_; }
 
   /// X := K⁻¹ X for all order() rows, row-major with `columns` columns, with the chain that was factored.
   /// Refines on the whole system where the parts are much larger than the solution.

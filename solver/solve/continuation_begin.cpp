@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "solve/continuation.hpp"
+#include "solve/finish.hpp"
 #include "solve/search.hpp"
 
 /// \file How a branch begins, and on which elements it goes on.
@@ -97,7 +98,7 @@ Continuation::Elements Continuation::resolve() {
   const Resolution::Error error = w_.resolution.at(w_.path.degree());
   const double tolerance = options_.solve.tolerance;
   error_ = error.q + 0x1p-53 * size.magnitude * std::sqrt(w_.path.elements() * w_.path.degree());
-  branch_.set_null_threshold(std::clamp(3 * error_ / (size.q > 0 ? size.q : 1), 1e-8, 1e-3));
+  branch_.set_null_threshold(null_threshold(error_, size.q, w_.path.elements()));
   const double excess = size.q > 0 ? std::max(error.q / size.q, 0.1 * error.v / size.v) / tolerance : 0;
   if (excess <= 1 && (excess == 0 || excess > lavish)) return Elements::fine;
   const Plan plan = plan_for(size);

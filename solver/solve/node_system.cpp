@@ -287,6 +287,8 @@ Inertia NodeSystem::inertia(double threshold) const {
     }
   }
   ends.factor(chain, std::max(threshold, Border::deflated_below));
+  // With more null directions than can be afforded: as for steps.
+  if (!ends.finite()) ends.factor(chain);
   Inertia result = ends.inertia(threshold);
   result.negative -= held.count;
   result.positive -= held.count;

@@ -146,5 +146,15 @@ TEST(MorseIndex, OfPinnedSchemesOnAFineMesh) {
   }
 }
 
+/// Elements so short that the error of the trajectory is more than an element adds to what its ends feel.
+TEST(MorseIndex, OfShortElementsOfLowOrder) {
+  const Problem problem = with_ends(oscillators(Values(9, 1)), 5, [](BoundaryRelation& b) {
+    for (int a = 0; a < 9; ++a) b.fix(a, true, 0.5);
+  });
+  const Solution s = Solver().solve(problem, pinned(scheme("rectangle-right"), 8000));
+  EXPECT_EQ(s.morse_index, 9 * 2);  // ⌊T/π + 1/2⌋, one end free
+  EXPECT_EQ(s.nullity, 0);
+}
+
 }  // namespace
 }  // namespace extremal::laws
