@@ -16,13 +16,15 @@ using Eigen::VectorXd;
 
 /// Singular values below this, relative, are zero: entries are good to roundoff.
 constexpr double null = 1e-9;
-/// Points beyond as many as there are unknowns, and how many may be lost where L is not finite.
-constexpr int spare_points = 8, most_tries = 4;
+/// Points beyond as many as there are unknowns (twice as many where they are at several places), and how many
+/// may be lost where L is not finite.
+constexpr int spare_points = 8, most_tries = 8;
 
 /// What the coordinates extend over along the guess, all alike; and points about it.
 class Cloud {
  public:
-  explicit Cloud(const Problem& problem) : problem_(problem), n_(problem.coordinates()) {
+  Cloud(const Problem& problem, const std::vector<double>& nearness)
+      : problem_(problem), nearness_(nearness), n_(problem.coordinates()) {
     VectorXd q(n_), low = VectorXd::Constant(n_, INFINITY), high = -low;
     for (int k = 0; k <= 32; ++k) {
       at(k / 32.0, q);
@@ -33,12 +35,14 @@ class Cloud {
     if (!(extent_ > 0)) extent_ = std::max(1.0, high.cwiseAbs().maxCoeff());
   }
   double extent() const { return extent_; }
+  std::size_t places() const { return nearness_.size(); }
 
   void draw(VectorXd& q, VectorXd& v) {
     at(0.5 + 0.5 * number(), q);
+    const double near = nearness_[drawn_++ % nearness_.size()];
     for (int a = 0; a < n_; ++a) {
-      q[a] += 0.1 * extent_ * number();
-      v[a] = 2 * extent_ / problem_.duration.value * number();
+      q[a] = near * (q[a] + 0.1 * extent_ * number());
+      v[a] = near * 2 * extent_ / problem_.duration.value * number();
     }
   }
 
@@ -50,23 +54,25 @@ class Cloud {
   }
 
   const Problem& problem_;
+  const std::vector<double>& nearness_;
   int n_;
   double extent_ = 1;
   std::minstd_rand random_{7};
+  unsigned drawn_ = 0;
 };
 
 /// Linear equations for the unknowns: entries of G row by row, then c in units of the extent, and b in units
 /// of momentum.
 class Equations {
  public:
-  explicit Equations(const Problem& problem)
+  Equations(const Problem& problem, int most_coordinates)
       : n_(problem.coordinates()),
-        matrices_(n_ <= most_coordinates_for_rotations ? n_ * n_ : 0),
+        matrices_(n_ <= most_coordinates ? n_ * n_ : 0),
         columns_(matrices_ + 2 * n_) {}
 
   /// Invariance of L at so many points; false if L is finite at too few.
   bool add_invariance(const Problem& problem, Cloud& cloud) {
-    const int points = columns_ + spare_points;
+    const int points = static_cast<int>(std::min<std::size_t>(2, cloud.places())) * columns_ + spare_points;
     rows_.setZero(points, columns_);
     VectorXd q(n_), v(n_);
     Scratch scratch;
@@ -146,9 +152,9 @@ class Equations {
 
 }  // namespace
 
-std::vector<Generator> continuous_symmetries(const Problem& problem) {
-  Cloud cloud(problem);
-  Equations equations(problem);
+std::vector<Generator> continuous_symmetries(const Problem& problem, const SymmetrySearch& search) {
+  Cloud cloud(problem, search.nearness);
+  Equations equations(problem, search.most_coordinates);
   if (!equations.add_invariance(problem, cloud)) return {};
   equations.add_ends(problem, cloud.extent());
   return equations.solutions(cloud.extent());

@@ -14,13 +14,18 @@ struct Generator {
   std::vector<double> shift;   ///< c, n
 };
 
-/// Above this many coordinates only translations are looked for.
 inline constexpr int most_coordinates_for_rotations = 12;
+
+struct SymmetrySearch {
+  int most_coordinates = most_coordinates_for_rotations;  ///< with more only translations are looked for
+  /// Points about the guess are in turn so much nearer to the origin, and slower: far away forces may vanish.
+  std::vector<double> nearness{1};
+};
 
 /// Independent affine motions of configuration space that leave the boundary relation and the action of every
 /// path that satisfies it unchanged: ∂L/∂q · δq + ∂L/∂q' · δq' = 0, or b · q' where the relation holds
 /// b · (q(T) − q(0)), at random points about the guess. The momenta ∂L/∂q' · δq − b · q are constants of the
 /// motion (Noether).
-std::vector<Generator> continuous_symmetries(const Problem& problem);
+std::vector<Generator> continuous_symmetries(const Problem& problem, const SymmetrySearch& search = {});
 
 }  // namespace extremal

@@ -27,6 +27,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
 constexpr double least_roundoff = 1e-13;
+/// Of the range of momenta, as momentum_tolerances: forces that closed paths are held by.
+constexpr double held_tolerances = 0.1;
 constexpr double least_null = 1e-8, largest_null = 1e-3;
 
 /// Momenta, residual, index and nullity from one evaluation at the path found.
@@ -71,12 +73,14 @@ bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
 }
 
 /// What is left of the natural conditions must be within the error that momenta may have: where forces hardly
-/// change them, that may be far below the momenta.
+/// change them, that may be far below the momenta. Steps of closed paths have nothing along a family of
+/// orbits: what is left there is a small part of the error, or the family is none.
 bool within_momenta(const Problem& problem, const Survey& survey, double tolerance, Workspace& w) {
   const DiscreteAction& action = w.iteration.action();
   const double range = *std::max_element(survey.p.begin(), survey.p.end());
+  const double part = problem.periodic ? held_tolerances : momentum_tolerances;
   return natural_residual(problem, action, w.path) <=
-         std::max(momentum_tolerances * tolerance * range, least_roundoff * action.momentum_scale());
+         std::max(part * tolerance * range, least_roundoff * action.momentum_scale());
 }
 
 /// Whether the elements have seen all of the path, and the equations had a solution.

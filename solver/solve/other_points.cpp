@@ -14,14 +14,30 @@ namespace {
 
 /// What an error may be by its estimate.
 constexpr double honest = 10;
+/// Symmetries of more take too long to find.
+constexpr int most_coordinates = 18;
+/// Where symmetries are looked for: at some of these forces count.
+const std::vector<double> nearness{1, 0.25, 0.0625, 1 / 64.0, 1 / 256.0, 1 / 1024.0, 1 / 4096.0};
+/// That tell where a path is.
+constexpr int guess_points = 32;
 /// Of momenta, relative to the largest.
 constexpr double roundoff = 1e-13;
 
 /// Directions that are null because symmetries of the problem move its ends belong to a family of extremals.
-/// Others, or what looks null beside stronger forces, tell nothing of the path found from those beside it.
-bool told_apart(const Problem& problem, int null) {
-  return problem.periodic || null == 0 || problem.coordinates() > most_coordinates_for_rotations ||
-         null <= std::ssize(continuous_symmetries(problem));
+/// Others, or what looks null beside stronger forces or where forces vanish, tell nothing of the path found
+/// from those beside it.
+bool told_apart(const Problem& problem, const Trajectory& found, int null) {
+  const int n = problem.coordinates();
+  if (problem.periodic || null == 0 || n > most_coordinates) return true;
+  Problem about = problem;
+  about.guess = {};
+  std::vector<double> v(n);
+  for (int i = 0; i <= guess_points; ++i) {
+    about.guess.tau.push_back(static_cast<double>(i) / guess_points);
+    about.guess.q.resize(about.guess.q.size() + n);
+    found.at(about.guess.tau.back() * found.duration(), {&*about.guess.q.end() - n, std::size_t(n)}, v);
+  }
+  return null <= std::ssize(continuous_symmetries(about, {most_coordinates, nearness}));
 }
 
 /// By how much momenta at the ends of a solution are others where the action was evaluated last, relative.
@@ -48,11 +64,23 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
   const bool factored = solution.nullity.has_value(), at_rest = size.range < size.q || size.q == 0;
   if (!factored || at_rest) return {};
   w.iteration.set_scale(size.q);
-  QuadraticModel& model = w.iteration.model();
-  if (!problem.periodic) model.set_null_below(Refinement::softest(outcome.error, w.path, size.magnitude));
-  const double moved = size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path);
-  return {moved, size.v > 0 ? w.iteration.steepness(w.path) / size.v : 0,
-          kick(w.iteration.action(), survey, solution), told_apart(problem, model.left_out())};
+  const auto moved = [&](double error) {
+    if (!problem.periodic)
+      w.iteration.model().set_null_below(Refinement::softest(error, w.path, size.magnitude));
+    return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path);
+  };
+  OtherPoints others;
+  others.moved = moved(outcome.error);
+  const int null = w.iteration.model().left_out();
+  others.told_apart = told_apart(problem, solution.trajectory, null);
+  if (!others.told_apart) {
+    // Soft, but not null to the last digit: forces may be weak and tell all the same.
+    others.moved = std::max(others.moved, moved(0));
+    others.told_apart = w.iteration.model().left_out() < null && others.moved <= outcome.tolerance;
+  }
+  others.turned = size.v > 0 ? w.iteration.steepness(w.path) / size.v : 0;
+  others.kicked = kick(w.iteration.action(), survey, solution);
+  return others;
 }
 
 bool OtherPoints::missed(const SolveOptions& options, const Outcome& outcome) const {

@@ -139,6 +139,9 @@ TEST(Unseen, ScenesThatAreRefused) {
     return s;
   };
   EXPECT_EQ(refused("lennard-jones-ran-away").status, Status::conjugate_ends);
+  EXPECT_EQ(refused("lennard-jones-coupled").status, Status::conjugate_ends);
+  EXPECT_EQ(refused("lennard-jones-aside").status, Status::conjugate_ends);
+  EXPECT_EQ(refused("magnetic-dipole-gyration").status, Status::not_converged);
   const Solution apart = refused("lennard-jones-apart");
   EXPECT_NE(apart.message.find("roundoff"), std::string::npos) << apart.message;
   EXPECT_LT(apart.iterations, 100);
