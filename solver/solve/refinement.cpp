@@ -29,6 +29,8 @@ constexpr double rest = 1e-12;
 /// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
 /// guess that asks for more elements may make of it.
 constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
+/// Of a step, to fill a path.
+constexpr double filling = 0.1;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
 /// Errors below this (relative) may be roundoff.
@@ -53,6 +55,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
   const ElementTables& tables = w_.levels.at(degree);
   w_.path.reset(tables, mesh, problem_.duration.value);
   take(tables);
+  cost_ += filling * step_cost();
 }
 
 void Refinement::take(const ElementTables& tables) {

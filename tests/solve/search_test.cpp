@@ -2,7 +2,9 @@
 #include <random>
 
 #include "rivals/verify.hpp"
+#include "solve/mesh.hpp"
 #include "solve/motions.hpp"
+#include "solve/refinement.hpp"
 
 /// \file Extremals from poor guesses: found, verified by integration, the same each time, at bounded cost.
 
@@ -157,6 +159,24 @@ TEST(Search, ConvexActionFromAnyGuess) {
       }
     }
   }
+}
+
+/// Guesses whose first step is dearer than what is left must not be tried for ever.
+TEST(Search, PathsThatAreOnlyFilledCountAsEffort) {
+  const Problem problem = fixed_ends(systems::pendulum(), {0}, {1}, 1);
+  SolveOptions options;
+  Workspace workspace;
+  workspace.levels.bind(problem.lagrangian);
+  Outcome outcome;
+  extremal::Refinement refinement(problem, options, workspace, outcome);
+  refinement.open(uniform_mesh(1000));
+  refinement.allow(1000);
+  int filled = 0;
+  for (const int most = 100000; !refinement.exhausted() && filled < most; ++filled)
+    refinement.open(uniform_mesh(1000));
+  EXPECT_GT(filled, 1000);
+  EXPECT_LT(filled, 100000);
+  EXPECT_EQ(outcome.iterations, 0);
 }
 
 }  // namespace
