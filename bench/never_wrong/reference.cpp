@@ -109,7 +109,7 @@ std::optional<TrueError> distance_by(const extremal::Study& study, const extrema
   // A condition that periodic orbits of every energy meet, each at its own phase, leaves a family of them,
   // one for each duration.
   const bool family = study.problem.periodic && duration.where;
-  if (family) duration = {.value = solution.duration()};
+  if (family) duration = {solution.duration(), false, {}, {}};
   again.options = {};
   again.options.scheme = scheme;
   const extremal::Solution reference = most_accurate(again);

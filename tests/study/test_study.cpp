@@ -15,8 +15,9 @@ TEST_F(Scenes, SolveOptions) {
   EXPECT_EQ(study(masses + ends + "[solve]\nelements = 7\nscheme = \"midpoint\"\n").options.elements, 7);
   EXPECT_EQ(s.options.method, Method::newton);
   for (const Method method : {Method::ceres, Method::ipopt})
-    if (available(method))
+    if (available(method)) {
       EXPECT_EQ(study(masses + ends + "[solve]\nmethod = \"" + name(method) + "\"\n").options.method, method);
+    }
   EXPECT_GT(s.seconds_read, 0.0);
   EXPECT_EQ(message(masses + ends + "[solve]\nscheme = \"midpiont\"\n").rfind("scene.toml:11:11: ", 0), 0u);
 }
@@ -109,7 +110,9 @@ TEST_F(Scenes, RepeatsReportTheMedianOfTheSameSolution) {
 }
 
 TEST(Memory, SolveIsLinearInElementsAndRefusedBeyondWhatThereIs) {
-  Structure few{.coordinates = 10}, many{.coordinates = 10000};
+  Structure few, many;
+  few.coordinates = 10;
+  many.coordinates = 10000;
   many.mass.resize(10000);
   many.hessian.resize(20000);
   EXPECT_GT(solve_bytes(few, 80, 4), 80 * 50 * 50 * 8.0);

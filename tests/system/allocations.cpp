@@ -27,7 +27,8 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return co
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return required(counted(size, static_cast<std::size_t>(alignment)));
 }
-void operator delete(void* p) noexcept { std::free(p); }
+// Inlined, the compiler would see memory of one kind freed as another.
+[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
