@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solve/refinement.hpp"
 
@@ -15,6 +16,8 @@ namespace {
 constexpr double most_phase_force = 1e-7;
 /// Eigenvalues above this, relative to the largest, are never taken for null.
 constexpr double largest_soft = 1e-8;
+/// Errors of finer elements are less than this part of those before.
+constexpr double element_fall = 0.25;
 /// Steps that end what Newton's method began.
 constexpr int most_polish = 3;
 /// They use the factors there are as long as they contract so much.
@@ -62,8 +65,10 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (passed && newton.extend()) return settle(report);
   outcome_.message = passed ? hidden(newton.norm()) : test_.message();
   if (passed) return Attempt::unreachable;
-  // What holds the phase is an error of the elements.
-  return problem_.periodic && test_.share() <= options_.tolerance ? Attempt::refine : Attempt::failed;
+  // What holds the phase is an error of the elements if it falls with them.
+  const double before = std::exchange(held_, test_.share());
+  const bool falls = held_ <= options_.tolerance && held_ < element_fall * before;
+  return problem_.periodic && falls ? Attempt::refine : Attempt::failed;
 }
 
 /// A tolerance, by what roundoff became.

@@ -79,6 +79,7 @@ Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
   inertia_ = inertia();
   momentum_range_ = 0;
+  held_ = INFINITY;
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.

@@ -101,9 +101,10 @@ class Refinement {
   double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
   double momentum_range_ = 0;   ///< when last known
   ResidualTest test_;
-  double longest_ = 0;   ///< undamped step so far, relative
-  double left_out_ = 0;  ///< of q, by the elements that were judged last
-  double worst_ = 0;     ///< error in units of the tolerance, when elements were last judged
+  double longest_ = 0;      ///< undamped step so far, relative
+  double left_out_ = 0;     ///< of q, by the elements that were judged last
+  double held_ = INFINITY;  ///< relative to momenta, what held the phase when it was too much
+  double worst_ = 0;        ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };
 
