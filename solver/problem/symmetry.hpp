@@ -14,6 +14,7 @@ struct Generator {
   std::vector<double> shift;   ///< c, n
 };
 
+/// With more, rotations take too long to find where every solve looks for them.
 inline constexpr int most_coordinates_for_rotations = 12;
 
 struct SymmetrySearch {

@@ -14,30 +14,30 @@ namespace {
 
 /// What an error may be by its estimate.
 constexpr double honest = 10;
+/// Tolerances that velocities may change by: ten, and that is an estimate.
+constexpr double most_turned = honest * momentum_tolerances;
 /// Symmetries of more take too long to find.
 constexpr int most_coordinates = 18;
-/// Where symmetries are looked for: at some of these forces count.
-const std::vector<double> nearness{1, 0.25, 0.0625, 1 / 64.0, 1 / 256.0, 1 / 1024.0, 1 / 4096.0};
 /// That tell where a path is.
 constexpr int guess_points = 32;
 /// Of momenta, relative to the largest.
 constexpr double roundoff = 1e-13;
 
-/// Directions that are null because symmetries of the problem move its ends belong to a family of extremals.
-/// Others, or what looks null beside stronger forces or where forces vanish, tell nothing of the path found
-/// from those beside it.
-bool told_apart(const Problem& problem, const Trajectory& found, int null) {
-  const int n = problem.coordinates();
-  if (problem.periodic || null == 0 || n > most_coordinates) return true;
+/// Symmetries of the problem, found about a path and nearer to the origin: at some of those points forces
+/// count.
+int symmetries_about(const Problem& problem, const Trajectory& found) {
+  const std::size_t n = problem.coordinates();
   Problem about = problem;
   about.guess = {};
+  about.guess.q.resize((guess_points + 1) * n);
   std::vector<double> v(n);
   for (int i = 0; i <= guess_points; ++i) {
     about.guess.tau.push_back(static_cast<double>(i) / guess_points);
-    about.guess.q.resize(about.guess.q.size() + n);
-    found.at(about.guess.tau.back() * found.duration(), {&*about.guess.q.end() - n, std::size_t(n)}, v);
+    found.at(about.guess.tau.back() * found.duration(), {about.guess.q.data() + i * n, n}, v);
   }
-  return null <= std::ssize(continuous_symmetries(about, {most_coordinates, nearness}));
+  const SymmetrySearch search{most_coordinates,
+                              {1, 0.25, 0.0625, 1 / 64.0, 1 / 256.0, 1 / 1024.0, 1 / 4096.0}};
+  return static_cast<int>(continuous_symmetries(about, search).size());
 }
 
 /// By how much momenta at the ends of a solution are others where the action was evaluated last, relative.
@@ -56,6 +56,14 @@ void refuse(Solution& solution, Status status, std::string message) {
   solution.message = std::move(message);
 }
 
+/// Refuses a solution of which `what`, relative to its range, is more than a tolerance allows.
+void refuse(Solution& solution, const char* what, double much, double tolerance, const char* why) {
+  refuse(solution, Status::not_converged,
+         fmt::format("with other points in each element {} differ by {:.1e} of their range, more than the "
+                     "tolerance {:.1e} allows: {}; try another tolerance",
+                     what, much, tolerance, why));
+}
+
 }  // namespace
 
 OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
@@ -71,12 +79,15 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
   };
   OtherPoints others;
   others.moved = moved(outcome.error);
-  const int null = w.iteration.model().left_out();
-  others.told_apart = told_apart(problem, solution.trajectory, null);
-  if (!others.told_apart) {
-    // Soft, but not null to the last digit: forces may be weak and tell all the same.
-    others.moved = std::max(others.moved, moved(0));
-    others.told_apart = w.iteration.model().left_out() < null && others.moved <= outcome.tolerance;
+  const QuadraticModel& model = w.iteration.model();
+  if (!problem.periodic && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
+    // Directions that are null because symmetries move the ends belong to a family of extremals. Others may
+    // be soft: weak forces tell, if to the last digit. Where forces vanish nothing does.
+    const int family = symmetries_about(problem, solution.trajectory);
+    if (model.left_out() > family) {
+      others.moved = std::max(others.moved, moved(0));
+      others.told_apart = model.left_out() <= family && others.moved <= outcome.tolerance;
+    }
   }
   others.turned = size.v > 0 ? w.iteration.steepness(w.path) / size.v : 0;
   others.kicked = kick(w.iteration.action(), survey, solution);
@@ -84,7 +95,7 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
 }
 
 bool OtherPoints::missed(const SolveOptions& options, const Outcome& outcome) const {
-  return moved > outcome.tolerance || turned > honest * momentum_tolerances * options.tolerance;
+  return moved > outcome.tolerance || turned > most_turned * options.tolerance;
 }
 
 bool polish(Workspace& w) {
@@ -110,20 +121,12 @@ void judge_by_other_points(const OtherPoints& others, const SolveOptions& option
     return refuse(solution, Status::not_converged,
                   "with other points in each element the action is not finite: the path runs through a "
                   "singularity of L; try another guess");
-  if (!options.scheme && !(others.turned <= honest * momentum_tolerances * options.tolerance))
-    return refuse(
-        solution, Status::not_converged,
-        fmt::format("with other points in each element velocities differ by {:.1e} of their range, more than "
-                    "the tolerance {:.1e} allows: bodies all but collide, and roundoff is amplified; try "
-                    "another tolerance",
-                    others.turned, options.tolerance));
+  if (!options.scheme && !(others.turned <= most_turned * options.tolerance))
+    return refuse(solution, "velocities", others.turned, options.tolerance,
+                  "the path turns sharply, and roundoff is amplified");
   if (!options.scheme && !(others.kicked <= momentum_tolerances * options.tolerance))
-    return refuse(
-        solution, Status::not_converged,
-        fmt::format("with other points in each element the momenta at the ends differ by {:.1e} of their "
-                    "range, more than the tolerance {:.1e} allows: forces rise within the first element or "
-                    "the last; try another tolerance",
-                    others.kicked, options.tolerance));
+    return refuse(solution, "the momenta at the ends", others.kicked, options.tolerance,
+                  "forces rise within the first element or the last");
   if (others.moved <= honest * solution.error_estimate) return;
   solution.error_estimate = others.moved;
   if (options.elements > 0 || others.moved <= outcome.tolerance) return;

@@ -34,7 +34,7 @@ constexpr double regular_fall = 0.5;
 constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
 /// Of the largest value.
-constexpr double half_a_digit = 0x1p-53;
+constexpr double unit_roundoff = 0x1p-53;
 /// Relative to the largest momentum; of periodic paths.
 constexpr double stationary_residual = 1e-10;
 
@@ -173,7 +173,8 @@ double PinnedSolve::distance_to_companion() {
   const double unseen = w_.iteration.step_under(w_.levels.finer(tables.scheme()), w_.other);
   const Resolution::Error left_out = w_.resolution.at(degree);
   if (!std::isfinite(unseen) || !holds_energy(left_out)) return INFINITY;
-  double distance = std::max(left_out.q + (report.remaining + unseen) * range, half_a_digit * size.magnitude);
+  double distance =
+      std::max(left_out.q + (report.remaining + unseen) * range, unit_roundoff * size.magnitude);
   std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
   for (int k = 0; k < start.elements(); ++k) {
     start.element(k, a.data());

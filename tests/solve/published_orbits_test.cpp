@@ -52,10 +52,9 @@ TEST(PublishedOrbits, ThatAreVeryUnstable) {
 /// Encounters within a hundredth of the size of the orbit amplify roundoff, that of double beyond the
 /// tolerance.
 TEST(PublishedOrbits, WithCloseEncounters) {
-  for (const char* id :
-       {"3b-sd-IIC2b-yinyangI", "3b-sd-IIC2a-yinyangI", "3b-ll-IB13", "3b-ll-IIC22", "3b-ll-IA6",
-        "3b-ll-IIC71", "3b-sheen-7", "3b-sheen-10", "3b-sd-IB4-mothIII", "3b-sd-IA3-bumblebee",
-        "3b-sd-IA2-butterflyII", "3b-llu-IA10-m0.5", "3b-ff-F2_0_393_0_288_0_662_"})
+  for (const char* id : {"3b-sd-IIC2b-yinyangI", "3b-sd-IIC2a-yinyangI", "3b-ll-IB13", "3b-ll-IIC22",
+                         "3b-ll-IA6", "3b-ll-IIC71", "3b-sheen-7", "3b-sheen-10", "3b-sd-IB4-mothIII",
+                         "3b-sd-IA3-bumblebee", "3b-llu-IA10-m0.5", "3b-ff-F2_0_393_0_288_0_662_"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
 }
 
@@ -64,9 +63,10 @@ TEST(PublishedOrbits, AsCloselyAsCanBe) {
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-13), "") << id;
 }
 
-/// To 3e-4 of the size of the orbit; free fall begins and ends at rest.
+/// To 3e-4 of the size of the orbit; free fall begins and ends at rest. At 1e-12 roundoff decides whether
+/// velocities are within their error.
 TEST(PublishedOrbits, WithVeryCloseEncounters) {
-  for (const char* id : {"3b-ll-IB2", "3b-sd-IB3-butterflyIII"})
+  for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII", "3b-sd-IB3-butterflyIII"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-11), "") << id;
   for (const char* id : {"3b-ll-IA12", "3b-ff-F1_1_1_1_", "3b-ff-F2_1_1_1_"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-8), "") << id;
