@@ -69,7 +69,8 @@ bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
                                            : std::max(1.0, scales(w.path, *w.final_tables).magnitude);
   const double value = closing->row.empty() ? slope + closing->value : closing->value;
   const double allowed = std::max(10 * (options.elements > 0 ? 0 : options.tolerance), 1e-6);
-  return std::abs(value) <= allowed * size && w.path.duration() < 1e6 * problem.duration.value;
+  const double duration = w.path.duration();
+  return std::abs(value) <= allowed * size && duration > 0 && duration < 1e6 * problem.duration.value;
 }
 
 /// What is left of the natural conditions must be within the error that momenta may have: where forces hardly

@@ -127,6 +127,10 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
   return std::isfinite(size) ? size : NAN;
 }
 
+bool NewtonIteration::leaves_duration(const Path& path, const Step& step) const {
+  return !problem_->duration.free || path.duration() + step.duration > 0;
+}
+
 void NewtonIteration::apply(Path& path, const Step& step, double factor) {
   path.add(step.nodes, step.inner, factor);
   keep_ends(problem_->ends, path);
@@ -171,7 +175,8 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
     return StepResult::ok;
   }
   const double expected = approximate() ? 0 : largest_curvature_ * step;
-  if (expected > 0 && std::max(worst_surprise * expected, least_curvature * step) * step <= enough) {
+  if (expected > 0 && std::max(worst_surprise * expected, least_curvature * step) * step <= enough &&
+      leaves_duration(path, step_)) {
     contraction_ = surprise * expected;
     norm_ = remaining_ = contraction_ * step;
     damping_ = predicted_ = 1;
@@ -203,7 +208,8 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
       use_sparse(path.elements());
       return full_step(path, enough, least_damping);
     }
-    if (simplified <= (1 - factor / 4) * step || step < std::max(amplified_roundoff, quiet * noise_)) {
+    const bool small = step < std::max(amplified_roundoff, quiet * noise_);
+    if (positive && (simplified <= (1 - factor / 4) * step || small)) {
       contraction_ = simplified / step;
       damping_ = factor;
       norm_ = simplified;
@@ -217,7 +223,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
   }
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
   remaining_ = norm_;
-  if (damping_ == 1 && contraction_ < worth_taking) {
+  if (damping_ == 1 && contraction_ < worth_taking && leaves_duration(path, simplified_)) {
     apply(path, simplified_, 1);
     remaining_ = norm_ * contraction_;
   }
@@ -258,7 +264,7 @@ StepResult NewtonIteration::chord_step(Path& path) {
   model_->evaluate_gradient(action_, path);
   ++count_;
   const double norm = solve_for_step(path, step_);
-  if (std::isnan(norm)) return StepResult::not_finite;
+  if (std::isnan(norm) || !leaves_duration(path, step_)) return StepResult::not_finite;
   norm_ = norm;
   contraction_ = before > 0 ? norm_ / before : 0;
   if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);

@@ -115,6 +115,8 @@ class NewtonIteration {
   /// Whether model() is not the second variation itself.
   bool approximate() const { return raised_ && model_ == &*raised_; }
   double solve_for_step(const Path& path, Step& step, bool refine = false);
+  /// Whether the whole step leaves a positive duration.
+  bool leaves_duration(const Path& path, const Step& step) const;
   void apply(Path& path, const Step& step, double factor);
   double measure_noise(Path& path);
   bool round_equations(const Path& path);
