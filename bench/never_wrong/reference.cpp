@@ -100,15 +100,14 @@ void move_to(const std::vector<double>& x, const std::vector<std::vector<double>
 }
 
 /// From the extremal that is found from it, by elements of a scheme or those that the tolerance asks for.
+/// A condition that periodic orbits of every energy meet, each at its own phase, leaves a `family` of them,
+/// one for each duration.
 std::optional<TrueError> distance_by(const extremal::Study& study, const extremal::Solution& solution,
-                                     std::optional<extremal::Scheme> scheme) {
+                                     std::optional<extremal::Scheme> scheme, bool family = false) {
   extremal::Study again = study;
   again.problem.guess = as_guess(solution.trajectory);
   extremal::Duration& duration = again.problem.duration;
   if (duration.free) duration.value = solution.duration();
-  // A condition that periodic orbits of every energy meet, each at its own phase, leaves a family of them,
-  // one for each duration.
-  const bool family = study.problem.periodic && duration.where;
   if (family) duration = {solution.duration(), false, {}, {}};
   again.options = {};
   again.options.scheme = scheme;
@@ -177,13 +176,18 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
                                                const extremal::Solution& solution) {
   if (rests(study.problem, solution.trajectory)) return std::nullopt;
   if (study.problem.coordinates() > most_reference_coordinates) return std::nullopt;
-  // Coarse elements on the way to the tolerance would move along a family of orbits, or in time.
-  std::optional<TrueError> found;
-  if (!study.problem.periodic) found = distance_by(study, solution, std::nullopt);
-  // And to another extremal, where two are close.
-  if (found && found->q <= honest * solution.error_estimate) return found;
-  const std::optional<TrueError> again = distance_by(study, solution, extremal::lobatto(12));
-  return !found || (again && again->q < found->q) ? again : found;
+  std::optional<TrueError> nearest;
+  const auto near = [&](const std::optional<TrueError>& found) {
+    if (found && (!nearest || found->q < nearest->q)) nearest = found;
+    return nearest && nearest->q <= honest * solution.error_estimate;
+  };
+  // Another extremal may be close. Along a family of orbits, or in time, coarse elements would move on the
+  // way to the tolerance; where all orbits last equally long, the duration tells none of them.
+  const extremal::Scheme fine = extremal::lobatto(12);
+  const bool periodic = study.problem.periodic, family = periodic && study.problem.duration.where;
+  (!periodic && near(distance_by(study, solution, std::nullopt))) ||
+      (family && near(distance_by(study, solution, fine, true))) || near(distance_by(study, solution, fine));
+  return nearest;
 }
 
 std::optional<double> error_by_shooting(const extremal::Study& study, const extremal::Solution& solution) {

@@ -1,5 +1,6 @@
 #include "rivals/conditions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace extremal {
@@ -36,6 +37,12 @@ void EndConditions::add_relation(const EndStates& ends, Values& values) const {
     values.magnitude[e.row] += std::abs(term);
     values.derivatives.push_back({e.row, at_end ? 2 * n_ + a : a, e.value});
   }
+  // An end coordinate that follows from one row is as exact in others as its terms there.
+  std::vector<double> terms(2 * static_cast<std::size_t>(n_), 0);
+  for (const Triplet& e : relation.matrix)
+    terms[e.column] = std::max(terms[e.column], values.magnitude[e.row] / std::abs(e.value));
+  for (const Triplet& e : relation.matrix)
+    values.magnitude[e.row] = std::max(values.magnitude[e.row], std::abs(e.value) * terms[e.column]);
 }
 
 /// δS = p(T)·δq(T) − p(0)·δq(0) vanishes for every end that the relation leaves free.
