@@ -77,6 +77,8 @@ class DiscreteAction {
   double momentum_scale() const { return momentum_scale_; }  ///< largest end gradient of an element
   /// Largest range of a momentum over the ends of elements; 0 where gradients were extended.
   double momentum_range() const;
+  /// Largest momentum by velocity along a path, roughly; 0 where unknown.
+  double inertia(const Path& path) const;
   bool finite() const { return finite_; }
   std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
   std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n

@@ -7,6 +7,13 @@
 
 namespace extremal {
 
+namespace {
+
+/// Of the fastest: momenta where the path is slower say little of inertia.
+constexpr double slow = 0.1;
+
+}  // namespace
+
 void DiscreteAction::clear_sums() {
   action_ = slope_duration_ = residual_ = momentum_scale_ = 0;
   std::fill(nodes.gradient.begin(), nodes.gradient.end(), 0.0);
@@ -99,6 +106,27 @@ double DiscreteAction::momentum_range() const {
     range = std::max(range, high - low);
   }
   return range;
+}
+
+/// Momenta at the ends of elements by velocities within, where these are not small.
+double DiscreteAction::inertia(const Path& path) const {
+  if (extended_ready_) return 0;
+  const auto speed = [&](int k) {
+    const double* delta =
+        path.x(k / lanes) + static_cast<std::size_t>(path.degree() * n_) * lanes + k % lanes;
+    double largest = 0;
+    for (int a = 0; a < n_; ++a) largest = std::max(largest, std::abs(delta[a * lanes]));
+    return largest / path.h(k / lanes)[k % lanes];
+  };
+  double fastest = 0, inertia = 0;
+  for (int k = 0; k < elements_; ++k) fastest = std::max(fastest, speed(k));
+  for (int k = 0; k < elements_; ++k) {
+    const double fast = speed(k),
+                 *p = sums(k / lanes, of_ends) + static_cast<std::size_t>(n_) * lanes + k % lanes;
+    for (int a = 0; a < n_ && fast > slow * fastest; ++a)
+      inertia = std::max(inertia, std::abs(p[a * lanes]) / fast);
+  }
+  return inertia;
 }
 
 void DiscreteAction::gather_pivots(int b) {

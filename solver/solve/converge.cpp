@@ -87,13 +87,17 @@ NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& 
     rest.reuse = contracts(newton);
   } else if (more && first == StepResult::stalled && newton.hold_softest(path)) {
     saved = path;
-    const NewtonReport held = converge(newton, path, tables, rest, on_step);
+    report = converge(newton, path, tables, rest, on_step);
     newton.release();
-    rest.steps -= held.steps;
-    if (!held.reached) {
-      path.copy_values(saved);
-      path.load_ends();
+    report.held = report.reached;
+    // Errors of coarse elements are amplified most in the direction that was held; finer ones tell it.
+    if (report.held) {
+      saved = path;
+      return report;
     }
+    rest.steps -= report.steps;
+    path.copy_values(saved);
+    path.load_ends();
   }
   if (more && rest.steps > 0) return converge(newton, path, tables, rest, on_step);
   report.failure = spent;

@@ -20,6 +20,7 @@ struct NewtonGoal {
 
 struct NewtonReport {
   bool reached = false;
+  bool held = false;          ///< but for the direction in which the action is softest
   double remaining = 1;       ///< expected error that iterating further would remove, roundoff included
   double most_remaining = 1;  ///< at worst
   int steps = 0;
@@ -33,8 +34,8 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
 
 /// The same from a guess. Where a full step goes too far, the direction in which the action is softest is
 /// left out of all steps first: its curvature is not known, perhaps not its sign, as long as the path is
-/// wrong in others (rank-deficient Newton; Deuflhard, Newton Methods for Nonlinear Problems, 4.4). `saved` is
-/// memory.
+/// wrong in others (rank-deficient Newton; Deuflhard, Newton Methods for Nonlinear Problems, 4.4). If the
+/// others converge, finer elements are to go on with all; `saved` is that path then, else memory.
 NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& tables,
                       const NewtonGoal& goal, Path& saved, const std::function<bool()>& on_step = {});
 

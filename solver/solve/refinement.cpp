@@ -33,6 +33,8 @@ constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
 constexpr double filling = 0.1;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
+/// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
+constexpr double much_less = 0.25;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
@@ -77,6 +79,7 @@ double Refinement::step_cost() const {
 
 Refinement::Result Refinement::pursue() {
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
+  varied_mass_ = !problem_.lagrangian->structure().quadratic;
   inertia_ = inertia();
   momentum_range_ = 0;
   held_ = INFINITY;
@@ -205,11 +208,16 @@ void Refinement::measure() {
   scales_ = scales(w_.path, *tables_);
   scales_.q = std::max(scales_.q, rest * first_magnitude_);
   scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
+  const DiscreteAction& action = w_.iteration.action();
+  if (const double varied = varied_mass_ ? action.inertia(w_.path) : 0; varied > 0) inertia_ = varied;
   if (inertia_ == 0) return;
-  // Momenta may vary much less than velocities do, as those of slow bodies in a frame that rotates.
-  if (const double range = w_.iteration.action().momentum_range(); range > 0) momentum_range_ = range;
-  if (momentum_range_ > 0)
-    scales_.v = std::min(scales_.v, std::max(momentum_range_ / inertia_, scales_.slowest));
+  // Momenta may vary much less than velocities: of slow bodies in a frame that rotates, or beside a pole.
+  if (const double range = action.momentum_range(); range > 0) momentum_range_ = range;
+  if (momentum_range_ == 0) return;
+  // The largest inertia, where it varies, bounds errors of momenta from far above.
+  const double range = momentum_range_ / inertia_;
+  if (!varied_mass_ || range < much_less * scales_.v)
+    scales_.v = std::min(scales_.v, std::max(range, scales_.slowest));
 }
 
 /// Of momenta by velocities in a frame that rotates or a magnetic field; 0 elsewhere.
@@ -232,10 +240,25 @@ NewtonReport Refinement::converge_to(double error, bool reuse) {
 }
 
 Refinement::Attempt Refinement::attempt() {
-  NewtonReport newton = approach(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)},
-                                 w_.saved, [this] { return count_step(); });
+  const auto on_step = [this] { return count_step(); };
+  NewtonReport newton =
+      approach(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)}, w_.saved, on_step);
+  if (newton.held) {
+    const ElementTables* const coarse = tables_;
+    const Attempt result = follow(newton);
+    if (result != Attempt::failed || exhausted()) return result;
+    // Steps that fail on finer elements may succeed on the coarse ones, and are cheaper there.
+    w_.path = w_.saved;
+    tables_ = coarse;
+    rebind();
+    newton = converge(w_.iteration, w_.path, *coarse, {coarse_goal, steps_left(coarse_steps)}, on_step);
+  }
   outcome_.message = newton.failure;
-  if (!newton.reached) return Attempt::failed;
+  return newton.reached ? follow(newton) : Attempt::failed;
+}
+
+/// From a path that coarse elements know, to elements that meet the tolerance.
+Refinement::Attempt Refinement::follow(NewtonReport newton) {
   measure();
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {

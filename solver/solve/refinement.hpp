@@ -74,6 +74,7 @@ class Refinement {
     bool from_converged = false;
   };
   Attempt attempt();
+  Attempt follow(NewtonReport newton);
   Attempt judge(const NewtonReport& newton, double aim, const NodeError& nodes);
   void measure();
   double inertia() const;
@@ -98,6 +99,7 @@ class Refinement {
   int most_steps_ = 0, most_elements_ = 0;
   double cost_ = 0, first_cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
+  bool varied_mass_ = false;    ///< with q
   double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
   double momentum_range_ = 0;   ///< when last known
   ResidualTest test_;

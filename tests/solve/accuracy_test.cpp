@@ -219,5 +219,28 @@ INSTANTIATE_TEST_SUITE_P(Cases, Lambert,
                            return name;
                          });
 
+/// Beside a pole of the ellipsoid a geodesic turns fast in longitude, elsewhere it hardly does: its momenta
+/// vary by a 30th of the largest.
+TEST(AccuracyBesideAPole, OfMomentaByTheirOwnRange) {
+  Study study = load(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/found/ellipsoid-geodesic-pole.toml");
+  const Solution exact = solve(study.problem, within(1e-13));
+  constexpr int times = 500;
+  const auto momenta = [&](const Solution& s) {
+    std::vector<Values> points(times + 1, Values(2));
+    Values q(2), v(2);
+    Scratch scratch;
+    for (int i = 0; i <= times; ++i)
+      phase_point(study.problem, s.trajectory, s.duration() * i / times, q, v, points[i], scratch);
+    return points;
+  };
+  const std::vector<Values> truth = momenta(exact);
+  for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
+    const std::vector<Values> found = momenta(solve(study.problem, within(tolerance)));
+    double error = 0;
+    for (int i = 0; i <= times; ++i) error = std::max(error, largest_difference(found[i], truth[i]));
+    EXPECT_LT(error, 10 * tolerance * largest_range(truth)) << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -71,6 +71,8 @@ TEST(Periodic, FigureEightAndNotItsNeighbour) {
       EXPECT_NEAR(s.action, 24.4270486, 3 * tolerance + 1e-7) << scene << " " << tolerance;
       EXPECT_EQ(s.morse_index, 2);
       EXPECT_EQ(s.nullity, 4);
+      // Coarse elements would go astray along the softest direction, and finer ones all the way back.
+      EXPECT_LE(s.iterations, scene == std::string("figure-eight-near.toml") ? 12 : 20) << tolerance;
     }
 }
 

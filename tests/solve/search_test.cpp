@@ -5,6 +5,7 @@
 #include "solve/mesh.hpp"
 #include "solve/motions.hpp"
 #include "solve/refinement.hpp"
+#include "study/study.hpp"
 
 /// \file Extremals from poor guesses: found, verified by integration, the same each time, at bounded cost.
 
@@ -177,6 +178,15 @@ TEST(Search, PathsThatAreOnlyFilledCountAsEffort) {
   EXPECT_GT(filled, 1000);
   EXPECT_LT(filled, 100000);
   EXPECT_EQ(outcome.iterations, 0);
+}
+
+/// The softest direction left out, coarse elements lead finer ones to where no step helps; all taken, not.
+TEST(Search, CoarseElementsHaveTheirTurn) {
+  const Study study =
+      load(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/found/ellipsoid-geodesic-coarse.toml");
+  const Solution s = run(study);
+  EXPECT_TRUE(s.converged()) << s.message;
+  EXPECT_EQ(s.strategy, "newton from the guess");
 }
 
 }  // namespace
