@@ -13,7 +13,7 @@ namespace extremal {
 namespace {
 
 /// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large.
-constexpr double most_phase_force = 1e-7;
+constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
 /// Eigenvalues above this, relative to the largest, are never taken for null.
 constexpr double largest_soft = 1e-8;
 /// Errors of finer elements are less than this part of those before.
@@ -39,13 +39,20 @@ double Refinement::softest(double error, const Path& path, double magnitude) {
   return std::clamp(magnitude > 0 ? 3 * error / magnitude : 0, roundoff, largest_soft);
 }
 
+/// What may hold the phase of a periodic path, relative to the largest momentum: what elements leave out
+/// explains, to second order. Where weak forces all but allow a family, it is more, however fine they are.
+double Refinement::phase_force() const {
+  const double explained = std::max(left_out_ / scales_.q, least_phase_force);
+  return std::min({spare * options_.tolerance, most_phase_force, explained});
+}
+
 /// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
 /// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows:
 /// it tells better than what was expected to remain.
 /// A residual that was left within the tolerance becomes roundoff in a few.
 Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
-  const double phase = problem_.periodic ? std::min(spare * options_.tolerance, most_phase_force) : 0;
+  const double phase = problem_.periodic ? phase_force() : 0;
   NewtonIteration& newton = w_.iteration;
   if (!problem_.periodic) newton.model().set_null_below(softest(left_out_, w_.path, scales_.magnitude));
   bool passed = false;

@@ -87,6 +87,7 @@ class Refinement {
   void adopt(const Plan& plan);
   void refine();
   void record();
+  double phase_force() const;
   Attempt settle(const NewtonReport& report);
   std::string hidden(double amplified) const;
   double step_cost() const;

@@ -143,6 +143,7 @@ TEST(Unseen, ScenesThatAreRefused) {
   EXPECT_EQ(refused("lennard-jones-aside").status, Status::conjugate_ends);
   EXPECT_EQ(refused("magnetic-dipole-gyration").status, Status::not_converged);
   refused("j2-orbit-open");
+  refused("j2-orbit-far");
   refused("magnetic-field-at-rest");
   const Solution apart = refused("lennard-jones-apart");
   EXPECT_NE(apart.message.find("roundoff"), std::string::npos) << apart.message;
