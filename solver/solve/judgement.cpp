@@ -12,7 +12,8 @@ namespace extremal {
 
 namespace {
 
-/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large.
+/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large;
+/// the least may be roundoff.
 constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
 /// Eigenvalues above this, relative to the largest, are never taken for null.
 constexpr double largest_soft = 1e-8;
