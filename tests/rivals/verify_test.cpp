@@ -126,6 +126,15 @@ TEST(Verify, EndsMustBeMet) {
   expect_refuted(other, swing.exact(), 1e-6, "condition 1 on the ends is missed by 1e-12");
   other = fixed_ends(oscillator(), {std::sin(0.3)}, {std::sin(10.3)}, 10.1);
   expect_refuted(other, swing.exact(), 1e-6, "it lasts 10 instead of 10.1");
+  // Nor does a row that hardly knows the start make it less exact.
+  other = swing.problem;
+  other.boundary = {.coordinates = 1, .rows = 0, .matrix = {}, .value = {}};
+  other.boundary.fix(0, false, std::sin(0.3) + 1e-12);
+  const int row = other.boundary.add_row(1e-9 * std::sin(0.3) + std::sin(10.3));
+  other.boundary.add(row, 0, 1e-9);
+  other.boundary.add(row, 1, 1);
+  other.ends = solve_relation(other.boundary);
+  expect_refuted(other, swing.exact(), 1e-6, "condition 1 on the ends is missed by 1e-12");
 }
 
 TEST(Verify, NaturalConditions) {
