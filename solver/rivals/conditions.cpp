@@ -37,14 +37,17 @@ void EndConditions::add_relation(const EndStates& ends, Values& values) const {
     values.magnitude[e.row] += std::abs(term);
     values.derivatives.push_back({e.row, at_end ? 2 * n_ + a : a, e.value});
   }
-  // What follows from one row, the end of its largest coefficient, is as exact in others as the terms there.
+  // What follows from one row, the end of its largest coefficient, is as exact in others as the terms there;
+  // and what follows from those in turn.
   std::vector<double> largest(relation.rows, 0), exact(2 * static_cast<std::size_t>(n_), 0);
   for (const Triplet& e : relation.matrix) largest[e.row] = std::max(largest[e.row], std::abs(e.value));
-  for (const Triplet& e : relation.matrix)
-    if (std::abs(e.value) == largest[e.row] && e.value != 0)
-      exact[e.column] = std::max(exact[e.column], values.magnitude[e.row] / largest[e.row]);
-  for (const Triplet& e : relation.matrix)
-    values.magnitude[e.row] = std::max(values.magnitude[e.row], std::abs(e.value) * exact[e.column]);
+  for (int pass = 0; pass < relation.rows; ++pass) {
+    for (const Triplet& e : relation.matrix)
+      if (std::abs(e.value) == largest[e.row] && e.value != 0)
+        exact[e.column] = std::max(exact[e.column], values.magnitude[e.row] / largest[e.row]);
+    for (const Triplet& e : relation.matrix)
+      values.magnitude[e.row] = std::max(values.magnitude[e.row], std::abs(e.value) * exact[e.column]);
+  }
 }
 
 /// δS = p(T)·δq(T) − p(0)·δq(0) vanishes for every end that the relation leaves free.

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "rivals/conditions.hpp"
 #include "rivals/problems.hpp"
 
 namespace extremal {
@@ -135,6 +136,27 @@ TEST(Verify, EndsMustBeMet) {
   other.boundary.add(row, 1, 1);
   other.ends = solve_relation(other.boundary);
   expect_refuted(other, swing.exact(), 1e-6, "condition 1 on the ends is missed by 1e-12");
+}
+
+/// x(0) = y(0) + 1, y(0) = x(T) + 1, x(T) = y(T) − 1e4: what is left of large numbers is as exact as they.
+TEST(Verify, EndsFollowFromOthersInTurn) {
+  Problem problem = fixed_ends(kepler(), {1, 0}, {0, 1}, 1);
+  problem.boundary = {.coordinates = 2, .rows = 0, .matrix = {}, .value = {}};
+  const auto differ = [&](int e, int from, double value) {
+    const int row = problem.boundary.add_row(value);
+    problem.boundary.add(row, e, 1);
+    problem.boundary.add(row, from, -1);
+  };
+  differ(0, 1, 1);
+  differ(1, 2, 1);
+  differ(2, 3, -1e4);
+  problem.ends = solve_relation(problem.boundary);
+  const Eigen::Vector2d start(2.5, 1.5), end(0.5, 1e4 + 0.5), p = Eigen::Vector2d::Zero();
+  const EndConditions::Values values = EndConditions(problem).at({start, p, p, end, p}, {});
+  for (int row = 0; row < 3; ++row) {
+    EXPECT_EQ(values.residual[row], 0) << row;
+    EXPECT_GT(values.magnitude[row], 1e4) << row;
+  }
 }
 
 TEST(Verify, NaturalConditions) {
