@@ -21,12 +21,12 @@ constexpr double last_steps = 3;
 int count(const std::vector<LaneStage>& stages) { return static_cast<int>(stages.size()); }
 
 /// Order 8 less order 3.
-constexpr dop853::Row third_order_error() {
-  dop853::Row row{};
-  for (int i = 0; i < dop853::stages; ++i) row[i] = dop853::b[i] - dop853::b3[i];
+constexpr dop853::Row<double> third_order_error() {
+  dop853::Row<double> row{};
+  for (int i = 0; i < dop853::stages; ++i) row[i] = dop853::b<double>[i] - dop853::b3<double>[i];
   return row;
 }
-constexpr dop853::Row error3 = third_order_error();
+constexpr dop853::Row<double> error3 = third_order_error();
 
 }  // namespace
 
@@ -113,25 +113,25 @@ void Convoy::plan_steps() {
   }
 }
 
-void Convoy::list(const dop853::Row& row, std::vector<LaneStage>& stages) const {
+void Convoy::list(const dop853::Row<double>& row, std::vector<LaneStage>& stages) const {
   stages.clear();
   for (int j = 0; j < dop853::stages; ++j)
     if (row[j] != 0) stages.push_back({row[j], k_.data() + j * rows_ * lanes});
 }
 
 void Convoy::step(int columns) {
-  const auto combine = [&](const dop853::Row& row) {
+  const auto combine = [&](const dop853::Row<double>& row) {
     list(row, stages_);
     kernels_.combine(y_.data(), h_.data(), stages_.data(), count(stages_), next_.data(),
                      static_cast<int>(rows_));
   };
   flow_.slope(t_.data(), y_.data(), columns, k_.data());
   for (int i = 1; i < dop853::stages; ++i) {
-    combine(dop853::a[i]);
-    for (int l = 0; l < lanes; ++l) stage_t_[l] = t_[l] + dop853::c[i] * h_[l];
+    combine(dop853::a<double>[i]);
+    for (int l = 0; l < lanes; ++l) stage_t_[l] = t_[l] + dop853::c<double>[i] * h_[l];
     flow_.slope(stage_t_.data(), next_.data(), columns, k_.data() + i * rows_ * lanes);
   }
-  combine(dop853::b);
+  combine(dop853::b<double>);
   ++steps_;
 }
 
@@ -139,7 +139,7 @@ void Convoy::step(int columns) {
 void Convoy::judge() {
   const int n = flow_.coordinates();
   std::fill(sums_.begin(), sums_.end(), 0.0);
-  list(dop853::error5, stages_);
+  list(dop853::error5<double>, stages_);
   list(error3, others_);
   const std::size_t half = static_cast<std::size_t>(n) * lanes;
   for (const std::size_t begin : {std::size_t(0), half}) {

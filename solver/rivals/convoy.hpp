@@ -52,7 +52,7 @@ class Convoy {
   void accept(int l);
   void fail();
   bool under_way() const;
-  void list(const dop853::Row& row, std::vector<LaneStage>& stages) const;
+  void list(const dop853::Row<double>& row, std::vector<LaneStage>& stages) const;
 
   LaneFlow& flow_;
   const LaneKernels& kernels_;

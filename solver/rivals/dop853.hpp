@@ -10,7 +10,8 @@
 namespace extremal {
 
 /// Writes y' at (t, y); false where it cannot be evaluated: the step is then shortened.
-using RightHandSide = std::function<bool(double t, std::span<const double> y, std::span<double> slope)>;
+template <class T>
+using RightHandSide = std::function<bool(T t, std::span<const T> y, std::span<T> slope)>;
 
 enum class Integrated { done, step_underflow, step_limit };
 
@@ -23,41 +24,45 @@ struct IntegrationOptions {
   int max_steps = 1000000;
 };
 
-class Dop853 {
+/// In double or long double.
+template <class T>
+class DormandPrince {
  public:
-  Dop853(RightHandSide right_hand_side, int size);
+  DormandPrince(RightHandSide<T> right_hand_side, int size);
 
   /// Takes y from t to `end` (either direction); on failure both are where it stopped. Starts with the step
   /// length that the last call ended with.
-  Integrated advance(double& t, std::span<double> y, double end, const IntegrationOptions& options);
+  Integrated advance(T& t, std::span<T> y, T end, const IntegrationOptions& options);
 
   /// One accepted step towards `end`.
-  Integrated accept_step(double& t, std::span<double> y, double end, const IntegrationOptions& options);
+  Integrated accept_step(T& t, std::span<T> y, T end, const IntegrationOptions& options);
 
   /// Interpolation of order 7 in the last accepted step, of the first `components` of y, which must have a
   /// slope of their own. False where the right-hand side cannot be evaluated.
-  bool prepare_interpolation(std::span<const double> y, int components);
+  bool prepare_interpolation(std::span<const T> y, int components);
   /// At the fraction theta of the step.
-  void interpolate(double theta, std::span<double> y) const;
+  void interpolate(T theta, std::span<T> y) const;
 
   /// One step of length h from (t, y) into next(); false if a stage cannot be evaluated.
-  bool step(double t, std::span<const double> y, double h);
-  std::span<const double> next() const { return next_; }
+  bool step(T t, std::span<const T> y, T h);
+  std::span<const T> next() const { return next_; }
 
   int steps() const { return steps_; }
   int rejected() const { return rejected_; }
 
  private:
-  double error_norm(std::span<const double> y, double h, const IntegrationOptions& options) const;
-  double first_step(double t, std::span<const double> y, double span, const IntegrationOptions& options);
+  T error_norm(std::span<const T> y, T h, const IntegrationOptions& options) const;
+  T first_step(T t, std::span<const T> y, T span, const IntegrationOptions& options);
 
-  RightHandSide slope_;
+  RightHandSide<T> slope_;
   int size_, steps_ = 0, rejected_ = 0;
-  double h_ = 0;
-  double last_t_ = 0, last_h_ = 0;  ///< of the last accepted step
+  T h_ = 0;
+  T last_t_ = 0, last_h_ = 0;  ///< of the last accepted step
   int interpolated_ = 0;
-  std::vector<double> k_, stage_, next_;
-  std::vector<double> last_y_, shape_;  ///< where that step began; 7 coefficients for each component
+  std::vector<T> k_, stage_, next_;
+  std::vector<T> last_y_, shape_;  ///< where that step began; 7 coefficients for each component
 };
+
+using Dop853 = DormandPrince<double>;
 
 }  // namespace extremal

@@ -191,8 +191,11 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
       const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
       judge_resolution(problem, options, outcome, found, w, solution);
       const OtherPoints others = try_other_points(problem, outcome, found, solution, w);
-      if (!options.scheme && others.missed(options, outcome) && polish(w))
-        return finish(problem, options, outcome, w, variation);
+      if (!options.scheme && !outcome.polished && others.missed(options, outcome) && polish(w)) {
+        Outcome polished = outcome;
+        polished.polished = true;
+        return finish(problem, options, polished, w, variation);
+      }
       const double distance = read_minimality(problem, options, variation, solution);
       read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
       if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);

@@ -51,6 +51,7 @@ class NewtonIteration {
   /// From now until forget() gradients are in extended precision, where the system has them. False if they
   /// were, or where the Hessian is a large sparse matrix.
   bool extend();
+  bool extended() const { return extended_; }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
   double noise() const { return noise_; }
 

@@ -100,7 +100,7 @@ bool OtherPoints::missed(const SolveOptions& options, const Outcome& outcome) co
 
 bool polish(Workspace& w) {
   constexpr int most_steps = 5;
-  if (!w.iteration.extend()) return false;
+  if (!w.iteration.extended() && !w.iteration.extend()) return false;
   double before = INFINITY;
   for (int step = 0; step < most_steps; ++step) {
     if (w.iteration.full_step(w.path, 0) != StepResult::ok) return false;

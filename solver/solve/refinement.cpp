@@ -16,8 +16,7 @@ constexpr double coarse_goal = 1e-3;
 /// A coarse element becomes at most so many at a time.
 constexpr double coarse_cut = 4;
 /// Steps allowed for one run of damped Newton.
-constexpr int coarse_steps = 25;
-constexpr int fine_steps = 12;
+constexpr int coarse_steps = 25, fine_steps = 12;
 /// Corrections below this (relative) are roundoff.
 constexpr double roundoff = 1e-15;
 /// Times that elements are planned before all are halved.
@@ -149,6 +148,8 @@ void Refinement::record() {
 
 /// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
 Plan Refinement::plan(double aim) {
+  // Other elements bend a path where they begin: too much where roundoff counts.
+  if (w_.iteration.extended()) return {std::min(w_.path.degree() + 2, highest_degree), {}};
   const bool last = aim <= options_.tolerance;
   const auto error = [&](double share) {
     return Resolution::Error{share * scales_.q, last ? 10 * share * scales_.v : INFINITY};
@@ -265,8 +266,7 @@ Refinement::Attempt Refinement::follow(NewtonReport newton) {
     // Finer elements than one more step makes use of would be wasted.
     NodeError nodes{w_.resolution.at(w_.path.degree()), 0, plans > 0};
     const double known = nodes.left_out.q / scales_.q + newton.remaining;
-    const double reach = std::min(w_.iteration.expected(known), 0.1 * known);
-    const double aim = std::max(finest, reach);
+    const double aim = std::max(finest, std::min(w_.iteration.expected(known), 0.1 * known));
     const Plan next = plan(aim);
     if (next.degree == 0) worst_ = INFINITY;  // not measured yet
     if (next.degree == 0 || plans == most_plans) return Attempt::refine;
@@ -282,7 +282,7 @@ Refinement::Attempt Refinement::follow(NewtonReport newton) {
     nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
     Attempt result = judge(newton, aim, nodes);
     // With gradients that have digits to spare, steps shrink as long as the factors allow.
-    for (double before = 0;
+    for (double before = w_.iteration.extended() ? INFINITY : 0;
          result == Attempt::unreachable && (w_.iteration.extend() || newton.remaining < 0.5 * before);) {
       before = newton.remaining;
       newton = converge_to(aim, false);

@@ -37,6 +37,10 @@ class Refinement {
   void open(const std::vector<double>& mesh, int degree = first_degree);
   /// The same for a path on elements of `tables` that the workspace holds already.
   void take(const ElementTables& tables);
+  /// Until another path is opened gradients are in extended precision; one solve may then take longer.
+  void extend() {
+    if (w_.iteration.extend()) most_cost_ *= extended_growth;
+  }
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
   /// Counts a step that the caller takes; false if there may be no more.
@@ -62,6 +66,7 @@ class Refinement {
  private:
   enum class Attempt { converged, refine, failed, unreachable };
   static constexpr int highest_degree = 16;
+  static constexpr double extended_growth = 5;
   /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
   static constexpr double spare = 0.1;
   /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.

@@ -40,6 +40,7 @@ class Search {
   static int first_elements(const Frequency& frequency);
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   bool begin();
+  bool follow_motion();
   bool resolve_guess();
   Refinement::Result pursue(const char* strategy);
   bool collapsed() const;

@@ -18,6 +18,9 @@ constexpr double longest_element = 2.0;
 constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
 constexpr double guess_floor = 0.25;
 constexpr int most_passes = 10, highest_guess_degree = 12;
+/// Samples of a motion, elements that follow it, and their degree.
+constexpr std::size_t samples_an_element = 320, least_followed = 1024, most_followed = 1 << 15;
+constexpr int followed_degree = 7;
 /// A path of chance that needs more elements than this comes too near a singularity.
 constexpr int most_launched = 128;
 /// A singularity is near where elements differ so much.
@@ -62,7 +65,23 @@ bool Search::begin() {
     mesh_ = w_.frequency.mesh(elements, floor);
     start(mesh_, bend_);
   }
-  if (guess_->guess.motion) resolve_guess();
+  if (guess_->guess.motion && !follow_motion()) resolve_guess();
+  return true;
+}
+
+/// A motion that took its integrator so many steps passes one encounter after the other, which elements would
+/// find one by one: they follow its steps. So they do where those are fewer than the frequency asks for, as
+/// beside a collision. False elsewhere.
+bool Search::follow_motion() {
+  const std::vector<double>& tau = guess_->guess.tau;
+  const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
+  const std::size_t elements = (wanted + lanes) / lanes * lanes;
+  const bool fewer = elements < static_cast<std::size_t>(w_.path.elements());
+  if ((wanted < least_followed && !fewer) || wanted > most_followed) return false;
+  mesh_.resize(elements + 1);
+  for (std::size_t k = 0; k <= elements; ++k) mesh_[k] = tau[k * samples / elements];
+  start(mesh_, bend_, followed_degree);
+  refinement_.extend();
   return true;
 }
 

@@ -35,8 +35,9 @@ struct Outcome {
   const char* strategy = "newton from the guess";
   /// Reached in another way than by Newton's method from the guess, or far from it.
   bool elsewhere = false;
-  double error = 0;      ///< of q, absolute
-  double tolerance = 0;  ///< absolute
+  bool polished = false;  ///< to the last digit, after it converged
+  double error = 0;       ///< of q, absolute
+  double tolerance = 0;   ///< absolute
   int iterations = 0;
   const ElementTables* tables = nullptr;
 

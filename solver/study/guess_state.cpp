@@ -4,6 +4,7 @@
 
 #include "problem/closing.hpp"
 #include "rivals/dop853.hpp"
+#include "rivals/extended_flow.hpp"
 #include "rivals/flow.hpp"
 #include "study/guess.hpp"
 #include "study/naming.hpp"
@@ -29,64 +30,69 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
   return state;
 }
 
-/// Steps of the integrator, relative: its error comes back amplified by what errors grow over half a period.
-constexpr double tolerance = 1e-14;
 /// Cubic interpolation between so many samples of a step keeps about six digits.
 constexpr int samples_a_step = 64;
+/// Roundoff of so many steps is amplified by the encounters that they follow.
+constexpr std::size_t many_steps = 750;
 
-/// The motion from a state, as a flow in (q, p).
-class Motion {
- public:
-  Motion(const Problem& problem, const Location& at)
-      : at_(at),
-        n_(problem.coordinates()),
-        flow_(*problem.lagrangian),
-        method_(
-            [this](double t, std::span<const double> y, std::span<double> s) { return flow_.slope(t, y, s); },
-            2 * problem.coordinates()),
-        between_(2 * n_) {
-    options_.tolerance = tolerance;
-    options_.block = problem.coordinates();
-  }
-
-  /// Times from `from` to `to`, later or earlier, and q there.
-  struct Samples {
-    std::vector<double> t, q;
-  };
-  Samples sample(const InitialState& state, double from, double to) {
-    std::vector<double> y(state.q);
-    y.resize(2 * n_);
-    if (!flow_.momentum(state.q, state.v, from, std::span(y).subspan(n_)))
-      throw SceneError(at_, "L is not finite at the initial state of the guess");
-    Samples samples;
-    const auto add = [&](double t, const std::vector<double>& point) {
-      samples.t.push_back(t);
-      samples.q.insert(samples.q.end(), point.begin(), point.begin() + static_cast<std::ptrdiff_t>(n_));
-    };
-    add(from, y);
-    for (double t = from, before = from; t != to; before = t) {
-      if (method_.accept_step(t, y, to, options_) != Integrated::done ||
-          !method_.prepare_interpolation(y, static_cast<int>(y.size())))
-        throw SceneError(
-            at_, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}", t));
-      for (int k = 1; k < samples_a_step; ++k) {
-        const double theta = static_cast<double>(k) / samples_a_step;
-        method_.interpolate(theta, between_);
-        add(before + theta * (t - before), between_);
-      }
-      add(t, y);
-    }
-    return samples;
-  }
-
- private:
-  Location at_;
-  std::size_t n_;
-  Flow flow_;
-  Dop853 method_;
-  IntegrationOptions options_;
-  std::vector<double> between_;
+/// Times from one to another, later or earlier, and q there.
+struct Samples {
+  std::vector<double> t, q;
 };
+
+/// Steps of the integrator, relative: their errors come back amplified by what errors grow over half a
+/// period.
+template <class Real>
+constexpr double tolerance = 1e-14;
+template <>
+constexpr double tolerance<long double> = 1e-17;
+
+/// The motion from a state at t = `from`, as a flow in (q, p), to t = `to`.
+template <class Real, class AnyFlow>
+Samples sample(AnyFlow flow, const InitialState& state, double from, double to, const Location& at) {
+  const std::size_t n = state.q.size();
+  std::vector<Real> y(state.q.begin(), state.q.end()), between(2 * n);
+  const std::vector<Real> v(state.v.begin(), state.v.end());
+  y.resize(2 * n);
+  if (!flow.momentum(std::span(y).first(n), v, from, std::span(y).subspan(n)))
+    throw SceneError(at, "L is not finite at the initial state of the guess");
+  DormandPrince<Real> method(
+      [&flow](Real t, std::span<const Real> x, std::span<Real> slope) { return flow.slope(t, x, slope); },
+      static_cast<int>(2 * n));
+  IntegrationOptions options;
+  options.tolerance = tolerance<Real>;
+  options.block = static_cast<int>(n);
+  Samples samples;
+  const auto add = [&](Real t, const std::vector<Real>& point) {
+    samples.t.push_back(static_cast<double>(t));
+    for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));
+  };
+  add(from, y);
+  for (Real t = from, before = from; t != to; before = t) {
+    if (method.accept_step(t, y, to, options) != Integrated::done ||
+        !method.prepare_interpolation(y, static_cast<int>(y.size())))
+      throw SceneError(at,
+                       fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}",
+                                   static_cast<double>(t)));
+    for (int k = 1; k < samples_a_step; ++k) {
+      const Real theta = Real(k) / samples_a_step;
+      method.interpolate(theta, between);
+      add(before + theta * (t - before), between);
+    }
+    add(t, y);
+  }
+  return samples;
+}
+
+/// Where it takes many steps, in extended precision if L has it.
+Samples motion_from(const InitialState& state, double from, double to, const Problem& problem,
+                    const Location& at) {
+  const Lagrangian& lagrangian = *problem.lagrangian;
+  Samples samples = sample<double>(Flow(lagrangian), state, from, to, at);
+  if (samples.t.size() > many_steps * samples_a_step && ExtendedFlow::suits(lagrangian))
+    samples = sample<long double>(ExtendedFlow(lagrangian), state, from, to, at);
+  return samples;
+}
 
 /// Where an orbit that closes arrives.
 InitialState closed(const ClosingMap& map, const InitialState& state) {
@@ -98,9 +104,9 @@ InitialState closed(const ClosingMap& map, const InitialState& state) {
 
 /// Of an orbit that closes only the first half is integrated onwards; the second is integrated back from
 /// where it has to arrive: errors grow for half as long. Halfway each gives way to the other.
-void add_halves(const Motion::Samples& first, const Motion::Samples& second, double duration, Guess& guess) {
+void add_halves(const Samples& first, const Samples& second, double duration, Guess& guess) {
   const std::size_t n = first.q.size() / first.t.size();
-  const auto add = [&](const Motion::Samples& half, std::size_t k, double weight) {
+  const auto add = [&](const Samples& half, std::size_t k, double weight) {
     const double share = half.t.front() == 0 ? half.t[k] : duration - half.t[k];
     guess.tau.push_back(half.t[k] / duration);
     for (std::size_t a = 0; a < n; ++a) {
@@ -118,14 +124,13 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
                      Problem& problem) {
   const InitialState state = read_state(values, system);
   const double duration = problem.duration.value;
-  Motion motion(problem, at);
   if (problem.periodic) {
-    const Motion::Samples first = motion.sample(state, 0, duration / 2);
-    const Motion::Samples second =
-        Motion(problem, at).sample(closed(closing_map(problem), state), duration, duration / 2);
+    const Samples first = motion_from(state, 0, duration / 2, problem, at);
+    const Samples second =
+        motion_from(closed(closing_map(problem), state), duration, duration / 2, problem, at);
     add_halves(first, second, duration, problem.guess);
   } else {
-    const Motion::Samples samples = motion.sample(state, 0, duration);
+    const Samples samples = motion_from(state, 0, duration, problem, at);
     for (const double t : samples.t) problem.guess.tau.push_back(t / duration);
     problem.guess.q = samples.q;
   }

@@ -22,7 +22,7 @@ struct Tree {
 Stages graft(const Stages& subtree) {
   Stages result(dop853::stages, 0.0L);
   for (int i = 0; i < dop853::stages; ++i)
-    for (int j = 0; j < i; ++j) result[i] += dop853::a[i][j] * subtree[j];
+    for (int j = 0; j < i; ++j) result[i] += dop853::a<double>[i][j] * subtree[j];
   return result;
 }
 
@@ -53,7 +53,7 @@ std::vector<std::vector<Tree>> rooted_trees(int highest) {
 }
 
 /// Largest |Σ_i b_i Φ_i(t) − 1/γ(t)| over the trees of one order.
-double defect_of_order(const std::vector<Tree>& trees, const dop853::Row& weights) {
+double defect_of_order(const std::vector<Tree>& trees, const dop853::Row<double>& weights) {
   long double largest = 0;
   for (const Tree& tree : trees) {
     long double sum = 0;
@@ -66,30 +66,30 @@ double defect_of_order(const std::vector<Tree>& trees, const dop853::Row& weight
 TEST(Dop853, OrderConditionsOfAllRootedTrees) {
   const auto trees = rooted_trees(9);
   const std::size_t counts[] = {0, 1, 1, 2, 4, 9, 20, 48, 115, 286};
-  dop853::Row b5 = dop853::b;
-  for (int i = 0; i < dop853::stages; ++i) b5[i] -= dop853::error5[i];
+  dop853::Row<double> b5 = dop853::b<double>;
+  for (int i = 0; i < dop853::stages; ++i) b5[i] -= dop853::error5<double>[i];
   for (int order = 1; order <= 9; ++order) {
     ASSERT_EQ(trees[order].size(), counts[order]);
     if (order <= 8) {
-      EXPECT_LE(defect_of_order(trees[order], dop853::b), 2e-15) << order;
+      EXPECT_LE(defect_of_order(trees[order], dop853::b<double>), 2e-15) << order;
     }
     if (order <= 5) {
       EXPECT_LE(defect_of_order(trees[order], b5), 2e-15) << order;
     }
     if (order <= 3) {
-      EXPECT_LE(defect_of_order(trees[order], dop853::b3), 2e-15) << order;
+      EXPECT_LE(defect_of_order(trees[order], dop853::b3<double>), 2e-15) << order;
     }
   }
-  EXPECT_GT(defect_of_order(trees[9], dop853::b), 1e-8);
+  EXPECT_GT(defect_of_order(trees[9], dop853::b<double>), 1e-8);
   EXPECT_GT(defect_of_order(trees[6], b5), 1e-6);
-  EXPECT_GT(defect_of_order(trees[4], dop853::b3), 1e-4);
+  EXPECT_GT(defect_of_order(trees[4], dop853::b3<double>), 1e-4);
 }
 
 TEST(Dop853, StagesAreConsistent) {
   for (int i = 0; i < dop853::stages; ++i) {
     double sum = 0;
-    for (int j = 0; j < i; ++j) sum += dop853::a[i][j];
-    EXPECT_NEAR(sum, dop853::c[i], 2e-14) << i;
+    for (int j = 0; j < i; ++j) sum += dop853::a<double>[i][j];
+    EXPECT_NEAR(sum, dop853::c<double>[i], 2e-14) << i;
   }
 }
 
@@ -131,6 +131,22 @@ TEST(Dop853, InterpolationOfOrderSeven) {
   };
   EXPECT_NEAR(std::log2(error(0.08) / error(0.04)), 8, 0.5);
   EXPECT_LT(error(0.04), 1e-10);
+}
+
+TEST(Dop853, InExtendedPrecision) {
+  DormandPrince<long double> method(
+      [](long double, std::span<const long double> y, std::span<long double> slope) {
+        slope[0] = y[0] * y[0];
+        return true;
+      },
+      1);
+  long double t = 0, y = 1, between = 0;
+  EXPECT_EQ(method.advance(t, {&y, 1}, 0.75L, {.tolerance = 1e-18}), Integrated::done);
+  EXPECT_NEAR(static_cast<double>(y - 4), 0, 2e-17);
+  EXPECT_EQ(method.accept_step(t, {&y, 1}, 0.751L, {.tolerance = 1e-18}), Integrated::done);
+  ASSERT_TRUE(method.prepare_interpolation({&y, 1}, 1));
+  method.interpolate(0.5L, {&between, 1});
+  EXPECT_NEAR(static_cast<double>(between - 1 / (1 - 0.7505L)), 0, 1e-16);
 }
 
 TEST(Dop853, ErrorFollowsTheTolerance) {

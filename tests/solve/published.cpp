@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
+
 #include <fstream>
 
 namespace extremal::laws {
@@ -11,10 +13,11 @@ namespace {
 /// How the system of a case is written in a scene.
 struct PublishedSystem {
   std::string text;                ///< of [system]
-  std::vector<std::string> names;  ///< coordinates; of bodies in the plane: x and y, lists of `bodies`
+  std::vector<std::string> names;  ///< coordinates; of bodies: x, y and perhaps z, lists of `bodies`
   int bodies = 0;
 
-  int coordinates() const { return static_cast<int>(names.size()) * std::max(bodies, 1); }
+  int dimension() const { return static_cast<int>(names.size()); }
+  int coordinates() const { return dimension() * std::max(bodies, 1); }
 };
 
 /// "0.25" or "1/3".
@@ -34,10 +37,10 @@ PublishedSystem system_of(const nlohmann::json& c) {
   const nlohmann::json& parameters = c["parameters"];
   if (parameters.contains("masses")) {
     const int n = static_cast<int>(parameters["masses"].size());
-    return {fmt::format("use = \"nbody\"\nparameters = {{ n = {}, m = {} }}", n,
+    const bool space = c.value("dimension", 2) == 3;
+    return {fmt::format("use = \"{}\"\nparameters = {{ n = {}, m = {} }}", space ? "nbody-space" : "nbody", n,
                         listed(parameters["masses"], 0, n, 1)),
-            {"x", "y"},
-            n};
+            space ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{"x", "y"}, n};
   }
   const std::string kind = c.value("verifier_system", "cr3bp");
   if (kind == "cr3bp")
@@ -57,13 +60,17 @@ PublishedSystem system_of(const nlohmann::json& c) {
   throw std::runtime_error("no system " + kind);
 }
 
-/// The orbit's state at t, turned by an angle and moved.
+/// The orbit's state at t; that of bodies turned and moved.
 class Moved {
  public:
-  Moved(const Solution& solution, bool plane)
-      : path_(solution.trajectory), plane_(plane), n_(solution.trajectory.coordinates) {}
+  Moved(const Solution& solution, const PublishedSystem& system)
+      : path_(solution.trajectory),
+        n_(system.coordinates()),
+        bodies_(system.bodies),
+        dimension_(bodies_ > 0 ? system.dimension() : 0) {}
 
-  int parameters() const { return plane_ ? 4 : 1; }  ///< t, angle, shift
+  int angles() const { return dimension_ == 3 ? 3 : dimension_ == 2 ? 1 : 0; }
+  int parameters() const { return 1 + angles() + dimension_; }  ///< t, angles about z, y and x, shift
 
   Eigen::VectorXd operator()(const Eigen::VectorXd& by) const {
     const double T = path_.duration();
@@ -73,23 +80,24 @@ class Moved {
     path_.at(std::min(t, T), q, v);
     Eigen::VectorXd state(2 * n_);
     state << Eigen::Map<const Eigen::VectorXd>(q.data(), n_), Eigen::Map<const Eigen::VectorXd>(v.data(), n_);
-    if (!plane_) return state;
-    const int bodies = n_ / 2;
-    const double c = std::cos(by[1]), s = std::sin(by[1]);
-    Eigen::VectorXd turned(2 * n_);
-    for (int k = 0; k < 2; ++k)
-      for (int i = 0; i < bodies; ++i) {
-        const double x = state[k * n_ + i], y = state[k * n_ + bodies + i];
-        turned[k * n_ + i] = c * x - s * y + (k == 0 ? by[2] : 0);
-        turned[k * n_ + bodies + i] = s * x + c * y + (k == 0 ? by[3] : 0);
-      }
-    return turned;
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    for (int k = 0; k < angles(); ++k)
+      turn = Eigen::AngleAxisd(by[1 + k], Eigen::Vector3d::Unit(2 - k)) * turn;
+    for (int i = 0; i < 2 * bodies_; ++i) {
+      const bool velocity = i >= bodies_;
+      const int first = velocity * n_ + i % bodies_;
+      Eigen::Vector3d x = Eigen::Vector3d::Zero();
+      for (int a = 0; a < dimension_; ++a) x[a] = state[first + a * bodies_];
+      x = turn * x;
+      for (int a = 0; a < dimension_; ++a)
+        state[first + a * bodies_] = x[a] + (velocity ? 0 : by[1 + angles() + a]);
+    }
+    return state;
   }
 
  private:
   const Trajectory& path_;
-  bool plane_;
-  int n_;
+  int n_, bodies_, dimension_;
 };
 
 }  // namespace
@@ -102,9 +110,10 @@ nlohmann::json cases_of(const char* name) {
 Eigen::VectorXd state_of(const nlohmann::json& c) {
   const Values values = decimals(c["refined"]["state"]);
   Eigen::VectorXd state = Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
-  const int bodies = system_of(c).bodies, n = 2 * bodies;
+  const PublishedSystem system = system_of(c);
+  const int bodies = system.bodies, d = system.dimension();
   for (int i = 0; i < bodies; ++i)
-    for (int k = 0; k < 4; ++k) state[k * bodies + i] = values[(k / 2) * n + 2 * i + k % 2];
+    for (int k = 0; k < 2 * d; ++k) state[k * bodies + i] = values[(k / d) * d * bodies + d * i + k % d];
   return state;
 }
 
@@ -134,10 +143,10 @@ Solution solved(const nlohmann::json& c, double tolerance) {
   return run(load(path));
 }
 
-/// Gauss-Newton over the time, angle and shift, from the time where it is nearest.
+/// Gauss-Newton over the time, angles and shift, from the time where it is nearest.
 double distance(const nlohmann::json& c, const Solution& solution) {
   const Eigen::VectorXd truth = state_of(c);
-  const Moved moved(solution, system_of(c).bodies > 0);
+  const Moved moved(solution, system_of(c));
   Eigen::VectorXd by = Eigen::VectorXd::Zero(moved.parameters());
   double least = INFINITY;
   const int samples = 400;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <span>
+#include <vector>
+
+#include "system/lagrangian.hpp"
+
+/// \file The motion of a Lagrangian system in extended precision: encounters amplify the roundoff of double.
+
+namespace extremal {
+
+/// As Flow, for L = ½ q'ᵀ M q' + q'ᵀ C q + aᵀ q' + R(q, t).
+class ExtendedFlow {
+ public:
+  using Real = long double;
+
+  /// Whether L has that form, few coordinates, and derivatives in extended precision.
+  static bool suits(const Lagrangian& lagrangian);
+  /// `lagrangian` must outlive it.
+  explicit ExtendedFlow(const Lagrangian& lagrangian);
+
+  /// p = M q' + C q + a. False if it is not finite.
+  bool momentum(std::span<const Real> q, std::span<const Real> v, Real t, std::span<Real> p) const;
+  /// (q, p)' for y = (q, p); false if it is not finite.
+  bool slope(Real t, std::span<const Real> y, std::span<Real> slope);
+
+ private:
+  const Lagrangian& lagrangian_;
+  const Structure& structure_;
+  Eigen::PartialPivLU<Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>> mass_;
+  std::vector<Real> rows_;
+  ExtendedScratch scratch_;
+};
+
+}  // namespace extremal
