@@ -10,6 +10,9 @@ namespace extremal {
 namespace {
 
 constexpr double noise = 0x1p-50;
+/// Squares of how much smaller one coefficient may be expected than the last. Where all of one coordinate is
+/// in the coefficients before, another's would seem to fall still faster.
+constexpr double fastest_fall = 1e-4, slowest_fall = 0.95;
 /// A range this much smaller than the coordinates is roundoff.
 constexpr double negligible = 1e-12;
 /// Velocities are not asked for more digits than this share of the mean speed gives.
@@ -105,7 +108,8 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
       // Coefficients at roundoff of the element's own extent tell nothing.
       if (std::max(last[lane], second[lane]) < noise * extent[lane]) last[lane] = second[lane] = 0;
       const double size = std::max(last[lane], second[lane]);
-      const double rate = before[lane] > 0 ? std::clamp(size / before[lane], 1e-6, 0.95) : 0.95;
+      const double rate =
+          before[lane] > 0 ? std::clamp(size / before[lane], fastest_fall, slowest_fall) : slowest_fall;
       const double fall = size == 0 ? 1e-3 : std::sqrt(rate);
       tails_.push_back({std::max(last[lane], second[lane] * fall), fall, path.h(b)[lane]});
     }

@@ -219,6 +219,28 @@ INSTANTIATE_TEST_SUITE_P(Cases, Lambert,
                            return name;
                          });
 
+/// x falls, y swings a little: x(t) = 5t², which any element has at once, y(t) = sin(3t)/1000.
+TEST(AccuracyWhereOneCoordinateIsAPolynomial, OfTheOther) {
+  const auto system = trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1]) / 2 + 10 * q[0] - 4.5 * q[1] * q[1];
+  });
+  const Problem problem = fixed_ends(system, {0, 0}, {5, std::sin(3) / 1000}, 1);
+  for (const double tolerance : {1e-8, 1e-10, 1e-12}) {
+    const Solution s = Solver().solve(problem, within(tolerance));
+    ASSERT_TRUE(s.converged()) << s.message;
+    double error = 0, of_velocity = 0;
+    for (int i = 0; i <= 200; ++i) {
+      const double t = i / 200.0;
+      const State found = at(s.trajectory, t);
+      error = std::max(error, largest_difference(found.q, Values{5 * t * t, std::sin(3 * t) / 1000}));
+      of_velocity =
+          std::max(of_velocity, largest_difference(found.v, Values{10 * t, 3 * std::cos(3 * t) / 1000}));
+    }
+    EXPECT_LE(of_velocity, 10 * tolerance * 10);
+    EXPECT_GE(s.error_estimate, 0.1 * error);
+  }
+}
+
 /// Beside a pole of the ellipsoid a geodesic turns fast in longitude, elsewhere it hardly does: its momenta
 /// vary by a 30th of the largest.
 TEST(AccuracyBesideAPole, OfMomentaByTheirOwnRange) {
