@@ -10,9 +10,10 @@ namespace extremal {
 namespace {
 
 constexpr double noise = 0x1p-50;
-/// Squares of how much smaller one coefficient may be expected than the last. Where all of one coordinate is
-/// in the coefficients before, another's would seem to fall still faster.
-constexpr double fastest_fall = 1e-4, slowest_fall = 0.95;
+/// Squares of how much smaller one coefficient may be expected than the last, of all coordinates together.
+/// Where all of one is in the coefficients before, another's seem to fall faster than they do: what falls by
+/// more than `fast` is judged by the coordinate with the largest of the last.
+constexpr double fastest = 1e-6, fast = 1e-4, slowest = 0.95;
 /// A range this much smaller than the coordinates is roundoff.
 constexpr double negligible = 1e-12;
 /// Velocities are not asked for more digits than this share of the mean speed gives.
@@ -82,7 +83,7 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
   tails_.clear();
   double c[4][lanes], extent[lanes];
   for (int b = 0; b < path.batches(); ++b) {
-    double last[lanes] = {}, second[lanes] = {}, before[lanes] = {};
+    double last[lanes] = {}, second[lanes] = {}, before[lanes] = {}, own[lanes] = {};
     std::fill_n(extent, lanes, 0.0);
     for (int u = 0; u < n * (s - 1); ++u)
       for (int lane = 0; lane < lanes; ++lane)
@@ -98,9 +99,12 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
           std::fill_n(c[k], lanes, 0.0);
       }
       for (int lane = 0; lane < lanes; ++lane) {
-        last[lane] = std::max(last[lane], std::abs(c[0][lane]));
-        second[lane] = std::max(second[lane], std::abs(c[1][lane]));
-        before[lane] = std::max({before[lane], std::abs(c[2][lane]), std::abs(c[3][lane])});
+        const double c0 = std::abs(c[0][lane]), c1 = std::abs(c[1][lane]),
+                     earlier = std::max(std::abs(c[2][lane]), std::abs(c[3][lane]));
+        own[lane] = std::max(c0, c1) > std::max(last[lane], second[lane]) ? earlier : own[lane];
+        last[lane] = std::max(last[lane], c0);
+        second[lane] = std::max(second[lane], c1);
+        before[lane] = std::max(before[lane], earlier);
       }
     }
     const int count = std::min(lanes, path.elements() - b * lanes);
@@ -108,9 +112,9 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
       // Coefficients at roundoff of the element's own extent tell nothing.
       if (std::max(last[lane], second[lane]) < noise * extent[lane]) last[lane] = second[lane] = 0;
       const double size = std::max(last[lane], second[lane]);
-      const double rate =
-          before[lane] > 0 ? std::clamp(size / before[lane], fastest_fall, slowest_fall) : slowest_fall;
-      const double fall = size == 0 ? 1e-3 : std::sqrt(rate);
+      const double least = size > 0 ? std::clamp(size / own[lane], fastest, fast) : fastest;
+      const double fall =
+          std::sqrt(before[lane] > 0 ? std::clamp(size / before[lane], least, slowest) : slowest);
       tails_.push_back({std::max(last[lane], second[lane] * fall), fall, path.h(b)[lane]});
     }
   }
