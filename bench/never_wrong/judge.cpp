@@ -100,13 +100,6 @@ class Judge {
         blame("invalid", fmt::format("conjugate time {} after {}, duration {}", time, before, duration));
       before = time;
     }
-    if (study_.problem.ends.free > 0 || study_.problem.duration.free || study_.options.scheme ||
-        !solution_.conjugate_times_known || !solution_.morse_index)
-      return;
-    const auto conjugate = static_cast<int>(solution_.conjugate_times.size());
-    if (conjugate != *solution_.morse_index && solution_.nullity == 0 &&
-        !rests(study_.problem, solution_.trajectory))
-      blame("index", fmt::format("index {} with {} conjugate times", *solution_.morse_index, conjugate));
   }
 
   void check_error() {
@@ -124,8 +117,9 @@ class Judge {
     verdict_.estimate_over = solution_.error_estimate / error.q;
     if (*verdict_.estimate_over >= least_estimate) return;
     const std::optional<double> shot = error_by_shooting(study_, solution_);
-    if (shot && solution_.error_estimate >= least_estimate * *shot)
-      verdict_.estimate_over.reset();  // the reference is another extremal
+    // A reference much farther off than that is another extremal.
+    if (shot && (solution_.error_estimate >= least_estimate * *shot || *shot < least_estimate * error.q))
+      verdict_.estimate_over.reset();
     else
       blame(adapted_ ? "estimate" : "pinned estimate",
             fmt::format("estimate {:.3g}, error {:.3g} by a reference of {:.3g}, {:.3g} by shooting",

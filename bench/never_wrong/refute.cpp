@@ -105,7 +105,17 @@ class Refutation {
     if (!by_distance_ && fast > margin + roundoff / (10 * tolerance_ * average))
       return {"velocity", fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}", fast,
                                       found.worst_time)};
+    if (solution_.conjugate_times_known && found.orientation * expected_orientation() < 0)
+      return {"index", fmt::format("index {}, but Jacobi fields that are integrated turn round an {} number "
+                                   "of times",
+                                   *solution_.morse_index, found.orientation < 0 ? "odd" : "even")};
     return {};
+  }
+
+  /// (−1)^index with fixed ends, off conjugate ends; 0 elsewhere.
+  int expected_orientation() const {
+    if (problem_.ends.free > 0 || problem_.duration.free || solution_.nullity != 0) return 0;
+    return *solution_.morse_index % 2 == 0 ? 1 : -1;
   }
 
   /// The largest entry of L_vv at the start: momentum by velocity.

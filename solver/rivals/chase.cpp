@@ -63,6 +63,8 @@ Chase::Chase(const Problem& problem, const Trajectory& trajectory, const VerifyO
       flow_(*problem.lagrangian),
       integrator_([this](double t, auto y, auto slope) { return flow_.slope_with_variations(t, y, slope); },
                   static_cast<int>(2 * n_ * (1 + columns_))),
+      shorter_([this](double t, auto y, auto slope) { return flow_.slope(t, y, slope); },
+               static_cast<int>(2 * n_)),
       y_(2 * n_ * (1 + columns_)),
       v_(n_),
       motion_v_(n_),
@@ -133,6 +135,12 @@ double Chase::growth() const {
 /// Without the distance from the extremal only long pieces show errors that vary slowly.
 double Chase::growth_limit() const { return complete_ ? options_.growth : longer * options_.growth; }
 
+/// Whether q is as near to that of a state as is allowed.
+bool Chase::near(std::span<const double> state, std::span<const double> q) const {
+  return std::equal(q.begin(), q.end(), state.begin(),
+                    [this](double x, double y) { return std::abs(x - y) <= allowed_q_; });
+}
+
 bool Chase::compare(double t, std::span<const double> q, std::span<const double> v,
                     std::span<const double> state, Verification& result) {
   if (!flow_.velocity(state.first(n_), state.subspan(n_, n_), t, motion_v_)) return false;
@@ -149,7 +157,8 @@ bool Chase::compare(double t, std::span<const double> q, std::span<const double>
   return true;
 }
 
-/// At the samples within the step.
+/// At the samples within the step. Where the interpolation, which is less exact than the step, misses one, a
+/// step that ends there counts.
 bool Chase::compare_step(double before, double now, Verification& result) {
   if (compared_ == t_samples_.size() || t_samples_[compared_] > now) return true;
   if (!integrator_.prepare_interpolation(y_, static_cast<int>(2 * n_))) return false;
@@ -158,7 +167,12 @@ bool Chase::compare_step(double before, double now, Verification& result) {
     integrator_.interpolate(std::clamp((t - before) / (now - before), 0.0, 1.0), interpolated_);
     const std::span<const double> q(q_samples_.data() + compared_ * n_, n_);
     const std::span<const double> v(v_samples_.data() + compared_ * n_, n_);
-    if (!compare(t, q, v, interpolated_, result)) return false;
+    std::span<const double> state = interpolated_;
+    if (!near(state, q)) {
+      if (!shorter_.step(before, std::span(saved_).first(2 * n_), t - before)) return false;
+      state = shorter_.next();
+    }
+    if (!compare(t, q, v, state, result)) return false;
   }
   return true;
 }

@@ -37,6 +37,7 @@ class Chase {
   bool state_at(double t, std::span<double> y);
   void begin_piece(double t);
   bool compare_step(double before, double now, Verification& result);
+  bool near(std::span<const double> state, std::span<const double> q) const;
   bool compare(double t, std::span<const double> q, std::span<const double> v, std::span<const double> state,
                Verification& result);
   double growth() const;
@@ -52,7 +53,7 @@ class Chase {
   const bool complete_;        ///< all variations are integrated, not only some
   const std::size_t columns_;  ///< variations
   Flow flow_;
-  Dop853 integrator_;
+  Dop853 integrator_, shorter_;
   PhaseScales scales_;
   double allowed_q_ = 0, allowed_v_ = 0;
   double reach_ = 1;  ///< range of q by its size: what the integrator's relative tolerance is measured by

@@ -39,14 +39,14 @@ void EndConditions::add_relation(const EndStates& ends, Values& values) const {
   }
   // What follows from one row, the end of its largest coefficient, is as exact in others as the terms there;
   // and what follows from those in turn.
-  std::vector<double> largest(relation.rows, 0), exact(2 * static_cast<std::size_t>(n_), 0);
+  std::vector<double> largest(relation.rows, 0), unknown(2 * static_cast<std::size_t>(n_), 0);
   for (const Triplet& e : relation.matrix) largest[e.row] = std::max(largest[e.row], std::abs(e.value));
   for (int pass = 0; pass < relation.rows; ++pass) {
     for (const Triplet& e : relation.matrix)
       if (std::abs(e.value) == largest[e.row] && e.value != 0)
-        exact[e.column] = std::max(exact[e.column], values.magnitude[e.row] / largest[e.row]);
+        unknown[e.column] = std::max(unknown[e.column], values.magnitude[e.row] / largest[e.row]);
     for (const Triplet& e : relation.matrix)
-      values.magnitude[e.row] = std::max(values.magnitude[e.row], std::abs(e.value) * exact[e.column]);
+      values.magnitude[e.row] = std::max(values.magnitude[e.row], std::abs(e.value) * unknown[e.column]);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -10,6 +12,10 @@ namespace {
 /// Directions whose singular value is below this part of the largest entry count as free.
 constexpr double least_singular = 1e-6;
 constexpr int refinements = 3;
+/// Among orbits of a family the nearest in q is meant: momenta may be off by much more.
+constexpr double weight_of_momenta = 1e-3;
+/// Variations of q smaller than this, of those of q and p together, may have either sign.
+constexpr double least_variation = 1e-3;
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
@@ -62,8 +68,11 @@ Eigen::VectorXd correction(const std::vector<MotionPiece>& pieces, const EndCond
   const Eigen::SparseMatrix<double> transposed = system.matrix.transpose();
   Eigen::SparseMatrix<double> normal = transposed * system.matrix;
   const double largest = normal.diagonal().maxCoeff();
-  for (Eigen::Index i = 0; i < normal.rows(); ++i)
-    normal.coeffRef(i, i) += least_singular * least_singular * largest;
+  const Eigen::Index size = pieces.front().transition.rows();
+  for (Eigen::Index i = 0; i < normal.rows(); ++i) {
+    const double weight = least_singular * (i % size < size / 2 ? 1 : weight_of_momenta);
+    normal.coeffRef(i, i) += weight * weight * largest;
+  }
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(normal);
   if (factors.info() != Eigen::Success) return {};
   Eigen::VectorXd x = Eigen::VectorXd::Zero(system.matrix.cols());
@@ -85,6 +94,23 @@ double largest_change(const std::vector<MotionPiece>& pieces, const Eigen::Vecto
       largest = std::max(largest, change.cwiseAbs().maxCoeff());
     }
   return largest;
+}
+
+/// Of the fields that leave q(0) where it is, an orthonormal basis of what they span; what it was made from
+/// is it times a triangular matrix, which tells by the signs on its diagonal whether it turned them round.
+int orientation(const std::vector<MotionPiece>& pieces) {
+  const Eigen::Index n = pieces.front().transition.rows() / 2;
+  Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(2 * n, n);
+  fields.bottomRows(n).setIdentity();
+  int sign = 1;
+  for (const MotionPiece& piece : pieces) {
+    const Eigen::MatrixXd next = piece.transition * fields;
+    fields = orthonormal(next);
+    if (((fields.transpose() * next).diagonal().array() < 0).count() % 2 != 0) sign = -sign;
+  }
+  const Eigen::MatrixXd q = fields.topRows(n);
+  if (!(singular_values(q).minCoeff() > least_variation)) return 0;
+  return q.determinant() < 0 ? -sign : sign;
 }
 
 }  // namespace extremal

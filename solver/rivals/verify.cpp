@@ -105,6 +105,7 @@ class Verifier {
 
   std::string judge_distance() {
     if (chase_.pieces().empty()) return {};
+    result_.orientation = orientation(chase_.pieces());
     const Eigen::VectorXd change = correction(chase_.pieces(), values_, chase_.scales());
     if (change.size() == 0) return {};
     const double largest = largest_change(chase_.pieces(), change);

@@ -19,12 +19,48 @@ constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
 constexpr double largest_soft = 1e-8;
 /// Errors of finer elements are less than this part of those before.
 constexpr double element_fall = 0.25;
+/// Of the size of the path that was started from: a path smaller than this is at rest.
+constexpr double rest = 1e-12;
+/// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
+constexpr double much_less = 0.25;
 /// Steps that end what Newton's method began.
 constexpr int most_polish = 3;
 /// They use the factors there are as long as they contract so much.
 constexpr double worst_chord = 0.5;
 
 }  // namespace
+
+void Refinement::measure() {
+  w_.resolution.measure(w_.path, *tables_);
+  scales_ = scales(w_.path, *tables_);
+  scales_.q = std::max(scales_.q, rest * first_magnitude_);
+  scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
+  measure_momenta();
+  if (inertia_ == 0 || momentum_range_ == 0) return;
+  // The largest inertia, where it varies, bounds errors of momenta from far above.
+  const double range = momentum_range_ / inertia_;
+  if (!varied_mass_ || range < much_less * scales_.v)
+    scales_.v = std::min(scales_.v, std::max(range, scales_.slowest));
+}
+
+/// Momenta may vary much less than velocities: of slow bodies in a frame that rotates, or beside a pole. What
+/// extended precision does not show was measured before.
+void Refinement::measure_momenta() {
+  const DiscreteAction& action = w_.iteration.action();
+  if (const double varied = varied_mass_ ? action.inertia(w_.path) : 0; varied > 0) inertia_ = varied;
+  if (inertia_ == 0) return;
+  if (const double range = action.momentum_range(); range > 0) momentum_range_ = range;
+}
+
+/// Of momenta by velocities in a frame that rotates or a magnetic field; 0 elsewhere.
+double Refinement::inertia() const {
+  const Structure& structure = problem_.lagrangian->structure();
+  double largest = 0;
+  if (!structure.gyroscopic.empty())
+    for (const Triplet& m : structure.mass)
+      if (m.row == m.column) largest = std::max(largest, std::abs(m.value));
+  return largest;
+}
 
 /// In units of what the tolerance allows.
 double Refinement::excess(const Resolution::Error& error) const {

@@ -25,6 +25,15 @@ double longest_window(const Problem& problem, const SolveOptions& options, const
   return unit * std::min(pi, window_bound(*options.scheme, whole));
 }
 
+/// Morse's theorem: with fixed ends the index is the number of conjugate times. These are found on pieces
+/// that resolve Jacobi fields, which elements that resolve the path need not. Of pinned elements it is their
+/// own.
+void count_conjugate_times(const Problem& problem, const SolveOptions& options, Solution& solution) {
+  if (problem.ends.free > 0 || options.elements > 0 || solution.nullity != 0) return;
+  solution.morse_index = static_cast<int>(solution.conjugate_times.size());
+  solution.minimizing = solution.morse_index == 0;
+}
+
 }  // namespace
 
 double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
@@ -50,11 +59,13 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   // T as the sum of the elements' lengths may differ by roundoff.
   if (!solution.windows.empty()) solution.windows.back()[1] = solution.duration();
   solution.conjugate_times_known = found.conjugate_times.has_value();
-  if (found.conjugate_times)
+  if (found.conjugate_times) {
     solution.conjugate_times = *std::move(found.conjugate_times);
-  else
+    count_conjugate_times(problem, options, solution);
+  } else {
     solution.message += fmt::format("; conjugate times are only found for up to {} coordinates",
                                     SecondVariation::most_to_find_all);
+  }
   solution.certificate = bounded && !refuted ? Certificate::global : Certificate::sampled;
   return found.distance;
 }

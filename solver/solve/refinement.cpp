@@ -23,8 +23,6 @@ constexpr double roundoff = 1e-15;
 constexpr int most_plans = 6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 constexpr double suspicious_step = 1e6;
-/// Of the size of the path that was started from: a path smaller than this is at rest.
-constexpr double rest = 1e-12;
 /// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
 /// guess that asks for more elements may make of it.
 constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
@@ -32,8 +30,6 @@ constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
 constexpr double filling = 0.1;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
-/// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
-constexpr double much_less = 0.25;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
@@ -61,6 +57,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
 
 void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
+  followed_ = false;
   w_.iteration.forget();
   tables_ = &tables;
   rebind();
@@ -82,6 +79,11 @@ Refinement::Result Refinement::pursue() {
   inertia_ = inertia();
   momentum_range_ = 0;
   held_ = INFINITY;
+  if (followed_) {
+    w_.iteration.action().evaluate_gradient(w_.path);
+    measure_momenta();
+    w_.iteration.extend();
+  }
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
@@ -148,8 +150,8 @@ void Refinement::record() {
 
 /// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
 Plan Refinement::plan(double aim) {
-  // Other elements bend a path where they begin: too much where roundoff counts.
-  if (w_.iteration.extended()) return {std::min(w_.path.degree() + 2, highest_degree), {}};
+  // Other elements bend a path where they begin.
+  if (followed_) return w_.path.degree() < highest_degree ? Plan{w_.path.degree() + 2, {}} : Plan{};
   const bool last = aim <= options_.tolerance;
   const auto error = [&](double share) {
     return Resolution::Error{share * scales_.q, last ? 10 * share * scales_.v : INFINITY};
@@ -200,35 +202,8 @@ void Refinement::refine() {
 }
 
 int Refinement::steps_left(int wanted) const {
-  const double affordable = std::min((share_ * most_cost_ - cost_) / step_cost(), 1e6);
-  return std::max(0, std::min({wanted, steps_left(), static_cast<int>(affordable)}));
-}
-
-void Refinement::measure() {
-  w_.resolution.measure(w_.path, *tables_);
-  scales_ = scales(w_.path, *tables_);
-  scales_.q = std::max(scales_.q, rest * first_magnitude_);
-  scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
-  const DiscreteAction& action = w_.iteration.action();
-  if (const double varied = varied_mass_ ? action.inertia(w_.path) : 0; varied > 0) inertia_ = varied;
-  if (inertia_ == 0) return;
-  // Momenta may vary much less than velocities: of slow bodies in a frame that rotates, or beside a pole.
-  if (const double range = action.momentum_range(); range > 0) momentum_range_ = range;
-  if (momentum_range_ == 0) return;
-  // The largest inertia, where it varies, bounds errors of momenta from far above.
-  const double range = momentum_range_ / inertia_;
-  if (!varied_mass_ || range < much_less * scales_.v)
-    scales_.v = std::min(scales_.v, std::max(range, scales_.slowest));
-}
-
-/// Of momenta by velocities in a frame that rotates or a magnetic field; 0 elsewhere.
-double Refinement::inertia() const {
-  const Structure& structure = problem_.lagrangian->structure();
-  double largest = 0;
-  if (!structure.gyroscopic.empty())
-    for (const Triplet& m : structure.mass)
-      if (m.row == m.column) largest = std::max(largest, std::abs(m.value));
-  return largest;
+  const double more = std::min((affordable() - cost_) / step_cost(), 1e6);
+  return std::max(0, std::min({wanted, steps_left(), static_cast<int>(more)}));
 }
 
 NewtonReport Refinement::converge_to(double error, bool reuse) {

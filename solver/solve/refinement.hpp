@@ -30,17 +30,16 @@ class Refinement {
     share_ = share;
   }
   int steps_left() const { return most_steps_ - outcome_.iterations; }
-  bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= share_ * most_cost_; }
+  bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= affordable(); }
 
   static constexpr int first_degree = 4;
   /// Puts an empty path on `mesh` into the workspace, to be filled by the caller.
   void open(const std::vector<double>& mesh, int degree = first_degree);
   /// The same for a path on elements of `tables` that the workspace holds already.
   void take(const ElementTables& tables);
-  /// Until another path is opened gradients are in extended precision; one solve may then take longer.
-  void extend() {
-    if (w_.iteration.extend()) most_cost_ *= extended_growth;
-  }
+  /// The path that was opened follows a motion through many encounters: its elements stay where they are,
+  /// with gradients in extended precision.
+  void follow() { followed_ = true; }
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
   /// Counts a step that the caller takes; false if there may be no more.
@@ -66,7 +65,7 @@ class Refinement {
  private:
   enum class Attempt { converged, refine, failed, unreachable };
   static constexpr int highest_degree = 16;
-  static constexpr double extended_growth = 5;
+  static constexpr double followed_growth = 5;
   /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
   static constexpr double spare = 0.1;
   /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
@@ -82,10 +81,13 @@ class Refinement {
   Attempt follow(NewtonReport newton);
   Attempt judge(const NewtonReport& newton, double aim, const NodeError& nodes);
   void measure();
+  void measure_momenta();
   double inertia() const;
   /// Newton until what is left to do is below `error`, relative; `reuse`: with the factors there are.
   NewtonReport converge_to(double error, bool reuse);
   int steps_left(int wanted) const;
+  /// Extended precision takes longer.
+  double affordable() const { return (followed_ ? followed_growth : 1) * share_ * most_cost_; }
   Plan plan(double aim);
   double excess(const Resolution::Error& error) const;
   void raise(int degree);
@@ -106,6 +108,7 @@ class Refinement {
   double cost_ = 0, first_cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
   bool varied_mass_ = false;    ///< with q
+  bool followed_ = false;       ///< see follow()
   double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
   double momentum_range_ = 0;   ///< when last known
   ResidualTest test_;

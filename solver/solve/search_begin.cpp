@@ -70,18 +70,19 @@ bool Search::begin() {
 }
 
 /// A motion that took its integrator so many steps passes one encounter after the other, which elements would
-/// find one by one: they follow its steps. So they do where those are fewer than the frequency asks for, as
-/// beside a collision. False elsewhere.
+/// find one by one: they follow its steps. So they do beside a collision, where the frequency asks for more.
+/// False elsewhere.
 bool Search::follow_motion() {
   const std::vector<double>& tau = guess_->guess.tau;
   const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
   const std::size_t elements = (wanted + lanes) / lanes * lanes;
-  const bool fewer = elements < static_cast<std::size_t>(w_.path.elements());
-  if ((wanted < least_followed && !fewer) || wanted > most_followed) return false;
+  const bool many = wanted >= least_followed && wanted <= most_followed;
+  const bool collides = w_.frequency.grading(guess_floor) > collision;
+  if (!many && !(collides && elements < static_cast<std::size_t>(w_.path.elements()))) return false;
   mesh_.resize(elements + 1);
   for (std::size_t k = 0; k <= elements; ++k) mesh_[k] = tau[k * samples / elements];
   start(mesh_, bend_, followed_degree);
-  refinement_.extend();
+  if (many) refinement_.follow();
   return true;
 }
 

@@ -63,8 +63,11 @@ Samples sample(AnyFlow flow, const InitialState& state, double from, double to, 
   options.tolerance = tolerance<Real>;
   options.block = static_cast<int>(n);
   Samples samples;
+  // Extended times may be one in double precision.
   const auto add = [&](Real t, const std::vector<Real>& point) {
-    samples.t.push_back(static_cast<double>(t));
+    const double rounded = static_cast<double>(t);
+    if (!samples.t.empty() && samples.t.back() == rounded) return;
+    samples.t.push_back(rounded);
     for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));
   };
   add(from, y);

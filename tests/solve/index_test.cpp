@@ -102,6 +102,23 @@ TEST(MorseIndex, OfMixedEnds) {
   }
 }
 
+/// A motion along x says nothing of how fast y may swing; the elements must know it all the same.
+TEST(MorseIndex, OfWhatAGuessDoesNotShow) {
+  Problem problem = with_ends(
+      trace(2, [](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1] - 40000 * q[1] * q[1]) / 2; }), 1,
+      [](auto& b) {
+        b.fix(0, false, 0);
+        b.fix(0, true, 1);
+      });
+  for (int k = 0; k <= 320; ++k) {
+    problem.guess.tau.push_back(k / 320.0);
+    problem.guess.q.insert(problem.guess.q.end(), {k / 320.0, 0});
+  }
+  problem.guess.motion = true;
+  const Solution s = solve(make_problem(problem), within(1e-9));
+  EXPECT_EQ(s.morse_index, std::floor(200 / pi) + 1);
+}
+
 /// In the plane, with T fixed: time shift, rotation, and the family of ellipses with the same period.
 TEST(Nullity, OfPeriodicKeplerOrbitsIsThree) {
   for (double e : {0.0, 0.3, 0.6})
