@@ -80,6 +80,7 @@ class DiscreteAction {
   /// Largest momentum by velocity along a path, roughly; 0 where unknown.
   double inertia(const Path& path) const;
   bool finite() const { return finite_; }
+  const ElementTables& tables() const { return *tables_; }
   std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
   std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n
 

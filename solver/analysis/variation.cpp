@@ -51,7 +51,8 @@ int degree_for(int n, int trajectory_degree) {
 
 }  // namespace
 
-bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory) {
+bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
+                               const Condensed& condensed) {
   if (trajectory.coordinates > most_coordinates)
     throw std::invalid_argument(fmt::format("second variation of {} coordinates; at most {} are possible",
                                             trajectory.coordinates, most_coordinates));
@@ -65,9 +66,9 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   pieces_.clear();
   forms_.clear();
   too_many_ = false;
-  const bool regular = cut();
+  const bool taken = condensed.action && take(condensed), regular = taken || cut();
   if (!regular) pieces_.clear();
-  evaluated_ = regular ? pieces_.back().first : -1;
+  evaluated_ = regular && !taken ? pieces_.back().first : -1;
   forget();
   return regular;
 }
@@ -112,8 +113,8 @@ bool SecondVariation::cut() {
     evaluate(batch_);
     if (!action_.finite()) return false;
     waiting_.resize(waiting_.size() - count);
-    if (resolved(static_cast<int>(count))) {
-      keep(batch_);
+    if (resolved(action_, static_cast<int>(count), allowed_tail)) {
+      keep(action_, batch_);
       too_many_ = this->count() + static_cast<int>(waiting_.size()) > most;
       if (too_many_) return false;
       continue;
@@ -153,44 +154,57 @@ void SecondVariation::evaluate(std::span<const Part> parts) {
   action_.evaluate(path_);
 }
 
+/// Elements that were condensed by another, if they are short enough.
+bool SecondVariation::take(const Condensed& condensed) {
+  const int elements = trajectory_->elements();
+  if (!resolved(*condensed.action, elements, condensed.tail)) return false;
+  mesh_ = trajectory_->times;
+  batch_.clear();
+  for (int k = 0; k < elements; ++k) batch_.push_back({k, 0, 1});
+  keep(*condensed.action, batch_);
+  return true;
+}
+
 /// Whether pieces are short enough, tried with one Jacobi field that has a share of all.
-bool SecondVariation::resolved(int count) {
-  if (action_.nodes.negative > 0 || !(action_.nodes.pivot_ratio > least_pivot)) return false;
-  const int n = coordinates(), functions = scheme_->functions;
+bool SecondVariation::resolved(const DiscreteAction& action, int count, double allowed) {
+  if (action.nodes.negative > 0 || !(action.nodes.pivot_ratio > least_pivot)) return false;
+  const SchemeTables& scheme = action.tables().scheme();
+  const int n = coordinates(), functions = scheme.functions;
   steps_.resize(static_cast<std::size_t>(count + 1) * n);
   for (std::size_t i = 0; i < steps_.size(); ++i) steps_[i] = std::cos(1 + 2.4 * i);
-  action_.expand_step(steps_, 0, inner_);
+  action.expand_step(steps_, 0, inner_);
   std::fill(steps_.begin(), steps_.end(), 0.0);
-  action_.expand_step(steps_, 0, rest_);
-  for (int lane = 0; lane < count; ++lane)
+  action.expand_step(steps_, 0, rest_);
+  for (int k = 0; k < count; ++k)
     for (int a = 0; a < n; ++a) {
       double largest = 0, tail = 0;
-      for (int k = 0; k < functions; ++k) {
+      for (int i = 0; i < functions; ++i) {
         double coefficient = 0;
         for (int j = 0; j < functions; ++j) {
-          const std::size_t at = static_cast<std::size_t>(j * n + a) * lanes + lane;
-          coefficient += scheme_->legendre[k * functions + j] * (inner_[at] - rest_[at]);
+          const std::size_t at =
+              (static_cast<std::size_t>(k / lanes * functions + j) * n + a) * lanes + k % lanes;
+          coefficient += scheme.legendre[i * functions + j] * (inner_[at] - rest_[at]);
         }
         largest = std::max(largest, std::abs(coefficient));
-        if (k >= functions - 2) tail = std::max(tail, std::abs(coefficient));
+        if (i >= functions - 2) tail = std::max(tail, std::abs(coefficient));
       }
-      if (!(tail <= allowed_tail * largest)) return false;
+      if (!(tail <= allowed * largest)) return false;
     }
   return true;
 }
 
-void SecondVariation::keep(std::span<const Part> parts) {
+void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> parts) {
   const int n = coordinates(), first = count();
   for (int k = 0; k < static_cast<int>(parts.size()); ++k) {
-    pieces_.push_back({parts[k], mesh_[k], mesh_[k + 1] - mesh_[k], first});
+    pieces_.push_back({parts[k], mesh_[k], mesh_[k + 1] - mesh_[k], first + k / lanes * lanes});
     const std::size_t size = static_cast<std::size_t>(n) * n, at = forms_.size();
     forms_.resize(at + 3 * size);
     double *const a = forms_.data() + at, *const b = a + size, *const d = b + size;
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
-        a[j * n + i] = action_.condensed(k, std::max(i, j), std::min(i, j));
-        b[j * n + i] = action_.condensed(k, n + i, j);
-        d[j * n + i] = action_.condensed(k, n + std::max(i, j), n + std::min(i, j));
+        a[j * n + i] = action.condensed(k, std::max(i, j), std::min(i, j));
+        b[j * n + i] = action.condensed(k, n + i, j);
+        d[j * n + i] = action.condensed(k, n + std::max(i, j), n + std::min(i, j));
       }
   }
 }

@@ -19,6 +19,14 @@ struct Piece {
   Eigen::Map<const Eigen::MatrixXd> a, b, d;  ///< n × n
 };
 
+/// What evaluated the elements of a trajectory last, if anything did, and how large the two highest Legendre
+/// coefficients of a Jacobi field may be there, relative to its largest: forms are exact to some four orders
+/// below their square.
+struct Condensed {
+  const DiscreteAction* action = nullptr;
+  double tail = 0;
+};
+
 /// Pieces so short that the fixed-end form of each is positive definite and that polynomials resolve its
 /// Jacobi fields: the elements of the trajectory, halved as often as that takes. Keeps memory.
 class SecondVariation {
@@ -32,7 +40,9 @@ class SecondVariation {
   /// somewhere (Legendre's condition), or the second derivatives of L are not finite; or where it takes too
   /// many, since elements do not resolve the fields by far. There are no pieces then. Throws
   /// std::invalid_argument for more than most_coordinates.
-  bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory);
+  /// Elements that another condensed are the pieces if they resolve the fields well enough for it.
+  bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
+                const Condensed& condensed = {});
   /// Whether assemble() failed because there would be too many pieces.
   bool too_many() const { return too_many_; }
 
@@ -64,8 +74,9 @@ class SecondVariation {
   void choose_scheme();
   bool cut();
   void evaluate(std::span<const Part> parts);
-  bool resolved(int count);
-  void keep(std::span<const Part> parts);
+  bool resolved(const DiscreteAction& action, int count, double allowed);
+  void keep(const DiscreteAction& action, std::span<const Part> parts);
+  bool take(const Condensed& condensed);
   const Eigen::MatrixXd& unfold(int k);
   void forget();
 

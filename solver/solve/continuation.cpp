@@ -260,7 +260,7 @@ BranchPoint Continuation::read(PointKind kind) {
   read_momenta(solution);
   if (!problem.periodic) return point;
   if (problem.coordinates() <= most_coordinates_for_multipliers)
-    variation_.assemble(problem.lagrangian, solution.trajectory);
+    variation_.assemble(problem.lagrangian, solution.trajectory, condensed());
   read_stability(problem, variation_, sizes().q, solution, false);
   here_.doubling = solution.floquet ? doubling_product(*solution.floquet) : 1;
   return point;

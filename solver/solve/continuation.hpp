@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <optional>
 #include <string>
@@ -128,6 +130,10 @@ class Continuation {
   bool turn(bool first = false);
   void measure_anew();
   BranchPoint read(PointKind kind);
+  /// The elements of the place, for second variations exact to 1e-6 of the tolerance.
+  Condensed condensed() const {
+    return {w_.iteration.condensed(), std::min(0.1 * std::sqrt(options_.solve.tolerance), 1e-3)};
+  }
   void read_momenta(Solution& solution);
   bool stop(BranchEnd end, std::string message);
   bool give_up(const Stand& from);

@@ -137,7 +137,7 @@ void Continuation::find_crossings(const Stand& from, const Stand& to, double len
 double Continuation::doubling() {
   const Problem& problem = branch_.problem();
   const Trajectory trajectory = trajectory_of(here_.path);
-  if (!variation_.assemble(problem.lagrangian, trajectory)) return NAN;
+  if (!variation_.assemble(problem.lagrangian, trajectory, condensed())) return NAN;
   const std::optional<Floquet> found = floquet(variation_, closed_orbit(problem, 0));
   return found ? doubling_product(*found) : NAN;
 }

@@ -16,7 +16,7 @@ namespace {
 /// From this near, relative to the distance wanted, Newton's method lands on a value.
 constexpr double near_value = 1e-3;
 /// Half the lengths that the derivative of the action is checked over, until it is found so exact.
-constexpr double probes[] = {3e-3, 3e-4, 3e-5}, exact = 1e-9;
+constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
 /// Two points of a closed branch differ by no more than this, relative.
 constexpr double same = 1e-6;
 /// An orbit this small against the one before the step is next to rest.

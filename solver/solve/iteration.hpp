@@ -97,6 +97,8 @@ class NewtonIteration {
 
   DiscreteAction& action() { return action_; }
   const DiscreteAction& action() const { return action_; }
+  /// The same where elements are condensed one by one; else null.
+  const DiscreteAction* condensed() const { return model_ == condensed_.get() ? &action_ : nullptr; }
   /// The second variation that was factored last.
   QuadraticModel& model() { return *model_; }
   /// The largest component of δS under the boundary relation, where the action was evaluated last.
