@@ -17,6 +17,8 @@ constexpr double margin = 10;
 /// The integrator stays three digits below what is asked; one is enough where it cannot follow.
 constexpr double looser = 100;
 constexpr int usual_steps = 100000, patience = 1000000;
+/// Fields nearer to turning round, and so many tolerances, may do so by errors.
+constexpr double least_orientation = 1e-3, much = 100;
 constexpr const char* unverified = "unverified";
 /// No more can be asked of an integrator in double precision.
 constexpr double tightest = 1e-12;
@@ -105,7 +107,8 @@ class Refutation {
     if (!by_distance_ && fast > margin + roundoff / (10 * tolerance_ * average))
       return {"velocity", fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}", fast,
                                       found.worst_time)};
-    if (solution_.conjugate_times_known && found.orientation * expected_orientation() < 0)
+    const bool sure = std::abs(found.orientation) > least_orientation + much * tolerance_;
+    if (sure && solution_.conjugate_times_known && found.orientation * expected_orientation() < 0)
       return {"index", fmt::format("index {}, but Jacobi fields that are integrated turn round an {} number "
                                    "of times",
                                    *solution_.morse_index, found.orientation < 0 ? "odd" : "even")};

@@ -3,6 +3,8 @@
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 
+#include <cmath>
+
 #include "linear/dense.hpp"
 
 namespace extremal {
@@ -14,8 +16,6 @@ constexpr double least_singular = 1e-6;
 constexpr int refinements = 3;
 /// Among orbits of a family the nearest in q is meant: momenta may be off by much more.
 constexpr double weight_of_momenta = 1e-3;
-/// Variations of q smaller than this, of those of q and p together, may have either sign.
-constexpr double least_variation = 1e-3;
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
@@ -98,7 +98,7 @@ double largest_change(const std::vector<MotionPiece>& pieces, const Eigen::Vecto
 
 /// Of the fields that leave q(0) where it is, an orthonormal basis of what they span; what it was made from
 /// is it times a triangular matrix, which tells by the signs on its diagonal whether it turned them round.
-int orientation(const std::vector<MotionPiece>& pieces) {
+double orientation(const std::vector<MotionPiece>& pieces) {
   const Eigen::Index n = pieces.front().transition.rows() / 2;
   Eigen::MatrixXd fields = Eigen::MatrixXd::Zero(2 * n, n);
   fields.bottomRows(n).setIdentity();
@@ -109,8 +109,7 @@ int orientation(const std::vector<MotionPiece>& pieces) {
     if (((fields.transpose() * next).diagonal().array() < 0).count() % 2 != 0) sign = -sign;
   }
   const Eigen::MatrixXd q = fields.topRows(n);
-  if (!(singular_values(q).minCoeff() > least_variation)) return 0;
-  return q.determinant() < 0 ? -sign : sign;
+  return std::copysign(singular_values(q).minCoeff(), sign * q.determinant());
 }
 
 }  // namespace extremal

@@ -36,8 +36,8 @@ Eigen::VectorXd correction(const std::vector<MotionPiece>& pieces, const EndCond
 /// a change of the duration only through those ends.)
 double largest_change(const std::vector<MotionPiece>& pieces, const Eigen::VectorXd& correction);
 
-/// Sign of det ∂q(T)/∂p(0), with L_vv positive definite (−1)^k for k conjugate times in (0, T); 0 where
-/// roundoff may have made it.
-int orientation(const std::vector<MotionPiece>& pieces);
+/// Has the sign of det ∂q(T)/∂p(0), with L_vv positive definite (−1)^k for k conjugate times in (0, T); its
+/// modulus is the least variation of q among those of q and p together, which errors may turn round.
+double orientation(const std::vector<MotionPiece>& pieces);
 
 }  // namespace extremal

@@ -29,8 +29,9 @@ struct Verification {
   double worst_time = 0;       ///< where the larger of the two was found
   double conditions = 0;  ///< natural conditions and what closes the duration, in such errors of the ends
   std::optional<double> distance;  ///< of q from the extremal, to first order: one step of multiple shooting
-  int orientation = 0;  ///< (−1)^k for k times conjugate to the start, where L_vv > 0; 0 if not known
-  double growth = 0;    ///< largest of an error within a piece
+  double orientation = 0;  ///< where L_vv > 0, positive (negative) if conjugate times are even (odd) in
+                           ///< number, the surer the farther from zero; 0 if not known
+  double growth = 0;  ///< largest of an error within a piece
   int pieces = 0, steps = 0;
 };
 

@@ -12,27 +12,30 @@
 namespace extremal {
 namespace {
 
-int orientation(const Problem& problem, const Trajectory& trajectory) {
+double orientation(const Problem& problem, const Trajectory& trajectory) {
   const Verification found = verify(problem, trajectory, {.tolerance = 1e-9});
   EXPECT_TRUE(found.verified) << found.message;
   return found.orientation;
 }
 
-/// ∂q(T)/∂p(0) = sin T: as many times negative as there were conjugate times, and nothing at one.
+/// ∂q(T)/∂p(0) = sin T: negative after an odd number of conjugate times, and next to nothing at one.
 TEST(Orientation, OfTheOscillator) {
   for (const double T : {0.5, 3.0, 3.3, 6.0, 6.5, 9.6, 31.0, 31.6, 2 * std::numbers::pi}) {
     const auto swing = [](double t) { return std::vector{std::sin(t + 0.3)}; };
-    const int sign = std::abs(std::sin(T)) < 1e-3 ? 0 : std::sin(T) > 0 ? 1 : -1;
-    EXPECT_EQ(orientation(fixed_ends(oscillator(), swing(0), swing(T), T), sampled(1, 64, T, swing)), sign)
-        << T;
+    const Problem problem = fixed_ends(oscillator(), swing(0), swing(T), T);
+    const double found = orientation(problem, sampled(1, 64, T, swing));
+    if (std::abs(std::sin(T)) < 1e-3)
+      EXPECT_LT(std::abs(found), 1e-6) << T;
+    else
+      EXPECT_GT(found * std::copysign(1, std::sin(T)), 0.01) << T;
   }
 }
 
 /// Less than one turn: nothing is conjugate.
 TEST(Orientation, OfKeplersArc) {
-  EXPECT_EQ(orientation(fixed_ends(kepler(), {1, 0}, {-0.6, 0.9}, 2.5),
+  EXPECT_GT(orientation(fixed_ends(kepler(), {1, 0}, {-0.6, 0.9}, 2.5),
                         reference_trajectory(*kepler(), "kepler-arc")),
-            1);
+            0.1);
 }
 
 }  // namespace
