@@ -60,30 +60,28 @@ double NewtonIteration::residual_at(const Path& path) {
   return residual();
 }
 
-/// By how much step_ changes, relative as it, where all of the path is shifted by some last digits: that
-/// moves the extremal no further, but rounds everything differently.
+/// By how much step_ changes, relative as it, where each node is moved by some last digits of its own, both
+/// ends by the same: a step from there takes that back, but positions and velocities are rounded differently.
 double NewtonIteration::measure_noise(Path& path) {
   const std::size_t n = path.coordinates(), nodes = path.nodes().size();
   double magnitude = 0;
   for (double q : path.nodes()) magnitude = std::max(magnitude, std::abs(q));
   std::minstd_rand random;
+  std::uniform_real_distribution<double> digits(-magnitude * 0x1p-50, magnitude * 0x1p-50);
   saved_.copy_values(path);
   noise_ = 0;
   for (int shift = 0; shift < shifts; ++shift) {
-    simplified_.nodes.assign(nodes, 0);
+    simplified_.nodes.resize(nodes);
     simplified_.inner.assign(step_.inner.size(), 0);
-    simplified_.duration = 0;
     for (std::size_t k = 0; k < nodes; ++k)
-      simplified_.nodes[k] = k < n ? magnitude * 0x1p-50 * (1 + double(random()) / std::minstd_rand::max())
-                                   : simplified_.nodes[k - n];
+      simplified_.nodes[k] = k + n < nodes ? digits(random) : simplified_.nodes[k + n - nodes];
     path.add(simplified_.nodes, simplified_.inner, 1);
     path.load_ends();
     model_->evaluate_gradient(action_, path);
-    const double size = solve_for_step(path, simplified_);
-    double change = 0;
-    for (std::size_t k = 0; k < nodes && !std::isnan(size); ++k)
-      change = std::max(change, std::abs(simplified_.nodes[k] - step_.nodes[k]));
-    noise_ = std::max(noise_, change / (scale_ > 0 ? scale_ : 1));
+    if (!std::isnan(solve_for_step(path, simplified_))) {
+      for (std::size_t k = 0; k < nodes; ++k) simplified_.nodes[k] += path.nodes()[k] - saved_.nodes()[k];
+      noise_ = std::max(noise_, difference(simplified_, step_, scale_, path.duration()));
+    }
     path.copy_values(saved_);
     path.load_ends();
   }
