@@ -136,12 +136,14 @@ std::string scene_of(const nlohmann::json& c, double tolerance) {
       system.text, decimal(c["refined"]["period"]), guess, tolerance);
 }
 
-Solution solved(const nlohmann::json& c, double tolerance) {
+Study study_of(const nlohmann::json& c, double tolerance) {
   const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
   const std::string path = testing::TempDir() + test + "-" + c["id"].get<std::string>() + ".toml";
   std::ofstream(path) << scene_of(c, tolerance);
-  return run(load(path));
+  return load(path);
 }
+
+Solution solved(const nlohmann::json& c, double tolerance) { return run(study_of(c, tolerance)); }
 
 /// Gauss-Newton over the time, angles and shift, from the time where it is nearest.
 double distance(const nlohmann::json& c, const Solution& solution) {

@@ -16,6 +16,7 @@ Eigen::VectorXd state_of(const nlohmann::json& c);
 
 /// Of a periodic orbit from its state, its period given.
 std::string scene_of(const nlohmann::json& c, double tolerance);
+Study study_of(const nlohmann::json& c, double tolerance);
 Solution solved(const nlohmann::json& c, double tolerance);
 
 /// Of the refined state from the orbit, in phase space and but for what symmetries leave open.

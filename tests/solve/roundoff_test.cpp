@@ -1,0 +1,39 @@
+#include "solve/iteration.hpp"
+#include "solve/levels.hpp"
+#include "solve/published.hpp"
+
+/// \file What an iteration takes for roundoff.
+
+namespace extremal::laws {
+namespace {
+
+/// Near an encounter at 3e-4 of the size of the orbit roundoff of q is amplified a million times.
+TEST(Roundoff, OfAStepIsAllThatStepsChange) {
+  const nlohmann::json c = published("nbody_periodic_orbits.json", "3b-ff-F1_1_1_1_");
+  const Study study = study_of(c, 1e-8);
+  const Trajectory orbit = run(study).trajectory;
+  Levels levels;
+  levels.bind(study.problem.lagrangian);
+  const ElementTables& tables = levels.at(orbit.degree);
+  std::vector<double> mesh;
+  for (double t : orbit.times) mesh.push_back(t / orbit.duration());
+  Path path;
+  path.reset(tables, mesh, orbit.duration());
+  const std::size_t element = static_cast<std::size_t>(orbit.degree + 1) * orbit.coordinates;
+  for (int k = 0; k < orbit.elements(); ++k) path.set_element(k, &orbit.nodes[k * element]);
+  path.load_ends();
+
+  NewtonIteration newton;
+  newton.reset(study.problem, tables, path.elements());
+  newton.set_scale(1);
+  for (int k = 0; k < 10 && newton.noise() == 0; ++k) ASSERT_EQ(newton.full_step(path, 0), StepResult::ok);
+  ASSERT_GT(newton.noise(), 1e-12);
+  ASSERT_LT(newton.noise(), 1e-8);
+  for (int k = 0; k < 20; ++k) {
+    ASSERT_EQ(newton.chord_step(path), StepResult::ok);
+    EXPECT_LT(newton.norm(), 5 * newton.noise());
+  }
+}
+
+}  // namespace
+}  // namespace extremal::laws
