@@ -18,7 +18,7 @@ struct ClosedOrbit {
   Eigen::MatrixXd map;        ///< R, n × n; empty for the identity
   double relative_error = 0;  ///< of its coordinates: the linearised flow is as uncertain, and λ + 1/λ
   bool autonomous = false;    ///< L does not depend on t
-  int symmetries = 0;         ///< continuous ones besides, of L and of the relation
+  int symmetries = 0;         ///< continuous ones of L and of the relation that move it, and not along itself
 };
 
 /// Large multipliers and small ones are as good, relative, as those of moderate size are. Nothing if one

@@ -138,7 +138,7 @@ double Continuation::doubling() {
   const Problem& problem = branch_.problem();
   const Trajectory trajectory = trajectory_of(here_.path);
   if (!variation_.assemble(problem.lagrangian, trajectory, condensed())) return NAN;
-  const std::optional<Floquet> found = floquet(variation_, closed_orbit(problem, 0));
+  const std::optional<Floquet> found = floquet(variation_, closed_orbit(problem, trajectory, 0));
   return found ? doubling_product(*found) : NAN;
 }
 

@@ -9,8 +9,8 @@
 
 namespace extremal {
 
-/// How an orbit of a periodic problem closes; `relative_error` of its coordinates.
-ClosedOrbit closed_orbit(const Problem& problem, double relative_error);
+/// How an orbit of a periodic problem closes, and what moves it; `relative_error` of its coordinates.
+ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, double relative_error);
 
 /// Distances along a solution of `size` that are told from none.
 double told_apart(const Solution& solution, double size);

@@ -121,6 +121,22 @@ TEST(MultipliersOfOrbits, OfUnstableChoreographies) {
   }
 }
 
+/// Two more pairs than those that are trivial, after an encounter at 3e-4; a rotation of the centre of mass
+/// alone leaves all equations as they are, but moves nothing. By integration of the linearised flow to 1e-13,
+/// which the encounter amplifies a million times, one is exp(±i arccos 0.62188).
+TEST(MultipliersOfOrbits, OfFreeFall) {
+  const Solution s = solved(published("nbody_periodic_orbits.json", "3b-ff-F1_1_1_1_"), 1e-8);
+  ASSERT_TRUE(s.converged() && s.floquet) << s.message;
+  EXPECT_EQ(s.floquet->trivial_pairs, 4);
+  EXPECT_EQ(s.floquet->real_pairs, 1);
+  ASSERT_EQ(s.floquet->circle_pairs, 1);
+  EXPECT_NEAR(s.floquet->multipliers[0].real(), 5533, 1);
+  double nearest = INFINITY;
+  for (const Complex& value : s.floquet->multipliers)
+    nearest = std::min(nearest, std::abs(value.real() - 0.62188));
+  EXPECT_LT(nearest, 1e-5);
+}
+
 /// A rotating pendulum closes up to 2π; its only multipliers are those of the shift in time. From one lowest
 /// point to the next it is the extremal between these ends.
 TEST(MultipliersOfOrbits, RotatingPendulum) {
