@@ -69,8 +69,9 @@ void Refinement::take(const ElementTables& tables) {
 
 double Refinement::step_cost() const {
   const double n = w_.path.coordinates(), columns = problem_.ends.free + problem_.duration.free;
-  return w_.path.batches() * batch_cost(*tables_, w_.path.degree()) +
-         border_cost * w_.path.elements() * n * n * columns;
+  const double cost = w_.path.batches() * batch_cost(*tables_, w_.path.degree()) +
+                      border_cost * w_.path.elements() * n * n * columns;
+  return followed_ ? cost / followed_growth : cost;
 }
 
 Refinement::Result Refinement::pursue() {
@@ -80,7 +81,7 @@ Refinement::Result Refinement::pursue() {
   momentum_range_ = 0;
   held_ = INFINITY;
   if (followed_) {
-    w_.iteration.action().evaluate_gradient(w_.path);
+    w_.iteration.action().evaluate_plain(w_.path);
     measure_momenta();
     w_.iteration.extend();
   }
@@ -151,7 +152,7 @@ void Refinement::record() {
 /// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
 Plan Refinement::plan(double aim) {
   // Other elements bend a path where they begin.
-  if (followed_) return w_.path.degree() < highest_degree ? Plan{w_.path.degree() + 2, {}} : Plan{};
+  if (followed_) return {std::min(w_.path.degree() + 2, highest_degree), {}};
   const bool last = aim <= options_.tolerance;
   const auto error = [&](double share) {
     return Resolution::Error{share * scales_.q, last ? 10 * share * scales_.v : INFINITY};
@@ -238,13 +239,17 @@ Refinement::Attempt Refinement::follow(NewtonReport newton) {
   measure();
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {
+    const bool risen = followed_ && w_.path.degree() == highest_degree;
+    if (plans == most_plans || (plans > 0 && risen)) return Attempt::refine;
     // Finer elements than one more step makes use of would be wasted.
     NodeError nodes{w_.resolution.at(w_.path.degree()), 0, plans > 0};
     const double known = nodes.left_out.q / scales_.q + newton.remaining;
     const double aim = std::max(finest, std::min(w_.iteration.expected(known), 0.1 * known));
     const Plan next = plan(aim);
-    if (next.degree == 0) worst_ = INFINITY;  // not measured yet
-    if (next.degree == 0 || plans == most_plans) return Attempt::refine;
+    if (next.degree == 0) {
+      worst_ = INFINITY;  // not measured yet
+      return Attempt::refine;
+    }
     const double unfinished = 2 * newton.remaining * scales_.q;
     adopt(next);
     w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());

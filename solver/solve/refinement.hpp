@@ -37,8 +37,8 @@ class Refinement {
   void open(const std::vector<double>& mesh, int degree = first_degree);
   /// The same for a path on elements of `tables` that the workspace holds already.
   void take(const ElementTables& tables);
-  /// The path that was opened follows a motion through many encounters: its elements stay where they are,
-  /// with gradients in extended precision.
+  /// The path that was opened follows a motion through many encounters: its elements keep their ends, degrees
+  /// rise before all are halved, and gradients are in extended precision.
   void follow() { followed_ = true; }
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
@@ -65,6 +65,7 @@ class Refinement {
  private:
   enum class Attempt { converged, refine, failed, unreachable };
   static constexpr int highest_degree = 16;
+  /// Extended precision takes longer: so many steps then count for one.
   static constexpr double followed_growth = 5;
   /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
   static constexpr double spare = 0.1;
@@ -86,8 +87,7 @@ class Refinement {
   /// Newton until what is left to do is below `error`, relative; `reuse`: with the factors there are.
   NewtonReport converge_to(double error, bool reuse);
   int steps_left(int wanted) const;
-  /// Extended precision takes longer.
-  double affordable() const { return (followed_ ? followed_growth : 1) * share_ * most_cost_; }
+  double affordable() const { return share_ * most_cost_; }
   Plan plan(double aim);
   double excess(const Resolution::Error& error) const;
   void raise(int degree);

@@ -47,9 +47,10 @@ constexpr double tolerance = 1e-14;
 template <>
 constexpr double tolerance<long double> = 1e-17;
 
-/// The motion from a state at t = `from`, as a flow in (q, p), to t = `to`.
+/// The motion from a state at t = `from`, as a flow in (q, p), to t = `to`; no two at one t/duration.
 template <class Real, class AnyFlow>
-Samples sample(AnyFlow flow, const InitialState& state, double from, double to, const Location& at) {
+Samples sample(AnyFlow flow, const InitialState& state, double from, double to, double duration,
+               const Location& at) {
   const std::size_t n = state.q.size();
   std::vector<Real> y(state.q.begin(), state.q.end()), between(2 * n);
   const std::vector<Real> v(state.v.begin(), state.v.end());
@@ -66,7 +67,7 @@ Samples sample(AnyFlow flow, const InitialState& state, double from, double to, 
   // Extended times may be one in double precision.
   const auto add = [&](Real t, const std::vector<Real>& point) {
     const double rounded = static_cast<double>(t);
-    if (!samples.t.empty() && samples.t.back() == rounded) return;
+    if (!samples.t.empty() && samples.t.back() / duration == rounded / duration) return;
     samples.t.push_back(rounded);
     for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));
   };
@@ -91,9 +92,10 @@ Samples sample(AnyFlow flow, const InitialState& state, double from, double to, 
 Samples motion_from(const InitialState& state, double from, double to, const Problem& problem,
                     const Location& at) {
   const Lagrangian& lagrangian = *problem.lagrangian;
-  Samples samples = sample<double>(Flow(lagrangian), state, from, to, at);
+  const double duration = problem.duration.value;
+  Samples samples = sample<double>(Flow(lagrangian), state, from, to, duration, at);
   if (samples.t.size() > many_steps * samples_a_step && ExtendedFlow::suits(lagrangian))
-    samples = sample<long double>(ExtendedFlow(lagrangian), state, from, to, at);
+    samples = sample<long double>(ExtendedFlow(lagrangian), state, from, to, duration, at);
   return samples;
 }
 
