@@ -195,6 +195,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
         contraction_ = damping_ = predicted_ = 1;
         return StepResult::ok;
       }
+      noise_ = 0;
       model_->evaluate_gradient(action_, path);
       return StepResult::stalled;
     }

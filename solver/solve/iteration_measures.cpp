@@ -60,8 +60,8 @@ double NewtonIteration::residual_at(const Path& path) {
   return residual();
 }
 
-/// By how much step_ changes, relative as it, where each node is moved by some last digits of its own, both
-/// ends by the same: a step from there takes that back, but positions and velocities are rounded differently.
+/// By how much step_ changes, relative as it, where each node, and what is free of the ends, is moved by some
+/// last digits of its own: a step from there takes that back, but all is rounded differently.
 double NewtonIteration::measure_noise(Path& path) {
   const std::size_t n = path.coordinates(), nodes = path.nodes().size();
   double magnitude = 0;
@@ -71,15 +71,20 @@ double NewtonIteration::measure_noise(Path& path) {
   saved_.copy_values(path);
   noise_ = 0;
   for (int shift = 0; shift < shifts; ++shift) {
-    simplified_.nodes.resize(nodes);
+    simplified_.nodes.assign(nodes, 0);
     simplified_.inner.assign(step_.inner.size(), 0);
-    for (std::size_t k = 0; k < nodes; ++k)
-      simplified_.nodes[k] = k + n < nodes ? digits(random) : simplified_.nodes[k + n - nodes];
+    for (std::size_t k = n; k + n < nodes; ++k) simplified_.nodes[k] = digits(random);
+    free_.resize(problem_->ends.free);
+    for (double& x : free_) x = digits(random);
+    for (const Triplet& z : problem_->ends.z)
+      simplified_.nodes[z.row < path.coordinates() ? z.row : nodes - 2 * n + z.row] +=
+          z.value * free_[z.column];
     path.add(simplified_.nodes, simplified_.inner, 1);
     path.load_ends();
     model_->evaluate_gradient(action_, path);
     if (!std::isnan(solve_for_step(path, simplified_))) {
-      for (std::size_t k = 0; k < nodes; ++k) simplified_.nodes[k] += path.nodes()[k] - saved_.nodes()[k];
+      for (std::size_t k = 0; k < nodes; ++k)
+        simplified_.nodes[k] += (path.node(0)[k] - saved_.node(0)[k]) + (path.rest(0)[k] - saved_.rest(0)[k]);
       noise_ = std::max(noise_, difference(simplified_, step_, scale_, path.duration()));
     }
     path.copy_values(saved_);
