@@ -15,17 +15,6 @@ namespace extremal {
 
 namespace {
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-Eigen::Map<const RowMajor> matrix(const Generator& symmetry) {
-  const Eigen::Index n = std::ssize(symmetry.shift);
-  return {symmetry.matrix.data(), n, n};
-}
-
-Eigen::Map<const Eigen::VectorXd> shift(const Generator& symmetry) {
-  return {symmetry.shift.data(), std::ssize(symmetry.shift)};
-}
-
 void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Floquet& floquet) {
   const auto form = OrbitForm::make(variation, orbit.map);
   if (!form) return;
@@ -35,34 +24,51 @@ void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Flo
   }
 }
 
+/// R, empty for the identity.
+Eigen::MatrixXd map_of(const Problem& problem) {
+  const ClosingMap map = closing_map(problem);
+  return map.r.isIdentity(0) ? Eigen::MatrixXd{} : map.r;
+}
+
+/// Columns: the generators about `centre`, in units of `size`, G by columns and then c, orthonormal.
+Eigen::MatrixXd generators(const std::vector<Generator>& symmetries, const Eigen::VectorXd& centre,
+                           double size) {
+  const auto n = centre.size();
+  Eigen::MatrixXd columns(n * n + n, std::ssize(symmetries));
+  for (Eigen::Index s = 0; s < columns.cols(); ++s) {
+    const Generator& symmetry = symmetries[s];
+    const Eigen::Map<const Eigen::MatrixXd> transposed(symmetry.matrix.data(), n, n);
+    const Eigen::MatrixXd g = transposed.transpose();
+    columns.col(s) << size * g.reshaped(),
+        g * centre + Eigen::Map<const Eigen::VectorXd>(symmetry.shift.data(), n);
+  }
+  return orthonormal(columns);
+}
+
 /// How many symmetries move the orbit, and not only along itself: one that does not, as a rotation of a
 /// centre of mass that rests at the origin, has no multipliers 1 of its own.
 int moving_symmetries(const Problem& problem, const Trajectory& orbit) {
-  constexpr double independent = 1e-8;  // the square of a sine
-  const auto n = static_cast<Eigen::Index>(problem.coordinates()), points = std::ssize(orbit.times),
-             count = std::ssize(problem.symmetries);
+  constexpr double dependent = 1e-8, at_rest = 1e-9;  // the square of a sine; of the distance from the origin
+  const Eigen::Index n = problem.coordinates(), points = std::ssize(orbit.times),
+                     count = std::ssize(problem.symmetries);
   if (count == 0) return 0;
-  Eigen::MatrixXd fields(points * n, count + 1);
-  Eigen::VectorXd q(n), v(n);
-  double size = 0;
-  for (Eigen::Index p = 0; p < points; ++p) {
-    orbit.at(orbit.times[p], {q.data(), q.data() + n}, {v.data(), v.data() + n});
-    size = std::max(size, q.norm());
-    for (Eigen::Index s = 0; s < count; ++s)
-      fields.col(s).segment(p * n, n) = matrix(problem.symmetries[s]) * q + shift(problem.symmetries[s]);
-    fields.col(count).segment(p * n, n) = v;
-  }
-  for (Eigen::Index s = 0; s < count; ++s) {
-    const Generator& symmetry = problem.symmetries[s];
-    fields.col(s) /= (matrix(symmetry).norm() * size + shift(symmetry).norm()) * std::sqrt(points);
-  }
-  const bool shifts = problem.lagrangian->structure().autonomous && fields.col(count).norm() > 0;
-  if (shifts)
-    fields.col(count).normalize();
-  else
-    fields.col(count).setZero();
+  Eigen::MatrixXd q(n, points), fields(points * n, count + 1);
+  for (Eigen::Index p = 0; p < points; ++p)
+    orbit.at(orbit.times[p], {&q(0, p), &q(0, p) + n}, {&fields(p * n, count), &fields(p * n, count) + n});
+  const Eigen::VectorXd centre = q.rowwise().mean();
+  q.colwise() -= centre;
+  const double extent = std::max(q.cwiseAbs().maxCoeff(), at_rest * centre.norm()),
+               size = extent > 0 ? extent : 1;
+  const Eigen::MatrixXd columns = generators(problem.symmetries, centre, size);
+  for (Eigen::Index s = 0; s < count; ++s)
+    fields.col(s).reshaped(n, points) =
+        ((columns.col(s).head(n * n).reshaped(n, n) * q / size).colwise() + columns.col(s).tail(n)) /
+        std::sqrt(points);
+  fields.col(count).normalize();
+  if (!problem.lagrangian->structure().autonomous) fields.col(count).setZero();
+  const bool shifts = fields.col(count).norm() > 0;
   const Eigen::VectorXd squares = symmetric_eigenvalues(fields.transpose() * fields);
-  return static_cast<int>((squares.array() > independent).count()) - shifts;
+  return static_cast<int>((squares.array() > dependent).count()) - shifts;
 }
 
 }  // namespace
@@ -73,8 +79,7 @@ double told_apart(const Solution& solution, double size) {
 }
 
 ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, double relative_error) {
-  ClosingMap map = closing_map(problem);
-  return {.map = map.r.isIdentity(0) ? Eigen::MatrixXd{} : std::move(map.r),
+  return {.map = map_of(problem),
           .relative_error = relative_error,
           .autonomous = problem.lagrangian->structure().autonomous,
           .symmetries = moving_symmetries(problem, trajectory)};
@@ -106,7 +111,7 @@ std::vector<int> iterate_indices(const Problem& problem, const Solution& solutio
     throw std::invalid_argument(fmt::format("indices of {} iterates; need a periodic problem", most));
   SecondVariation variation;
   if (!variation.assemble(problem.lagrangian, solution.trajectory)) return {};
-  const auto form = OrbitForm::make(variation, closed_orbit(problem, solution.trajectory, 0).map);
+  const auto form = OrbitForm::make(variation, map_of(problem));
   return form ? form->iterates(most) : std::vector<int>{};
 }
 
