@@ -117,8 +117,8 @@ class Judge {
     verdict_.estimate_over = solution_.error_estimate / error.q;
     if (*verdict_.estimate_over >= least_estimate) return;
     const std::optional<double> shot = error_by_shooting(study_, solution_);
-    // A reference much farther off than that is another extremal.
-    if (shot && (solution_.error_estimate >= least_estimate * *shot || *shot < least_estimate * error.q))
+    // A reference that is much farther off than that is another extremal.
+    if (shot && solution_.error_estimate >= least_estimate * (*shot - floor_of_errors * size_))
       verdict_.estimate_over.reset();
     else
       blame(adapted_ ? "estimate" : "pinned estimate",

@@ -135,26 +135,25 @@ double Chase::growth() const {
 /// Without the distance from the extremal only long pieces show errors that vary slowly.
 double Chase::growth_limit() const { return complete_ ? options_.growth : longer * options_.growth; }
 
-/// Whether q is as near to that of a state as is allowed.
-bool Chase::near(std::span<const double> state, std::span<const double> q) const {
-  return std::equal(q.begin(), q.end(), state.begin(),
-                    [this](double x, double y) { return std::abs(x - y) <= allowed_q_; });
-}
-
-bool Chase::compare(double t, std::span<const double> q, std::span<const double> v,
-                    std::span<const double> state, Verification& result) {
+/// How far q and q' are from a state.
+bool Chase::measure(double t, std::span<const double> q, std::span<const double> v,
+                    std::span<const double> state, Miss& miss) {
   if (!flow_.velocity(state.first(n_), state.subspan(n_, n_), t, motion_v_)) return false;
-  const double worst = std::max(result.defect, result.velocity_defect);
   const auto unit = [](double difference, double allowed) {
     return difference > 0 ? difference / allowed : 0;
   };
+  miss = {};
   for (std::size_t a = 0; a < n_; ++a) {
-    result.defect = std::max(result.defect, unit(std::abs(state[a] - q[a]), allowed_q_));
-    result.velocity_defect =
-        std::max(result.velocity_defect, unit(std::abs(motion_v_[a] - v[a]), allowed_v_));
+    miss.q = std::max(miss.q, unit(std::abs(state[a] - q[a]), allowed_q_));
+    miss.v = std::max(miss.v, unit(std::abs(motion_v_[a] - v[a]), allowed_v_));
   }
-  if (std::max(result.defect, result.velocity_defect) > worst) result.worst_time = t;
   return true;
+}
+
+void Chase::note(double t, const Miss& miss, Verification& result) {
+  if (std::max(miss.q, miss.v) > std::max(result.defect, result.velocity_defect)) result.worst_time = t;
+  result.defect = std::max(result.defect, miss.q);
+  result.velocity_defect = std::max(result.velocity_defect, miss.v);
 }
 
 /// At the samples within the step. Where the interpolation, which is less exact than the step, misses one, a
@@ -167,12 +166,13 @@ bool Chase::compare_step(double before, double now, Verification& result) {
     integrator_.interpolate(std::clamp((t - before) / (now - before), 0.0, 1.0), interpolated_);
     const std::span<const double> q(q_samples_.data() + compared_ * n_, n_);
     const std::span<const double> v(v_samples_.data() + compared_ * n_, n_);
-    std::span<const double> state = interpolated_;
-    if (!near(state, q)) {
+    Miss miss;
+    if (!measure(t, q, v, interpolated_, miss)) return false;
+    if (std::max(miss.q, miss.v) > 1) {
       if (!shorter_.step(before, std::span(saved_).first(2 * n_), t - before)) return false;
-      state = shorter_.next();
+      if (!measure(t, q, v, shorter_.next(), miss)) return false;
     }
-    if (!compare(t, q, v, state, result)) return false;
+    note(t, miss, result);
   }
   return true;
 }
@@ -196,7 +196,9 @@ bool Chase::end_piece(double start, double end, Verification& result) {
   result.growth = std::max(result.growth, growth());
   if (!state_at(end, next_)) return false;
   const std::span<const double> y(y_);
-  if (!compare(end, std::span(next_).first(n_), v_, y.first(2 * n_), result)) return false;
+  Miss miss;
+  if (!measure(end, std::span(next_).first(n_), v_, y.first(2 * n_), miss)) return false;
+  note(end, miss, result);
   if (!complete_) return true;
   const auto size = static_cast<Eigen::Index>(2 * n_);
   Eigen::VectorXd unit(size);

@@ -37,9 +37,13 @@ class Chase {
   bool state_at(double t, std::span<double> y);
   void begin_piece(double t);
   bool compare_step(double before, double now, Verification& result);
-  bool near(std::span<const double> state, std::span<const double> q) const;
-  bool compare(double t, std::span<const double> q, std::span<const double> v, std::span<const double> state,
-               Verification& result);
+  /// In units of what is allowed.
+  struct Miss {
+    double q = 0, v = 0;
+  };
+  bool measure(double t, std::span<const double> q, std::span<const double> v, std::span<const double> state,
+               Miss& miss);
+  static void note(double t, const Miss& miss, Verification& result);
   double growth() const;
   double growth_limit() const;
   std::string run_piece(double& t, double limit, const IntegrationOptions& integration, Verification& result);

@@ -15,7 +15,7 @@ namespace {
 constexpr double least_singular = 1e-6;
 constexpr int refinements = 3;
 /// Among orbits of a family the nearest in q is meant: momenta may be off by much more.
-constexpr double weight_of_momenta = 1e-3;
+constexpr double weight_of_momenta = 0.03;
 
 using Entries = std::vector<Eigen::Triplet<double>>;
 
