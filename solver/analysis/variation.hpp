@@ -71,7 +71,6 @@ class SecondVariation {
     double start, length;
     int first;  ///< the first piece of those that were evaluated with it
   };
-  void choose_scheme();
   bool cut();
   void evaluate(std::span<const Part> parts);
   bool resolved(const DiscreteAction& action, int count, double allowed);

@@ -113,8 +113,9 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
       if (std::max(last[lane], second[lane]) < noise * extent[lane]) last[lane] = second[lane] = 0;
       const double size = std::max(last[lane], second[lane]);
       const double least = size > 0 ? std::clamp(size / own[lane], fastest, fast) : fastest;
-      const double fall =
-          std::sqrt(before[lane] > 0 ? std::clamp(size / before[lane], least, slowest) : slowest);
+      const double fall = std::sqrt(size == 0          ? fastest
+                                    : before[lane] > 0 ? std::clamp(size / before[lane], least, slowest)
+                                                       : slowest);
       tails_.push_back({std::max(last[lane], second[lane] * fall), fall, path.h(b)[lane]});
     }
   }
