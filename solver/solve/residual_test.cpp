@@ -41,9 +41,15 @@ double natural_residual(const Problem& problem, const DiscreteAction& action, co
     const bool start = z.row < n;
     const int a = start ? z.row : z.row - n;
     left[z.column] += z.value * (start ? action.start_gradient()[a] : action.end_gradient()[a]);
-    const std::vector<double>& block = start ? action.nodes.first : action.nodes.last;
-    if (block.empty()) continue;  // a sparse matrix
-    for (int b = 0; b < n; ++b) rounding[z.column] += roundoff * std::abs(z.value * block[a * n + b]) * q[b];
+    const NodeEquations& nodes = action.nodes;
+    if (nodes.first.empty()) continue;  // a sparse matrix
+    const std::vector<double>& block = start ? nodes.first : nodes.last;
+    // Differences of neighbours are exact: with what couples them inertia drops out.
+    const std::vector<double>& beside = start || path.elements() == 1 ? nodes.first_lower : nodes.last_lower;
+    for (int b = 0; b < n; ++b) {
+      const double stiffness = block[a * n + b] + beside[start ? b * n + a : a * n + b];
+      rounding[z.column] += roundoff * std::abs(z.value * stiffness) * q[b];
+    }
   }
   double largest = 0;
   for (std::size_t c = 0; c < left.size(); ++c) largest = std::max(largest, std::abs(left[c]) - rounding[c]);
