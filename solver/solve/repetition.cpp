@@ -32,6 +32,12 @@ class Continued {
   std::vector<double> v_;
 };
 
+bool is_prime(int number) {
+  for (int k = 2; k * k <= number; ++k)
+    if (number % k == 0) return false;
+  return true;
+}
+
 }  // namespace
 
 int segments_to_close(const ClosingMap& map) {
@@ -46,21 +52,22 @@ int segments_to_close(const ClosingMap& map) {
 }
 
 int repetitions(const Trajectory& path, const ClosingMap& map, int segments, double error) {
-  constexpr int samples = 64, most = 1 << 16;
-  constexpr int primes[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31};
+  constexpr int fewest = 64, most = 1 << 16;
+  constexpr double aside = 0.382;  // where no symmetry has its points
+  const int samples = std::max(fewest, path.elements() * path.degree);
   const double whole = path.duration() * segments;
   Continued continued(path, map, segments);
   const auto repeats = [&](double period) {
     for (int k = 0; k < samples; ++k) {
-      const double t = whole * k / samples;
+      const double t = whole * (k + aside) / samples;
       const Eigen::VectorXd moved = continued.at(t + period) - continued.at(t);
       if (!(moved.cwiseAbs().maxCoeff() <= error)) return false;
     }
     return true;
   };
   int parts = 1;
-  for (const int prime : primes)
-    while (parts < most && repeats(whole / (parts * prime))) parts *= prime;
+  for (int prime = 2; 2 * prime <= samples; ++prime)
+    while (is_prime(prime) && parts < most && repeats(whole / (parts * prime))) parts *= prime;
   return parts < most ? parts : 0;
 }
 

@@ -119,6 +119,27 @@ TEST(MorseIndex, OfWhatAGuessDoesNotShow) {
   EXPECT_EQ(s.morse_index, std::floor(200 / pi) + 1);
 }
 
+/// Rotations leave the centre where it is, and have no null direction there. Of q = Re c exp(2πikt/T) in a
+/// frame that turns with W the action is positive where (2πk/T ± W)² > 1.
+TEST(MorseIndex, OfRestInARotatingFrame) {
+  for (const double W : {0.3, 0.7})
+    for (const double T : {2.0, 3.0, 4.0}) {
+      const auto lagrangian = trace(2, [=](auto q, auto v, auto) {
+        const auto x = v[0] - W * q[1], y = v[1] + W * q[0];
+        return (x * x + y * y - q[0] * q[0] - q[1] * q[1]) / 2;
+      });
+      int index = 2;
+      for (int k = 1; k < 10; ++k) index += 2 * (std::abs(2 * pi * k / T - W) < 1);
+      const Solution s = solve(guessed(periodic(lagrangian, T),
+                                       [](double) {
+                                         return Values{0, 0};
+                                       }),
+                               within(1e-9));
+      EXPECT_EQ(s.morse_index, index) << W << ' ' << T;
+      EXPECT_EQ(s.nullity, 0) << W << ' ' << T;
+    }
+}
+
 /// In the plane, with T fixed: time shift, rotation, and the family of ellipses with the same period.
 TEST(Nullity, OfPeriodicKeplerOrbitsIsThree) {
   for (double e : {0.0, 0.3, 0.6})

@@ -84,6 +84,32 @@ TEST(Periodic, MinimalPeriod) {
   EXPECT_FALSE(solve(fixed_ends(systems::pendulum(), {0}, {1}, 1), within(1e-9)).minimal_period);
 }
 
+/// x'' = x + f has the solution of the period of f alone, here a sum of sines of angular frequency 2πk.
+TEST(Periodic, MinimalPeriodOfForcedOrbits) {
+  struct Sine {
+    int k;
+    double size;
+  };
+  const auto period = [](const std::vector<Sine>& sum) {
+    const auto lagrangian = trace(1, [&](auto q, auto v, auto t) {
+      auto l = (v[0] * v[0] + q[0] * q[0]) / 2;
+      for (const Sine& s : sum) l = l - s.size * (4 * pi * pi * s.k * s.k + 1) * sin(2 * pi * s.k * t) * q[0];
+      return l;
+    });
+    const auto orbit = [&](double tau) {
+      double x = 0;
+      for (const Sine& s : sum) x += s.size * std::sin(2 * pi * s.k * tau);
+      return Values{x};
+    };
+    const Solution s = solve(guessed(periodic(lagrangian, 1), orbit), within(1e-8));
+    EXPECT_TRUE(s.converged()) << s.message;
+    return s.minimal_period.value_or(0);
+  };
+  EXPECT_NEAR(period({{37, 1}}), 1.0 / 37, 1e-12);
+  EXPECT_NEAR(period({{6, 1}, {10, 0.5}}), 0.5, 1e-12);
+  EXPECT_NEAR(period({{2, 1}, {1, 0.5}, {65, -0.5}}), 1, 1e-12);  // a half but for what is 0 at t = k/64
+}
+
 /// No swing is shorter than 2π.
 TEST(Periodic, CollapseOntoAnEquilibriumIsAFailure) {
   const Solution s = Solver().solve(swings(3, 0.5, 1, 0.2), within(1e-8));
