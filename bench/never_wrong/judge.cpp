@@ -117,7 +117,7 @@ class Judge {
     verdict_.estimate_over = solution_.error_estimate / error.q;
     if (*verdict_.estimate_over >= least_estimate) return;
     const std::optional<double> shot = error_by_shooting(study_, solution_);
-    // A reference that is much farther off than that is another extremal.
+    // Where shooting tells no more than the estimate does, the reference is another extremal.
     if (shot && solution_.error_estimate >= least_estimate * (*shot - floor_of_errors * size_))
       verdict_.estimate_over.reset();
     else

@@ -54,7 +54,7 @@ int segments_to_close(const ClosingMap& map) {
 int repetitions(const Trajectory& path, const ClosingMap& map, int segments, double error) {
   constexpr int fewest = 64, most = 1 << 16;
   constexpr double aside = 0.382;  // where no symmetry has its points
-  const int samples = std::max(fewest, path.elements() * path.degree);
+  const int samples = std::max(fewest, segments * path.elements() * path.degree);
   const double whole = path.duration() * segments;
   Continued continued(path, map, segments);
   const auto repeats = [&](double period) {

@@ -12,7 +12,8 @@ int segments_to_close(const ClosingMap& map);
 
 /// Of a path with q(t + T) = R q(t) + c that closes after m segments: the most parts of mT after each of
 /// which it is where it was, within `error`. 0 where it never moves. A number of parts that divide into
-/// others shows by its prime factors, up to half as many as elements have points, one after the other.
+/// others shows by its prime factors, up to half as many as there are points of elements in mT, one after the
+/// other.
 int repetitions(const Trajectory& path, const ClosingMap& map, int segments, double error);
 
 }  // namespace extremal
