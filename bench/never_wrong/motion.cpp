@@ -4,8 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include "rivals/dop853.hpp"
-#include "rivals/flow.hpp"
+#include "motion/dop853.hpp"
+#include "motion/flow.hpp"
 
 namespace bench {
 namespace {

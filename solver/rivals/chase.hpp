@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "motion/dop853.hpp"
+#include "motion/flow.hpp"
 #include "rivals/conditions.hpp"
 #include "rivals/correction.hpp"
-#include "rivals/dop853.hpp"
-#include "rivals/flow.hpp"
 #include "rivals/verify.hpp"
 
 /// \file The motion run beside a trajectory, piece by piece.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "machine/aligned.hpp"
-#include "rivals/dop853_tableau.hpp"
+#include "motion/dop853_tableau.hpp"
 #include "rivals/lane_flow.hpp"
 
 /// \file Many pieces of motion integrated by the method of Dormand and Prince, eight at a time.

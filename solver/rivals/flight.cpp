@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "rivals/dop853.hpp"
-#include "rivals/flow.hpp"
+#include "motion/dop853.hpp"
+#include "motion/flow.hpp"
 #include "rivals/shooting.hpp"
 
 namespace extremal {

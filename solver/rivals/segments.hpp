@@ -3,10 +3,10 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "motion/flow.hpp"
 #include "problem/problem.hpp"
 #include "rivals/conditions.hpp"
 #include "rivals/convoy.hpp"
-#include "rivals/flow.hpp"
 #include "rivals/staircase.hpp"
 
 /// \file A motion in segments, each from a state of its own: the equations of single and multiple shooting.

@@ -31,7 +31,7 @@ struct Verification {
   std::optional<double> distance;  ///< of q from the extremal, to first order: one step of multiple shooting
   double orientation = 0;  ///< where L_vv > 0, positive (negative) if conjugate times are even (odd) in
                            ///< number, the surer the farther from zero; 0 if not known
-  double growth = 0;  ///< largest of an error within a piece
+  double growth = 0;       ///< largest of an error within a piece
   int pieces = 0, steps = 0;
 };
 

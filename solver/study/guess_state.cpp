@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "motion/dop853.hpp"
+#include "motion/extended_flow.hpp"
+#include "motion/flow.hpp"
 #include "problem/closing.hpp"
-#include "rivals/dop853.hpp"
-#include "rivals/extended_flow.hpp"
-#include "rivals/flow.hpp"
 #include "study/guess.hpp"
 #include "study/naming.hpp"
 

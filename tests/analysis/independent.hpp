@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 
-#include "rivals/dop853.hpp"
-#include "rivals/flow.hpp"
+#include "motion/dop853.hpp"
+#include "motion/flow.hpp"
 #include "solve/laws.hpp"
 
 /// \file Conjugate times by integration of the Jacobi equation beside the motion, forward in time: it shares

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
+#include "motion/flow.hpp"
 #include "rivals/convoy.hpp"
-#include "rivals/flow.hpp"
 #include "rivals/lane_flow.hpp"
 #include "rivals/problems.hpp"
 #include "rivals/staircase.hpp"

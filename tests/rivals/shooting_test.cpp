@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "rivals/flow.hpp"
+#include "motion/flow.hpp"
 #include "rivals/problems.hpp"
 
 namespace extremal {

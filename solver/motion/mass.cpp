@@ -1,4 +1,4 @@
-#include "rivals/mass.hpp"
+#include "motion/mass.hpp"
 
 #include <algorithm>
 #include <cmath>

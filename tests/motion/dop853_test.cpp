@@ -1,4 +1,4 @@
-#include "rivals/dop853.hpp"
+#include "motion/dop853.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "rivals/dop853_tableau.hpp"
+#include "motion/dop853_tableau.hpp"
 
 namespace extremal {
 namespace {

@@ -1,4 +1,4 @@
-#include "rivals/flow.hpp"
+#include "motion/flow.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +22,11 @@ double largest(std::span<const double> x) {
 }
 
 }  // namespace
+
+bool Flow::suits(const Lagrangian& lagrangian) {
+  const Structure& structure = lagrangian.structure();
+  return !structure.quadratic || MassMatrix(structure.coordinates).factor(structure.mass);
+}
 
 Flow::Flow(const Lagrangian& lagrangian)
     : n_(lagrangian.structure().coordinates),

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "rivals/mass.hpp"
-#include "rivals/point.hpp"
+#include "motion/mass.hpp"
+#include "motion/point.hpp"
 
 /// \file The motion of a Lagrangian system as a flow in (q, p), p = ∂L/∂q'.
 
@@ -15,7 +15,9 @@ namespace extremal {
 ///   L_vv δq' = δp − L_vq δq,   δp' = L_qq δq + L_vqᵀ δq'.
 class Flow {
  public:
-  /// `lagrangian` must outlive it.
+  /// Not where constant inertia is singular: then there is no such flow.
+  static bool suits(const Lagrangian& lagrangian);
+  /// `lagrangian` must outlive it. Throws std::invalid_argument where it does not suit.
   explicit Flow(const Lagrangian& lagrangian);
 
   int coordinates() const { return n_; }

@@ -1,4 +1,4 @@
-#include "rivals/point.hpp"
+#include "motion/point.hpp"
 
 #include <algorithm>
 #include <cmath>

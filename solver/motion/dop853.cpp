@@ -1,11 +1,11 @@
-#include "rivals/dop853.hpp"
+#include "motion/dop853.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "rivals/dop853_tableau.hpp"
+#include "motion/dop853_tableau.hpp"
 
 namespace extremal {
 

@@ -1,11 +1,11 @@
-#include "rivals/extended_flow.hpp"
+#include "motion/extended_flow.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "rivals/dop853.hpp"
-#include "rivals/flow.hpp"
+#include "motion/dop853.hpp"
+#include "motion/flow.hpp"
 #include "rivals/problems.hpp"
 
 namespace extremal {

@@ -1,4 +1,4 @@
-#include "rivals/extended_flow.hpp"
+#include "motion/extended_flow.hpp"
 
 #include <algorithm>
 #include <cmath>
