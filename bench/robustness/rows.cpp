@@ -151,7 +151,7 @@ std::vector<Row> all_rows() {
                   [=] { return flights(double_pendulum, draw_double_pendulum, 3, 20, -1, 1); }});
   add_further(rows, "double pendulum", double_pendulum, draw_double_pendulum, {4, 5});
   add_further(rows, "pendulum that turns over", system("pendulum", {{"g", 1}}), draw_fast_pendulum, {20, 80});
-  add_further(rows, "Müller-Brown", system("mueller-brown"), draw_mueller_brown, {0.1, 0.2, 0.3});
+  add_further(rows, "Müller-Brown", system("mueller-brown"), draw_mueller_brown, {0.1, 0.2, 0.3, 1});
   add_further(rows, "FPU chain of 8", system("fpu-chain", {{"n", 8}}), draw_chain, {5, 10});
   return rows;
 }

@@ -14,9 +14,8 @@ namespace extremal {
 
 namespace {
 
-/// Coarse elements may not follow a family of extremals as it grows.
-constexpr int homotopy_degree = 8;
-/// Newton steps in all, times unknowns of the first mesh: what other guesses may cost.
+/// Newton steps from guesses, and those times unknowns of the first mesh: what they may cost.
+constexpr int most_steps = 4000;
 constexpr double most_work = 1e7;
 constexpr double least_steps = 100;
 /// A periodic path that is so much smaller than the guess is at rest.
@@ -172,7 +171,9 @@ bool Search::from_other_guesses() {
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;
   begin();
-  return from_noise(most_noises);
+  if (from_noise(most_noises)) return true;
+  begin();
+  return from_motions();
 }
 
 Outcome Search::run() {
@@ -182,8 +183,8 @@ Outcome Search::run() {
   magnitude_ = size.magnitude;
   if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * w_.path.elements();
-  allowance_ =
-      std::min(options_.max_iterations, static_cast<int>(std::max(least_steps, most_work / unknowns)));
+  allowance_ = std::min(
+      {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
   refinement_.allow(allowance_);
   Refinement::Result result = pursue(from_guess);
   const bool doubtful = doubtful_;
@@ -195,10 +196,10 @@ Outcome Search::run() {
     } else {
       outcome_.status = Status::iteration_limit;
       outcome_.message = fmt::format(
-          "{} Newton steps from the guess ({}){}{} found no extremal; try a better guess or a shorter "
+          "{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or a shorter "
           "duration",
           outcome_.iterations, failure, continued_ ? ", through other durations" : "",
-          bent_ ? " and from smooth noise" : "");
+          bent_ ? ", from smooth noise" : "", launched_ ? ", from motions that miss the end" : "");
       if (shrank_) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =

@@ -22,7 +22,8 @@ class Search {
   /// Pursues the path in the workspace, on elements of `tables`; whether an extremal was found.
   bool settle(const ElementTables& tables, const char* strategy);
   /// Puts the path that `fill` fills on elements that follow it; false if it comes too near a singularity.
-  bool place(const std::function<void(const ElementTables& tables, Path& path)>& fill);
+  bool place(const std::function<void(const ElementTables& tables, Path& path)>& fill,
+             int degree = Refinement::first_degree);
   const ElementTables& tables() const { return refinement_.tables(); }
   /// Sizes of paths and effort are those of another search.
   void be_like(const Search& other);
@@ -37,6 +38,8 @@ class Search {
 
  private:
   static constexpr int most_first_elements = 1 << 12;
+  /// Coarse elements may not follow a family of extremals as it grows.
+  static constexpr int homotopy_degree = 8;
   static int first_elements(const Frequency& frequency);
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   bool begin();
@@ -50,6 +53,8 @@ class Search {
   bool by_descent(const std::vector<double>& mesh);
   bool from_finer_elements();
   bool from_line();
+  bool from_motions();
+  bool from_motion(const Guess& motion, double duration);
   bool from_noise(unsigned tries);
 
   const Problem& problem_;
@@ -69,6 +74,7 @@ class Search {
   bool shrank_ = false;     ///< a path, to a point of equilibrium
   bool continued_ = false;  ///< extremals of other durations were followed
   bool bent_ = false;       ///< guesses were bent by noise
+  bool launched_ = false;   ///< motions were led to the end
   bool doubtful_ = false;   ///< the equations of the last path were nearly singular
 };
 

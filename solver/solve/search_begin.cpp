@@ -118,12 +118,12 @@ bool Search::resolve_guess() {
   return finer_found;
 }
 
-bool Search::place(const std::function<void(const ElementTables&, Path&)>& fill) {
+bool Search::place(const std::function<void(const ElementTables&, Path&)>& fill, int degree) {
   fill(open(uniform_mesh(2 * lanes), Refinement::first_degree), w_.path);
   measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), w_.path, w_.frequency);
   const int elements = first_elements(w_.frequency);
   if (!w_.frequency.finite() || elements > most_launched) return false;
-  fill(open(w_.frequency.mesh(elements, guess_floor), Refinement::first_degree), w_.path);
+  fill(open(w_.frequency.mesh(elements, guess_floor), degree), w_.path);
   return true;
 }
 

@@ -30,7 +30,7 @@ struct SolveOptions {
   std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
   int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
   Method method = Method::newton;
-  int max_iterations = 4000;  ///< Newton steps in all, restarts from other guesses included
+  int max_iterations = 8000;  ///< Newton steps in all, restarts from other guesses included
   std::function<void(const Iteration&)> progress;
 };
 

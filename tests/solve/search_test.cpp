@@ -98,6 +98,28 @@ TEST(Search, BratuNearItsFold) {
   EXPECT_NEAR(peak, 2 * std::log(std::cosh(std::sqrt(3.5 * std::exp(peak) / 8))), 1e-8);
 }
 
+/// A stiff spring that swings ten times and more: no line comes near a motion, and all motions are led to the
+/// end on one curve.
+TEST(Search, MotionsAreLedToTheEnd) {
+  const auto spring = [](double m, double alpha, double beta) {
+    return trace(1, [=](auto q, auto v, auto) {
+      return m * v[0] * v[0] / 2.0 - alpha * q[0] * q[0] / 2.0 - beta * q[0] * q[0] * q[0] * q[0] / 4.0;
+    });
+  };
+  const Problem fixed = fixed_ends(spring(0.295, 1.162, 1.044), {-1.987}, {-0.697}, 17.04);
+  Problem free = fixed_ends(spring(0.205, 0.168, 0.651), {-1.44}, {-1.15}, 35.49);
+  free.duration = {.value = 35.49, .free = true, .energy = 0.8805, .where = {}};
+  for (const Problem& problem : {fixed, make_problem(free)}) {
+    const Solution s = solve(problem, within(1e-8));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_LT(*s.energy_drift, 1e-5);
+    EXPECT_NEAR(at(s.trajectory, s.duration()).q[0], problem.boundary.value.back(), 1e-12);
+    if (problem.duration.free) {
+      EXPECT_NEAR(*s.energy, 0.8805, 1e-7);
+    }
+  }
+}
+
 TEST(Search, SaysWhatWasTriedWhereNothingIsFound) {
   SolveOptions options = within(1e-9);
   options.max_iterations = 600;
