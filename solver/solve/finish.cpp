@@ -75,10 +75,17 @@ bool closed(const Problem& problem, const SolveOptions& options, Workspace& w) {
 
 /// What is left of the natural conditions must be within the error that momenta may have: where forces hardly
 /// change them, that may be far below the momenta. Steps of closed paths have nothing along a family of
-/// orbits: what is left there is a small part of the error, or the family is none.
-bool within_momenta(const Problem& problem, const Survey& survey, double tolerance, Workspace& w) {
+/// orbits: what is left there is a small part of the error, or the family is none. Nor do other steps have
+/// anything along directions that count as null: there no force may be left but what an error of q explains.
+bool within_momenta(const Problem& problem, const Survey& survey, double tolerance, int nullity,
+                    Workspace& w) {
   const DiscreteAction& action = w.iteration.action();
   const double range = *std::max_element(survey.p.begin(), survey.p.end());
+  if (nullity > 0 && !problem.periodic) {
+    const double error = tolerance * *std::max_element(survey.q.begin(), survey.q.end());
+    return natural_residual(problem, action, w.path, error) <=
+           std::max(momentum_tolerances * tolerance * range, 0x1p-53 * action.momentum_scale());
+  }
   const double part = problem.periodic ? held_tolerances : momentum_tolerances;
   return natural_residual(problem, action, w.path) <=
          std::max(part * tolerance * range, least_roundoff * action.momentum_scale());
@@ -99,7 +106,7 @@ void judge_resolution(const Problem& problem, const SolveOptions& options, const
         "elements the path passes a singularity or a kink that they do not resolve; try another tolerance",
         *solution.energy_drift, options.tolerance);
   } else if (found && problem.ends.free > 0 && !options.scheme &&
-             !within_momenta(problem, *found, options.tolerance, w)) {
+             !within_momenta(problem, *found, options.tolerance, solution.nullity.value_or(0), w)) {
     solution.status = Status::not_converged;
     solution.message = fmt::format(
         "a residual of {:.1e} of the largest momentum is left, more than momenta change by within the "

@@ -33,7 +33,8 @@ double size_at_start(const Path& path) {
   return largest;
 }
 
-double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path) {
+double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path,
+                        double displacement) {
   const int n = path.coordinates();
   const std::vector<double> q = magnitudes(path);
   std::vector<double> left(problem.ends.free, 0), rounding(problem.ends.free, 0);
@@ -48,7 +49,7 @@ double natural_residual(const Problem& problem, const DiscreteAction& action, co
     const std::vector<double>& beside = start || path.elements() == 1 ? nodes.first_lower : nodes.last_lower;
     for (int b = 0; b < n; ++b) {
       const double stiffness = block[a * n + b] + beside[start ? b * n + a : a * n + b];
-      rounding[z.column] += roundoff * std::abs(z.value * stiffness) * q[b];
+      rounding[z.column] += std::abs(z.value * stiffness) * (roundoff * q[b] + displacement);
     }
   }
   double largest = 0;

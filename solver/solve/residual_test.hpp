@@ -8,8 +8,9 @@ namespace extremal {
 
 /// What is left of the natural conditions where the action was evaluated last, at `path`: the largest
 /// |component| above the roundoff of its own row, which is that of the forces that it sums, by its own second
-/// derivatives. Coordinates may have masses of different orders.
-double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path);
+/// derivatives, and what these make of a displacement of q. Coordinates may have masses of different orders.
+double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path,
+                        double displacement = 0);
 
 /// Largest |q(0)|: what NewtonIteration::stiffness(), measured there, makes roundoff of.
 double size_at_start(const Path& path);
