@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 /// Of the largest momentum.
 constexpr double largest_residual = 1e-6;
 /// The same, that may be roundoff.
-constexpr double least_roundoff = 1e-13;
+constexpr double least_roundoff = 1e-13, half_a_digit = 0x1p-53;
 /// Of the range of momenta, as momentum_tolerances: forces that closed paths are held by.
 constexpr double held_tolerances = 0.1;
 constexpr double least_null = 1e-8, largest_null = 1e-3;
@@ -84,7 +84,7 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
   if (nullity > 0 && !problem.periodic) {
     const double error = tolerance * *std::max_element(survey.q.begin(), survey.q.end());
     return natural_residual(problem, action, w.path, error) <=
-           std::max(momentum_tolerances * tolerance * range, 0x1p-53 * action.momentum_scale());
+           std::max(momentum_tolerances * tolerance * range, half_a_digit * action.momentum_scale());
   }
   const double part = problem.periodic ? held_tolerances : momentum_tolerances;
   return natural_residual(problem, action, w.path) <=

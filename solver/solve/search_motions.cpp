@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "motion/dop853.hpp"
 #include "motion/flow.hpp"
+#include "motion/sample.hpp"
 #include "solve/end_homotopy.hpp"
 #include "solve/search.hpp"
 
@@ -48,41 +49,18 @@ bool scale_to_energy(const Lagrangian& lagrangian, std::span<const double> q, do
   return false;
 }
 
-/// Samples of the motion from (q, v) at t = 0; none where it cannot be followed, or `count` says that there
-/// may be no more steps.
+/// The motion from (q, v) at t = 0; none where it cannot be followed, or `count` allows no more steps.
 Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
                   double duration, const std::function<bool()>& count) {
-  const std::size_t n = q.size();
-  Flow flow(lagrangian);
-  std::vector<double> y(q.begin(), q.end()), between(n);
-  y.resize(2 * n);
-  if (!flow.momentum(q, v, 0, std::span(y).subspan(n))) return {};
-  Dop853 method([&flow](double t, std::span<const double> x,
-                        std::span<double> slope) { return flow.slope(t, x, slope); },
-                static_cast<int>(2 * n));
-  IntegrationOptions options;
-  options.tolerance = step_error;
-  options.block = static_cast<int>(n);
-  Guess motion;
-  motion.motion = true;
-  const auto add = [&](double t, std::span<const double> point) {
-    motion.tau.push_back(t / duration);
-    motion.q.insert(motion.q.end(), point.begin(), point.end());
+  const auto more = [&count](int steps) {
+    return steps < most_integrator_steps && (steps % steps_a_count > 0 || count());
   };
-  add(0, q);
-  for (double t = 0, before = 0; t != duration; before = t) {
-    if (method.steps() >= most_integrator_steps || (method.steps() % steps_a_count == 0 && !count()) ||
-        method.accept_step(t, y, duration, options) != Integrated::done ||
-        !method.prepare_interpolation(y, static_cast<int>(n)))
-      return {};
-    for (int k = 1; k < samples_a_step; ++k) {
-      const double theta = static_cast<double>(k) / samples_a_step;
-      method.interpolate(theta, between);
-      add(before + theta * (t - before), between);
-    }
-    add(t, std::span(y).first(n));
-  }
-  return motion;
+  SampledMotion samples;
+  if (!sample_motion<double>(Flow(lagrangian), q, v, 0, duration,
+                             {step_error, samples_a_step, duration, more}, samples))
+    return {};
+  for (double& t : samples.t) t /= duration;
+  return {std::move(samples.t), std::move(samples.q), true};
 }
 
 }  // namespace

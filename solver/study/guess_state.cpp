@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "motion/dop853.hpp"
 #include "motion/extended_flow.hpp"
 #include "motion/flow.hpp"
+#include "motion/sample.hpp"
 #include "problem/closing.hpp"
 #include "study/guess.hpp"
 #include "study/naming.hpp"
@@ -35,11 +35,6 @@ constexpr int samples_a_step = 64;
 /// Roundoff of so many steps is amplified by the encounters that they follow.
 constexpr std::size_t many_steps = 750;
 
-/// Times from one to another, later or earlier, and q there.
-struct Samples {
-  std::vector<double> t, q;
-};
-
 /// Steps of the integrator, relative: their errors come back amplified by what errors grow over half a
 /// period.
 template <class Real>
@@ -47,55 +42,24 @@ constexpr double tolerance = 1e-14;
 template <>
 constexpr double tolerance<long double> = 1e-17;
 
-/// The motion from a state at t = `from`, as a flow in (q, p), to t = `to`; no two at one t/duration.
 template <class Real, class AnyFlow>
-Samples sample(AnyFlow flow, const InitialState& state, double from, double to, double duration,
-               const Location& at) {
-  const std::size_t n = state.q.size();
-  std::vector<Real> y(state.q.begin(), state.q.end()), between(2 * n);
-  const std::vector<Real> v(state.v.begin(), state.v.end());
-  y.resize(2 * n);
-  if (!flow.momentum(std::span(y).first(n), v, from, std::span(y).subspan(n)))
-    throw SceneError(at, "L is not finite at the initial state of the guess");
-  DormandPrince<Real> method(
-      [&flow](Real t, std::span<const Real> x, std::span<Real> slope) { return flow.slope(t, x, slope); },
-      static_cast<int>(2 * n));
-  IntegrationOptions options;
-  options.tolerance = tolerance<Real>;
-  options.block = static_cast<int>(n);
-  Samples samples;
-  // Extended times may be one in double precision.
-  const auto add = [&](Real t, const std::vector<Real>& point) {
-    const double rounded = static_cast<double>(t);
-    if (!samples.t.empty() && samples.t.back() / duration == rounded / duration) return;
-    samples.t.push_back(rounded);
-    for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));
-  };
-  add(from, y);
-  for (Real t = from, before = from; t != to; before = t) {
-    if (method.accept_step(t, y, to, options) != Integrated::done ||
-        !method.prepare_interpolation(y, static_cast<int>(y.size())))
-      throw SceneError(at,
-                       fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}",
-                                   static_cast<double>(t)));
-    for (int k = 1; k < samples_a_step; ++k) {
-      const Real theta = Real(k) / samples_a_step;
-      method.interpolate(theta, between);
-      add(before + theta * (t - before), between);
-    }
-    add(t, y);
-  }
-  return samples;
+SampledMotion sample(const InitialState& state, double from, double to, const Problem& problem,
+                     const Location& at) {
+  SampledMotion samples;
+  const MotionSampling options{tolerance<Real>, samples_a_step, problem.duration.value};
+  if (sample_motion<Real>(AnyFlow(*problem.lagrangian), state.q, state.v, from, to, options, samples))
+    return samples;
+  if (samples.t.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
+  throw SceneError(at, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}",
+                                   samples.t.back()));
 }
 
 /// Where it takes many steps, in extended precision if L has it.
-Samples motion_from(const InitialState& state, double from, double to, const Problem& problem,
-                    const Location& at) {
-  const Lagrangian& lagrangian = *problem.lagrangian;
-  const double duration = problem.duration.value;
-  Samples samples = sample<double>(Flow(lagrangian), state, from, to, duration, at);
-  if (samples.t.size() > many_steps * samples_a_step && ExtendedFlow::suits(lagrangian))
-    samples = sample<long double>(ExtendedFlow(lagrangian), state, from, to, duration, at);
+SampledMotion motion_from(const InitialState& state, double from, double to, const Problem& problem,
+                          const Location& at) {
+  SampledMotion samples = sample<double, Flow>(state, from, to, problem, at);
+  if (samples.t.size() > many_steps * samples_a_step && ExtendedFlow::suits(*problem.lagrangian))
+    samples = sample<long double, ExtendedFlow>(state, from, to, problem, at);
   return samples;
 }
 
@@ -109,9 +73,9 @@ InitialState closed(const ClosingMap& map, const InitialState& state) {
 
 /// Of an orbit that closes only the first half is integrated onwards; the second is integrated back from
 /// where it has to arrive: errors grow for half as long. Halfway each gives way to the other.
-void add_halves(const Samples& first, const Samples& second, double duration, Guess& guess) {
+void add_halves(const SampledMotion& first, const SampledMotion& second, double duration, Guess& guess) {
   const std::size_t n = first.q.size() / first.t.size();
-  const auto add = [&](const Samples& half, std::size_t k, double weight) {
+  const auto add = [&](const SampledMotion& half, std::size_t k, double weight) {
     const double share = half.t.front() == 0 ? half.t[k] : duration - half.t[k];
     guess.tau.push_back(half.t[k] / duration);
     for (std::size_t a = 0; a < n; ++a) {
@@ -130,12 +94,12 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
   const InitialState state = read_state(values, system);
   const double duration = problem.duration.value;
   if (problem.periodic) {
-    const Samples first = motion_from(state, 0, duration / 2, problem, at);
-    const Samples second =
+    const SampledMotion first = motion_from(state, 0, duration / 2, problem, at);
+    const SampledMotion second =
         motion_from(closed(closing_map(problem), state), duration, duration / 2, problem, at);
     add_halves(first, second, duration, problem.guess);
   } else {
-    const Samples samples = motion_from(state, 0, duration, problem, at);
+    const SampledMotion samples = motion_from(state, 0, duration, problem, at);
     for (const double t : samples.t) problem.guess.tau.push_back(t / duration);
     problem.guess.q = samples.q;
   }
