@@ -22,6 +22,10 @@ constexpr int most_elements = 1 << 20;
 /// An error below the second, relative to the range, or the third, to the values, that more elements reduce
 /// less than by the first is roundoff.
 constexpr double stagnation = 0.9, near_roundoff = 1e-9, at_roundoff = 1e-14;
+/// Where an error is below the second, relative to the range, and so many times more elements did not reduce
+/// it, more hardly will, unless few had stepped over something.
+constexpr int futile_growth = 8;
+constexpr double resolved = 1e-3;
 constexpr int steps = 100;
 /// From an extremal to its companion, which is near or none.
 constexpr int companion_steps = 25;
@@ -29,8 +33,8 @@ constexpr int companion_steps = 25;
 constexpr double most_growth = 16;
 /// An error within this factor of what its order lets expect falls regularly.
 constexpr double regular_fall = 0.5;
-/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails, and no more of the
-/// steps that are dearer than others; or of one step.
+/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails or is futile, and no
+/// more of the steps that are dearer than others; or of one step.
 constexpr double most_cost = 1e8;
 constexpr double roundoff = 1e-15;
 /// Of the largest value.
@@ -201,6 +205,8 @@ Outcome PinnedSolve::run() {
   int elements = options_.elements > 0 ? options_.elements : 16;
   const int most = most_affordable();
   double before = INFINITY, expected = 0;  // errors: the last, and what this one should be
+  double least = INFINITY;
+  int of_least = elements;
   for (;; before = outcome_.error) {
     if (!solve_discrete(elements)) {
       if (options_.elements > 0 || elements >= 256 || cost_ > most_cost) break;
@@ -233,7 +239,12 @@ Outcome PinnedSolve::run() {
       break;
     }
     const double noise = std::max(near_roundoff * size.q, at_roundoff * size.magnitude);
-    if (outcome_.error > stagnation * before && outcome_.error < noise) {
+    if (outcome_.error < stagnation * least) {
+      least = outcome_.error;
+      of_least = elements;
+    }
+    const bool futile = cost_ > most_cost && elements > futile_growth * of_least && least < resolved * size.q;
+    if (futile || (outcome_.error > stagnation * before && outcome_.error < noise)) {
       outcome_.message = fmt::format("roundoff hides the tolerance {:.1e} from {} elements on; loosen it",
                                      options_.tolerance, elements);
       break;

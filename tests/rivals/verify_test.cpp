@@ -175,6 +175,25 @@ TEST(Verify, NaturalConditions) {
   expect_refuted(problem, sampled(1, 12, 3, other), 1e-9, "a natural or closing condition");
 }
 
+/// The range of the momenta, 1e-9 here, is no measure for what a natural condition may miss.
+TEST(Verify, NaturalConditionOfANearlyUniformMotion) {
+  Problem problem;
+  problem.lagrangian =
+      trace(2, [](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1]) / 2.0 + 1e-9 * q[0]; });
+  problem.boundary.coordinates = 2;
+  problem.boundary.fix(0, false, 0);
+  problem.boundary.fix(1, false, 0);
+  problem.boundary.fix(0, true, 1);
+  problem.duration.value = 1;
+  problem = make_problem(problem);
+  const auto with_momentum = [](double p) {
+    return sampled(2, 4, 1, [p](double t) { return std::vector{t + 5e-10 * t * (t - 1), p * t}; });
+  };
+  expect_verified(problem, with_momentum(0), 1e-6);
+  expect_verified(problem, with_momentum(5e-9), 1e-6);
+  expect_refuted(problem, with_momentum(1e-6), 1e-6, "a natural or closing condition");
+}
+
 Problem periodic_oscillator(double energy) {
   Problem problem;
   problem.lagrangian = oscillator();

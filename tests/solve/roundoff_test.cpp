@@ -1,6 +1,7 @@
 #include "solve/iteration.hpp"
 #include "solve/levels.hpp"
 #include "solve/published.hpp"
+#include "solve/scenes.hpp"
 
 /// \file What an iteration takes for roundoff.
 
@@ -33,6 +34,15 @@ TEST(Roundoff, OfAStepIsAllThatStepsChange) {
     ASSERT_EQ(newton.chord_step(path), StepResult::ok);
     EXPECT_LT(newton.norm(), 5 * newton.noise());
   }
+}
+
+/// Roundoff of q amplified to 1e-8 hides a tolerance of 1e-9 from some elements on: thousands of times more
+/// are not tried.
+TEST(Roundoff, ThatHidesTheToleranceOfASchemeEndsIt) {
+  const Study study = load(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/refused/nbody-amplified.toml");
+  const Solution s = run(study);
+  EXPECT_FALSE(s.converged());
+  EXPECT_LT(s.iterations, 350) << s.message;
 }
 
 }  // namespace
