@@ -16,6 +16,8 @@ constexpr std::size_t most_complete = 40, probes = 8;
 constexpr double longer = 10;
 /// The integrator's own error stays this much below what is allowed, within its reach.
 constexpr double tighter = 1e-3, tightest = 1e-15, loosest = 1e-10;
+/// A piece is shortened to a share between these, and lengthened where it may become so many times longer.
+constexpr double most_cut = 1.0 / 16, least_cut = 0.5, worth_a_step = 1.1;
 /// Numbers kept in waypoints, at most.
 constexpr std::size_t most_kept = 4'000'000;
 /// A range below this part of the values is none.
@@ -228,28 +230,35 @@ bool Chase::end_piece(double start, double end, Verification& result) {
   return true;
 }
 
-/// Takes steps until a piece is complete: at `limit`, or where errors have grown enough. What failed.
+/// Takes steps until a piece is complete: at `limit`, or where errors have grown enough; steps end where
+/// along a line they would have. What failed.
 std::string Chase::run_piece(double& t, double limit, const IntegrationOptions& integration,
                              Verification& result) {
   const double start = t, allowed = options_.ends.empty() ? growth_limit() : INFINITY;
   begin_piece(t);
-  while (t < limit) {
+  const double first = growth();
+  double near = start + length_;
+  while (t < limit && t < near) {
     const double before = t;
     saved_ = y_;
     if (result.steps == options_.max_steps)
       return fmt::format("{} steps of the integrator end at t = {:.9g}", result.steps, t);
     ++result.steps;
-    if (integrator_.accept_step(t, y_, limit, integration) != Integrated::done)
+    if (integrator_.accept_step(t, y_, std::min(limit, near), integration) != Integrated::done)
       return fmt::format("it cannot be integrated beyond t = {:.9g}", t);
-    if (growth() > allowed) {
-      limit = before > start ? before : start + (t - start) / 2;
+    const double grown = growth(), share = grown > first ? (allowed - first) / (grown - first) : INFINITY;
+    if (grown > allowed) {
+      limit = before > start ? before : limit;
+      near = start + (t - start) * std::clamp(share, most_cut, least_cut);
       t = before;
       y_ = saved_;
       continue;
     }
+    near = share > worth_a_step ? start + (t - start) * share : t;
     keep_waypoint(t);
     if (!compare_step(before, t, result)) return fmt::format("L is not finite near t = {:.9g}", t);
   }
+  length_ = t < limit ? t - start : INFINITY;
   return end_piece(start, t, result) ? "" : fmt::format("L is not finite near t = {:.9g}", t);
 }
 

@@ -61,6 +61,7 @@ class Chase {
   PhaseScales scales_;
   double allowed_q_ = 0, allowed_v_ = 0;
   double reach_ = 1;  ///< range of q by its size: what the integrator's relative tolerance is measured by
+  double length_ = INFINITY;  ///< of a piece that errors ended
   EndStates ends_;
   std::vector<double> y_, v_, motion_v_, interpolated_, next_, saved_;
   std::vector<double> t_samples_, q_samples_, v_samples_;
