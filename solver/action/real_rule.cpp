@@ -1,12 +1,12 @@
 #include "action/real_rule.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
+
+#include "action/by_degree.hpp"
 
 namespace extremal {
 
@@ -50,13 +50,15 @@ Real operator-(const Abscissa& a, const Abscissa& b) {
   return a.left + b.left < 1 ? a.left - b.left : b.right - a.right;
 }
 
+Legendre Legendre::next(int k, Real u) const {
+  const Real change = (k * difference - (2 * k + 1) * u * value) / (k + 1);
+  return {value + change, change};
+}
+
 Legendre legendre(int n, Real u) {
-  Real value = 1, difference = 0;
-  for (int k = 0; k < n; ++k) {
-    difference = (k * difference - (2 * k + 1) * u * value) / (k + 1);
-    value += difference;
-  }
-  return {value, difference};
+  Legendre p;
+  for (int k = 0; k < n; ++k) p = p.next(k, u);
+  return p;
 }
 
 /// Roots of P_n: (1−x²) P_n' = n (P_{n−1} − x P_n) = n (u P_n − D_{n−1}) and 1−x² = u (2−u);
@@ -96,14 +98,8 @@ RealRule real_lobatto(int points) {
 }
 
 const RealElement& real_element(int degree) {
-  static const std::vector<RealElement> elements = [] {
-    std::vector<RealElement> all(1);
-    for (int s = 1; s <= max_degree; ++s) all.push_back(make_element(s));
-    return all;
-  }();
-  if (degree < 1 || degree > max_degree)
-    throw std::invalid_argument(fmt::format("degree = {}; need 1 to {}", degree, max_degree));
-  return elements[degree];
+  static ByDegree<RealElement> elements(make_element);
+  return elements.at(degree);
 }
 
 int node_at(const RealElement& element, Abscissa at) {
@@ -127,6 +123,9 @@ void derivatives_at(const RealElement& element, Abscissa at, int node, std::span
                     std::span<Real> derivative) {
   const std::vector<Abscissa>& nodes = element.rule.nodes;
   const int size = static_cast<int>(nodes.size());
+  std::array<Real, max_degree + 1> inverse;
+  for (int m = 0; m < size; ++m)
+    if (m != node) inverse[m] = 1 / ((node < 0 ? at : nodes[node]) - nodes[m]);
   for (int j = 0; j < size; ++j) {
     if (node >= 0 && j != node) {
       derivative[j] = element.barycentric[j] / element.barycentric[node] / (nodes[node] - nodes[j]);
@@ -134,7 +133,7 @@ void derivatives_at(const RealElement& element, Abscissa at, int node, std::span
     }
     Real sum = 0;
     for (int m = 0; m < size; ++m)
-      if (m != j) sum += 1 / ((node < 0 ? at : nodes[node]) - nodes[m]);
+      if (m != j) sum += inverse[m];
     derivative[j] = value[j] * sum;
   }
 }

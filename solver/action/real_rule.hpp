@@ -21,7 +21,9 @@ Real operator-(const Abscissa& a, const Abscissa& b);
 ///   (k+1) D_k = k D_{k−1} − (2k+1) u P_k,
 /// which loses nothing for small u.
 struct Legendre {
-  Real value, difference;
+  Real value = 1, difference = 0;
+  /// From n = k to n = k + 1.
+  Legendre next(int k, Real u) const;
 };
 Legendre legendre(int n, Real u);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "action/by_degree.hpp"
 #include "action/real_rule.hpp"
 
 namespace extremal {
@@ -24,23 +25,16 @@ Rule rounded(const RealRule& rule) {
   return result;
 }
 
-/// Of one degree, rounded.
-const Barycentric& barycentric_of(int degree) {
-  static const std::vector<Barycentric> all = [] {
-    std::vector<Barycentric> result(1);
-    for (int s = 1; s <= max_degree; ++s) {
-      const RealElement& element = real_element(s);
-      Real largest = 0;
-      for (const Real w : element.barycentric) largest = std::max(largest, std::abs(w));
-      result.push_back({rounded(element.rule).nodes, {}});
-      for (const Real w : element.barycentric)
-        result.back().weights.push_back(static_cast<double>(w / largest));
-    }
-    return result;
-  }();
-  real_element(degree);  // refuses other degrees
-  return all[degree];
+Barycentric make_barycentric(int degree) {
+  const RealElement& element = real_element(degree);
+  Real largest = 0;
+  for (const Real w : element.barycentric) largest = std::max(largest, std::abs(w));
+  Barycentric result{rounded(element.rule).nodes, {}};
+  for (const Real w : element.barycentric) result.weights.push_back(static_cast<double>(w / largest));
+  return result;
 }
+
+Basis make_nodal_basis(int degree) { return lobatto_basis(degree, lobatto_barycentric(degree).nodes); }
 
 void check_points(int points, int least) {
   if (points < least || points > max_points)
@@ -76,7 +70,7 @@ Rule gauss_rule(int points) {
 
 Rule lobatto_rule(int points) {
   check_points(points, 2);
-  return rounded(real_lobatto(points));
+  return rounded(points <= max_degree + 1 ? real_element(points - 1).rule : real_lobatto(points));
 }
 
 Rule rule_of(const Scheme& scheme, int exact_points) {
@@ -101,24 +95,27 @@ Rule rule_of(const Scheme& scheme, int exact_points) {
   throw std::invalid_argument(fmt::format("quadrature {} does not exist", int(scheme.quadrature)));
 }
 
-Basis lobatto_basis(int degree, std::span<const double> points) {
+void lobatto_basis_at(int degree, double point, double* value, double* derivative) {
   const RealElement& element = real_element(degree);
-  const std::vector<double>& nodes = barycentric_of(degree).nodes;
+  const std::vector<double>& nodes = lobatto_barycentric(degree).nodes;
   const int m = degree + 1;
+  std::array<Real, max_degree + 1> values, slopes;
+  const std::span<Real> real_value(values.data(), m), real_slope(slopes.data(), m);
+  const Abscissa at{point, 1 - Real(point)};
+  const int node = node_at(nodes, point);
+  values_at(element, at, node, real_value);
+  derivatives_at(element, at, node, real_value, real_slope);
+  std::transform(real_value.begin(), real_value.end(), value, [](Real x) { return static_cast<double>(x); });
+  round_balanced(real_slope, derivative);
+}
+
+Basis lobatto_basis(int degree, std::span<const double> points) {
+  const int m = static_cast<int>(real_element(degree).barycentric.size());
   Basis basis{degree, {points.begin(), points.end()}, {}, {}};
   basis.value.resize(points.size() * m);
   basis.derivative.resize(points.size() * m);
-  std::array<Real, max_degree + 1> values, slopes;
-  const std::span<Real> value(values.data(), m), slope(slopes.data(), m);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Abscissa at{points[i], 1 - Real(points[i])};
-    const int node = node_at(nodes, points[i]);
-    values_at(element, at, node, value);
-    derivatives_at(element, at, node, value, slope);
-    std::transform(value.begin(), value.end(), basis.value.begin() + i * m,
-                   [](Real x) { return static_cast<double>(x); });
-    round_balanced(slope, basis.derivative.data() + i * m);
-  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    lobatto_basis_at(degree, points[i], basis.value.data() + i * m, basis.derivative.data() + i * m);
   return basis;
 }
 
@@ -132,25 +129,25 @@ std::vector<double> legendre_matrix(int degree) {
   const RealRule& rule = real_element(degree).rule;
   const int m = degree + 1;
   std::vector<double> matrix(m * m);
-  for (int k = 0; k < m; ++k) {
-    const Real scale = k < degree ? 2 * k + 1 : degree;
-    for (int j = 0; j < m; ++j)
-      matrix[k * m + j] =
-          static_cast<double>(scale * rule.weights[j] * legendre(k, 2 * rule.nodes[j].right).value);
+  for (int j = 0; j < m; ++j) {
+    const Real u = 2 * rule.nodes[j].right;
+    Legendre p;
+    for (int k = 0; k < m; p = p.next(k, u), ++k) {
+      const Real scale = k < degree ? 2 * k + 1 : degree;
+      matrix[k * m + j] = static_cast<double>(scale * rule.weights[j] * p.value);
+    }
   }
   return matrix;
 }
 
 const Basis& lobatto_nodal_basis(int degree) {
-  static const std::vector<Basis> bases = [] {
-    std::vector<Basis> all(1);
-    for (int s = 1; s <= max_degree; ++s) all.push_back(lobatto_basis(s, lobatto_barycentric(s).nodes));
-    return all;
-  }();
-  real_element(degree);  // refuses other degrees
-  return bases[degree];
+  static ByDegree<Basis> bases(make_nodal_basis);
+  return bases.at(degree);
 }
 
-const Barycentric& lobatto_barycentric(int degree) { return barycentric_of(degree); }
+const Barycentric& lobatto_barycentric(int degree) {
+  static ByDegree<Barycentric> all(make_barycentric);
+  return all.at(degree);
+}
 
 }  // namespace extremal

@@ -30,11 +30,21 @@ struct Basis {
   int degree = 0;
   std::vector<double> points;
   std::vector<double> value, derivative;
+
+  /// At one of the points: s + 1 each.
+  struct Row {
+    const double *value, *derivative;
+  };
+  Row row(std::size_t i) const {
+    return {value.data() + i * (degree + 1), derivative.data() + i * (degree + 1)};
+  }
 };
 
 /// 1 <= degree <= max_degree. A point that equals a node as lobatto_rule returns it is that node: its values
 /// are exactly 0 and 1.
 Basis lobatto_basis(int degree, std::span<const double> points);
+/// The same at one point, s + 1 numbers each.
+void lobatto_basis_at(int degree, double point, double* value, double* derivative);
 /// The same at the Lobatto nodes themselves, kept for the whole run.
 const Basis& lobatto_nodal_basis(int degree);
 

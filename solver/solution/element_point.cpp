@@ -7,11 +7,10 @@ namespace extremal {
 
 /// Lagrange's formula on the differences from the node that counts most: a constant costs no digits, and at a
 /// node its own value comes out.
-void element_point(const Trajectory& trajectory, int k, const Basis& basis, int point, double* q, double* v,
+void element_point(const Trajectory& trajectory, int k, const Basis::Row& basis, double* q, double* v,
                    std::ptrdiff_t stride) {
   const int s = trajectory.degree, n = trajectory.coordinates;
-  const double* const value = basis.value.data() + point * (s + 1);
-  const double* const derivative = basis.derivative.data() + point * (s + 1);
+  const auto [value, derivative] = basis;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(k) * (s + 1) * n;
   const double* const nodes = trajectory.nodes.data() + first;
   const double* const slopes = trajectory.slopes.empty() ? nullptr : trajectory.slopes.data() + first;

@@ -9,8 +9,8 @@
 
 namespace extremal {
 
-/// q and q' of element k at basis.points[point]; coordinate a goes to q[a*stride] and v[a*stride].
-void element_point(const Trajectory& trajectory, int k, const Basis& basis, int point, double* q, double* v,
+/// q and q' of element k at the point of `basis`; coordinate a goes to q[a*stride] and v[a*stride].
+void element_point(const Trajectory& trajectory, int k, const Basis::Row& basis, double* q, double* v,
                    std::ptrdiff_t stride);
 
 }  // namespace extremal

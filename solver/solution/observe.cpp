@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "action/by_degree.hpp"
 #include "action/rule.hpp"
 #include "solution/element_point.hpp"
 
@@ -147,13 +148,8 @@ Basis make_survey_basis(int degree) {
   return lobatto_basis(degree, points);
 }
 
-/// Kept for the whole run.
 const Basis& survey_basis(int degree) {
-  static const std::vector<Basis> bases = [] {
-    std::vector<Basis> all(1);
-    for (int s = 1; s <= max_degree; ++s) all.push_back(make_survey_basis(s));
-    return all;
-  }();
+  static ByDegree<Basis> bases(make_survey_basis);
   return bases.at(degree);
 }
 
@@ -168,7 +164,7 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   for (int k = 0; k < trajectory.elements(); ++k) {
     const double start = trajectory.times[k], h = trajectory.times[k + 1] - start;
     for (std::size_t i = 0; i < basis.points.size(); ++i) {
-      element_point(trajectory, k, basis, static_cast<int>(i), surveyor.q(), surveyor.v(), batch);
+      element_point(trajectory, k, basis.row(i), surveyor.q(), surveyor.v(), batch);
       const bool end = (k == 0 && i == 0) || (k + 1 == trajectory.elements() && i + 1 == basis.points.size());
       surveyor.take(start + h * basis.points[i], end);
     }

@@ -52,8 +52,9 @@ void Trajectory::at(double t, std::span<double> q, std::span<double> v) const {
   const auto after = std::upper_bound(times.begin() + 1, times.end() - 1, time);
   const int k = static_cast<int>(after - times.begin()) - 1;
   const double tau = local_time(*this, k, time);
-  const Basis basis = lobatto_basis(degree, {&tau, 1});
-  element_point(*this, k, basis, 0, q.data(), v.data(), 1);
+  std::array<double, max_degree + 1> value, derivative;
+  lobatto_basis_at(degree, tau, value.data(), derivative.data());
+  element_point(*this, k, {value.data(), derivative.data()}, q.data(), v.data(), 1);
 }
 
 }  // namespace extremal

@@ -78,7 +78,7 @@ struct Solution {
   std::vector<double> conjugate_times;
   bool conjugate_times_known = false;  ///< only where there are windows, and coordinates not too many
   Certificate certificate = Certificate::none;
-  std::optional<Floquet> floquet;  ///< of a periodic problem that has windows, coordinates not too many
+  std::optional<Floquet> floquet;        ///< of a periodic problem that has windows, coordinates not too many
   std::optional<double> minimal_period;  ///< of a path with q(T) = q(0) that is periodic; T, or a part of it
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
