@@ -4,6 +4,7 @@
 
 #include <array>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 
 #include "action/scheme.hpp"
@@ -22,14 +23,14 @@ class ByDegree {
   const T& at(int degree) {
     if (degree < 1 || degree > max_degree)
       throw std::invalid_argument(fmt::format("degree = {}; need 1 to {}", degree, max_degree));
-    std::call_once(made_[degree], [&] { kept_[degree] = make_(degree); });
-    return kept_[degree];
+    std::call_once(made_[degree], [&] { kept_[degree].emplace(make_(degree)); });
+    return *kept_[degree];
   }
 
  private:
   T (*make_)(int degree);
   std::array<std::once_flag, max_degree + 1> made_;
-  std::array<T, max_degree + 1> kept_;
+  std::array<std::optional<T>, max_degree + 1> kept_;
 };
 
 }  // namespace extremal

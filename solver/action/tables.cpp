@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "action/by_degree.hpp"
+
 namespace extremal {
 
 namespace {
@@ -75,6 +77,8 @@ std::vector<double> stiffness_of(int degree) {
   return k;
 }
 
+SchemeTables tables_of_lobatto(int degree) { return SchemeTables(lobatto(degree)); }
+
 }  // namespace
 
 void PointTable::add(int at_point, double value) {
@@ -113,6 +117,11 @@ SchemeTables::SchemeTables(const Scheme& given, int exact_points) : scheme(given
       legendre[k * functions + degree] = 0.5;
     }
   }
+}
+
+const SchemeTables& SchemeTables::of_lobatto(int degree) {
+  static ByDegree<SchemeTables> all(tables_of_lobatto);
+  return all.at(degree);
 }
 
 void ElementTables::bind(const SchemeTables& scheme, const Lagrangian& lagrangian) {

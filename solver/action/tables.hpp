@@ -38,6 +38,8 @@ struct SchemeTables {
 
   /// `exact_points` counts only where scheme.quadrature is `exact`.
   explicit SchemeTables(const Scheme& scheme, int exact_points = 0);
+  /// Of lobatto(degree), kept for the whole run.
+  static const SchemeTables& of_lobatto(int degree);
 };
 
 /// Above this many unknowns in an element Newton's method holds its Hessian as a list of entries.

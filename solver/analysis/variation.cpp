@@ -61,7 +61,7 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   trajectory_ = &trajectory;
   const int degree = degree_for(trajectory.coordinates, trajectory.degree);
   const bool made = scheme_ && scheme_->degree == degree;
-  if (!made) scheme_ = std::make_unique<SchemeTables>(lobatto(degree));
+  if (!made) scheme_ = &SchemeTables::of_lobatto(degree);
   if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
   pieces_.clear();
   forms_.clear();

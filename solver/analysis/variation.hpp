@@ -81,7 +81,7 @@ class SecondVariation {
 
   std::shared_ptr<const Lagrangian> lagrangian_;
   const Trajectory* trajectory_ = nullptr;
-  std::unique_ptr<SchemeTables> scheme_;
+  const SchemeTables* scheme_ = nullptr;
   ElementTables tables_;
 
   bool too_many_ = false;

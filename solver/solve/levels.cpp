@@ -12,7 +12,7 @@ void Levels::bind(std::shared_ptr<const Lagrangian> lagrangian) {
 
 const ElementTables& Levels::bound(Level& level) {
   if (!level.bound) {
-    level.tables.bind(level.scheme, *lagrangian_);
+    level.tables.bind(*level.scheme, *lagrangian_);
     level.bound = true;
   }
   return level.tables;
@@ -20,17 +20,18 @@ const ElementTables& Levels::bound(Level& level) {
 
 const ElementTables& Levels::at(int degree) {
   auto& level = levels_[degree];
-  if (!level) level = std::make_unique<Level>(lobatto(degree));
+  if (!level) level = std::make_unique<Level>(&SchemeTables::of_lobatto(degree));
   return bound(*level);
 }
 
 const ElementTables& Levels::finer(const SchemeTables& rule) {
   auto& level = finer_[rule.degree];
   const int points = rule.points + rule.degree;
-  if (!level || level->scheme.points != points) {
+  if (!level || level->scheme->points != points) {
     Scheme scheme = gauss(rule.degree);
     scheme.points = points;
-    level = std::make_unique<Level>(scheme);
+    auto own = std::make_unique<SchemeTables>(scheme);
+    level = std::make_unique<Level>(own.get(), std::move(own));
   }
   return bound(*level);
 }

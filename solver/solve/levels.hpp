@@ -28,10 +28,10 @@ class Levels {
 
  private:
   struct Level {
-    SchemeTables scheme;
-    ElementTables tables;
+    const SchemeTables* scheme = nullptr;
+    std::unique_ptr<SchemeTables> own = {};
+    ElementTables tables = {};
     bool bound = false;
-    explicit Level(const Scheme& scheme) : scheme(scheme) {}
   };
   using Ladder = std::array<std::unique_ptr<Level>, max_degree + 1>;
   const ElementTables& bound(Level& level);
