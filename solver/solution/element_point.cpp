@@ -16,6 +16,13 @@ void element_point(const Trajectory& trajectory, int k, const Basis::Row& basis,
   const double* const slopes = trajectory.slopes.empty() ? nullptr : trajectory.slopes.data() + first;
   const auto smaller = [](double x, double y) { return std::abs(x) < std::abs(y); };
   const std::ptrdiff_t reference = (std::max_element(value, value + s + 1, smaller) - value) * n;
+  if (slopes && value[reference / n] == 1) {
+    for (int a = 0; a < n; ++a) {
+      q[a * stride] = nodes[reference + a];
+      v[a * stride] = slopes[reference + a];
+    }
+    return;
+  }
   const double h = trajectory.times[k + 1] - trajectory.times[k];
   for (int a = 0; a < n; ++a) {
     const double q0 = nodes[reference + a], v0 = slopes ? slopes[reference + a] : 0;

@@ -53,7 +53,7 @@ void Trajectory::at(double t, std::span<double> q, std::span<double> v) const {
   const int k = static_cast<int>(after - times.begin()) - 1;
   const double tau = local_time(*this, k, time);
   std::array<double, max_degree + 1> value, derivative;
-  lobatto_basis_at(degree, tau, value.data(), derivative.data());
+  lobatto_basis_at(degree, tau, value.data(), slopes.empty() ? derivative.data() : nullptr);
   element_point(*this, k, {value.data(), derivative.data()}, q.data(), v.data(), 1);
 }
 
