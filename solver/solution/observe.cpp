@@ -21,9 +21,11 @@ constexpr int batch = 64;
 
 struct Range {
   double least = std::numeric_limits<double>::infinity(), most = -least;
-  void add(double x) {
-    least = std::min(least, x);
-    most = std::max(most, x);
+  void add(const double* row, int count) {
+    for (int i = 0; i < count; ++i) {
+      least = row[i] < least ? row[i] : least;
+      most = row[i] > most ? row[i] : most;
+    }
   }
 };
 
@@ -33,22 +35,25 @@ std::vector<double> widths(const std::vector<Range>& ranges) {
   return result;
 }
 
+double largest(const double* row, int count) {
+  double result = 0;
+  for (int i = 0; i < count; ++i) result = row[i] > result ? row[i] : result;
+  return result;
+}
+
 /// A Lagrangian evaluated over points that come one by one.
 class Surveyor {
  public:
   Surveyor(const Lagrangian& lagrangian, int coordinates)
-      : lagrangian_(lagrangian),
-        n_(coordinates),
-        ranges_q_(n_),
-        ranges_v_(n_),
-        ranges_p_(n_),
-        p_(n_),
-        force_(n_) {
-    const std::size_t rows = 2 * n_ + 1 + lagrangian.rows(Order::gradient);
+      : lagrangian_(lagrangian), n_(coordinates), ranges_q_(n_), ranges_v_(n_), ranges_p_(n_) {
+    const std::size_t rows = 4 * n_ + 1 + sums + lagrangian.rows(Order::gradient);
     q_ = storage_.reserve(rows * batch);
     v_ = q_ + n_ * batch;
     t_ = v_ + n_ * batch;
-    out_ = t_ + batch;
+    p_ = t_ + batch;
+    force_ = p_ + n_ * batch;
+    for (double*& sum : sums_) sum = force_ + (n_ + (&sum - sums_)) * batch;
+    out_ = sums_[sums - 1] + batch;
   }
 
   /// Place for the next point: coordinate a stands at q[a*batch], v likewise.
@@ -74,67 +79,83 @@ class Surveyor {
     for (std::size_t row = 0; row < 2 * n_ + 1; ++row)
       std::fill(q_ + row * batch + count_, q_ + (row + 1) * batch, q_[row * batch + count_ - 1]);
     lagrangian_.evaluate({batch, batch, q_, v_, t_}, Order::gradient, out_, scratch_);
-    for (int i = 0; i < count_; ++i) read(i);
+    read();
+    measure();
     count_ = 0;
   }
 
   /// p = M v + C q + a + ∂R/∂v. In E = p·v − L the terms linear in v cancel:
   /// E = ½ vᵀMv + v·∂R/∂v − R.
-  void read(int i) {
+  void read() {
     const Structure& s = lagrangian_.structure();
-    const auto q = [&](int a) { return q_[a * batch + i]; };
-    const auto v = [&](int a) { return v_[a * batch + i]; };
-    double energy = -out_[i];
-    std::fill(p_.begin(), p_.end(), 0.0);
-    std::fill(force_.begin(), force_.end(), 0.0);
+    double* const energy = sums_[energies];
+    for (int i = 0; i < batch; ++i) energy[i] = -out_[i];
+    std::fill(p_, p_ + 2 * n_ * batch, 0.0);
     for (const Triplet& m : s.mass) {
-      p_[m.row] += m.value * v(m.column);
-      energy += 0.5 * v(m.row) * m.value * v(m.column);
-    }
-    for (const Triplet& c : s.gyroscopic) {
-      p_[c.row] += c.value * q(c.column);
-      force_[c.column] += c.value * v(c.row);
-    }
-    for (std::size_t a = 0; a < s.linear.size(); ++a) p_[a] += s.linear[a];
-    for (std::size_t k = 0; k < s.gradient.size(); ++k) {
-      const int a = s.gradient[k] - static_cast<int>(n_);
-      const double slope = out_[(1 + k) * batch + i];
-      if (a < 0) {
-        force_[s.gradient[k]] += slope;
-        continue;
+      const double *v = v_ + m.row * batch, *other = v_ + m.column * batch;
+      for (int i = 0; i < batch; ++i) {
+        p_[m.row * batch + i] += m.value * other[i];
+        energy[i] += 0.5 * v[i] * m.value * other[i];
       }
-      p_[a] += slope;
-      energy += v(a) * slope;
     }
-    double speed = 0, momentum = 0, force = 0, products = 0;
-    for (std::size_t a = 0; a < n_; ++a) {
-      ranges_q_[a].add(q(a));
-      ranges_v_[a].add(v(a));
-      ranges_p_[a].add(p_[a]);
-      speed += std::abs(v(a));
-      momentum += std::abs(p_[a]);
-      force += std::abs(force_[a]);
-      products += std::abs(p_[a] * v(a));
+    for (const Triplet& c : s.gyroscopic)
+      for (int i = 0; i < batch; ++i) {
+        p_[c.row * batch + i] += c.value * q_[c.column * batch + i];
+        force_[c.column * batch + i] += c.value * v_[c.row * batch + i];
+      }
+    for (std::size_t a = 0; a < s.linear.size(); ++a)
+      for (int i = 0; i < batch; ++i) p_[a * batch + i] += s.linear[a];
+    for (std::size_t k = 0; k < s.gradient.size(); ++k) {
+      const std::size_t row = s.gradient[k];
+      const double* const slope = out_ + (1 + k) * batch;
+      double* const to = row < n_ ? force_ + row * batch : p_ + (row - n_) * batch;
+      for (int i = 0; i < batch; ++i) to[i] += slope[i];
+      if (row < n_) continue;
+      const double* const v = v_ + (row - n_) * batch;
+      for (int i = 0; i < batch; ++i) energy[i] += v[i] * slope[i];
     }
-    found_.speed = std::max(found_.speed, speed);
-    found_.momentum = std::max(found_.momentum, momentum);
-    if (!end_[i]) found_.force = std::max(found_.force, force);
-    found_.terms = std::max(found_.terms, products + std::abs(energy - products));
-    if (std::exchange(first_, false)) found_.energy = energy;
-    found_.finite = found_.finite && std::isfinite(energy);
-    found_.energy_drift = std::max(found_.energy_drift, std::abs(energy - found_.energy));
   }
+
+  void measure() {
+    const double* const energy = sums_[energies];
+    std::fill(sums_[speeds], sums_[speeds] + 4 * batch, 0.0);
+    for (std::size_t a = 0; a < n_; ++a) {
+      const double *v = v_ + a * batch, *p = p_ + a * batch, *force = force_ + a * batch;
+      ranges_q_[a].add(q_ + a * batch, count_);
+      ranges_v_[a].add(v, count_);
+      ranges_p_[a].add(p, count_);
+      for (int i = 0; i < batch; ++i) {
+        sums_[speeds][i] += std::abs(v[i]);
+        sums_[momenta][i] += std::abs(p[i]);
+        sums_[forces][i] += std::abs(force[i]);
+        sums_[products][i] += std::abs(p[i] * v[i]);
+      }
+    }
+    if (std::exchange(first_, false)) found_.energy = energy[0];
+    for (int i = 0; i < count_; ++i) {
+      if (end_[i]) sums_[forces][i] = 0;
+      sums_[products][i] += std::abs(energy[i] - sums_[products][i]);
+      found_.finite = found_.finite && std::isfinite(energy[i]);
+      found_.energy_drift = std::max(found_.energy_drift, std::abs(energy[i] - found_.energy));
+    }
+    found_.speed = std::max(found_.speed, largest(sums_[speeds], count_));
+    found_.momentum = std::max(found_.momentum, largest(sums_[momenta], count_));
+    found_.force = std::max(found_.force, largest(sums_[forces], count_));
+    found_.terms = std::max(found_.terms, largest(sums_[products], count_));
+  }
+
+  /// Rows that are made of those of all coordinates.
+  enum Sum { energies, speeds, momenta, forces, products, sums };
 
   const Lagrangian& lagrangian_;
   std::size_t n_;
   Scratch storage_, scratch_;
-  double *q_, *v_, *t_, *out_;
+  double *q_, *v_, *t_, *p_, *force_, *sums_[sums], *out_;
   bool end_[batch] = {};  ///< of the trajectory
   int count_ = 0;
   bool first_ = true;
   Survey found_;
   std::vector<Range> ranges_q_, ranges_v_, ranges_p_;
-  std::vector<double> p_, force_;
 };
 
 /// At the nodes of an element and the midpoints between them.

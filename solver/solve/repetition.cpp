@@ -57,10 +57,11 @@ int repetitions(const Trajectory& path, const ClosingMap& map, int segments, dou
   const int samples = std::max(fewest, segments * path.elements() * path.degree);
   const double whole = path.duration() * segments;
   Continued continued(path, map, segments);
+  const Eigen::VectorXd first = continued.at(whole * aside / samples);
   const auto repeats = [&](double period) {
     for (int k = 0; k < samples; ++k) {
       const double t = whole * (k + aside) / samples;
-      const Eigen::VectorXd moved = continued.at(t + period) - continued.at(t);
+      const Eigen::VectorXd moved = continued.at(t + period) - (k == 0 ? first : continued.at(t));
       if (!(moved.cwiseAbs().maxCoeff() <= error)) return false;
     }
     return true;
