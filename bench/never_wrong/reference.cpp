@@ -138,7 +138,8 @@ std::optional<TrueError> distance_by(const extremal::Study& study, const extrema
                    .q_unknown = reference.error_estimate,
                    .q_range = largest_of(ranges.q),
                    .v_range = largest_of(ranges.v),
-                   .p_range = largest_of(ranges.p)};
+                   .p_range = largest_of(ranges.p),
+                   .reference = reference.trajectory};
 }
 
 }  // namespace

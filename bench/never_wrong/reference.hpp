@@ -13,6 +13,7 @@ struct TrueError {
   double q = 0, v = 0, p = 0;
   double q_unknown = 0;  ///< error of the reference itself
   double q_range = 0, v_range = 0, p_range = 0;
+  extremal::Trajectory reference = {};
 };
 
 /// Against a solution for the tightest tolerance that is reached from this one. Absent where there is none,

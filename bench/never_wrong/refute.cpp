@@ -107,12 +107,23 @@ class Refutation {
     if (!by_distance_ && fast > margin + roundoff / (10 * tolerance_ * average))
       return {"velocity", fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}", fast,
                                       found.worst_time)};
-    const bool sure = std::abs(found.orientation) > least_orientation + much * tolerance_;
-    if (sure && solution_.conjugate_times_known && found.orientation * expected_orientation() < 0)
+    const double turned = solution_.conjugate_times_known ? orientation(found) : 0;
+    const bool sure = std::abs(turned) > least_orientation + much * tolerance_;
+    if (sure && turned * expected_orientation() < 0)
       return {"index", fmt::format("index {}, but Jacobi fields that are integrated turn round an {} number "
                                    "of times",
-                                   *solution_.morse_index, found.orientation < 0 ? "odd" : "even")};
+                                   *solution_.morse_index, turned < 0 ? "odd" : "even")};
     return {};
+  }
+
+  /// Fields along the path of a pinned scheme begin with its velocities, and may turn round elsewhere than
+  /// those along the extremal. 0 where that is not known.
+  double orientation(const extremal::Verification& along_path) const {
+    if (!by_distance_) return along_path.orientation;
+    if (!reference_ || expected_orientation() == 0) return 0;
+    return verify(problem_, reference_->reference,
+                  {.tolerance = tolerance_, .margin = std::numeric_limits<double>::max()})
+        .orientation;
   }
 
   /// (−1)^index with fixed ends, off conjugate ends; 0 elsewhere.
