@@ -248,8 +248,7 @@ std::string Chase::run_piece(double& t, double limit, const IntegrationOptions& 
       return fmt::format("it cannot be integrated beyond t = {:.9g}", t);
     const double grown = growth(), share = grown > first ? (allowed - first) / (grown - first) : INFINITY;
     if (grown > allowed) {
-      limit = before > start ? before : limit;
-      near = start + (t - start) * std::clamp(share, most_cut, least_cut);
+      near = before > start ? before : start + (t - start) * std::clamp(share, most_cut, least_cut);
       t = before;
       y_ = saved_;
       continue;
