@@ -107,23 +107,26 @@ class Refutation {
     if (!by_distance_ && fast > margin + roundoff / (10 * tolerance_ * average))
       return {"velocity", fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}", fast,
                                       found.worst_time)};
-    const double turned = solution_.conjugate_times_known ? orientation(found) : 0;
-    const bool sure = std::abs(turned) > least_orientation + much * tolerance_;
-    if (sure && turned * expected_orientation() < 0)
-      return {"index", fmt::format("index {}, but Jacobi fields that are integrated turn round an {} number "
-                                   "of times",
-                                   *solution_.morse_index, turned < 0 ? "odd" : "even")};
-    return {};
+    return solution_.conjugate_times_known ? judge_index(found.orientation) : Fault{};
   }
 
-  /// Fields along the path of a pinned scheme begin with its velocities, and may turn round elsewhere than
-  /// those along the extremal. 0 where that is not known.
-  double orientation(const extremal::Verification& along_path) const {
-    if (!by_distance_) return along_path.orientation;
-    if (!reference_ || expected_orientation() == 0) return 0;
-    return verify(problem_, reference_->reference,
-                  {.tolerance = tolerance_, .margin = std::numeric_limits<double>::max()})
-        .orientation;
+  /// Fields along the path begin with its velocities, which are less exact than it is, and may turn round
+  /// elsewhere than those along the extremal: a doubt is confirmed there.
+  Fault judge_index(double along_path) const {
+    const auto doubtful = [&](double turned) {
+      const bool sure = std::abs(turned) > least_orientation + much * tolerance_;
+      return sure && turned * expected_orientation() < 0;
+    };
+    if (!doubtful(along_path)) return {};
+    const auto along_reference = [&] {
+      return verify(problem_, reference_->reference,
+                    {.tolerance = tolerance_, .margin = std::numeric_limits<double>::max()})
+          .orientation;
+    };
+    if (reference_ && !doubtful(along_reference())) return {};
+    return {reference_ ? "index" : unverified,
+            fmt::format("index {}, but Jacobi fields that are integrated turn round an {} number of times",
+                        *solution_.morse_index, along_path < 0 ? "odd" : "even")};
   }
 
   /// (−1)^index with fixed ends, off conjugate ends; 0 elsewhere.
