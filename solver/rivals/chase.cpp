@@ -22,7 +22,7 @@ constexpr double most_cut = 1.0 / 16, least_cut = 0.5, worth_a_step = 1.1;
 constexpr std::size_t most_kept = 4'000'000;
 /// A range below this part of the values is none.
 constexpr double negligible = 1e-12;
-/// Velocities are not asked for more digits than this share of the mean speed gives.
+/// Momenta are not asked for more digits than this share of the mean speed gives.
 constexpr double nearly_uniform = 1e-3;
 
 /// Largest range over coordinates, or the largest value where that is negligible; rows of n.
@@ -101,12 +101,10 @@ std::string Chase::sample() {
            row(p_samples, true)};
   const Extents q = extents(q_samples_, n_), v = extents(v_samples_, n_), p = extents(p_samples, n_);
   scales_ = {q.size(), p.size(), v.size()};
-  // A motion that is nearly uniform has hardly a range of velocity, nor of momentum.
-  const double slowest = nearly_uniform * q.size() / (trajectory_.times.back() - trajectory_.times.front());
-  if (scales_.v > 0 && scales_.v < slowest) {
-    scales_.p *= slowest / scales_.v;
-    scales_.v = slowest;
-  }
+  // A motion that is nearly uniform has hardly a range of velocity: its momenta are those of so much at
+  // least.
+  const double slowest = nearly_uniform * q.size() / trajectory_.duration();
+  if (v.size() > 0) scales_.p *= std::max(1.0, slowest / v.size());
   reach_ = q.magnitude > 0 ? q.size() / q.magnitude : 1;
   constexpr double eps = std::numeric_limits<double>::epsilon();
   allowed_q_ = std::max(options_.tolerance * scales_.q, 16 * eps * q.magnitude);
