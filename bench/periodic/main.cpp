@@ -42,7 +42,7 @@ double print_ours(const std::string& name, const extremal::Study& study, const s
   }
   const double largest = s.floquet ? std::abs(s.floquet->multipliers.front()) : NAN;
   fmt::print("{:8} {:6} {:10.1f} {:11.1f}  {:8.1e}  {:8.1e} {:5} {:7} {:12.6g}", s.trajectory.elements(),
-             s.trajectory.degree, 1e6 * s.seconds_solve, 1e6 * s.seconds_analyse,
+             s.degree, 1e6 * s.seconds_solve, 1e6 * s.seconds_analyse,
              distance_from_orbit(csv, study, orbit_of(s)), s.error_estimate, s.morse_index.value_or(-1),
              s.nullity.value_or(-1), largest);
   return s.seconds_solve;

@@ -83,7 +83,7 @@ Cell measure(extremal::Study study, double tolerance, const Reference& reference
   cell.failure = solution.converged() ? "" : solution.message;
   if (!solution.converged()) return cell;
   cell.elements = solution.trajectory.elements();
-  cell.degree = solution.trajectory.degree;
+  cell.degree = solution.degree;
   cell.unknowns = solution.unknowns;
   cell.estimate = solution.error_estimate;
   const Difference apart = difference(solution.trajectory, reference);

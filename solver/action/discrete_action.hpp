@@ -80,6 +80,8 @@ class DiscreteAction {
   /// Largest momentum by velocity along a path, roughly; 0 where unknown.
   double inertia(const Path& path) const;
   bool finite() const { return finite_; }
+  /// ∂L_d/∂q_a, then ∂L_d/∂q_b of the elements of a batch, 2n groups of lanes.
+  const double* end_gradients(int batch) const { return sums(batch, of_ends); }
   const ElementTables& tables() const { return *tables_; }
   std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
   std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n

@@ -108,7 +108,7 @@ class Fields {
   void counts() {
     const Solution& solution = result_.solution;
     append(object_, "elements", std::max(0, solution.trajectory.elements()));
-    append(object_, "degree", solution.trajectory.degree);
+    append(object_, "degree", solution.degree);
     append(object_, "unknowns", solution.unknowns);
     append(object_, "iterations", solution.iterations);
     Json seconds = Json::object();

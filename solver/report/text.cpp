@@ -185,7 +185,7 @@ std::string summary(const Result& result) {
     lines.add("stability", stability_text(solution));
     lines.add("windows", windows_text(solution));
     lines.add("mesh", fmt::format("{} of degree {}, {}", counted(trajectory.elements(), "element"),
-                                  trajectory.degree, counted(solution.unknowns, "unknown")));
+                                  solution.degree, counted(solution.unknowns, "unknown")));
   }
   lines.add("iterations", fmt::format("{}", solution.iterations));
   lines.add("time",

@@ -82,6 +82,7 @@ struct Solution {
   std::optional<double> minimal_period;  ///< of a path with q(T) = q(0) that is periodic; T, or a part of it
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
+  int degree = 0;  ///< of the elements that were solved for; the trajectory's may be higher
   int unknowns = 0, iterations = 0;
   std::vector<Iteration> history;
   double seconds_solve = 0, seconds_analyse = 0;

@@ -252,6 +252,7 @@ BranchPoint Continuation::read(PointKind kind) {
   solution.message = "converged";
   solution.strategy = "continuation";
   solution.trajectory = trajectory_of(here_.path);
+  solution.degree = here_.path.degree();
   solution.action = here_.action;
   solution.error_estimate = error_;
   solution.morse_index = branch_.inertia().negative;

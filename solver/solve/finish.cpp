@@ -31,10 +31,9 @@ constexpr double least_roundoff = 1e-13, half_a_digit = 0x1p-53;
 constexpr double held_tolerances = 0.1;
 constexpr double least_null = 1e-8, largest_null = 1e-3;
 
-/// Momenta, residual, index and nullity from one evaluation at the path found.
+/// Momenta, residual, index and nullity from one evaluation at the path found, on the iteration's elements.
 void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
   NewtonIteration& newton = w.iteration;
-  newton.reset(problem, *outcome.tables, w.path.elements());
   DiscreteAction& action = newton.action();
   const bool factored = newton.factor(w.path);
   solution.action = action.action();
@@ -180,7 +179,9 @@ Solution finish(const Problem& problem, const SolveOptions& options, const Outco
   solution.iterations = outcome.iterations;
   if (outcome.status == Status::converged) {
     solution.error_estimate = outcome.error;
-    solution.trajectory = trajectory_of(w.path);
+    w.iteration.reset(problem, *outcome.tables, w.path.elements());
+    solution.trajectory = trajectory_of(outcome.recovered && recover(problem, w) ? w.recovered : w.path);
+    solution.degree = w.path.degree();
     const int inner = (w.path.degree() - 1) * w.path.elements() + w.path.elements() - 1;
     solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
     read_off(problem, outcome, w, solution);

@@ -120,6 +120,11 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
   model_->set_refining(refine);
   model_->solve(action_, closing(path), step);
   model_->set_refining(true);
+  return length(path, step);
+}
+
+/// The largest part of a step, q by the scale; NaN if one is not finite.
+double NewtonIteration::length(const Path& path, const Step& step) const {
   const double nodes = largest(step.nodes), inner = largest(step.inner);
   if (std::isnan(nodes) || std::isnan(inner)) return NAN;
   double size = std::max(nodes, inner) / (scale_ > 0 ? scale_ : 1);

@@ -72,8 +72,9 @@ class NewtonIteration {
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
   /// The length of that correction where another quadrature on the same elements tells the gradient, and of
-  /// what roundoff makes of it. action() then has that gradient.
-  double step_under(const ElementTables& quadrature, const Path& path);
+  /// what roundoff makes of it. action() then has that gradient. Of inner steps, laid out as Path::x, what is
+  /// `explained` does not count.
+  double step_under(const ElementTables& quadrature, const Path& path, const AlignedDoubles& explained = {});
 
   /// Of the velocities that such a step changes, the mean over an element, the most.
   double steepness(const Path& path) const;
@@ -118,6 +119,7 @@ class NewtonIteration {
   /// Whether model() is not the second variation itself.
   bool approximate() const { return raised_ && model_ == &*raised_; }
   double solve_for_step(const Path& path, Step& step, bool refine = false);
+  double length(const Path& path, const Step& step) const;
   /// Whether the whole step leaves a positive duration.
   bool leaves_duration(const Path& path, const Step& step) const;
   void apply(Path& path, const Step& step, double factor);

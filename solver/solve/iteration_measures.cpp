@@ -95,10 +95,15 @@ double NewtonIteration::measure_noise(Path& path) {
 
 /// The step, and how it changes by the roundoff of the equations that close what is free: it may have met
 /// little of it by chance.
-double NewtonIteration::step_under(const ElementTables& quadrature, const Path& path) {
+double NewtonIteration::step_under(const ElementTables& quadrature, const Path& path,
+                                   const AlignedDoubles& explained) {
   action_.substitute(*problem_->lagrangian, quadrature);
   model_->evaluate_gradient(action_, path);
   double length = solve_for_step(path, step_, true);
+  if (!explained.empty()) {
+    for (std::size_t k = 0; k < explained.size(); ++k) step_.inner[k] -= explained[k];
+    length = this->length(path, step_);
+  }
   if (round_equations(path)) {
     model_->solve(action_, problem_->duration.free ? &closing_ : nullptr, simplified_);
     length += difference(simplified_, step_, scale_, path.duration());

@@ -121,6 +121,19 @@ std::string Refinement::hidden(double amplified) const {
                      amplified, options_.tolerance);
 }
 
+/// What the momenta of a path make of its elements, which tell q but not q', if that is enough. The
+/// resolution is then that of the polynomials recovered.
+std::optional<Resolution::Error> Refinement::recovered(double q) {
+  if (!recover(problem_, w_)) return std::nullopt;
+  const int degree = w_.path.degree();
+  w_.resolution.measure(w_.recovered, w_.levels.at(degree + Recovery::raised_by));
+  const Resolution::Error less = w_.resolution.at(degree + Recovery::gained(*problem_.lagrangian));
+  worst_ = excess({q, less.v});
+  if (worst_ <= 1) return less;
+  w_.resolution.measure(w_.path, *tables_);
+  return std::nullopt;
+}
+
 /// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
 /// which comes from the forces and velocities left out and falls with their product (order 2s) from what
 /// the nodes moved when the elements changed; corrections not made; roundoff, a random walk over the points.
@@ -144,6 +157,16 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   // Of so many walks the longest is expected to be this much longer than one.
   error.q += roundoff * (std::sqrt(2 * std::log(points * w_.path.coordinates())) - 1);
   worst_ = excess(error);
+  outcome_.recovered = false;
+  if (worst_ > 1 && excess({error.q}) <= 1 && newton.most_remaining <= spare * options_.tolerance) {
+    const double alone = truncation - roundoff;  // of the elements
+    if (const std::optional<Resolution::Error> less = recovered(error.q)) {
+      outcome_.recovered = true;
+      outcome_.error += less->q - alone;
+    } else {
+      worst_ = excess(error);
+    }
+  }
   if (!(worst_ <= 1)) return Attempt::refine;
   // Much movement may have been Newton's, not the elements': from this converged path it is not.
   if (at_nodes > truncation && !nodes.from_converged && w_.path.degree() < highest_degree)

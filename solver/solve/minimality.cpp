@@ -19,7 +19,7 @@ bool is_natural(const Structure& s) { return s.quadratic && s.velocity_free && s
 double longest_window(const Problem& problem, const SolveOptions& options, const Solution& solution) {
   const double unit = 1 / std::sqrt(*problem.curvature), pi = std::numbers::pi;
   if (!std::isfinite(unit)) return unit;
-  if (!options.scheme) return unit * std::min(pi, window_bound(lobatto(solution.trajectory.degree), 1));
+  if (!options.scheme) return unit * std::min(pi, window_bound(lobatto(solution.degree), 1));
   const double elements = pi * unit / solution.duration() * solution.trajectory.elements();
   const int whole = static_cast<int>(std::clamp(elements, 1.0, 1e9));
   return unit * std::min(pi, window_bound(*options.scheme, whole));

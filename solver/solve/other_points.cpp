@@ -72,10 +72,12 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
   const bool factored = solution.nullity.has_value(), at_rest = size.range < size.q || size.q == 0;
   if (!factored || at_rest) return {};
   w.iteration.set_scale(size.q);
+  AlignedDoubles explained;
+  if (outcome.recovered) w.recovery.misplaced(w.path, explained);
   const auto moved = [&](double error) {
     if (!problem.periodic)
       w.iteration.model().set_null_below(Refinement::softest(error, w.path, size.magnitude));
-    return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path);
+    return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path, explained);
   };
   OtherPoints others;
   others.moved = moved(outcome.error);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solve/converge.hpp"
@@ -90,6 +91,7 @@ class Refinement {
   double affordable() const { return share_ * most_cost_; }
   Plan plan(double aim);
   double excess(const Resolution::Error& error) const;
+  std::optional<Resolution::Error> recovered(double q);
   void raise(int degree);
   void adopt(const Plan& plan);
   void refine();

@@ -126,6 +126,7 @@ Resolution::Error Resolution::at(int degree) const {
   for (const Tail& tail : tails_) {
     double size = tail.size * tail.fall;
     for (int k = degree_; k < degree; ++k) size *= tail.fall;
+    for (int k = degree; k < degree_; ++k) size /= tail.fall;
     error.q = std::max(error.q, size);
     const double slope = size * (degree + 1) * (degree + 2) / tail.h;
     error.v = std::max(error.v, slope);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "action/recovery.hpp"
 #include "solve/frequency.hpp"
 #include "solve/iteration.hpp"
 #include "solve/levels.hpp"
@@ -19,6 +20,8 @@ struct Workspace {
   Levels levels;
   NewtonIteration iteration;
   Path path, other, saved;
+  Recovery recovery;
+  Path recovered;
   Resolution resolution;
   Planner planner;
   Frequency frequency;
@@ -28,6 +31,9 @@ struct Workspace {
   const ElementTables* final_tables = nullptr;
 };
 
+/// Makes `recovered` from the path, on whose elements its iteration is; false where it cannot be.
+bool recover(const Problem& problem, Workspace& workspace);
+
 /// Where a solve has got to: the path and tables in the workspace, and what is known of its error.
 struct Outcome {
   Status status = Status::not_converged;
@@ -36,8 +42,10 @@ struct Outcome {
   /// Reached in another way than by Newton's method from the guess, or far from it.
   bool elsewhere = false;
   bool polished = false;  ///< to the last digit, after it converged
-  double error = 0;       ///< of q, absolute
-  double tolerance = 0;   ///< absolute
+  /// Only polynomials of higher degree (recovery.hpp) have velocities within the tolerance.
+  bool recovered = false;
+  double error = 0;      ///< of q, absolute
+  double tolerance = 0;  ///< absolute
   int iterations = 0;
   const ElementTables* tables = nullptr;
 

@@ -14,6 +14,7 @@ inline Result transfer_result() {
   solution.message = "the tolerance 1e-09 is met";
   solution.strategy = "newton from the guess";
   solution.trajectory = {.coordinates = 2, .degree = 8, .times = {0, 1, 2.5}, .nodes = {}};
+  solution.degree = 8;
   solution.action = 1.234;
   solution.energy = -0.4;
   solution.energy_drift = 1e-14;
