@@ -19,7 +19,7 @@ namespace extremal {
 /// Let e_0 and e_1 be by how much the velocities that momenta have exceed the slopes at the ends. They tell
 ///   d_s = h/4 (e_1 + (−1)^s e_0),    d_{s+1} + m = h/4 (e_1 − (−1)^s e_0),
 /// and so q_h + d_s B_s + d_{s+1} B_{s+1} + m B_{s−1}. Where the mass is constant this leaves out L_{s+3} and
-/// what follows, elsewhere parts of L_{s+2}.
+/// what follows, with gyroscopic forces a little of L_{s+2}; elsewhere parts of L_{s+2}.
 class Recovery {
  public:
   static constexpr int raised_by = 2;
@@ -52,7 +52,7 @@ class Recovery {
     return coefficients_.data() + (std::size_t(batch) * n_ + a) * three;
   }
 
-  static constexpr int three = 3 * 8;  ///< groups of lanes
+  static constexpr int three = 3 * lanes;
 
   int n_ = 0;
   bool diagonal_ = false;
