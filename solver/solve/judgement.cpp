@@ -128,8 +128,7 @@ std::optional<Resolution::Error> Refinement::recovered(double q) {
   const int degree = w_.path.degree();
   w_.resolution.measure(w_.recovered, w_.levels.at(degree + Recovery::raised_by));
   const Resolution::Error less = w_.resolution.at(degree + Recovery::gained(*problem_.lagrangian));
-  worst_ = excess({q, less.v});
-  if (worst_ <= 1) return less;
+  if (excess({q, less.v}) <= 1) return less;
   w_.resolution.measure(w_.path, *tables_);
   return std::nullopt;
 }
@@ -163,8 +162,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
     if (const std::optional<Resolution::Error> less = recovered(error.q)) {
       outcome_.recovered = true;
       outcome_.error += less->q - alone;
-    } else {
-      worst_ = excess(error);
+      worst_ = excess({error.q, less->v});
     }
   }
   if (!(worst_ <= 1)) return Attempt::refine;
