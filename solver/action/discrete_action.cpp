@@ -32,8 +32,12 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   sizes_ = {groups * lanes, m * lanes, static_cast<std::size_t>(tables.shape().points) * lanes,
             static_cast<std::size_t>(of_ends + 2 * n_) * lanes};
   set_desks(condense);
-  matrices_.resize(condense ? batches_ * batch_size() : 0);
-  inverses_.resize(condense ? batches_ * sizes_.vector : 0);
+  // Memory that grows only: what a smaller action leaves need not be cleared for the next.
+  const auto provide = [](AlignedDoubles& x, std::size_t size) {
+    if (x.size() < size) x.resize(size);
+  };
+  provide(matrices_, condense ? batches_ * batch_size() : 0);
+  provide(inverses_, condense ? batches_ * sizes_.vector : 0);
   sums_.resize(batches_ * sizes_.sums);
   nodes.gradient.resize(static_cast<std::size_t>(elements + 1) * n_);
   nodes.border.resize(border ? nodes.gradient.size() : 0);
