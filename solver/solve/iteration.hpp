@@ -54,6 +54,9 @@ class NewtonIteration {
   bool extended() const { return extended_; }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
   double noise() const { return noise_; }
+  /// What roundoff makes of a step from `path`, with the factors there are: no path is nearer to an extremal,
+  /// as far as steps tell.
+  double roundoff(Path& path);
 
   /// From now until release() steps leave out the direction in which the path last factored is softest. False
   /// where that cannot be done.
@@ -76,7 +79,8 @@ class NewtonIteration {
   /// `explained` does not count.
   double step_under(const ElementTables& quadrature, const Path& path, const AlignedDoubles& explained = {});
 
-  /// Of the velocities that such a step changes, the mean over an element, the most.
+  /// Of the velocities that such a step changes, the mean over an element, the most, without what the last
+  /// digits of t make of them where they change fast.
   double steepness(const Path& path) const;
 
   /// The error to be expected after a full step of this length and the simplified one, from the last that

@@ -19,6 +19,9 @@ constexpr int shifts = 3;
 /// Of two terms that cancel, half the last digit of one.
 constexpr double half_a_digit = 0x1p-54, half_an_extended_digit = 0x1p-65;
 
+/// Of T, what no time is told closer than: t is rounded, and so is t/T.
+constexpr double last_digits = 0x1p-51;
+
 /// The largest change of q by `scale` or of T by `duration`.
 double difference(const Step& a, const Step& b, double scale, double duration) {
   double largest = 0;
@@ -62,6 +65,15 @@ double NewtonIteration::residual_at(const Path& path) {
 
 /// By how much step_ changes, relative as it, where each node, and what is free of the ends, is moved by some
 /// last digits of its own: a step from there takes that back, but all is rounded differently.
+double NewtonIteration::roundoff(Path& path) {
+  model_->evaluate_gradient(action_, path);
+  if (std::isnan(solve_for_step(path, step_))) return INFINITY;
+  const double before = noise_;
+  const double result = measure_noise(path);
+  noise_ = before;
+  return result;
+}
+
 double NewtonIteration::measure_noise(Path& path) {
   const std::size_t n = path.coordinates(), nodes = path.nodes().size();
   double magnitude = 0;
@@ -113,11 +125,23 @@ double NewtonIteration::step_under(const ElementTables& quadrature, const Path& 
 }
 
 double NewtonIteration::steepness(const Path& path) const {
-  const std::size_t n = path.coordinates();
+  const std::size_t n = path.coordinates(), elements = path.elements();
+  const std::span<const double> mesh = path.mesh();
+  const auto velocity = [&](const double* q, std::size_t k, std::size_t a) {
+    return (q[(k + 1) * n + a] - q[k * n + a]) / (mesh[k + 1] - mesh[k]);
+  };
   double most = 0;
-  for (std::size_t k = 0; k + n < step_.nodes.size(); ++k)
-    most = std::max(
-        most, std::abs(step_.nodes[k + n] - step_.nodes[k]) / (path.mesh()[k / n + 1] - path.mesh()[k / n]));
+  for (std::size_t k = 0; k < elements; ++k) {
+    const std::size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, elements - 1);
+    const double apart = 0.5 * (mesh[after + 1] + mesh[after] - mesh[before + 1] - mesh[before]);
+    for (std::size_t a = 0; a < n; ++a) {
+      const double turned = std::abs(velocity(step_.nodes.data(), k, a));
+      const double* q = path.node(0);
+      const double faster =
+          apart > 0 ? std::abs(velocity(q, after, a) - velocity(q, before, a)) / apart : 0;
+      most = std::max(most, turned - last_digits * faster);
+    }
+  }
   return most / path.duration();
 }
 

@@ -23,6 +23,8 @@ constexpr double element_fall = 0.25;
 constexpr double rest = 1e-12;
 /// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
 constexpr double much_less = 0.25;
+/// Of roundoff that was measured.
+constexpr double certain = 3;
 /// Steps that end what Newton's method began.
 constexpr int most_polish = 3;
 /// They use the factors there are as long as they contract so much.
@@ -143,9 +145,18 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   const Resolution::Error& before = nodes.left_out;
   const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
   const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
-  const double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
-  const double truncation = error.q + roundoff;
   const double at_nodes = nodes.moved * std::min(1.0, fall);
+  const double longest = std::sqrt(2 * std::log(points * w_.path.coordinates()));
+  double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const auto with = [&](double walk) {
+    return excess({error.q + at_nodes + longest * walk, error.v});
+  };
+  // Where it decides it is measured: more elements would not help.
+  if (with(roundoff) > 1 && with(0) <= 1) {
+    const double measured = certain * w_.iteration.roundoff(w_.path) * scales_.q;
+    roundoff = std::clamp(measured, 0x1p-53 * scales_.magnitude, roundoff);
+  }
+  const double truncation = error.q + roundoff;
   error.q = left_out_ = truncation + at_nodes;
   outcome_.tolerance = options_.tolerance * scales_.q;
   outcome_.error = error.q + newton.most_remaining * scales_.q;
@@ -154,7 +165,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
     return Attempt::unreachable;
   }
   // Of so many walks the longest is expected to be this much longer than one.
-  error.q += roundoff * (std::sqrt(2 * std::log(points * w_.path.coordinates())) - 1);
+  error.q += roundoff * (longest - 1);
   worst_ = excess(error);
   outcome_.recovered = false;
   if (worst_ > 1 && excess({error.q}) <= 1 && newton.most_remaining <= spare * options_.tolerance) {
