@@ -41,7 +41,7 @@ void Planner::locate(const Resolution& resolution) {
     const double distance = 0.25 * tail.h * (1 / tail.fall - tail.fall);
     const double log_size =
         tail.size > 0 ? std::log(tail.size) - resolution.degree() * std::log(tail.fall) : -INFINITY;
-    places_.push_back({tail.h, distance, log_size});
+    places_.push_back({tail.h, distance, std::log(tail.h), log_size});
   }
   const auto limit = [&](std::size_t k, std::size_t neighbour) {
     const double apart = 0.5 * (places_[k].h + places_[neighbour].h);
@@ -51,15 +51,19 @@ void Planner::locate(const Resolution& resolution) {
   for (std::size_t k = places_.size() - 1; k-- > 0;) limit(k, k + 1);
 }
 
-/// h' with size·f'^(s+1) <= limits.aim.q, and its derivative at the end of the element, (s+1)(s+2)/h' times
-/// that, within limits.aim.v. Unless the limits allow it there are no fewer nodes an interval of time than
-/// now: those resolve the variations of the path too, whatever the path itself may need.
-double Planner::length(const Place& place, int degree, const PlanLimits& limits) const {
-  const double longest = limits.strongest_growth * place.h * degree / degree_,
+/// The slope at the end of an element of length h is (s+1)(s+2)/h times the coefficient.
+Planner::Goal Planner::goal(int degree, const PlanLimits& limits) {
+  return {degree, std::log(limits.aim.q), std::log(limits.aim.v / ((degree + 1) * (degree + 2)))};
+}
+
+/// h' with size·f'^(s+1) within the goal. Unless the limits allow it there are no fewer nodes an interval of
+/// time than now: those resolve the variations of the path too, whatever the path itself may need.
+double Planner::length(const Place& place, const Goal& goal, const PlanLimits& limits) const {
+  const double longest = limits.strongest_growth * place.h * goal.degree / degree_,
                shortest = place.h / limits.strongest_cut;
   if (std::isinf(place.log_size)) return longest;
-  const double slope = limits.aim.v * place.h / ((degree + 1) * (degree + 2));
-  const double log_fall = (std::log(std::min(limits.aim.q, slope)) - place.log_size) / (degree + 1);
+  const double wanted = std::min(goal.log_q, goal.log_v + place.log_h);
+  const double log_fall = (wanted - place.log_size) / (goal.degree + 1);
   if (log_fall >= 0) return longest;
   const double fall = std::exp(log_fall);
   return std::clamp(4 * place.distance * fall / (1 - fall * fall), shortest, longest);
@@ -67,7 +71,8 @@ double Planner::length(const Place& place, int degree, const PlanLimits& limits)
 
 double Planner::elements(int degree, const PlanLimits& limits) const {
   double sum = 0;
-  for (const Place& place : places_) sum += place.h / length(place, degree, limits);
+  const Goal wanted = goal(degree, limits);
+  for (const Place& place : places_) sum += place.h / length(place, wanted, limits);
   return spare * sum;
 }
 
@@ -92,6 +97,7 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
   int moved = 0;
   double count = 0;
   for (int degree = limits.least_degree; degree <= limits.highest_degree; ++degree) {
+    if (cost(degree, 1) >= least) break;  // and so do higher ones
     const double needed = elements(degree, limits);
     if (!(needed <= limits.most_elements && cost(degree, needed) < least)) continue;  // not NaN either
     least = cost(degree, needed);
@@ -100,8 +106,9 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
   }
   if (moved == 0) return best;
   density_.clear();
+  const Goal wanted = goal(moved, limits);
   for (std::size_t k = 0; k < places_.size(); ++k) {
-    const double density = 1 / length(places_[k], moved, limits);
+    const double density = 1 / length(places_[k], wanted, limits);
     if (k == 0) density_.add(0, density);
     density_.add(0.5 * (mesh[k] + mesh[k + 1]), density);
     if (k + 1 == places_.size()) density_.add(1, density);

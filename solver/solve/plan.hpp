@@ -41,10 +41,16 @@ class Planner {
 
  private:
   struct Place {
-    double h, distance, log_size;  ///< log of the coefficients extrapolated to k = 0
+    double h, distance, log_h, log_size;  ///< log of the coefficients extrapolated to k = 0
   };
+  /// Of the coefficient that elements of a degree leave out, at most: for q, and for q' by their length.
+  struct Goal {
+    int degree;
+    double log_q, log_v;
+  };
+  static Goal goal(int degree, const PlanLimits& limits);
   void locate(const Resolution& resolution);
-  double length(const Place& place, int degree, const PlanLimits& limits) const;
+  double length(const Place& place, const Goal& goal, const PlanLimits& limits) const;
   double elements(int degree, const PlanLimits& limits) const;
 
   int degree_ = 0;  ///< of the elements that were measured
