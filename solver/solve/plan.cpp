@@ -41,7 +41,7 @@ void Planner::locate(const Resolution& resolution) {
     const double distance = 0.25 * tail.h * (1 / tail.fall - tail.fall);
     const double log_size =
         tail.size > 0 ? std::log(tail.size) - resolution.degree() * std::log(tail.fall) : -INFINITY;
-    places_.push_back({tail.h, distance, std::log(tail.h), log_size});
+    places_.push_back({tail.h, distance, std::log(4 * distance), log_size});
   }
   const auto limit = [&](std::size_t k, std::size_t neighbour) {
     const double apart = 0.5 * (places_[k].h + places_[neighbour].h);
@@ -56,14 +56,14 @@ Planner::Goal Planner::goal(int degree, const PlanLimits& limits) {
   return {degree, std::log(limits.aim.q), std::log(limits.aim.v / ((degree + 1) * (degree + 2)))};
 }
 
-/// h' with size·f'^(s+1) within the goal. Unless the limits allow it there are no fewer nodes an interval of
+/// h' with size·f'^(s+1) within the goal, h' >= 4 distance f'. Unless the limits allow it there are no fewer nodes an interval of
 /// time than now: those resolve the variations of the path too, whatever the path itself may need.
 double Planner::length(const Place& place, const Goal& goal, const PlanLimits& limits) const {
   const double longest = limits.strongest_growth * place.h * goal.degree / degree_,
                shortest = place.h / limits.strongest_cut;
   if (std::isinf(place.log_size)) return longest;
-  const double wanted = std::min(goal.log_q, goal.log_v + place.log_h);
-  const double log_fall = (wanted - place.log_size) / (goal.degree + 1);
+  const double log_fall = std::min((goal.log_q - place.log_size) / (goal.degree + 1),
+                                   (goal.log_v + place.log_reach - place.log_size) / goal.degree);
   if (log_fall >= 0) return longest;
   const double fall = std::exp(log_fall);
   return std::clamp(4 * place.distance * fall / (1 - fall * fall), shortest, longest);

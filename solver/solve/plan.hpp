@@ -41,7 +41,7 @@ class Planner {
 
  private:
   struct Place {
-    double h, distance, log_h, log_size;  ///< log of the coefficients extrapolated to k = 0
+    double h, distance, log_reach, log_size;  ///< log of the coefficients extrapolated to k = 0
   };
   /// Of the coefficient that elements of a degree leave out, at most: for q, and for q' by their length.
   struct Goal {

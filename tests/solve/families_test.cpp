@@ -104,7 +104,7 @@ TEST(Families, HalosAboutL2) {
 }
 
 /// About L1 the period goes up and down again: of several orbits of a period the branch meets the published
-/// ones next to the point that is nearest.
+/// ones next to one of the nearest points.
 TEST(Families, HalosAboutL1) {
   const Study study = family_scene("lyapunov-family");
   Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 90, .seeds = true});
@@ -116,16 +116,18 @@ TEST(Families, HalosAboutL1) {
     const nlohmann::json orbit = orbit_of_earth_and_moon(id);
     const double period = period_of(orbit), energy = -decimal(orbit["refined"]["jacobi"]) / 2;
     double least = INFINITY;
-    for (const std::vector<BranchPoint>& points : halos) {
+    for (std::vector<BranchPoint>& points : halos) {
       const auto off = [&](const BranchPoint& p) {
         return std::hypot(p.solution.duration() - period, *p.solution.energy - energy);
       };
-      const BranchPoint& nearest =
-          *std::min_element(points.begin(), points.end(),
-                            [&](const BranchPoint& a, const BranchPoint& b) { return off(a) < off(b); });
-      const Solution halo = solve(
-          near_to(nearest.solution.trajectory, study.continuation->family.problem, period), within(1e-12));
-      least = std::min(least, distance(orbit, halo));
+      const auto nearest = points.begin() + 4;
+      std::partial_sort(points.begin(), nearest, points.end(),
+                        [&](const BranchPoint& a, const BranchPoint& b) { return off(a) < off(b); });
+      for (auto point = points.begin(); point != nearest && least >= 1e-9; ++point) {
+        const Problem& problem = study.continuation->family.problem;
+        const Solution halo = solve(near_to(point->solution.trajectory, problem, period), within(1e-12));
+        if (halo.converged()) least = std::min(least, distance(orbit, halo));
+      }
     }
     EXPECT_LT(least, 1e-9) << id;
   }
