@@ -137,8 +137,7 @@ double NewtonIteration::steepness(const Path& path) const {
     for (std::size_t a = 0; a < n; ++a) {
       const double turned = std::abs(velocity(step_.nodes.data(), k, a));
       const double* q = path.node(0);
-      const double faster =
-          apart > 0 ? std::abs(velocity(q, after, a) - velocity(q, before, a)) / apart : 0;
+      const double faster = apart > 0 ? std::abs(velocity(q, after, a) - velocity(q, before, a)) / apart : 0;
       most = std::max(most, turned - last_digits * faster);
     }
   }

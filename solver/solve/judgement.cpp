@@ -148,9 +148,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   const double at_nodes = nodes.moved * std::min(1.0, fall);
   const double longest = std::sqrt(2 * std::log(points * w_.path.coordinates()));
   double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
-  const auto with = [&](double walk) {
-    return excess({error.q + at_nodes + longest * walk, error.v});
-  };
+  const auto with = [&](double walk) { return excess({error.q + at_nodes + longest * walk, error.v}); };
   // Where it decides it is measured: more elements would not help.
   if (with(roundoff) > 1 && with(0) <= 1) {
     const double measured = certain * w_.iteration.roundoff(w_.path) * scales_.q;

@@ -56,8 +56,9 @@ Planner::Goal Planner::goal(int degree, const PlanLimits& limits) {
   return {degree, std::log(limits.aim.q), std::log(limits.aim.v / ((degree + 1) * (degree + 2)))};
 }
 
-/// h' with size·f'^(s+1) within the goal, h' >= 4 distance f'. Unless the limits allow it there are no fewer nodes an interval of
-/// time than now: those resolve the variations of the path too, whatever the path itself may need.
+/// h' with size·f'^(s+1) within the goal, h' >= 4 distance f'. Unless the limits allow it there are no fewer
+/// nodes an interval of time than now: those resolve the variations of the path too, whatever the path itself
+/// may need.
 double Planner::length(const Place& place, const Goal& goal, const PlanLimits& limits) const {
   const double longest = limits.strongest_growth * place.h * goal.degree / degree_,
                shortest = place.h / limits.strongest_cut;
