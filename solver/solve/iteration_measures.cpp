@@ -63,8 +63,6 @@ double NewtonIteration::residual_at(const Path& path) {
   return residual();
 }
 
-/// By how much step_ changes, relative as it, where each node, and what is free of the ends, is moved by some
-/// last digits of its own: a step from there takes that back, but all is rounded differently.
 double NewtonIteration::roundoff(Path& path) {
   model_->evaluate_gradient(action_, path);
   if (std::isnan(solve_for_step(path, step_))) return INFINITY;
@@ -74,6 +72,8 @@ double NewtonIteration::roundoff(Path& path) {
   return result;
 }
 
+/// By how much step_ changes, relative as it, where each node, and what is free of the ends, is moved by some
+/// last digits of its own: a step from there takes that back, but all is rounded differently.
 double NewtonIteration::measure_noise(Path& path) {
   const std::size_t n = path.coordinates(), nodes = path.nodes().size();
   double magnitude = 0;
