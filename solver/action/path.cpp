@@ -52,6 +52,21 @@ void Path::set_element(int k, const double* q) {
       x[((j - 1) * n_ + a) * lanes] = q[j * n_ + a] - (first[a] + lobatto_[j] * (last[a] - first[a]));
 }
 
+void Path::set_image(int k, const Path& other, int j, const SignedPermutation& map, bool backwards) {
+  const double* from = other.x(j / lanes) + j % lanes;
+  double* to = x(k / lanes) + k % lanes;
+  for (int a = 0; a < n_; ++a) {
+    const int b = map.from[a];
+    const double sign = map.sign[a];
+    for (int end = 0; end < 2; ++end) {
+      const int node = j + (backwards ? 1 - end : end);
+      set_node(k + end, a, sign * other.node(node)[b], sign * other.rest(node)[b]);
+    }
+    for (int i = 0; i < degree_ - 1; ++i)
+      to[(i * n_ + a) * lanes] = sign * from[((backwards ? degree_ - 2 - i : i) * n_ + b) * lanes];
+  }
+}
+
 void Path::set_node(int k, int a, double high, double low) {
   high_[static_cast<std::size_t>(k) * n_ + a] = high;
   low_[static_cast<std::size_t>(k) * n_ + a] = low;

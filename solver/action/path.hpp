@@ -5,6 +5,7 @@
 
 #include "action/tables.hpp"
 #include "machine/aligned.hpp"
+#include "problem/signed_permutation.hpp"
 
 /// \file The unknown: a piecewise polynomial path on a mesh, laid out for the kernels.
 
@@ -28,6 +29,9 @@ class Path {
 
   /// Sets the values at the s + 1 Lobatto nodes of element k from q[(j)*n + a].
   void set_element(int k, const double* q);
+  /// Element k becomes the image under `map` of element j of `other`, which is of the same degree, or of that
+  /// run backwards. Exact; load_ends() is to follow.
+  void set_image(int k, const Path& other, int j, const SignedPermutation& map, bool backwards);
   void set_duration(double duration);
   /// Mesh nodes move by factor·times (in τ), inner nodes stay where they are in their elements, and all
   /// values are kept. False, and nothing is done, if an element shrank to less than `least` of its length.

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "problem/reduction.hpp"
+
 namespace extremal {
 
 namespace {
@@ -74,6 +76,7 @@ Problem make_problem(Problem problem) {
   check_guess(problem.guess, problem.coordinates());
   problem.ends = solve_relation(problem.boundary);
   if (problem.periodic) problem.symmetries = continuous_symmetries(problem);
+  problem.reduction = reduction_of(problem);
   return problem;
 }
 

@@ -73,6 +73,8 @@ struct Guess {
   void at(double tau, std::span<double> q) const;
 };
 
+struct Reduction;
+
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
 struct Problem {
   std::shared_ptr<const Lagrangian> lagrangian;
@@ -83,12 +85,13 @@ struct Problem {
   std::vector<Generator> symmetries;  ///< of a periodic problem
   Duration duration;
   Guess guess;
-  std::optional<double> curvature;  ///< a bound of M⁻¹V'' known to hold everywhere
+  std::shared_ptr<const Reduction> reduction;  ///< of a periodic problem with a symmetric guess, else null
+  std::optional<double> curvature;             ///< a bound of M⁻¹V'' known to hold everywhere
 
   int coordinates() const { return boundary.coordinates; }
 };
 
-/// Checks dimensions, durations and relations, and fills `ends` and `symmetries`. Throws
+/// Checks dimensions, durations and relations, and fills `ends`, `symmetries` and `reduction`. Throws
 /// std::invalid_argument or RelationError.
 Problem make_problem(Problem problem);
 

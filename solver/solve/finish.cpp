@@ -16,6 +16,7 @@
 #include "solve/other_points.hpp"
 #include "solve/residual_test.hpp"
 #include "solve/stability.hpp"
+#include "solve/unfold.hpp"
 
 namespace extremal {
 
@@ -127,8 +128,6 @@ Solution without_path(Solution solution) {
   Solution failed;
   failed.status = solution.status;
   failed.message = std::move(solution.message);
-  failed.strategy = std::move(solution.strategy);
-  failed.iterations = solution.iterations;
   return failed;
 }
 
@@ -167,61 +166,133 @@ Trajectory trajectory_of(const Path& path) {
   return t;
 }
 
-Solution finish(const Problem& problem, const SolveOptions& options, const Outcome& outcome, Workspace& w,
+namespace {
+
+void read_path(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
+  w.iteration.reset(problem, *outcome.tables, w.path.elements());
+  solution.trajectory = trajectory_of(outcome.recovered && recover(problem, w) ? w.recovered : w.path);
+  read_off(problem, outcome, w, solution);
+}
+
+/// Reads off what was found, and refuses it where it is no solution or the elements have not seen all of it.
+std::optional<Survey> examine(const Problem& problem, const SolveOptions& options, const Outcome& outcome,
+                              Workspace& w, Solution& solution) {
+  solution.status = outcome.status;
+  solution.message = outcome.message;
+  solution.error_estimate = outcome.error;
+  solution.degree = w.path.degree();
+  const int inner = (w.path.degree() - 1) * w.path.elements() + w.path.elements() - 1;
+  solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
+  read_path(problem, outcome, w, solution);
+  w.final_tables = outcome.tables;
+  if (!std::isfinite(solution.action) || !std::isfinite(solution.residual)) {
+    solution.status = Status::not_converged;
+    solution.message = "the path runs through a singularity of L; try another guess";
+  } else if (!balanced(solution, w)) {
+    solution.status = Status::not_converged;
+    solution.message = fmt::format(
+        "a residual of {:.1e} of the largest momentum is left: forces are too strong for what they move; "
+        "try another guess",
+        solution.residual);
+  } else if (!closed(problem, options, w)) {
+    solution.status = Status::no_solution_near;
+    solution.message = "the duration ran away: no extremal near the guess meets what closes it";
+  }
+  if (!solution.converged()) return std::nullopt;
+  const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
+  judge_resolution(problem, options, outcome, found, w, solution);
+  return found;
+}
+
+/// What other points tell of a path that was read off; it is polished where they miss it. Whether it was.
+bool try_others(const Problem& problem, const SolveOptions& options, Outcome& outcome, Workspace& w,
+                const Solution& solution, OtherPoints& others) {
+  others = try_other_points(problem, outcome, solution, w);
+  if (options.scheme || outcome.polished || !others.missed(options, outcome)) return false;
+  return outcome.polished = polish(w);
+}
+
+/// What other points tell of an orbit by its part: along all of it they would amplify roundoff more. The
+/// workspace has the whole then.
+OtherPoints examine_part(const SolveOptions& options, Outcome& outcome, Workspace& w, double& residual) {
+  const Reduction& reduction = *outcome.reduction;
+  Solution solution;
+  OtherPoints others;
+  read_path(reduction.part, outcome, w, solution);
+  if (try_others(reduction.part, options, outcome, w, solution, others)) {
+    read_path(reduction.part, outcome, w, solution);
+    others = try_other_points(reduction.part, outcome, solution, w);
+    unfold(reduction, w.path, *outcome.tables, w.whole);
+  }
+  residual = residual_under_others(reduction.part, outcome, w);
+  std::swap(w.path, w.whole);
+  return others;
+}
+
+/// What the last digits of t/T, an element of length h at their mercy, make of momenta q'/h and of their
+/// sums.
+double rounded_mesh(const Workspace& w) {
+  constexpr double last_digits = 0x1p-50;
+  double shortest = 1;
+  for (int k = 0; k < w.path.elements(); ++k)
+    shortest = std::min(shortest, w.path.mesh()[k + 1] - w.path.mesh()[k]);
+  return (least_roundoff + last_digits / shortest) * w.iteration.action().momentum_scale();
+}
+
+/// Of what was found, all but minimality and stability.
+void examine_all(const Problem& problem, const SolveOptions& options, Outcome& outcome, Workspace& w,
+                 Solution& solution, OtherPoints& others) {
+  double residual = 0;  // of the part
+  if (outcome.reduction) others = examine_part(options, outcome, w, residual);
+  std::optional<Survey> found = examine(problem, options, outcome, w, solution);
+  if (!solution.converged()) return;
+  if (outcome.reduction) {
+    others.told_apart = true;  // periodic orbits may be of a family
+    others.unlike = !(residual_under_others(problem, outcome, w) <= 10 * residual + rounded_mesh(w));
+  } else if (try_others(problem, options, outcome, w, solution, others)) {
+    found = examine(problem, options, outcome, w, solution);
+    if (solution.converged()) others = try_other_points(problem, outcome, solution, w);
+  }
+  const double range =
+      found ? *std::max_element(found->p.begin(), found->p.end()) : w.iteration.action().momentum_scale();
+  others.kicked = others.kicked > 0 ? others.kicked / range : 0;
+}
+
+}  // namespace
+
+Solution finish(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w,
                 SecondVariation& variation) {
   const auto start = Clock::now();
   Solution solution;
-  solution.status = outcome.status;
-  solution.message = outcome.message;
+  Outcome outcome = found;
+  if (outcome.status == Status::converged) {
+    OtherPoints others;
+    examine_all(problem, options, outcome, w, solution, others);
+    if (solution.converged()) {
+      const double distance = read_minimality(problem, options, variation, solution);
+      read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
+      judge_conjugate_ends(problem, options, distance, w, solution);
+    }
+    if (solution.converged()) judge_by_other_points(others, options, outcome, solution);
+    if (!solution.converged()) solution = without_path(std::move(solution));
+  } else {
+    solution.status = outcome.status;
+    solution.message = outcome.message;
+    if (const std::string reason = irregularity(problem); !reason.empty()) {
+      solution.message = reason;
+    } else if (outcome.status != Status::conjugate_ends &&
+               failed_at_conjugate_ends(problem, trajectory_of(w.path), variation)) {
+      solution.status = Status::conjugate_ends;
+      solution.message =
+          "the ends seem to be conjugate, with no extremal or a family of them; move an end or the "
+          "duration (" +
+          outcome.message + ")";
+    }
+  }
   solution.strategy = outcome.strategy;
   if (options.method != Method::newton)
     solution.strategy += fmt::format(", led by {}", description(options.method));
   solution.iterations = outcome.iterations;
-  if (outcome.status == Status::converged) {
-    solution.error_estimate = outcome.error;
-    w.iteration.reset(problem, *outcome.tables, w.path.elements());
-    solution.trajectory = trajectory_of(outcome.recovered && recover(problem, w) ? w.recovered : w.path);
-    solution.degree = w.path.degree();
-    const int inner = (w.path.degree() - 1) * w.path.elements() + w.path.elements() - 1;
-    solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
-    read_off(problem, outcome, w, solution);
-    w.final_tables = outcome.tables;
-    if (!std::isfinite(solution.action) || !std::isfinite(solution.residual)) {
-      solution.status = Status::not_converged;
-      solution.message = "the path runs through a singularity of L; try another guess";
-    } else if (!balanced(solution, w)) {
-      solution.status = Status::not_converged;
-      solution.message = fmt::format(
-          "a residual of {:.1e} of the largest momentum is left: forces are too strong for what they move; "
-          "try another guess",
-          solution.residual);
-    } else if (closed(problem, options, w)) {
-      const std::optional<Survey> found = observe_energy(*problem.lagrangian, solution);
-      judge_resolution(problem, options, outcome, found, w, solution);
-      const OtherPoints others = try_other_points(problem, outcome, found, solution, w);
-      if (!options.scheme && !outcome.polished && others.missed(options, outcome) && polish(w)) {
-        Outcome polished = outcome;
-        polished.polished = true;
-        return finish(problem, options, polished, w, variation);
-      }
-      const double distance = read_minimality(problem, options, variation, solution);
-      read_stability(problem, variation, scales(w.path, *outcome.tables).q, solution);
-      if (solution.converged()) judge_conjugate_ends(problem, options, distance, w, solution);
-      if (solution.converged()) judge_by_other_points(others, options, outcome, solution);
-    } else {
-      solution.status = Status::no_solution_near;
-      solution.message = "the duration ran away: no extremal near the guess meets what closes it";
-    }
-    if (!solution.converged()) solution = without_path(std::move(solution));
-  } else if (const std::string reason = irregularity(problem); !reason.empty()) {
-    solution.message = reason;
-  } else if (outcome.status != Status::conjugate_ends &&
-             failed_at_conjugate_ends(problem, trajectory_of(w.path), variation)) {
-    solution.status = Status::conjugate_ends;
-    solution.message =
-        "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
-        outcome.message + ")";
-  }
   w.iteration.forget();
   solution.seconds_analyse = std::chrono::duration<double>(Clock::now() - start).count();
   return solution;

@@ -40,15 +40,13 @@ int symmetries_about(const Problem& problem, const Trajectory& found) {
   return static_cast<int>(continuous_symmetries(about, search).size());
 }
 
-/// By how much momenta at the ends of a solution are others where the action was evaluated last, relative.
-double kick(const DiscreteAction& action, const std::optional<Survey>& survey, const Solution& solution) {
+/// By how much momenta at the ends of a solution are others where the action was evaluated last.
+double kick(const DiscreteAction& action, const Solution& solution) {
   double largest = 0;
   for (std::size_t a = 0; a < solution.momentum_start.size(); ++a)
     largest = std::max({largest, std::abs(action.start_gradient()[a] + solution.momentum_start[a]),
                         std::abs(action.end_gradient()[a] - solution.momentum_end[a])});
-  const double size = action.momentum_scale();
-  const double range = survey ? *std::max_element(survey->p.begin(), survey->p.end()) : size;
-  return largest > roundoff * size ? largest / range : 0;
+  return largest > roundoff * action.momentum_scale() ? largest : 0;
 }
 
 void refuse(Solution& solution, Status status, std::string message) {
@@ -66,8 +64,8 @@ void refuse(Solution& solution, const char* what, double much, double tolerance,
 
 }  // namespace
 
-OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
-                             const std::optional<Survey>& survey, const Solution& solution, Workspace& w) {
+OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, const Solution& solution,
+                             Workspace& w) {
   const Scales size = scales(w.path, *outcome.tables);
   const bool factored = solution.nullity.has_value(), at_rest = size.range < size.q || size.q == 0;
   if (!factored || at_rest) return {};
@@ -92,12 +90,17 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome,
     }
   }
   others.turned = size.v > 0 ? w.iteration.steepness(w.path) / size.v : 0;
-  others.kicked = kick(w.iteration.action(), survey, solution);
+  others.kicked = kick(w.iteration.action(), solution);
   return others;
 }
 
 bool OtherPoints::missed(const SolveOptions& options, const Outcome& outcome) const {
   return moved > outcome.tolerance || turned > most_turned * options.tolerance;
+}
+
+double residual_under_others(const Problem& problem, const Outcome& outcome, Workspace& w) {
+  w.iteration.action().substitute(*problem.lagrangian, w.levels.finer(outcome.tables->scheme()));
+  return w.iteration.residual_at(w.path);
 }
 
 bool polish(Workspace& w) {
@@ -119,6 +122,9 @@ void judge_by_other_points(const OtherPoints& others, const SolveOptions& option
                   "the second variation is singular along the path found, though no symmetry makes it so: "
                   "forces vanish along it, or the ends are conjugate, with a family of extremals; move an "
                   "end or the duration, or try a better guess");
+  if (others.unlike)
+    return refuse(solution, Status::not_converged,
+                  "forces along the orbit lack the symmetries of its guess; try another guess");
   if (!std::isfinite(others.moved))
     return refuse(solution, Status::not_converged,
                   "with other points in each element the action is not finite: the path runs through a "

@@ -30,6 +30,9 @@ constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
 constexpr double filling = 0.1;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
+/// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
+/// harder to foresee than what is between.
+constexpr double planned_slopes = 6;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
 
@@ -155,7 +158,7 @@ Plan Refinement::plan(double aim) {
   if (followed_) return {std::min(w_.path.degree() + 2, highest_degree), {}};
   const bool last = aim <= options_.tolerance;
   const auto error = [&](double share) {
-    return Resolution::Error{share * scales_.q, last ? 10 * share * scales_.v : INFINITY};
+    return Resolution::Error{share * scales_.q, last ? planned_slopes * share * scales_.v : INFINITY};
   };
   return w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
                          {.aim = error(aim),

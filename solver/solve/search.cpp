@@ -176,9 +176,10 @@ bool Search::from_other_guesses() {
   return from_motions();
 }
 
-Outcome Search::run() {
+/// Puts the guess on elements, and bounds what may follow; false if L is not finite along it.
+bool Search::prepare() {
   outcome_.message = "the action is not finite along the guess";
-  if (!begin()) return outcome_;
+  if (!begin()) return false;
   const Scales size = scales(w_.path, refinement_.tables());
   magnitude_ = size.magnitude;
   if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
@@ -186,6 +187,20 @@ Outcome Search::run() {
   allowance_ = std::min(
       {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
   refinement_.allow(allowance_);
+  return true;
+}
+
+Outcome Search::run_near_guess() {
+  if (!prepare()) return outcome_;
+  extent_ = scales(w_.path, refinement_.tables()).range;
+  const Refinement::Result result = pursue(from_guess);
+  outcome_.hidden = result == Refinement::Result::unreachable && !doubtful_;
+  if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
+  return outcome_;
+}
+
+Outcome Search::run() {
+  if (!prepare()) return outcome_;
   Refinement::Result result = pursue(from_guess);
   const bool doubtful = doubtful_;
   if (result == Refinement::Result::failed) {

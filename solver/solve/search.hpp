@@ -16,6 +16,8 @@ class Search {
  public:
   Search(const Problem& problem, const SolveOptions& options, Workspace& workspace);
   Outcome run();
+  /// The same from the guess only; an extremal far from it is none.
+  Outcome run_near_guess();
 
   /// An empty path into the workspace, to be filled by the caller and settled.
   const ElementTables& open(const std::vector<double>& mesh, int degree);
@@ -42,6 +44,7 @@ class Search {
   static constexpr int homotopy_degree = 8;
   static int first_elements(const Frequency& frequency);
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
+  bool prepare();
   bool begin();
   bool follow_motion();
   bool resolve_guess();

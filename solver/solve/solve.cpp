@@ -1,5 +1,7 @@
 #include "solve/solve.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -8,6 +10,7 @@
 #include "solve/pinned.hpp"
 #include "solve/search.hpp"
 #include "solve/several.hpp"
+#include "solve/unfold.hpp"
 
 namespace extremal {
 
@@ -22,6 +25,7 @@ Problem guessed_by(const Problem& problem, const Solution& solution) {
   Problem result = problem;
   result.duration.value = trajectory.duration();
   result.guess = {};
+  result.reduction = nullptr;
   std::vector<double> q(n), v(n);
   const int points = trajectory.degree * trajectory.elements();
   for (int k = 0; k <= points; ++k) {
@@ -31,6 +35,16 @@ Problem guessed_by(const Problem& problem, const Solution& solution) {
     result.guess.q.insert(result.guess.q.end(), q.begin(), q.end());
   }
   return result;
+}
+
+/// Newton's method on the part of an orbit that its symmetries leave to be found; and the whole.
+Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Workspace& w) {
+  Outcome outcome = Search(reduction.part, options, w).run_near_guess();
+  if (outcome.status != Status::converged) return outcome;
+  outcome.reduction = &reduction;
+  outcome.message += fmt::format(" on 1/{} of the orbit, which symmetries continue", reduction.parts());
+  unfold(reduction, w.path, *outcome.tables, w.whole);
+  return outcome;
 }
 
 }  // namespace
@@ -56,13 +70,28 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.push_back(step);
     if (options.progress) options.progress(step);
   };
-  const Outcome outcome =
-      options.scheme ? PinnedSolve(problem, recording, w).run() : Search(problem, recording, w).run();
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  Solution solution = finish(problem, options, outcome, w, memory_->variation);
-  solution.history = std::move(history);
-  solution.seconds_solve = seconds;
-  return solution;
+  const auto finished = [&](const Problem& solved, const Outcome& outcome) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    Solution solution = finish(solved, options, outcome, w, memory_->variation);
+    solution.history = history;
+    solution.seconds_solve = seconds;
+    return solution;
+  };
+  if (options.scheme) return finished(problem, PinnedSolve(problem, recording, w).run());
+  int spent = 0;
+  if (const Reduction* reduction = problem.reduction.get()) {
+    const Outcome outcome = solve_part(*reduction, recording, w);
+    // What hides an extremal on its part does so on the whole.
+    if (outcome.hidden) return finished(reduction->part, outcome);
+    if (outcome.status == Status::converged) {
+      Solution solution = finished(problem, outcome);
+          if (solution.converged()) return solution;
+    }
+    spent = outcome.iterations;
+  }
+  Outcome outcome = Search(problem, recording, w).run();
+  outcome.iterations += spent;
+  return finished(problem, outcome);
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {

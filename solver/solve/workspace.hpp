@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "action/recovery.hpp"
+#include "problem/reduction.hpp"
 #include "solve/frequency.hpp"
 #include "solve/iteration.hpp"
 #include "solve/levels.hpp"
@@ -20,6 +21,7 @@ struct Workspace {
   Levels levels;
   NewtonIteration iteration;
   Path path, other, saved;
+  Path whole;  ///< orbit of which the path is a part
   Recovery recovery;
   Path recovered;
   Resolution resolution;
@@ -48,6 +50,9 @@ struct Outcome {
   double tolerance = 0;  ///< absolute
   int iterations = 0;
   const ElementTables* tables = nullptr;
+  /// The path in the workspace is its part, and the workspace has the whole.
+  const Reduction* reduction = nullptr;
+  bool hidden = false;  ///< an extremal is near, but roundoff is more than the tolerance
 
   /// Counts a step of the workspace's iteration and tells whoever listens.
   void record(const Workspace& workspace, const SolveOptions& options);

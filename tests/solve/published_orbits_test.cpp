@@ -87,7 +87,7 @@ TEST(PublishedOrbits, OfThreeBodiesInSpace) {
 
 /// What roundoff hides is said, and by how much.
 TEST(PublishedOrbits, BeyondRoundoff) {
-  for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII"}) {
+  for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII", "3b-ll-IA12", "3b-sd-IIC2a-yinyangI", "3b-ll-IA36", "3b-ll-IIC22","3b-sd-IB3-butterflyIII"}) {
     const std::string said = wrong(published("nbody_periodic_orbits.json", id), 1e-14);
     EXPECT_NE(said.find("roundoff, amplified to"), std::string::npos) << id << ": " << said;
   }

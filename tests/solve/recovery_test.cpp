@@ -104,6 +104,7 @@ TEST(Recovery, ElsewhereHasOne) {
 /// A near-rectilinear halo orbit: beside the moon q is known long before q'.
 TEST(Recovery, TellsVelocitiesThatElementsDoNot) {
   Study study = load(bench_data("nrho.toml"));
+  study.problem.reduction = nullptr;
   study.options.tolerance = 1e-8;
   const Solution s = run(study);
   ASSERT_TRUE(s.converged()) << s.message;
