@@ -61,6 +61,8 @@ TEST(PublishedOrbits, WithCloseEncounters) {
 TEST(PublishedOrbits, AsCloselyAsCanBe) {
   for (const char* id : {"3b-ll-IA6", "3b-ll-IIC71"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-13), "") << id;
+  for (const char* id : {"3b-ll-IB2", "3b-ll-IA12", "3b-ll-IIC22", "3b-sd-IIC2a-yinyangI"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-14), "") << id;
 }
 
 /// To 3e-4 of the size of the orbit; free fall begins and ends at rest. At 1e-12 roundoff decides whether
@@ -77,7 +79,8 @@ TEST(PublishedOrbits, WithVeryCloseEncounters) {
 /// these are not asked for closer.
 TEST(PublishedOrbits, WithManyVeryCloseEncounters) {
   EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", "3b-llu-IIC89-m0.75")), "");
-  EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", "3b-llu-IA1-m5"), 1e-8), "");
+  for (const char* id : {"3b-llu-IA1-m5", "3b-llu-IIC88-m0.5"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-8), "") << id;
 }
 
 TEST(PublishedOrbits, OfThreeBodiesInSpace) {
@@ -87,10 +90,8 @@ TEST(PublishedOrbits, OfThreeBodiesInSpace) {
 
 /// What roundoff hides is said, and by how much.
 TEST(PublishedOrbits, BeyondRoundoff) {
-  for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII", "3b-ll-IA12", "3b-sd-IIC2a-yinyangI", "3b-ll-IA36", "3b-ll-IIC22","3b-sd-IB3-butterflyIII"}) {
-    const std::string said = wrong(published("nbody_periodic_orbits.json", id), 1e-14);
-    EXPECT_NE(said.find("roundoff, amplified to"), std::string::npos) << id << ": " << said;
-  }
+  const std::string said = wrong(published("nbody_periodic_orbits.json", "3b-ll-IA36"), 1e-14);
+  EXPECT_NE(said.find("roundoff, amplified to"), std::string::npos) << said;
 }
 
 TEST(PublishedOrbits, OfSixBodies) {
