@@ -250,6 +250,7 @@ void examine_all(const Problem& problem, const SolveOptions& options, Outcome& o
     others.told_apart = true;  // periodic orbits may be of a family
     others.unlike = !(residual_under_others(problem, outcome, w) <= 10 * residual + rounded_mesh(w));
   } else if (try_others(problem, options, outcome, w, solution, others)) {
+    solution = {};
     found = examine(problem, options, outcome, w, solution);
     if (solution.converged()) others = try_other_points(problem, outcome, solution, w);
   }
