@@ -85,7 +85,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     if (outcome.hidden) return finished(reduction->part, outcome);
     if (outcome.status == Status::converged) {
       Solution solution = finished(problem, outcome);
-          if (solution.converged()) return solution;
+      if (solution.converged()) return solution;
     }
     spent = outcome.iterations;
   }
