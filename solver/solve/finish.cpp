@@ -247,7 +247,6 @@ void examine_all(const Problem& problem, const SolveOptions& options, Outcome& o
   std::optional<Survey> found = examine(problem, options, outcome, w, solution);
   if (!solution.converged()) return;
   if (outcome.reduction) {
-    others.told_apart = true;  // periodic orbits may be of a family
     others.unlike = !(residual_under_others(problem, outcome, w) <= 10 * residual + rounded_mesh(w));
   } else if (try_others(problem, options, outcome, w, solution, others)) {
     solution = {};
