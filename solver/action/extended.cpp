@@ -7,7 +7,16 @@
 
 namespace extremal {
 
-/// Tables of the rule and the basis in extended precision; those there are stay.
+namespace {
+
+DoubleDouble wide(Real x) {
+  const double high = static_cast<double>(x);
+  return {high, static_cast<double>(x - high)};
+}
+
+}  // namespace
+
+/// Tables of the rule and the basis; those there are stay.
 bool ExtendedGradient::bind(const SchemeTables& scheme) {
   const bool gauss = scheme.scheme.quadrature == Quadrature::gauss;
   if (!gauss && !scheme.nodal) return false;
@@ -18,112 +27,169 @@ bool ExtendedGradient::bind(const SchemeTables& scheme) {
   quadrature_ = scheme.scheme.quadrature;
   rule_ = gauss ? real_gauss(points_) : real_lobatto(points_);
   const RealElement& element = real_element(degree_);
-  const std::size_t count = degree_ + 1;
-  value_.resize(points_ * count);
-  slope_.resize(value_.size());
-  for (int i = 0; i < points_; ++i) {
-    const std::span<Real> value(value_.data() + i * count, count), slope(slope_.data() + i * count, count);
-    const int node = node_at(element, rule_.nodes[i]);
-    values_at(element, rule_.nodes[i], node, value);
-    derivatives_at(element, rule_.nodes[i], node, value, slope);
+  std::vector<Real> value(degree_ + 1), slope(degree_ + 1);
+  value_.clear();
+  slope_.clear();
+  for (const Abscissa& at : rule_.nodes) {
+    const int node = node_at(element, at);
+    values_at(element, at, node, value);
+    derivatives_at(element, at, node, value, slope);
+    std::transform(value.begin(), value.end(), std::back_inserter(value_), wide);
+    std::transform(slope.begin(), slope.end(), std::back_inserter(slope_), wide);
   }
   return true;
 }
 
-/// q, q' and t at point i of element k.
-void ExtendedGradient::place(const Path& path, int k, int i, Real h) {
-  const double* x = path.x(k / lanes) + k % lanes;
-  const Real *value = value_.data() + static_cast<std::size_t>(i) * (degree_ + 1),
-             *slope = slope_.data() + static_cast<std::size_t>(i) * (degree_ + 1);
-  const Real tau = rule_.nodes[i].left;
-  for (int a = 0; a < n_; ++a) {
-    const Real delta =
-        (Real(path.node(k + 1)[a]) - path.node(k)[a]) + (Real(path.rest(k + 1)[a]) - path.rest(k)[a]);
-    Real chord = tau * delta, rate = delta;
-    for (int j = 1; j < degree_; ++j) {
-      const Real deviation = x[((j - 1) * n_ + a) * lanes];
-      chord += value[j] * deviation;
-      rate += slope[j] * deviation;
-    }
-    q_[a] = path.node(k)[a] + (chord + path.rest(k)[a]);
-    v_[a] = rate / h;
+/// One element of a path.
+struct ExtendedGradient::Element {
+  Element(const ExtendedGradient& rules, const Lagrangian& lagrangian, const Path& path);
+
+  bool known() { return lagrangian.evaluate_extended(q.data(), v.data(), t, rows.data(), scratch); }
+  void evaluate(int k);
+
+  const ExtendedGradient& rules;
+  const Lagrangian& lagrangian;
+  const Path& path;
+  const int n, degree;
+  std::vector<DoubleDouble> inner, ends;  ///< ∂L_d/∂x of the unknowns
+  DoubleDouble action, slope_duration;
+
+ private:
+  void load(int k);
+  void place(int k, int i);
+  DoubleDouble differentiate();
+
+  std::vector<DoubleDouble> start, delta, deviation;  ///< q_a, Δ and inner unknowns of the element
+  std::vector<DoubleDouble> q, v, rows, force, momentum;  ///< at one point; L_q and L_q'
+  DoubleDouble t = 0.0, duration, h;
+  PointScratch<DoubleDouble> scratch;
+};
+
+ExtendedGradient::Element::Element(const ExtendedGradient& rules, const Lagrangian& lagrangian,
+                                   const Path& path)
+    : rules(rules),
+      lagrangian(lagrangian),
+      path(path),
+      n(path.coordinates()),
+      degree(path.degree()),
+      inner(static_cast<std::size_t>(degree - 1) * n),
+      ends(2 * static_cast<std::size_t>(n)),
+      start(n),
+      delta(n),
+      deviation(inner.size()),
+      q(n),
+      v(n),
+      rows(lagrangian.rows(Order::gradient)),
+      force(n),
+      momentum(n),
+      duration(path.duration()) {}
+
+/// The unknowns of element k.
+void ExtendedGradient::Element::load(int k) {
+  const std::size_t first = static_cast<std::size_t>(k) * n,
+                    lane = static_cast<std::size_t>(k / lanes) * (degree + 1) * n * lanes + k % lanes;
+  for (int a = 0; a < n; ++a) {
+    const std::size_t left = first + a, right = left + n;
+    start[a] = dd_real(path.node(0)[left]) + path.rest(0)[left];
+    delta[a] = (dd_real(path.node(0)[right]) - path.node(0)[left]) +
+               (dd_real(path.rest(0)[right]) - path.rest(0)[left]);
   }
-  const std::span<const double> mesh = path.mesh();
-  t_ = (mesh[k] + tau * (Real(mesh[k + 1]) - mesh[k])) * path.duration();
+  const double* const x = path.x(0) + lane;
+  for (std::size_t u = 0; u < deviation.size(); ++u) deviation[u] = x[u * lanes];
+  h = (dd_real(path.mesh()[k + 1]) - path.mesh()[k]) * duration;
+}
+
+/// q, q' and t at point i of element k.
+void ExtendedGradient::Element::place(int k, int i) {
+  const std::size_t row = static_cast<std::size_t>(i) * (degree + 1);
+  const DoubleDouble *value = rules.value_.data() + row, *slope = rules.slope_.data() + row,
+                     tau = wide(rules.rule_.nodes[i].left);
+  for (int a = 0; a < n; ++a) {
+    DoubleDouble chord = tau * delta[a], rate = delta[a];
+    for (int j = 1; j < degree; ++j) {
+      chord += value[j] * deviation[(j - 1) * n + a];
+      rate += slope[j] * deviation[(j - 1) * n + a];
+    }
+    q[a] = start[a] + chord;
+    v[a] = rate / h;
+  }
+  t = path.mesh()[k] * duration + tau * h;
 }
 
 /// L from its remainder, returned, L_q and L_q'.
-Real ExtendedGradient::differentiate(const Structure& structure) {
-  std::fill(force_.begin(), force_.end(), Real(0));
-  std::fill(momentum_.begin(), momentum_.end(), Real(0));
-  Real lagrangian = rows_[0];
+DoubleDouble ExtendedGradient::Element::differentiate() {
+  const Structure& structure = lagrangian.structure();
+  std::fill(force.begin(), force.end(), 0.0);
+  std::fill(momentum.begin(), momentum.end(), 0.0);
+  DoubleDouble value = rows[0];
   for (const Triplet& m : structure.mass) {
-    momentum_[m.row] += m.value * v_[m.column];
-    lagrangian += m.value * v_[m.row] * v_[m.column] / 2;
+    momentum[m.row] += m.value * v[m.column];
+    value += 0.5 * m.value * v[m.row] * v[m.column];
   }
   for (const Triplet& c : structure.gyroscopic) {
-    momentum_[c.row] += c.value * q_[c.column];
-    force_[c.column] += c.value * v_[c.row];
-    lagrangian += c.value * v_[c.row] * q_[c.column];
+    momentum[c.row] += c.value * q[c.column];
+    force[c.column] += c.value * v[c.row];
+    value += c.value * v[c.row] * q[c.column];
   }
   for (std::size_t a = 0; a < structure.linear.size(); ++a) {
-    momentum_[a] += structure.linear[a];
-    lagrangian += structure.linear[a] * v_[a];
+    momentum[a] += structure.linear[a];
+    value += structure.linear[a] * v[a];
   }
   for (std::size_t g = 0; g < structure.gradient.size(); ++g) {
     const int z = structure.gradient[g];
-    (z < n_ ? force_[z] : momentum_[z - n_]) += rows_[1 + g];
+    (z < n ? force[z] : momentum[z - n]) += rows[1 + g];
   }
-  return lagrangian;
+  return value;
 }
 
 /// ∂L_d/∂x of every unknown; L_d = h Σ b_i L_i with q' = (…)/h gives ∂L_d/∂h = Σ b_i (L_i − L_q'·q').
-void ExtendedGradient::element(const Lagrangian& lagrangian, const Path& path, int k) {
-  const Real share = Real(path.mesh()[k + 1]) - path.mesh()[k], h = share * path.duration();
-  Real *inner = inner_.data() + static_cast<std::size_t>(k) * width_,
-       *node = nodes_.data() + static_cast<std::size_t>(k) * n_;
-  std::fill(ends_.begin(), ends_.end(), Real(0));
-  for (int i = 0; i < points_; ++i) {
-    place(path, k, i, h);
-    lagrangian.evaluate_extended(q_.data(), v_.data(), t_, rows_.data(), scratch_);
-    const Real value = differentiate(lagrangian.structure()), weight = rule_.weights[i];
-    const Abscissa at = rule_.nodes[i];
-    Real work = 0;
-    for (int a = 0; a < n_; ++a) {
-      const Real force = weight * h * force_[a], momentum = weight * momentum_[a];
-      work += momentum_[a] * v_[a];
-      ends_[a] += at.right * force - momentum;
-      ends_[n_ + a] += at.left * force + momentum;
-      for (int j = 1; j < degree_; ++j) {
-        const std::size_t entry = static_cast<std::size_t>(i) * (degree_ + 1) + j;
-        inner[(j - 1) * n_ + a] += value_[entry] * force + slope_[entry] * momentum;
+void ExtendedGradient::Element::evaluate(int k) {
+  load(k);
+  std::fill(inner.begin(), inner.end(), 0.0);
+  std::fill(ends.begin(), ends.end(), 0.0);
+  action = slope_duration = 0.0;
+  for (int i = 0; i < rules.points_; ++i) {
+    place(k, i);
+    known();
+    const Abscissa at = rules.rule_.nodes[i];
+    const DoubleDouble value = differentiate(), weight = wide(rules.rule_.weights[i]), left = wide(at.left),
+                       right = wide(at.right);
+    DoubleDouble work = 0.0;
+    for (int a = 0; a < n; ++a) {
+      const DoubleDouble impulse = weight * h * force[a], part = weight * momentum[a];
+      work += momentum[a] * v[a];
+      ends[a] += right * impulse - part;
+      ends[n + a] += left * impulse + part;
+      for (int j = 1; j < degree; ++j) {
+        const std::size_t entry = static_cast<std::size_t>(i) * (degree + 1) + j;
+        inner[(j - 1) * n + a] += rules.value_[entry] * impulse + rules.slope_[entry] * part;
       }
     }
-    action_ += weight * h * value;
-    slope_duration_ += weight * share * (value - work);
-  }
-  for (int a = 0; a < 2 * n_; ++a) {
-    node[a] += ends_[a];
-    momentum_scale_ = std::max(momentum_scale_, std::abs(ends_[a]));
+    action += weight * h * value;
+    slope_duration += weight * h / duration * (value - work);
   }
 }
 
 bool ExtendedGradient::evaluate(const Lagrangian& lagrangian, const ElementTables& tables, const Path& path) {
-  n_ = path.coordinates();
-  q_.resize(n_);
-  v_.resize(n_);
-  force_.resize(n_);
-  momentum_.resize(n_);
-  ends_.resize(2 * static_cast<std::size_t>(n_));
-  rows_.resize(lagrangian.rows(Order::gradient));
-  if (!bind(tables.scheme()) ||
-      !lagrangian.evaluate_extended(q_.data(), v_.data(), 0, rows_.data(), scratch_))
-    return false;
-  width_ = static_cast<std::size_t>(degree_ - 1) * n_;
-  inner_.assign(width_ * path.elements(), 0);
-  nodes_.assign(static_cast<std::size_t>(path.elements() + 1) * n_, 0);
-  action_ = slope_duration_ = momentum_scale_ = 0;
-  for (int k = 0; k < path.elements(); ++k) element(lagrangian, path, k);
+  if (!bind(tables.scheme())) return false;
+  Element element(*this, lagrangian, path);
+  if (!element.known()) return false;
+  const int n = path.coordinates(), elements = path.elements();
+  values_.inner.resize(element.inner.size() * elements);
+  values_.nodes.assign(static_cast<std::size_t>(elements + 1) * n, 0.0);
+  values_.action = values_.slope_duration = 0.0;
+  values_.momentum_scale = 0;
+  for (int k = 0; k < elements; ++k) {
+    element.evaluate(k);
+    std::copy(element.inner.begin(), element.inner.end(), values_.inner.begin() + k * std::ssize(element.inner));
+    DoubleDouble* const node = values_.nodes.data() + static_cast<std::size_t>(k) * n;
+    for (int a = 0; a < 2 * n; ++a) {
+      node[a] += element.ends[a];
+      values_.momentum_scale = std::max(values_.momentum_scale, std::abs(to_double(element.ends[a])));
+    }
+    values_.action += element.action;
+    values_.slope_duration += element.slope_duration;
+  }
   return true;
 }
 

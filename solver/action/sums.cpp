@@ -43,17 +43,16 @@ void DiscreteAction::take_extended(int b, double* gradient) {
   std::fill_n(gradient, sizes_.vector, 0.0);
   std::fill_n(action, lanes, 0.0);
   std::fill_n(slope, lanes, 0.0);
-  const auto rest = [](Real x) { return static_cast<double>(x - static_cast<double>(x)); };
-  const std::span<const Real> nodes = extended_.nodes();
+  const std::size_t width = static_cast<std::size_t>(inner_);
+  const DoubleDouble* const nodes = extended_.values().nodes.data();
   for (int k = b * lanes, lane = 0; lane < lanes && k < elements_; ++k, ++lane) {
-    const std::span<const Real> inner = extended_.inner(k);
-    for (int u = 0; u < inner_; ++u) gradient[u * lanes + lane] = static_cast<double>(inner[u]);
-    const Real* left = nodes.data() + static_cast<std::size_t>(k) * n_;
+    const DoubleDouble *inner = extended_.values().inner.data() + k * width,
+                       *left = nodes + static_cast<std::size_t>(k) * n_;
+    for (int u = 0; u < inner_; ++u) gradient[u * lanes + lane] = inner[u].x[0];
     for (int a = 0; a < n_; ++a) {
-      const Real right = left[n_ + a];
-      if (k == 0) gradient[(inner_ + a) * lanes + lane] = rest(left[a]);
-      gradient[(inner_ + n_ + a) * lanes + lane] =
-          k + 1 == elements_ ? rest(right) : static_cast<double>(right);
+      const DoubleDouble& right = left[n_ + a];
+      if (k == 0) gradient[(inner_ + a) * lanes + lane] = left[a].x[1];
+      gradient[(inner_ + n_ + a) * lanes + lane] = right.x[k + 1 == elements_];
     }
   }
   keep_gradient(b, gradient);
@@ -61,18 +60,18 @@ void DiscreteAction::take_extended(int b, double* gradient) {
 
 /// What take_extended() left out.
 void DiscreteAction::finish_extended() {
-  const std::span<const Real> g = extended_.nodes();
+  const std::vector<DoubleDouble>& g = extended_.values().nodes;
   const std::size_t last = g.size() - n_;
   nodes.end_parts.resize(2 * static_cast<std::size_t>(n_));
   for (int a = 0; a < n_; ++a) {
-    start_gradient_[a] = nodes.end_parts[a] = static_cast<double>(g[a]);
-    end_gradient_[a] = nodes.end_parts[n_ + a] = static_cast<double>(g[last + a]);
+    start_gradient_[a] = nodes.end_parts[a] = g[a].x[0];
+    end_gradient_[a] = nodes.end_parts[n_ + a] = g[last + a].x[0];
   }
-  action_ = static_cast<double>(extended_.action());
-  slope_duration_ = static_cast<double>(extended_.slope_duration());
-  momentum_scale_ = static_cast<double>(extended_.momentum_scale());
+  action_ = extended_.values().action.x[0];
+  slope_duration_ = extended_.values().slope_duration.x[0];
+  momentum_scale_ = extended_.values().momentum_scale;
   nodes.border_part = slope_duration_;
-  nodes.border_gradient += static_cast<double>(extended_.slope_duration() - slope_duration_);
+  nodes.border_gradient += extended_.values().slope_duration.x[1];
 }
 
 /// Sums the values and the gradient of a batch as they are, before condensation.

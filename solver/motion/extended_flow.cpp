@@ -24,7 +24,7 @@ bool ExtendedFlow::suits(const Lagrangian& lagrangian) {
     return false;
   const std::vector<Real> at(structure.coordinates, 0);
   std::vector<Real> rows(lagrangian.rows(Order::gradient));
-  ExtendedScratch scratch;
+  PointScratch<Extended> scratch;
   return lagrangian.evaluate_extended(at.data(), at.data(), 0, rows.data(), scratch);
 }
 

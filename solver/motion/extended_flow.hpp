@@ -30,7 +30,7 @@ class ExtendedFlow {
   const Structure& structure_;
   Eigen::PartialPivLU<Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>> mass_;
   std::vector<Real> rows_;
-  ExtendedScratch scratch_;
+  PointScratch<Extended> scratch_;
 };
 
 }  // namespace extremal

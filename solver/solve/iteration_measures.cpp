@@ -17,7 +17,7 @@ constexpr double pivoted_burden = 100, sparse_burden = 1000;
 /// Roundoff of a step is the most that so many shifts make of it: one may meet little by chance.
 constexpr int shifts = 3;
 /// Of two terms that cancel, half the last digit of one.
-constexpr double half_a_digit = 0x1p-54, half_an_extended_digit = 0x1p-65;
+constexpr double half_a_digit = 0x1p-54, half_an_extended_digit = 0x1p-106;
 
 /// Of T, what no time is told closer than: t is rounded, and so is t/T.
 constexpr double last_digits = 0x1p-51;

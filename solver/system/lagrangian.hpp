@@ -9,6 +9,8 @@
 /// what is known of its structure. Formulas and C++ functors implement it through the tape; a
 /// Lagrangian that cannot be traced may implement it directly.
 
+struct dd_real;
+
 namespace extremal {
 
 /// An entry of a symmetric or general matrix.
@@ -61,11 +63,16 @@ struct Scratch {
   double* reserve(std::size_t doubles);  ///< 64-byte aligned; contents undefined
 };
 
-/// The same for one point in extended precision.
-struct ExtendedScratch {
-  std::vector<long double> memory;
-  std::vector<long double*> operands;
+/// The same for one point in numbers of another kind.
+template <class Number>
+struct PointScratch {
+  std::vector<Number> memory;
+  std::vector<Number*> operands;
 };
+
+/// With 64 bits, and with 106 as a sum of two (Hida, Li and Bailey, ARITH-15 (2001) 155).
+using Extended = long double;
+using DoubleDouble = dd_real;
 
 /// Immutable once made; evaluation may run in several threads, each with its own Scratch.
 class Lagrangian {
@@ -86,8 +93,13 @@ class Lagrangian {
   /// The rows of Order::gradient at one point (n coordinates, n velocities, time), in extended precision.
   /// Numbers of the system itself are as they were rounded to double. False, and nothing is written, where
   /// that is not known.
-  virtual bool evaluate_extended(const long double* q, const long double* v, long double t, long double* out,
-                                 ExtendedScratch& scratch) const {
+  virtual bool evaluate_extended(const Extended* q, const Extended* v, const Extended& t, Extended* out,
+                                 PointScratch<Extended>& scratch) const {
+    (void)q, (void)v, (void)t, (void)out, (void)scratch;
+    return false;
+  }
+  virtual bool evaluate_extended(const DoubleDouble* q, const DoubleDouble* v, const DoubleDouble& t,
+                                 DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const {
     (void)q, (void)v, (void)t, (void)out, (void)scratch;
     return false;
   }

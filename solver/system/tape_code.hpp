@@ -59,8 +59,9 @@ struct Instruction {
 using Player = void (*)(const Instruction* code, int length, double* const* operands, const double* scalars,
                         int vectors);
 
-/// The same on one point each, in extended precision.
-void play_extended(const Instruction* code, int length, long double* const* operands, const double* scalars);
+/// The same on one point each, in numbers with more digits: long double or dd_real.
+template <class Number>
+void play_extended(const Instruction* code, int length, Number* const* operands, const double* scalars);
 
 namespace base {
 void play(const Instruction*, int, double* const*, const double*, int);

@@ -1,64 +1,70 @@
+#include <qd/dd_real.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "system/tape_lagrangian.hpp"
 
-/// \file A tape played at one point in extended precision, for equations whose roundoff is amplified.
+/// \file A tape played at one point in numbers with more digits, for equations whose roundoff is amplified.
 
 namespace extremal {
 
 namespace {
 
-using Real = long double;
-
-Real elementary(Code code, Real a, Real b) {
+template <class Number>
+Number elementary(Code code, const Number& a, const Number& b) {
+  // Those of dd_real are found by their arguments.
+  using std::abs, std::pow, std::exp, std::log, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan,
+      std::atan2, std::sinh, std::cosh, std::tanh;
   switch (code) {
     case Code::step:
-      return a >= b ? 1 : 0;
+      return Number(a >= b ? 1 : 0);
     case Code::minimum:
       return b < a ? b : a;
     case Code::maximum:
       return a < b ? b : a;
     case Code::absolute:
-      return std::abs(a);
+      return abs(a);
     case Code::power:
-      return std::pow(a, b);
+      return pow(a, b);
     case Code::exponential:
-      return std::exp(a);
+      return exp(a);
     case Code::logarithm:
-      return std::log(a);
+      return log(a);
     case Code::sine:
     case Code::sine_cosine:
-      return std::sin(a);
+      return sin(a);
     case Code::cosine:
-      return std::cos(a);
+      return cos(a);
     case Code::tangent:
-      return std::tan(a);
+      return tan(a);
     case Code::arcsine:
-      return std::asin(a);
+      return asin(a);
     case Code::arccosine:
-      return std::acos(a);
+      return acos(a);
     case Code::arctangent:
-      return std::atan(a);
+      return atan(a);
     case Code::arctangent2:
-      return std::atan2(a, b);
+      return atan2(a, b);
     case Code::hyperbolic_sine:
-      return std::sinh(a);
+      return sinh(a);
     case Code::hyperbolic_cosine:
-      return std::cosh(a);
+      return cosh(a);
     default:
-      return std::tanh(a);
+      return tanh(a);
   }
 }
 
-Real value(Code code, Real a, Real b, Real c, Real s) {
+template <class Number>
+Number value(Code code, const Number& a, const Number& b, const Number& c, double s) {
+  using std::sqrt;
   switch (code) {
     case Code::copy:
       return a;
     case Code::negate:
       return -a;
     case Code::fill:
-      return s;
+      return Number(s);
     case Code::add:
       return a + b;
     case Code::add_scalar:
@@ -92,11 +98,11 @@ Real value(Code code, Real a, Real b, Real c, Real s) {
     case Code::scalar_multiply:
       return s - a * b;
     case Code::reciprocal:
-      return 1 / a;
+      return 1.0 / a;
     case Code::square_root:
-      return std::sqrt(a);
+      return sqrt(a);
     case Code::reciprocal_root:
-      return 1 / std::sqrt(a);
+      return 1.0 / sqrt(a);
     default:
       return elementary(code, a, b);
   }
@@ -104,40 +110,59 @@ Real value(Code code, Real a, Real b, Real c, Real s) {
 
 }  // namespace
 
-void play_extended(const Instruction* code, int length, Real* const* operands, const double* scalars) {
+template <class Number>
+void play_extended(const Instruction* code, int length, Number* const* operands, const double* scalars) {
+  using std::cos;
   for (const Instruction* i = code; i != code + length; ++i) {
-    const Real a = *operands[i->a];
-    *operands[i->d] = value(i->code, a, *operands[i->b], *operands[i->c], scalars[i->s]);
-    if (i->code == Code::sine_cosine) *operands[i->c] = std::cos(a);
+    const Number a = *operands[i->a];
+    *operands[i->d] = value<Number>(i->code, a, *operands[i->b], *operands[i->c], scalars[i->s]);
+    if (i->code == Code::sine_cosine) *operands[i->c] = cos(a);
   }
 }
+template void play_extended(const Instruction*, int, Extended* const*, const double*);
+template void play_extended(const Instruction*, int, DoubleDouble* const*, const double*);
 
-void Tape::play_extended(const Real* q, const Real* v, Real t, Real* out, ExtendedScratch& scratch) const {
+template <class Number>
+void Tape::play_extended(const Number* q, const Number* v, const Number& t, Number* out,
+                         PointScratch<Number>& scratch) const {
   scratch.memory.resize(std::max<std::size_t>(scratch.memory.size(), slots_));
   scratch.operands.resize(std::max<std::size_t>(scratch.operands.size(), operands_));
-  Real** const operands = scratch.operands.data();
+  Number** const operands = scratch.operands.data();
   for (const Track& track : tracks_) {
     const Program& program = track.program;
-    Real **outputs = operands + program.inputs, **slots = outputs + program.outputs;
+    Number **outputs = operands + program.inputs, **slots = outputs + program.outputs;
     for (int k = 0; k < program.slots; ++k) slots[k] = scratch.memory.data() + k;
     for (int r = 0; r < track.rows; ++r) {
       const std::uint32_t* source = track.sources.data() + static_cast<std::size_t>(r) * program.inputs;
       const Target* target = track.targets.data() + static_cast<std::size_t>(r) * program.outputs;
       for (int k = 0; k < program.inputs; ++k) {
         const Variable kind = track.kinds[k];
-        operands[k] = kind == Variable::coordinate ? const_cast<Real*>(q + source[k])
-                      : kind == Variable::velocity ? const_cast<Real*>(v + source[k])
-                                                   : &t;
+        operands[k] = const_cast<Number*>(kind == Variable::coordinate ? q + source[k]
+                                          : kind == Variable::velocity ? v + source[k]
+                                                                       : &t);
       }
       for (int k = 0; k < program.outputs; ++k) {
         outputs[k] = out + target[k].row;
-        if (target[k].clear) *outputs[k] = 0;
+        if (target[k].clear) *outputs[k] = Number(0);
       }
       extremal::play_extended(program.code.data(), static_cast<int>(program.code.size()), operands,
                               track.scalars.row(r));
     }
   }
-  for (const int row : untouched_) out[row] = 0;
+  for (const int row : untouched_) out[row] = Number(0);
+}
+
+bool TapeLagrangian::evaluate_extended(const Extended* q, const Extended* v, const Extended& t, Extended* out,
+                                       PointScratch<Extended>& scratch) const {
+  orders_[static_cast<int>(Order::gradient)].play_extended(q, v, t, out, scratch);
+  return true;
+}
+
+bool TapeLagrangian::evaluate_extended(const DoubleDouble* q, const DoubleDouble* v,
+                                       const DoubleDouble& t, DoubleDouble* out,
+                                       PointScratch<DoubleDouble>& scratch) const {
+  orders_[static_cast<int>(Order::gradient)].play_extended(q, v, t, out, scratch);
+  return true;
 }
 
 }  // namespace extremal

@@ -88,12 +88,6 @@ void TapeLagrangian::sensitivity(const Points& points, int parameter, double* ou
   sensitivities_[parameter].play(points, out, scratch);
 }
 
-bool TapeLagrangian::evaluate_extended(const long double* q, const long double* v, long double t,
-                                       long double* out, ExtendedScratch& scratch) const {
-  orders_[static_cast<int>(Order::gradient)].play_extended(q, v, t, out, scratch);
-  return true;
-}
-
 std::shared_ptr<const Lagrangian> make_lagrangian(LagrangianGraph graph) {
   return std::make_shared<TapeLagrangian>(graph);
 }

@@ -32,8 +32,9 @@ class Tape {
   /// Writes every row of output at every point.
   void play(const Points& points, double* out, Scratch& scratch) const;
   /// The same at one point, in extended precision.
-  void play_extended(const long double* q, const long double* v, long double t, long double* out,
-                     ExtendedScratch& scratch) const;
+  template <class Number>
+  void play_extended(const Number* q, const Number* v, const Number& t, Number* out,
+                     PointScratch<Number>& scratch) const;
   /// Asks for as much scratch memory as the other, so that none is allocated in going from one to the other.
   void fit(const Tape& other);
   TapeSummary summary() const;
@@ -72,8 +73,10 @@ class TapeLagrangian final : public Lagrangian {
 
   void evaluate(const Points& points, Order order, double* out, Scratch& scratch) const override;
   void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const override;
-  bool evaluate_extended(const long double* q, const long double* v, long double t, long double* out,
-                         ExtendedScratch& scratch) const override;
+  bool evaluate_extended(const Extended* q, const Extended* v, const Extended& t, Extended* out,
+                         PointScratch<Extended>& scratch) const override;
+  bool evaluate_extended(const DoubleDouble* q, const DoubleDouble* v, const DoubleDouble& t,
+                         DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const override;
 
   TapeSummary summary(Order order) const { return orders_[static_cast<int>(order)].summary(); }
 

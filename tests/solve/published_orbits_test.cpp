@@ -59,28 +59,23 @@ TEST(PublishedOrbits, WithCloseEncounters) {
 }
 
 TEST(PublishedOrbits, AsCloselyAsCanBe) {
-  for (const char* id : {"3b-ll-IA6", "3b-ll-IIC71"})
-    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-13), "") << id;
-  for (const char* id : {"3b-ll-IB2", "3b-ll-IA12", "3b-ll-IIC22", "3b-sd-IIC2a-yinyangI"})
+  for (const char* id :
+       {"3b-ll-IB2", "3b-ll-IA6", "3b-ll-IA12", "3b-ll-IIC22", "3b-ll-IIC71", "3b-sd-IIC2a-yinyangI"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-14), "") << id;
 }
 
-/// To 3e-4 of the size of the orbit; free fall begins and ends at rest. At 1e-12 roundoff decides whether
-/// velocities are within their error.
+/// To 3e-4 of the size of the orbit; free fall begins and ends at rest.
 TEST(PublishedOrbits, WithVeryCloseEncounters) {
-  for (const char* id :
-       {"3b-ll-IB2", "3b-sd-IA2-butterflyII", "3b-sd-IB3-butterflyIII", "3b-ll-IA12", "3b-ll-IA36"})
-    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-11), "") << id;
-  for (const char* id : {"3b-ff-F1_1_1_1_", "3b-ff-F2_1_1_1_"})
-    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-8), "") << id;
+  for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII", "3b-sd-IB3-butterflyIII", "3b-ll-IA12",
+                         "3b-ll-IA36", "3b-ff-F1_1_1_1_", "3b-ff-F2_1_1_1_"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
 }
 
-/// To 1e-4 of it, and hundreds of times. Where the last digits of t change velocities by 1e-10 of their range
-/// these are not asked for closer.
+/// To 1e-4 of it, and hundreds of times.
 TEST(PublishedOrbits, WithManyVeryCloseEncounters) {
-  EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", "3b-llu-IIC89-m0.75")), "");
-  for (const char* id : {"3b-llu-IA1-m5", "3b-llu-IIC88-m0.5"})
-    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-8), "") << id;
+  for (const char* id :
+       {"3b-ll-IB22", "3b-llu-IB22-m0.75", "3b-llu-IIC89-m0.75", "3b-llu-IIC88-m0.5", "3b-llu-IA1-m5"})
+    EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
 }
 
 TEST(PublishedOrbits, OfThreeBodiesInSpace) {

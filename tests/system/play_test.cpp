@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <qd/dd_real.h>
 
 #include <cmath>
 #include <functional>
@@ -7,6 +8,7 @@
 
 #include "machine/aligned.hpp"
 #include "machine/simd.hpp"
+#include "system/lagrangian.hpp"
 #include "system/tape_code.hpp"
 
 /// Every instruction at every level that this processor has, against long double.
@@ -148,30 +150,59 @@ TEST_P(EveryLevel, OverwritesAnOperand) {
   }
 }
 
-TEST(Extended, PlaysEveryInstruction) {
+DoubleDouble wide(Real x) {
+  const double high = static_cast<double>(x);
+  return {high, static_cast<double>(x - high)};
+}
+Real narrow(Real x) { return x; }
+Real narrow(const DoubleDouble& x) { return Real(x.x[0]) + x.x[1]; }
+
+template <class Number>
+void expect_every_instruction(const std::function<Number(Real)>& number) {
   std::mt19937 random(11);
   for (const Expected& e : instructions()) {
     std::uniform_real_distribution<Real> uniform(e.low, e.high);
     for (int i = 0; i < 20; ++i) {
-      Real values[4] = {0, uniform(random), uniform(random), uniform(random)};
-      Real* const operands[] = {values, values + 1, values + 2, values + 3};
+      Number values[4] = {number(0), number(uniform(random)), number(uniform(random)), number(uniform(random))};
+      Number* const operands[] = {values, values + 1, values + 2, values + 3};
       const Instruction instruction{e.code, 0, 1, 2, 3, 0};
       const double s = 1.37;
       play_extended(&instruction, 1, operands, &s);
-      const Real a = values[1], b = values[2], c = values[3], exact = e.value(a, b, c, s);
+      const Real a = narrow(values[1]), b = narrow(values[2]), c = narrow(values[3]),
+                 exact = e.value(a, b, c, s);
       // Without fused operations the product is rounded on its own.
       const Real terms = std::abs(exact) + std::abs(a * b) + std::abs(s * a);
-      ASSERT_LE(std::abs(values[0] - exact), 2 * std::numeric_limits<Real>::epsilon() * terms)
+      ASSERT_LE(std::abs(narrow(values[0]) - exact), 2 * std::numeric_limits<Real>::epsilon() * terms)
           << "instruction " << static_cast<int>(e.code) << " of " << a << " " << b << " " << c;
     }
   }
-  Real angle = 0.7L, cosine = 0;
-  Real* const operands[] = {&angle, &cosine};
+  Number angle = number(0.7L), cosine = number(0);
+  Number* const operands[] = {&angle, &cosine};
   const Instruction both{Code::sine_cosine, 0, 0, 0, 1, 0};  // in place
   const double none = 0;
   play_extended(&both, 1, operands, &none);
-  EXPECT_EQ(angle, std::sin(0.7L));
-  EXPECT_EQ(cosine, std::cos(0.7L));
+  EXPECT_EQ(narrow(angle), std::sin(0.7L));
+  EXPECT_EQ(narrow(cosine), std::cos(0.7L));
+}
+
+TEST(Extended, PlaysEveryInstruction) {
+  expect_every_instruction<Extended>([](Real x) { return x; });
+  expect_every_instruction<DoubleDouble>(wide);
+}
+
+/// sin² + cos² = 1 and √x² = x, the logarithm undoes the exponential.
+TEST(Extended, HasTwiceTheDigits) {
+  DoubleDouble x = wide(0.7L), values[4] = {x, x, x, x};
+  DoubleDouble* const operands[] = {values, values + 1, values + 2, values + 3};
+  const Instruction code[] = {{Code::sine_cosine, 0, 0, 0, 1, 0},
+                              {Code::square_root, 2, 2, 0, 0, 0},
+                              {Code::exponential, 3, 3, 0, 0, 0},
+                              {Code::logarithm, 3, 3, 0, 0, 0}};
+  const double none = 0;
+  play_extended(code, 4, operands, &none);
+  EXPECT_LT(std::abs(to_double(sqr(values[0]) + sqr(values[1]) - 1.0)), 1e-31);
+  EXPECT_LT(std::abs(to_double(sqr(values[2]) - x)), 1e-31);
+  EXPECT_LT(std::abs(to_double(values[3] - x)), 1e-31);
 }
 
 INSTANTIATE_TEST_SUITE_P(Levels, EveryLevel, testing::ValuesIn(levels()),
