@@ -131,9 +131,27 @@ void DiscreteAction::evaluate_plain(const Path& path) {
 }
 
 void DiscreteAction::evaluate_gradient(const Path& path) {
-  const Fronts& fronts = condensation_->fronts;
   clear_sums();
   extended_ready_ = extended_on_ && extended_.evaluate(*lagrangian_, *tables_, path);
+  reduce_gradient(path);
+}
+
+void DiscreteAction::put_change(const Path& path, const PathChange& change) {
+  extended_.evaluate_change(*lagrangian_, path, change);
+  changed_ = true;
+  put_gradient(path);
+  changed_ = false;
+}
+
+void DiscreteAction::put_gradient(const Path& path) {
+  clear_sums();
+  extended_ready_ = true;
+  reduce_gradient(path);
+}
+
+/// With the factors there are.
+void DiscreteAction::reduce_gradient(const Path& path) {
+  const Fronts& fronts = condensation_->fronts;
   const auto evaluate = [&](Desk& desk, int b) {
     if (extended_ready_) {
       take_extended(b, reduced(b));

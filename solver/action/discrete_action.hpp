@@ -61,6 +61,11 @@ class DiscreteAction {
 
   /// S_h and its gradient; condensed with the factors there are into `nodes`.
   void evaluate_gradient(const Path& path);
+  /// Where the last gradient was evaluated, in extended precision: `nodes` has in its place what it changes
+  /// by, to first order, along a change of the path; then itself again.
+  void put_change(const Path& path, const PathChange& change);
+  void put_gradient(const Path& path);
+  bool extended() const { return extended_ready_; }
   /// S_h, gradient, Hessian, condensed afresh.
   void evaluate(const Path& path);
   /// Value and gradient only, nothing condensed.
@@ -136,7 +141,9 @@ class DiscreteAction {
                        double* corner);
   void assemble_gradient(const ElementBatch& elements, int b, double* gradient);
   void keep_gradient(int b, const double* gradient);
+  const ExtendedGradient::Values& taken() const { return changed_ ? extended_.change() : extended_.values(); }
   void take_extended(int b, double* gradient);
+  void reduce_gradient(const Path& path);
   void finish_extended();
   void gather(const Path& path, int b);
   void gather_pivots(int b);
@@ -167,6 +174,7 @@ class DiscreteAction {
   bool border_ = false, finite_ = false;
   bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path
   ExtendedGradient extended_;
+  bool changed_ = false;  ///< its change is taken in its place
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
   Sizes sizes_{};
   std::vector<Desk> desks_;                    // the first of the thread that calls

@@ -9,9 +9,19 @@ namespace extremal {
 
 namespace {
 
+/// Of the largest coordinate, what paths are compared over: differences of gradients keep half the digits,
+/// and are linear as far.
+constexpr double small_part = 0x1p-56;
+
 DoubleDouble wide(Real x) {
   const double high = static_cast<double>(x);
   return {high, static_cast<double>(x - high)};
+}
+
+double largest(std::span<const double> x) {
+  double most = 0;
+  for (double a : x) most = std::max(most, std::abs(a));
+  return most;
 }
 
 }  // namespace
@@ -40,9 +50,10 @@ bool ExtendedGradient::bind(const SchemeTables& scheme) {
   return true;
 }
 
-/// One element of a path.
+/// One element of a path, or of that path changed by `part` of a change.
 struct ExtendedGradient::Element {
-  Element(const ExtendedGradient& rules, const Lagrangian& lagrangian, const Path& path);
+  Element(const ExtendedGradient& rules, const Lagrangian& lagrangian, const Path& path,
+          const PathChange* change = nullptr, double part = 0);
 
   bool known() { return lagrangian.evaluate_extended(q.data(), v.data(), t, rows.data(), scratch); }
   void evaluate(int k);
@@ -50,6 +61,8 @@ struct ExtendedGradient::Element {
   const ExtendedGradient& rules;
   const Lagrangian& lagrangian;
   const Path& path;
+  const PathChange* change;
+  const double part;
   const int n, degree;
   std::vector<DoubleDouble> inner, ends;  ///< ∂L_d/∂x of the unknowns
   DoubleDouble action, slope_duration;
@@ -59,17 +72,19 @@ struct ExtendedGradient::Element {
   void place(int k, int i);
   DoubleDouble differentiate();
 
-  std::vector<DoubleDouble> start, delta, deviation;  ///< q_a, Δ and inner unknowns of the element
+  std::vector<DoubleDouble> start, delta, deviation;      ///< q_a, Δ and inner unknowns of the element
   std::vector<DoubleDouble> q, v, rows, force, momentum;  ///< at one point; L_q and L_q'
   DoubleDouble t = 0.0, duration, h;
   PointScratch<DoubleDouble> scratch;
 };
 
 ExtendedGradient::Element::Element(const ExtendedGradient& rules, const Lagrangian& lagrangian,
-                                   const Path& path)
+                                   const Path& path, const PathChange* change, double part)
     : rules(rules),
       lagrangian(lagrangian),
       path(path),
+      change(change),
+      part(part),
       n(path.coordinates()),
       degree(path.degree()),
       inner(static_cast<std::size_t>(degree - 1) * n),
@@ -82,7 +97,9 @@ ExtendedGradient::Element::Element(const ExtendedGradient& rules, const Lagrangi
       rows(lagrangian.rows(Order::gradient)),
       force(n),
       momentum(n),
-      duration(path.duration()) {}
+      duration(path.duration()) {
+  if (change) duration += part * change->duration;
+}
 
 /// The unknowns of element k.
 void ExtendedGradient::Element::load(int k) {
@@ -93,9 +110,13 @@ void ExtendedGradient::Element::load(int k) {
     start[a] = dd_real(path.node(0)[left]) + path.rest(0)[left];
     delta[a] = (dd_real(path.node(0)[right]) - path.node(0)[left]) +
                (dd_real(path.rest(0)[right]) - path.rest(0)[left]);
+    if (!change) continue;
+    start[a] += part * change->nodes[left];
+    delta[a] += part * (dd_real(change->nodes[right]) - change->nodes[left]);
   }
-  const double* const x = path.x(0) + lane;
-  for (std::size_t u = 0; u < deviation.size(); ++u) deviation[u] = x[u * lanes];
+  const double *const x = path.x(0) + lane, *const by = change ? change->inner.data() + lane : nullptr;
+  for (std::size_t u = 0; u < deviation.size(); ++u)
+    deviation[u] = dd_real(x[u * lanes]) + (by ? part * by[u * lanes] : 0);
   h = (dd_real(path.mesh()[k + 1]) - path.mesh()[k]) * duration;
 }
 
@@ -170,27 +191,50 @@ void ExtendedGradient::Element::evaluate(int k) {
   }
 }
 
+void ExtendedGradient::evaluate(Element& element, Values& values) {
+  const int n = element.n, elements = element.path.elements();
+  values.inner.resize(element.inner.size() * elements);
+  values.nodes.assign(static_cast<std::size_t>(elements + 1) * n, 0.0);
+  values.action = values.slope_duration = 0.0;
+  values.momentum_scale = 0;
+  for (int k = 0; k < elements; ++k) {
+    element.evaluate(k);
+    std::copy(element.inner.begin(), element.inner.end(),
+              values.inner.begin() + k * std::ssize(element.inner));
+    DoubleDouble* const node = values.nodes.data() + static_cast<std::size_t>(k) * n;
+    for (int a = 0; a < 2 * n; ++a) {
+      node[a] += element.ends[a];
+      values.momentum_scale = std::max(values.momentum_scale, std::abs(to_double(element.ends[a])));
+    }
+    values.action += element.action;
+    values.slope_duration += element.slope_duration;
+  }
+}
+
 bool ExtendedGradient::evaluate(const Lagrangian& lagrangian, const ElementTables& tables, const Path& path) {
   if (!bind(tables.scheme())) return false;
   Element element(*this, lagrangian, path);
   if (!element.known()) return false;
-  const int n = path.coordinates(), elements = path.elements();
-  values_.inner.resize(element.inner.size() * elements);
-  values_.nodes.assign(static_cast<std::size_t>(elements + 1) * n, 0.0);
-  values_.action = values_.slope_duration = 0.0;
-  values_.momentum_scale = 0;
-  for (int k = 0; k < elements; ++k) {
-    element.evaluate(k);
-    std::copy(element.inner.begin(), element.inner.end(), values_.inner.begin() + k * std::ssize(element.inner));
-    DoubleDouble* const node = values_.nodes.data() + static_cast<std::size_t>(k) * n;
-    for (int a = 0; a < 2 * n; ++a) {
-      node[a] += element.ends[a];
-      values_.momentum_scale = std::max(values_.momentum_scale, std::abs(to_double(element.ends[a])));
-    }
-    values_.action += element.action;
-    values_.slope_duration += element.slope_duration;
-  }
+  evaluate(element, values_);
   return true;
+}
+
+void ExtendedGradient::evaluate_change(const Lagrangian& lagrangian, const Path& path,
+                                       const PathChange& change) {
+  const double size = std::max({largest(change.nodes), largest(change.inner), std::abs(change.duration)});
+  const double part = size > 0 ? small_part * std::max(largest(path.nodes()), 0x1p-500) / size : 1;
+  Element element(*this, lagrangian, path, &change, part);
+  evaluate(element, change_);
+  const auto relative = [part](const DoubleDouble& after, const DoubleDouble& before) {
+    return (after - before) / part;
+  };
+  const auto compare = [&](std::vector<DoubleDouble>& after, const std::vector<DoubleDouble>& before) {
+    std::transform(after.begin(), after.end(), before.begin(), after.begin(), relative);
+  };
+  compare(change_.inner, values_.inner);
+  compare(change_.nodes, values_.nodes);
+  change_.action = relative(change_.action, values_.action);
+  change_.slope_duration = relative(change_.slope_duration, values_.slope_duration);
 }
 
 }  // namespace extremal

@@ -44,9 +44,9 @@ void DiscreteAction::take_extended(int b, double* gradient) {
   std::fill_n(action, lanes, 0.0);
   std::fill_n(slope, lanes, 0.0);
   const std::size_t width = static_cast<std::size_t>(inner_);
-  const DoubleDouble* const nodes = extended_.values().nodes.data();
+  const DoubleDouble* const nodes = taken().nodes.data();
   for (int k = b * lanes, lane = 0; lane < lanes && k < elements_; ++k, ++lane) {
-    const DoubleDouble *inner = extended_.values().inner.data() + k * width,
+    const DoubleDouble *inner = taken().inner.data() + k * width,
                        *left = nodes + static_cast<std::size_t>(k) * n_;
     for (int u = 0; u < inner_; ++u) gradient[u * lanes + lane] = inner[u].x[0];
     for (int a = 0; a < n_; ++a) {
@@ -60,18 +60,18 @@ void DiscreteAction::take_extended(int b, double* gradient) {
 
 /// What take_extended() left out.
 void DiscreteAction::finish_extended() {
-  const std::vector<DoubleDouble>& g = extended_.values().nodes;
+  const std::vector<DoubleDouble>& g = taken().nodes;
   const std::size_t last = g.size() - n_;
   nodes.end_parts.resize(2 * static_cast<std::size_t>(n_));
   for (int a = 0; a < n_; ++a) {
     start_gradient_[a] = nodes.end_parts[a] = g[a].x[0];
     end_gradient_[a] = nodes.end_parts[n_ + a] = g[last + a].x[0];
   }
-  action_ = extended_.values().action.x[0];
-  slope_duration_ = extended_.values().slope_duration.x[0];
-  momentum_scale_ = extended_.values().momentum_scale;
+  action_ = taken().action.x[0];
+  slope_duration_ = taken().slope_duration.x[0];
+  momentum_scale_ = taken().momentum_scale;
   nodes.border_part = slope_duration_;
-  nodes.border_gradient += extended_.values().slope_duration.x[1];
+  nodes.border_gradient += taken().slope_duration.x[1];
 }
 
 /// Sums the values and the gradient of a batch as they are, before condensation.

@@ -15,6 +15,9 @@ constexpr double mild_damping = 0.25;
 /// Corrections below this that shrink no more are amplified roundoff.
 constexpr double stagnation = 1e-9;
 
+/// Steps this short that stall, though gradients have digits to spare, are told by factors that have none.
+constexpr double stalled_by_factors = 1e-5;
+
 constexpr const char* spent = "the effort that one solve may take is spent";
 
 std::string describe(StepResult result) {
@@ -57,6 +60,11 @@ NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& 
     const StepResult result = chord ? newton.chord_step(path) : newton.full_step(path, goal.remaining);
     ++report.steps;
     const bool more = !on_step || on_step();
+    if (result == StepResult::stalled && more && newton.extended() &&
+        newton.undamped() < stalled_by_factors && newton.extend()) {
+      chord = false;
+      continue;
+    }
     if (result != StepResult::ok) {
       report.failure = describe(result);
       return report;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "solve/ends.hpp"
+#include "solve/krylov.hpp"
 
 namespace extremal {
 
@@ -85,13 +86,14 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
 
 void NewtonIteration::forget() {
   curvature_ = largest_curvature_ = noise_ = 0;
-  extended_ = false;
+  extended_ = refined_ = false;
   action_.extend(false);
 }
 
 bool NewtonIteration::extend() {
-  if (extended_ || model_ != condensed_.get()) return false;
+  if (refined_ || model_ != condensed_.get()) return false;
   noise_ = 0;
+  refined_ = extended_;
   extended_ = true;
   action_.extend(true);
   return true;
@@ -120,6 +122,7 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
   model_->set_refining(refine);
   model_->solve(action_, closing(path), step);
   model_->set_refining(true);
+  if (refined_ && action_.extended()) refine_by_krylov(action_, *model_, path, closing(path), step);
   return length(path, step);
 }
 

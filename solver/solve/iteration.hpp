@@ -48,8 +48,9 @@ class NewtonIteration {
 
   /// What was learned of the curvature of δS no longer holds: another path.
   void forget();
-  /// From now until forget() gradients are in extended precision, where the system has them. False if they
-  /// were, or where the Hessian is a large sparse matrix.
+  /// From now until forget() gradients are in extended precision, where the system has them; from the second
+  /// time on so is the second variation that steps are solved for. False if they were, or where the Hessian
+  /// is a large sparse matrix.
   bool extend();
   bool extended() const { return extended_; }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
@@ -140,7 +141,7 @@ class NewtonIteration {
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
-  bool phase_free_ = false, extended_ = false;
+  bool phase_free_ = false, extended_ = false, refined_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   mutable std::vector<double> free_;

@@ -158,9 +158,8 @@ bool TapeLagrangian::evaluate_extended(const Extended* q, const Extended* v, con
   return true;
 }
 
-bool TapeLagrangian::evaluate_extended(const DoubleDouble* q, const DoubleDouble* v,
-                                       const DoubleDouble& t, DoubleDouble* out,
-                                       PointScratch<DoubleDouble>& scratch) const {
+bool TapeLagrangian::evaluate_extended(const DoubleDouble* q, const DoubleDouble* v, const DoubleDouble& t,
+                                       DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const {
   orders_[static_cast<int>(Order::gradient)].play_extended(q, v, t, out, scratch);
   return true;
 }

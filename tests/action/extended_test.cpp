@@ -73,12 +73,14 @@ TEST(Extended, IsTheGradientToRoundoff) {
       EXPECT_NEAR(extended.values().momentum_scale, scale, 1e-12 * scale);
       for (int a = 0; a < n; ++a) {
         EXPECT_NEAR(to_double(extended.values().nodes[a]), action.start_gradient()[a], 1e-12 * scale);
-        EXPECT_NEAR(to_double(extended.values().nodes[elements * n + a]), action.end_gradient()[a], 1e-12 * scale);
+        EXPECT_NEAR(to_double(extended.values().nodes[elements * n + a]), action.end_gradient()[a],
+                    1e-12 * scale);
       }
       action.visit(d.path, false, [&](int batch, const BatchValues& values) {
         for (int k = 8 * batch; k < std::min(8 * batch + 8, elements); ++k)
           for (int u = 0; u < inner; ++u)
-            EXPECT_NEAR(to_double(extended.values().inner[k * inner + u]), values.gradient[u * 8 + k % 8], 1e-11 * scale);
+            EXPECT_NEAR(to_double(extended.values().inner[k * inner + u]), values.gradient[u * 8 + k % 8],
+                        1e-11 * scale);
       });
     }
 }
@@ -115,9 +117,68 @@ TEST(Extended, FeelsForcesThatAreDifferences) {
   for (int k = 0; k < elements; k += 8)
     for (int u = 0; u < d.tables.inner(); ++u)
       change = std::max(change, std::abs(to_double(here.values().inner[k * d.tables.inner() + u] -
-                                            there.values().inner[k * d.tables.inner() + u])));
+                                                   there.values().inner[k * d.tables.inner() + u])));
   EXPECT_GT(plain_change, 1e-13 * action.momentum_scale());
   EXPECT_LT(change, 1e-12 * plain_change);
+}
+
+/// What the gradient changes by along a step is the second variation of it, T included.
+TEST(Extended, ChangesByTheSecondVariation) {
+  for (const auto& lagrangian :
+       {systems::kepler(), systems::double_pendulum(), systems::restricted_three_body()})
+    for (const Scheme& rule : {lobatto(5), gauss(4)}) {
+      Discretised d(rule, *lagrangian);
+      const int n = d.tables.coordinates(), inner = d.tables.inner(), m = inner + 2 * n;
+      std::mt19937 random(5);
+      std::uniform_real_distribution<double> uniform(-1, 1);
+      std::vector<double> nodes((elements + 1) * n);
+      AlignedDoubles step(static_cast<std::size_t>(d.path.batches()) * m * 8);
+      for (double& x : nodes) x = uniform(random);
+      for (double& x : step) x = uniform(random);
+      ExtendedGradient extended;
+      ASSERT_TRUE(extended.evaluate(*lagrangian, d.tables, d.path));
+      extended.evaluate_change(*lagrangian, d.path, {nodes, step, 0});
+      DiscreteAction action;
+      action.reset(*lagrangian, d.tables, elements, false, false);
+      std::vector<double> hessian(m * m), gradient(m), at_nodes(nodes.size());
+      double scale = 0;
+      for (int k = 0; k < elements; ++k) {
+        action.element_hessian(d.path, k, hessian, gradient);
+        const auto change = [&](int u) {
+          return u < inner ? step[(k / 8 * m + u) * 8 + k % 8] : nodes[k * n + u - inner];
+        };
+        for (int i = 0; i < m; ++i) {
+          double sum = 0;
+          for (int j = 0; j < m; ++j) sum += hessian[std::max(i, j) * m + std::min(i, j)] * change(j);
+          scale = std::max(scale, std::abs(sum));
+          if (i < inner)
+            EXPECT_NEAR(to_double(extended.change().inner[k * inner + i]), sum, 1e-10 * scale);
+          else
+            at_nodes[k * n + i - inner] += sum;
+        }
+      }
+      for (std::size_t a = 0; a < nodes.size(); ++a)
+        EXPECT_NEAR(to_double(extended.change().nodes[a]), at_nodes[a], 1e-10 * scale);
+    }
+}
+
+TEST(Extended, ChangesWithTheDuration) {
+  const auto lagrangian = systems::restricted_three_body();
+  Discretised d(lobatto(5), *lagrangian);
+  const double by = 1e-5;
+  const std::vector<double> nodes((elements + 1) * d.tables.coordinates());
+  const AlignedDoubles step(static_cast<std::size_t>(d.path.batches()) * d.tables.unknowns() * 8);
+  ExtendedGradient extended, longer;
+  ASSERT_TRUE(extended.evaluate(*lagrangian, d.tables, d.path));
+  extended.evaluate_change(*lagrangian, d.path, {nodes, step, by});
+  d.path.set_duration(d.path.duration() + by);
+  ASSERT_TRUE(longer.evaluate(*lagrangian, d.tables, d.path));
+  const double slope = to_double(longer.values().slope_duration - extended.values().slope_duration),
+               scale = longer.values().momentum_scale;
+  EXPECT_NEAR(to_double(extended.change().slope_duration), slope, 1e3 * by * std::abs(slope));
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    EXPECT_NEAR(to_double(extended.change().nodes[a]),
+                to_double(longer.values().nodes[a] - extended.values().nodes[a]), 1e3 * by * by * scale);
 }
 
 /// Condensed as always, but for digits of momenta at the ends, which stand apart.

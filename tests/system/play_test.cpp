@@ -163,7 +163,8 @@ void expect_every_instruction(const std::function<Number(Real)>& number) {
   for (const Expected& e : instructions()) {
     std::uniform_real_distribution<Real> uniform(e.low, e.high);
     for (int i = 0; i < 20; ++i) {
-      Number values[4] = {number(0), number(uniform(random)), number(uniform(random)), number(uniform(random))};
+      Number values[4] = {number(0), number(uniform(random)), number(uniform(random)),
+                          number(uniform(random))};
       Number* const operands[] = {values, values + 1, values + 2, values + 3};
       const Instruction instruction{e.code, 0, 1, 2, 3, 0};
       const double s = 1.37;
