@@ -129,13 +129,10 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing, co
   columns_.resize(right_.size() * border_);
   solved_.resize(columns_.size());
   // Alone, an almost singular chain is the whole system; with a border it is better left to that.
-  bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? Border::deflated_below : 0);
-  // Between fixed ends there are as many null directions as coordinates, at most: more are soft ones of many
-  // short elements.
-  if (!regular && std::ssize(chain_->deflated()) > n_) regular = chain_->factor();
+  const bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? Border::deflated_below : 0);
   exact_ = !regular && border_ > 0 && !chain_->deflated().empty();
   if (!regular && !exact_) return false;
-  // Many more are noise.
+  // Between fixed ends there are as many null directions as coordinates, at most; many more are noise.
   if (chain_->deflated().size() > most_deflated * static_cast<std::size_t>(n_)) return false;
   if (border_ == 0) return true;
   assemble_border(nodes);
