@@ -13,7 +13,7 @@
 /// \file The gradient of S_h in twice the precision: where the solution of a linear system amplifies
 /// roundoff, the factors may be rounded, what they are applied to may not (iterative refinement; Wilkinson
 /// 1963). Where bodies meet at a distance r, forces r⁻² are told by differences of coordinates, and momenta
-/// by those of q/h: extended precision's few more digits do not cover that.
+/// by those of q/h: eleven more bits do not cover that.
 
 namespace extremal {
 
