@@ -11,10 +11,40 @@ namespace extremal {
 
 namespace {
 
+/// What QD complains of on the error stream, or knows for positive bases alone, as the standard library has
+/// it.
+Extended defined(Code, const Extended&, const Extended&) { return 0; }
+double defined(Code code, const DoubleDouble& a, const DoubleDouble& b) {
+  const double x = to_double(a), y = to_double(b);
+  switch (code) {
+    case Code::square_root:
+    case Code::reciprocal_root:
+      return x < 0 ? NAN : 0;
+    case Code::logarithm:
+      return x > 0 ? 0 : std::log(x);
+    case Code::arcsine:
+    case Code::arccosine:
+      return abs(a) > 1.0 ? NAN : 0;
+    case Code::arctangent2:
+      return x == 0 && y == 0 ? NAN : 0;
+    default:
+      return 0;
+  }
+}
+
+Extended power(const Extended& a, const Extended& b) { return std::pow(a, b); }
+DoubleDouble power(const DoubleDouble& a, const DoubleDouble& b) {
+  constexpr double largest_integer = 1 << 30;
+  const double x = to_double(a), y = to_double(b);
+  if (x == 0 || !std::isfinite(x) || !std::isfinite(y)) return std::pow(x, y);
+  if (b == floor(b) && std::abs(y) < largest_integer) return npwr(a, static_cast<int>(y));
+  return x > 0 ? pow(a, b) : DoubleDouble(NAN);
+}
+
 template <class Number>
 Number elementary(Code code, const Number& a, const Number& b) {
   // Those of dd_real are found by their arguments.
-  using std::abs, std::pow, std::exp, std::log, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan,
+  using std::abs, std::exp, std::log, std::sin, std::cos, std::tan, std::asin, std::acos, std::atan,
       std::atan2, std::sinh, std::cosh, std::tanh;
   switch (code) {
     case Code::step:
@@ -26,7 +56,7 @@ Number elementary(Code code, const Number& a, const Number& b) {
     case Code::absolute:
       return abs(a);
     case Code::power:
-      return pow(a, b);
+      return power(a, b);
     case Code::exponential:
       return exp(a);
     case Code::logarithm:
@@ -58,6 +88,7 @@ Number elementary(Code code, const Number& a, const Number& b) {
 template <class Number>
 Number value(Code code, const Number& a, const Number& b, const Number& c, double s) {
   using std::sqrt;
+  if (const auto instead = defined(code, a, b); instead != 0) return Number(instead);
   switch (code) {
     case Code::copy:
       return a;

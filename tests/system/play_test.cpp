@@ -206,6 +206,29 @@ TEST(Extended, HasTwiceTheDigits) {
   EXPECT_LT(std::abs(to_double(values[3] - x)), 1e-31);
 }
 
+/// Quietly, as the standard library has it.
+TEST(Extended, GoesBeyondWhereFunctionsAreDefined) {
+  const auto played = [](Code code, double a, double b) {
+    DoubleDouble values[4] = {0.0, a, b, 0.0};
+    DoubleDouble* const operands[] = {values, values + 1, values + 2, values + 3};
+    const Instruction instruction{code, 0, 1, 2, 3, 0};
+    const double none = 0;
+    play_extended(&instruction, 1, operands, &none);
+    return to_double(values[0]);
+  };
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(played(Code::power, -2, 3), -8);
+  EXPECT_EQ(played(Code::power, 0, 1.5), 0);
+  EXPECT_EQ(played(Code::power, -2, -2), 0.25);
+  EXPECT_TRUE(std::isnan(played(Code::power, -2, 1.5)));
+  EXPECT_EQ(played(Code::logarithm, 0, 0), -INFINITY);
+  EXPECT_TRUE(std::isnan(played(Code::logarithm, -1, 0)));
+  EXPECT_TRUE(std::isnan(played(Code::square_root, -1, 0)));
+  EXPECT_TRUE(std::isnan(played(Code::arcsine, 1.5, 0)));
+  EXPECT_FALSE(std::isfinite(played(Code::arctangent2, 0, 0)));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Levels, EveryLevel, testing::ValuesIn(levels()),
                          [](const auto& info) { return std::string(name(info.param.level)); });
 
