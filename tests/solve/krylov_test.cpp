@@ -21,7 +21,7 @@ struct Case {
 
 class Krylov : public testing::TestWithParam<Case> {};
 
-double largest_difference(const Step& a, const Step& b, double sign) {
+double greatest_gap(const Step& a, const Step& b, double sign) {
   double most = std::abs(a.duration - sign * b.duration);
   for (std::size_t k = 0; k < a.nodes.size(); ++k)
     most = std::max(most, std::abs(a.nodes[k] - sign * b.nodes[k]));
@@ -69,7 +69,7 @@ TEST_P(Krylov, FindsTheStepOfAnotherPath) {
     for (std::size_t e = 0; e < change.row.size(); ++e)
       change.value += change.row[e] * step.nodes[e < n ? e : last + e - n];
     model->solve(action, closing ? &change : nullptr, taken_back);
-    return largest_difference(taken_back, first, -1) / largest_difference(first, first, 0);
+    return greatest_gap(taken_back, first, -1) / greatest_gap(first, first, 0);
   };
   EXPECT_GT(missed(first), 0.01);
   action.put_gradient(path);
