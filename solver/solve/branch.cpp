@@ -47,6 +47,7 @@ void Branch::bind() {
   w_.levels.bind(problem_.lagrangian);
   tables_ = &w_.levels.at(w_.path.degree());
   w_.iteration.reset(problem_, *tables_, w_.path.elements());
+  factored_ = false;
 }
 
 /// Ends, and a duration that is given, are the problem's exactly.
@@ -88,13 +89,28 @@ double Branch::drift(const Move& tangent) const {
          tangent.step.duration * stretch_ / (units_.duration * units_.duration);
 }
 
-bool Branch::linearise() {
-  inertia_.reset();
-  measure_phases(problem_, w_.path, tables_->scheme(), true, phases_);
-  w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
-  const bool solved = by_duration() ? linearise_duration() : linearise_parameter();
+bool Branch::linearise(Factors factors) {
+  if (factors == Factors::anew) {
+    inertia_.reset();
+    measure_phases(problem_, w_.path, tables_->scheme(), true, phases_);
+    w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
+  }
+  const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter(factors);
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
+}
+
+bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  if (factors == Factors::anew)
+    factored_ = model.evaluate(action, w_.path, closing);
+  else
+    model.evaluate_gradient(action, w_.path);
+  defined_ = action.finite();
+  if (!factored_ || !defined_) return false;
+  note_action();
+  return true;
 }
 
 void Branch::note_action() {
@@ -109,14 +125,12 @@ void Branch::note_action() {
 /// With H and t the second derivatives of S_h in x and in x and T, H δx + t δT = −g leaves one direction
 /// free. Two right-hand sides of the equation that would close it give two solutions, even where H is
 /// singular.
-bool Branch::linearise_duration() {
+bool Branch::linearise_duration(Factors factors) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
-  const bool factored = model.evaluate(action, w_.path, &closing_);
-  defined_ = action.finite();
-  if (!factored || !defined_) return false;
-  note_action();
-  energy_unit_ = std::abs(energy_) + std::abs(action_) / w_.path.duration();
+  if (!evaluate(&closing_, factors)) return false;
+  const bool anew = factors == Factors::anew;
+  if (anew) energy_unit_ = std::abs(energy_) + std::abs(action_) / w_.path.duration();
   if (energy_unit_ == 0) energy_unit_ = 1;
   const bool by_energy = closing_.row.empty();
   const auto solve = [&](double excess, Move& move) {
@@ -125,8 +139,10 @@ bool Branch::linearise_duration() {
     move.parameter = std::exchange(move.step.duration, 0);
   };
   solve(0, correction);
-  solve(1, direction);
-  direction.add(correction, -1);
+  if (anew) {
+    solve(1, direction);
+    direction.add(correction, -1);
+  }
   along_ = by_energy ? energy_unit_ : energy_change(direction);
   off_ = by_energy
              ? 0
@@ -157,17 +173,15 @@ std::vector<double> Branch::closing_row(const Move& onward) const {
 
 /// H δx = −∂g/∂p, and what closes a free duration with it, by gradients beside the path with the factors
 /// there are. Ends that depend on p move along a line.
-bool Branch::linearise_parameter() {
+bool Branch::linearise_parameter(Factors factors) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   ClosingEquation equation;
   const ClosingEquation* closing = closing_equation(problem_, w_.path, equation);
-  const bool factored = model.evaluate(action, w_.path, closing);
-  defined_ = action.finite();
-  if (!factored || !defined_) return false;
-  note_action();
+  if (!evaluate(closing, factors)) return false;
   model.solve(action, closing, correction.step);
   correction.parameter = 0;
+  if (factors == Factors::before) return true;
   closing_sign_ = 1;
   if (closing) {
     equation.value -= 1 + std::abs(equation.value);

@@ -42,7 +42,11 @@ class Branch {
   double drift(const Move& tangent) const;
 
   /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
-  bool linearise();
+  /// With the factors of the path that was linearised before, the direction stays that of there.
+  enum class Factors { anew, before };
+  bool linearise(Factors factors = Factors::anew);
+  /// Whether there are factors of a path on these elements.
+  bool factored() const { return factored_; }
   Move correction, direction;
   /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
   bool defined() const { return defined_; }
@@ -86,8 +90,9 @@ class Branch {
 
  private:
   bool by_duration() const { return family_.varied != Varied::parameter; }
-  bool linearise_duration();
-  bool linearise_parameter();
+  bool linearise_duration(Factors factors);
+  bool linearise_parameter(Factors factors);
+  bool evaluate(const ClosingEquation* closing, Factors factors);
   double energy_change(const Move& move) const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);
@@ -101,7 +106,7 @@ class Branch {
   Levels beside_;
   const ElementTables* tables_ = nullptr;
   double coordinate_ = 0, unit_, threshold_ = 1e-8;
-  bool defined_ = true;
+  bool defined_ = true, factored_ = false;
   Units units_;
   ClosingEquation closing_;     ///< where the duration or the energy varies
   double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction

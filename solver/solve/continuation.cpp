@@ -6,23 +6,22 @@
 #include <cmath>
 #include <utility>
 
-#include "solution/observe.hpp"
-#include "solve/finish.hpp"
-#include "solve/stability.hpp"
-
 namespace extremal {
 
 namespace {
 
 /// Lengths are relative, as Branch::dot measures them.
 constexpr double least_length = 1e-7;
-/// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
-/// branch turns by more than the angle with this cosine.
-constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
+/// A step is refused where corrections shrink less than this or are longer than this part of it.
+constexpr double contraction = 0.5, longest_correction = 0.5;
 /// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
 /// singularity: they may grow so much before they shrink.
 constexpr double small_correction = 0.05, slowest = 4;
 constexpr int most_corrections = 8, most_resolutions = 4;
+/// Steps on which the second correction is no shorter than this part of the first grow no more.
+constexpr double slow = 0.1;
+/// A step is begun no longer than the branch is foreseen to turn by so much, the tangent of an angle.
+constexpr double foreseen_turn = 0.4;
 /// Corrections below this (relative) that shrink no more are roundoff.
 constexpr double roundoff = 1e-9, least_goal = 1e-14;
 /// Corrections are carried on to this share of the tolerance.
@@ -91,13 +90,15 @@ bool Continuation::advance() {
   return true;
 }
 
-/// Newton's method across the tangent; or to where what varies has the value `landing`.
+/// Newton's method across the tangent; or to where what varies has the value `landing`. A gradient costs a
+/// quarter of what factors do: those there are serve as long as they lead to the goal soon.
 bool Continuation::correct(double length, const double* landing) {
   const double goal = std::max(unfinished * options_.solve.tolerance, least_goal);
-  double before = INFINITY;
+  double before = INFINITY, curvature = INFINITY, found = INFINITY;
+  bool anew = true, newton = true;  // factors of this path; of that before, where the last move began
   refusal_ = Refusal::rough;
-  for (corrections_ = 1; corrections_ <= most_corrections; ++corrections_) {
-    if (!branch_.linearise()) {
+  for (int k = 0; k < most_corrections; ++k) {
+    if (!branch_.linearise(anew ? Branch::Factors::anew : Branch::Factors::before)) {
       if (!branch_.defined()) refusal_ = Refusal::no_problem;
       return false;
     }
@@ -108,18 +109,27 @@ bool Continuation::correct(double length, const double* landing) {
                                : branch_.dot(tangent_, move) + branch_.drift(tangent_);
     if (along == 0) return false;
     move.add(direction, -off / along);
+    if (landing) landed_ += branch_.dot(tangent_, move);
     const double size = std::sqrt(branch_.dot(move, move));
-    const double rate = before < INFINITY ? size / before : 1;
+    const double rate = k > 0 ? size / before : 1;
     const bool noise = size < roundoff && rate > 0.3;
+    // Factors of before may hide what those of this path find: it is held against what such found last.
+    const double growth = size / (anew ? std::exchange(found, size) : before);
     const double fastest = size > small_correction * length ? contraction : slowest;
-    if (!noise && (!(size <= longest_correction * length) || (before < INFINITY && rate > fastest)))
-      return false;
+    if (!noise && (!(size <= longest_correction * length) || growth > fastest)) return false;
     if (!branch_.apply(move, 1)) {
       refusal_ = Refusal::no_problem;
       return false;
     }
-    // The next one is size²/before² times this one.
-    if (noise || size * rate * rate <= goal) return true;
+    if (k == 1) rate_ = rate;
+    if (k > 0 && newton) curvature = rate / before;
+    // What is left after a step of Newton's method, and by how much a step with its factors, which are off by
+    // all of the last move and not by half of it, shrinks that.
+    const double left = size * (anew ? curvature * size : newton ? 2 * rate : rate);
+    const double shrinking = anew ? 2 * curvature * size : left / size;
+    if (noise || left <= goal) return true;
+    newton = anew;
+    anew = !branch_.factored() || (k > 0 && !(left * shrinking * shrinking <= goal));
     before = size;
   }
   return false;
@@ -127,9 +137,51 @@ bool Continuation::correct(double length, const double* landing) {
 
 void Continuation::Stand::scale(double factor) {
   tangent.scale(factor);
+  turning = bend = twist = {};
   rate *= factor;
   action_rate *= factor;
   if (factor < 0) orientation = -orientation;
+}
+
+/// From the place, so far along the tangent.
+Move Continuation::Stand::ahead(double length) const {
+  Move move = tangent;
+  move.scale(length);
+  if (bend.step.nodes.empty()) return move;
+  move.add(bend, length * length);
+  if (!twist.step.nodes.empty()) move.add(twist, length * length * length);
+  return move;
+}
+
+/// Tangents t here, at the place before and at the one before that give, as divided differences D and S over
+/// the ways ℓ between them, t(σ) = t + σD + σ(σ + ℓ)S, and the branch as its integral. Places tell less: they
+/// may differ by a shift of time that no correction takes back, and would pass it on enlarged.
+void Continuation::curve(const Stand& before, double length) {
+  const Move tangent = carried(before.tangent, before.path);
+  const double unit = std::sqrt(branch_.dot(tangent, tangent));  // of lengths before
+  here_.back = unit * length;
+  Move& turning = here_.turning = here_.tangent;
+  turning.add(tangent, -1 / branch_.dot(here_.tangent, tangent));
+  turning.scale(1 / here_.back);
+  here_.bend = turning;
+  if (!before.turning.step.nodes.empty()) {
+    Move& twist = here_.twist = turning;
+    twist.add(carried(before.turning, before.path), -1 / (unit * unit));
+    twist.add(here_.tangent, -branch_.dot(here_.tangent, twist));
+    twist.scale(1 / (here_.back + unit * before.back));
+    here_.bend.add(twist, here_.back);
+    twist.scale(1.0 / 3);
+  }
+  here_.bend.scale(0.5);
+}
+
+/// How far on the tangent turns by no more than foreseen_turn, at most |2σ bend + 3σ² twist|.
+double Continuation::foreseen() const {
+  const auto size = [&](const Move& move) {
+    return move.step.nodes.empty() ? 0 : std::sqrt(branch_.dot(move, move));
+  };
+  const double bend = size(here_.bend), twist = size(here_.twist);
+  return foreseen_turn / (bend + std::sqrt(bend * bend + 3 * twist * foreseen_turn));
 }
 
 /// The next tangent, onward, and what there is to know of the place.
@@ -153,6 +205,7 @@ bool Continuation::turn(bool first) {
   here_.tangent.scale(onward);
   here_.row = branch_.closing_row(here_.tangent);
   here_.rate = onward * branch_.change(true);
+  here_.turning = here_.bend = here_.twist = {};
   here_.action_rate = onward * branch_.action_slope();
   here_.energy_time = std::abs(branch_.energy() * w_.path.duration());
   here_.orientation = branch_.orientation(onward);
@@ -171,18 +224,19 @@ void Continuation::measure_anew() {
   here_.scale(1 / std::sqrt(branch_.dot(here_.tangent, here_.tangent)));
 }
 
-/// So far along the tangent from a place, and back onto the branch; on elements that meet the tolerance, or
-/// on those of the place. False if that fails.
-bool Continuation::go(const Stand& from, double length, bool same_elements) {
+/// So far along the tangent from a place, and back onto the branch, or to where what varies has the value
+/// `landing`; on elements that meet the tolerance, or on those of the place. False if that fails.
+bool Continuation::go(const Stand& from, double length, bool same_elements, const double* landing) {
   w_.path = from.path;
   tangent_ = from.tangent;
   here_.units = from.units;
   branch_.set_units(from.units);
+  landed_ = rate_ = 0;
   refusal_ = Refusal::no_problem;
   if (!branch_.place(from.coordinate)) return false;
   branch_.bind();
   branch_.close_by(from.row);
-  if (!branch_.apply(tangent_, length) || !correct(std::abs(length), nullptr)) return false;
+  if (!branch_.apply(from.ahead(length), 1) || !correct(std::abs(length), landing)) return false;
   for (int k = 0; k < most_resolutions && !same_elements; ++k) {
     const Elements elements = resolve();
     if (elements == Elements::too_many) {
@@ -190,7 +244,7 @@ bool Continuation::go(const Stand& from, double length, bool same_elements) {
       return false;
     }
     if (elements == Elements::fine) break;
-    if (!correct(std::abs(length), nullptr)) return false;
+    if (!correct(std::abs(length), landing)) return false;
   }
   return turn();
 }
@@ -230,9 +284,11 @@ bool Continuation::step() {
     if (stays(from, length_)) break;
   }
   const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
-  const double passed = std::exchange(
-      length_, std::min(longest_, length_ * (corrections_ > 4 ? std::min(growth, 0.7) : growth)));
+  const double passed =
+      std::exchange(length_, std::min(longest_, length_ * (rate_ > slow ? std::min(growth, 0.7) : growth)));
   measure_anew();
+  curve(from, passed);
+  length_ = std::min(length_, foreseen());
   BranchPoint next = read(PointKind::regular);
   const Stand to = here_;
   if (++steps_ % unchecked == 0) check_action();
@@ -240,57 +296,6 @@ bool Continuation::step() {
   here_ = to;
   if (end_ == BranchEnd::none) found_.push_back({std::move(next)});
   return !found_.empty();
-}
-
-BranchPoint Continuation::read(PointKind kind) {
-  BranchPoint point;
-  point.parameter = here_.varied;
-  point.kind = kind;
-  const Problem& problem = branch_.problem();
-  Solution& solution = point.solution;
-  solution.status = Status::converged;
-  solution.message = "converged";
-  solution.strategy = "continuation";
-  solution.trajectory = trajectory_of(here_.path);
-  solution.degree = here_.path.degree();
-  solution.action = here_.action;
-  solution.error_estimate = error_;
-  solution.morse_index = branch_.inertia().negative;
-  solution.nullity = branch_.inertia().zero;
-  observe_energy(*problem.lagrangian, solution);
-  read_momenta(solution);
-  if (!problem.periodic) return point;
-  if (problem.coordinates() <= most_coordinates_for_multipliers)
-    variation_.assemble(problem.lagrangian, solution.trajectory, condensed());
-  read_stability(problem, variation_, sizes().q, solution, false);
-  here_.doubling = solution.floquet ? doubling_product(*solution.floquet) : 1;
-  return point;
-}
-
-/// p = ∂L/∂q' of the trajectory against the derivatives of the action.
-void Continuation::read_momenta(Solution& solution) {
-  const std::size_t n = solution.trajectory.coordinates;
-  const std::span<const double> momenta = branch_.momenta();
-  solution.momentum_start.assign(momenta.begin(), momenta.begin() + n);
-  solution.momentum_end.assign(momenta.begin() + n, momenta.end());
-  const Trajectory& trajectory = solution.trajectory;
-  // ∫p·q' dt by the range of q: momenta are small at both ends of a swing between points of rest.
-  const double swept = std::abs(solution.action + solution.energy.value_or(0) * solution.duration());
-  const double range = sizes().range;
-  double worst = 0, largest = range > 0 ? swept / range : 0;
-  for (const bool end : {false, true}) {
-    const double t = end ? solution.duration() : 0;
-    const std::size_t first = end ? trajectory.nodes.size() - n : 0;
-    const PointValues at =
-        evaluate_at(*branch_.problem().lagrangian, {trajectory.nodes.data() + first, n},
-                    {trajectory.slopes.data() + first, n}, t, Order::gradient, momentum_memory_);
-    const std::vector<double>& action = end ? solution.momentum_end : solution.momentum_start;
-    for (std::size_t a = 0; a < n; ++a) {
-      worst = std::max(worst, std::abs(at.dv[a] - action[a]));
-      largest = std::max(largest, std::abs(action[a]));
-    }
-  }
-  if (largest > 0) worst_momentum_ = std::max(worst_momentum_, worst / largest);
 }
 
 }  // namespace extremal

@@ -95,6 +95,9 @@ class Continuation {
     Branch::Units units;  ///< lengths are measured in
     double coordinate = 0, varied = 0, action = 0;
     Move tangent;             ///< of length one
+    Move bend, twist;         ///< of the branch off it, by σ² and σ³; empty if not known
+    Move turning;             ///< of the tangent since the place before, by the way back to it; may be empty
+    double back = 0;          ///< that way
     std::vector<double> row;  ///< see Branch::closing_row
     double rate = 0;          ///< ∂varied/∂s along the tangent
     double action_rate = 0;   ///< ∂S/∂s as its derivatives tell it
@@ -102,6 +105,7 @@ class Continuation {
     int orientation = 1, index = 0;
     double doubling = 1;  ///< of the sign of ∏ (1 + λ) over all multipliers λ
     void scale(double factor);
+    Move ahead(double length) const;
   };
   struct Found {
     BranchPoint point;
@@ -115,20 +119,26 @@ class Continuation {
   enum class Elements { fine, changed, too_many };
   /// Why a step failed.
   enum class Refusal { none, no_problem, crowded, rough };
+  /// A branch turns on a step by no more than the angle with this cosine.
+  static constexpr double sharpest_turn = 0.9;
 
   bool begin();
   bool begin_from_solve();
   bool begin_from_seed();
   bool step();
-  bool go(const Stand& from, double length, bool same_elements = false);
+  bool go(const Stand& from, double length, bool same_elements = false, const double* landing = nullptr);
   bool stays(const Stand& from, double length, bool same_elements = false);
   bool correct(double length, const double* landing);
   Elements resolve();
   Plan plan_for(const Scales& size);
   void adopt(const Plan& plan);
+  Move carried(const Move& move, const Path& from);
+  Move way_to(const Stand& to);
   Scales sizes() const;
   bool turn(bool first = false);
   void measure_anew();
+  void curve(const Stand& before, double length);
+  double foreseen() const;
   BranchPoint read(PointKind kind);
   /// The elements of the place, for second variations exact to 1e-6 of the tolerance.
   Condensed condensed() const {
@@ -139,6 +149,7 @@ class Continuation {
   bool give_up(const Stand& from);
 
   void meet(const Stand& from, const Stand& to, double length);
+  Stand aimed(const Stand& from, const Stand& to, double length);
   double find_fold(const Stand& from, const Stand& to, double length);
   double find_value(const Stand& from, double value, double near, double before, double far, double after);
   template <class Test, class Done>
@@ -173,7 +184,9 @@ class Continuation {
   double largest_extent_ = 0;  ///< of paths so far
   double rest_ = 0;            ///< paths whose extent is less are at rest
   double length_ = 0, longest_ = 0, cosine_ = 1, error_ = 0;
-  int corrections_ = 0, count_ = 0, steps_ = 0;
+  double rate_ = 0;    ///< second of the last corrections by the first
+  double landed_ = 0;  ///< so far from where go() went, along the tangent, the value wanted was
+  int count_ = 0, steps_ = 0;
   bool started_ = false;
   Refusal refusal_ = Refusal::none;
   double worst_action_slope_ = 0, worst_momentum_ = 0;

@@ -27,6 +27,18 @@ constexpr double strongest_cut = 16, strongest_growth = 2;
 /// Elements whose error is below this share of the tolerance are more than needed.
 constexpr double lavish = 1e-4;
 
+/// The values of a path as a step from zero.
+Step values_of(const Path& path) {
+  Step step;
+  step.nodes.assign(path.nodes().begin(), path.nodes().end());
+  step.inner.assign(path.x(0), path.x(path.batches()));
+  return step;
+}
+
+bool same_elements(const Path& a, const Path& b) {
+  return a.degree() == b.degree() && std::ranges::equal(a.mesh(), b.mesh());
+}
+
 }  // namespace
 
 bool Continuation::begin() {
@@ -135,6 +147,31 @@ void Continuation::adopt(const Plan& plan) {
   branch_.bind();
 }
 
+/// A move of another path on the elements that there are.
+Move Continuation::carried(const Move& move, const Path& from) {
+  if (move.step.nodes.empty() || same_elements(from, w_.path)) return move;
+  Path whole;
+  whole.reset(w_.levels.at(from.degree()), from.mesh(), from.duration());
+  whole.add(move.step.nodes, move.step.inner, 1);
+  whole.load_ends();
+  w_.other.resample_from(whole, branch_.tables(), w_.path.mesh());
+  Move result = move;
+  const double duration = move.step.duration;
+  result.step = values_of(w_.other);
+  result.step.duration = duration;
+  return result;
+}
+
+/// From the path to another place's, on the elements of the path.
+Move Continuation::way_to(const Stand& to) {
+  w_.other = to.path;
+  if (!same_elements(to.path, w_.path)) w_.other.resample_from(to.path, branch_.tables(), w_.path.mesh());
+  Move way{values_of(w_.other), to.coordinate - branch_.coordinate()};
+  way.add({values_of(w_.path)}, -1);
+  if (family_.varied == Varied::parameter) way.step.duration = to.path.duration() - w_.path.duration();
+  return way;
+}
+
 /// A place on elements that tell also the way to a branch that crosses there; nothing if its own do.
 std::optional<Continuation::Stand> Continuation::resolved_for(const Stand& from, const Move& response) {
   w_.path = from.path;
@@ -156,6 +193,8 @@ std::optional<Continuation::Stand> Continuation::resolved_for(const Stand& from,
   adopt(plan);
   if (!correct(1, nullptr) || !turn()) return std::nullopt;
   here_.units = from.units;
+  here_.bend = carried(from.bend, from.path);
+  here_.twist = carried(from.twist, from.path);
   return here_;
 }
 

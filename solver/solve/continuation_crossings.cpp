@@ -60,7 +60,7 @@ double Continuation::find_crossing(const Stand& from, const Stand& before, doubl
 /// By halves as the orientation tells, then by the secant of ±1/|response|, which passes zero at a crossing.
 double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides)[2]) {
   Move response;
-  double last = sides[0].at;
+  double last = sides[0].at, best = NAN;
   bool lower_before = false, balanced = false;
   std::optional<double> aside_of;
   for (int k = 0; k < most_trials; ++k) {
@@ -73,10 +73,11 @@ double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides
     const double guess = aside_of ? *std::exchange(aside_of, std::nullopt) : secant;
     // Where the crossing lies just there, nothing can be solved.
     const double aside = near ? 0.03 : 0.3;
+    if (near) best = guess;
     double at = guess;
     if (!stays(from, at, true) && !stays(from, at = guess + aside * (sides[1].at - guess), true) &&
         !stays(from, at = guess - aside * (guess - sides[0].at), true))
-      return near ? guess : NAN;
+      return best;
     branch_.respond(here_.tangent, response);
     const double size = std::sqrt(branch_.dot(response, response));
     const bool lower = near ? branch_.dot(response, sides[0].response) > 0 : !differs(here_, before);
@@ -89,8 +90,10 @@ double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides
       aside_of = 2 * at - nearer.at;
       continue;
     }
-    // Without a response that grows the index was miscounted, as it may be where elements are very unequal.
-    if (!std::isfinite(size) || size == 0 || gone || settled(at - last) || at == last) return near ? at : NAN;
+    // Without a response that grows the index was miscounted, as it may be where elements are very unequal;
+    // where both sides were known, nothing nearer can be told from roundoff.
+    if (!std::isfinite(size) || size == 0 || gone || settled(at - last) || at == last)
+      return near ? at : best;
     last = at;
     // The same side again: the other one counts less (Illinois).
     if (near && lower == lower_before) sides[lower ? 1 : 0].weight *= 0.5;

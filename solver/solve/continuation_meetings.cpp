@@ -19,6 +19,8 @@ constexpr double near_value = 1e-3;
 constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
 /// Two points of a closed branch differ by no more than this, relative.
 constexpr double same = 1e-6;
+/// What is met within this share of a step is one.
+constexpr double one = 1e-2;
 /// An orbit this small against the one before the step is next to rest.
 constexpr double nearly_rest = 1e-3;
 
@@ -68,6 +70,12 @@ double Continuation::find_value(const Stand& from, double value, double near, do
           return std::abs(off * change) <= enough * distance * (far - near);
         });
   };
+  // What varies as a parabola, level at a fold: v(σ) = before + slope σ + bend σ².
+  const double reach = far - near, slope = near == 0 ? from.rate : 0, off = value - before;
+  const double bend = ((after - before) / reach - slope) / reach;
+  const double guess = 2 * off / (slope + std::copysign(std::sqrt(slope * slope + 4 * bend * off), off));
+  if (guess >= 0 && guess <= reach && go(from, near + guess, false, &value) && cosine_ > sharpest_turn)
+    return near + guess + landed_;
   const double at = search(near_value);
   return std::isfinite(at) && correct(1, &value) && turn() ? at : search(1e-13);
 }
@@ -85,36 +93,72 @@ double Continuation::find_rest(const Stand& from, const Stand& to, double length
       [](double off, double) { return std::abs(off) <= 0.1 * nearly_rest; });
 }
 
-void Continuation::meet(const Stand& from, const Stand& to, double length) {
+/// A place from which the step to another one is foreseen as the cubic through both, with their tangents:
+/// with ℓ the length of the step and y(σ) what the branch deviates from the tangent t, y(ℓ) = Y and y'(ℓ) = Z
+/// give y = σ²(3Y/ℓ − Z)/ℓ + σ³(Z − 2Y/ℓ)/ℓ².
+Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, double length) {
+  Stand result = from;
+  w_.path = from.path;
+  branch_.set_units(from.units);
+  if (!branch_.place(from.coordinate)) return result;
+  Move off = way_to(to);
+  off.add(from.tangent, -length);
+  off.scale(1 / (length * length));
+  Move slope = carried(to.tangent, to.path);
+  slope.scale(1 / (branch_.dot(from.tangent, slope) * length));
+  slope.add(from.tangent, -1 / length);
+  result.bend = off;
+  result.bend.scale(3);
+  result.bend.add(slope, -1);
+  result.twist = std::move(slope);
+  result.twist.add(off, -2);
+  result.twist.scale(1 / length);
+  return result;
+}
+
+void Continuation::meet(const Stand& start, const Stand& to, double length) {
+  const auto passed = [&](double value) { return (start.varied - value) * (to.varied - value) <= 0; };
+  const bool any = start.rate * to.rate < 0 || start.doubling * to.doubling < 0 || differs(start, to) ||
+                   passed(family_.to) || passed(first_.varied);
+  const Stand from = any ? aimed(start, to, length) : start;
   std::vector<Meeting> met;
   double turned_at = length, turned = to.varied;
-  if (const double at = find_fold(from, to, length); std::isfinite(at)) {
-    met.push_back({at, {read(PointKind::fold)}});
-    turned_at = at;
+  const double fold = find_fold(from, to, length);
+  if (std::isfinite(fold)) {
+    met.push_back({fold, {read(PointKind::fold)}});
+    turned_at = fold;
     turned = here_.varied;
   }
   find_crossings(from, to, length, met);
+  // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
+  if (std::isfinite(fold) && std::ranges::any_of(met, [&](const Meeting& meeting) {
+        return meeting.found.point.kind == PointKind::branch && std::abs(meeting.at - fold) <= one * length;
+      }))
+    std::erase_if(met, [](const Meeting& meeting) { return meeting.found.point.kind == PointKind::fold; });
   if (const double at = find_doubling(from, to, length); std::isfinite(at))
     met.push_back({at, {read(PointKind::period_doubling), seed_at(PointKind::period_doubling, from, at)}});
   const double distance = std::abs(family_.to - family_.from);
-  const auto search = [&](double value) {
-    const auto between = [&](double a, double b) {
-      return (a - value) * (b - value) <= 0 && std::abs(a - value) > located * distance;
-    };
-    if (between(from.varied, turned)) return find_value(from, value, 0, from.varied, turned_at, turned);
-    if (turned_at < length && between(turned, to.varied))
-      return find_value(from, value, turned_at, turned, length, to.varied);
-    return static_cast<double>(NAN);
+  const auto between = [&](double value, double a, double b) {
+    return (a - value) * (b - value) <= 0 && std::abs(a - value) > located * distance;
+  };
+  const auto search = [&](double value, const auto& wanted) {
+    double at = NAN;
+    if (between(value, from.varied, turned)) at = find_value(from, value, 0, from.varied, turned_at, turned);
+    if (std::isfinite(at) && wanted()) return at;
+    at = NAN;
+    if (turned_at < length && between(value, turned, to.varied))
+      at = find_value(from, value, turned_at, turned, length, to.varied);
+    return std::isfinite(at) && wanted() ? at : NAN;
   };
   const auto ends_at = [&](double at, BranchEnd end, std::string message) {
     std::erase_if(met, [&](const Meeting& meeting) { return meeting.at > at; });
     stop(end, std::move(message));
   };
-  if (const double at = search(family_.to); std::isfinite(at)) {
+  if (const double at = search(family_.to, [] { return true; }); std::isfinite(at)) {
     BranchPoint last = read(PointKind::regular);
     ends_at(at, BranchEnd::target, fmt::format("the branch leads to {:.12g}", family_.to));
     met.push_back({at, {std::move(last)}});
-  } else if (const double back = search(first_.varied); std::isfinite(back) && is_first()) {
+  } else if (const double back = search(first_.varied, [&] { return is_first(); }); std::isfinite(back)) {
     ends_at(back, BranchEnd::closed, "the branch is closed: it came back to its first point");
   } else if (const double rest = find_rest(from, to, length); std::isfinite(rest)) {
     BranchPoint last = read(PointKind::regular);

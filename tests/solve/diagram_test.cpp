@@ -149,7 +149,10 @@ TEST(Diagram, HaloOrbits) {
     EXPECT_LE(found.branches[branch].worst_action_slope, 1e-6);
     EXPECT_LE(found.branches[branch].worst_momentum, 1e-8);
     const std::vector<BranchPoint> halos = found.of(branch);
-    const auto distance = [&](const BranchPoint& a) { return std::abs(a.parameter - period); };
+    // Two of the family share the period.
+    const auto distance = [&](const BranchPoint& a) {
+      return std::abs(a.parameter - period) + std::abs(2 * *a.solution.energy + jacobi);
+    };
     const BranchPoint& nearest = *std::min_element(
         halos.begin(), halos.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
     Problem problem = family.problem;
