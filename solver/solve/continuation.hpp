@@ -55,12 +55,12 @@ struct Seed {
 };
 
 /// Extremals of a family of problems, from the one that a solve finds to where the family is to lead, past
-/// folds, by pseudo-arclength (Keller 1977): a step along the tangent, then Newton's method across it.
-/// Elements are chosen anew where those there are do not meet the tolerance. Steps grow while Newton's method
-/// converges fast and the branch bends little. Found to 1e-11 of the distance wanted: folds, where the
-/// derivative of what varies changes its sign; crossings, where the orientation of the equations does
-/// (Branch::orientation) and their response to a load has no bound; period doublings of periodic orbits,
-/// where a multiplier passes −1.
+/// folds, by pseudo-arclength (Keller 1977): a step along the cubic that the last tangents foresee, then
+/// Newton's method across the tangent. Elements are chosen anew where those there are do not meet the
+/// tolerance. Steps grow while Newton's method converges fast and the branch bends little. Found to 1e-11 of
+/// the distance wanted: folds, where the derivative of what varies changes its sign; crossings, where the
+/// orientation of the equations does (Branch::orientation) and their response to a load has no bound; period
+/// doublings of periodic orbits, where a multiplier passes −1.
 ///
 ///     Continuation branch(family, options);
 ///     while (branch.advance()) use(branch.point());

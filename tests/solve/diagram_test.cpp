@@ -197,5 +197,30 @@ TEST(Diagram, VerticalOrbits) {
   EXPECT_NEAR((largest + 1 / largest) / 2 / orbit["stability_index_computed"].get<double>(), 1, 1e-7);
 }
 
+/// Axial orbits join the planar Lyapunov orbits to the vertical ones (Doedel et al. 2007): a closed branch
+/// that turns back where it crosses either, and where the vertical branch says that it does.
+TEST(Diagram, AxialOrbits) {
+  const std::string scenes = std::string(EXTREMAL_SOURCE_DIR) + "/problems/scenes/";
+  const ProblemFamily vertical = load(scenes + "vertical-family.toml").continuation->family;
+  const std::vector<double> energies = follow_branches(vertical, 1e-11, 20).values(PointKind::branch);
+  ASSERT_FALSE(energies.empty());
+  for (const double tolerance : {1e-9, 1e-11}) {
+    const Followed found =
+        follow_branches(load(scenes + "lyapunov-family.toml").continuation->family, tolerance, 30);
+    const std::vector<double> planar = found.values(PointKind::branch);
+    ASSERT_EQ(planar.size(), 2u);
+    for (const int branch : {3, 4}) {
+      EXPECT_EQ(found.branches[branch].end, BranchEnd::closed) << found.branches[branch].message;
+      std::vector<BranchPoint> met = found.of(branch);
+      std::erase_if(met, [](const BranchPoint& point) { return point.kind == PointKind::regular; });
+      ASSERT_EQ(met.size(), 2u);
+      EXPECT_EQ(met[0].kind, PointKind::branch);
+      EXPECT_EQ(met[1].kind, PointKind::branch);
+      EXPECT_NEAR(*met[0].solution.energy, energies[0], 1e-6);
+      EXPECT_NEAR(met[1].parameter, planar[1], 1e-7);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws
