@@ -18,8 +18,8 @@ constexpr double contraction = 0.5, longest_correction = 0.5;
 /// singularity: they may grow so much before they shrink.
 constexpr double small_correction = 0.05, slowest = 4;
 constexpr int most_corrections = 8, most_resolutions = 4;
-/// Steps on which the second correction is no shorter than this part of the first grow no more.
-constexpr double slow = 0.1;
+/// Steps that take more factors grow no more.
+constexpr int many_factors = 3;
 /// A step is begun no longer than the branch is foreseen to turn by so much, the tangent of an angle.
 constexpr double foreseen_turn = 0.4;
 /// Corrections below this (relative) that shrink no more are roundoff.
@@ -93,7 +93,7 @@ bool Continuation::advance() {
 /// Newton's method across the tangent; or to where what varies has the value `landing`. A gradient costs a
 /// quarter of what factors do: those there are serve as long as they lead to the goal soon.
 bool Continuation::correct(double length, const double* landing) {
-  const double goal = std::max(unfinished * options_.solve.tolerance, least_goal);
+  const double goal = landing ? least_goal : std::max(unfinished * options_.solve.tolerance, least_goal);
   double before = INFINITY, curvature = INFINITY, found = INFINITY;
   bool anew = true, newton = true;  // factors of this path; of that before, where the last move began
   refusal_ = Refusal::rough;
@@ -112,6 +112,7 @@ bool Continuation::correct(double length, const double* landing) {
     if (landing) landed_ += branch_.dot(tangent_, move);
     const double size = std::sqrt(branch_.dot(move, move));
     const double rate = k > 0 ? size / before : 1;
+    factors_ += anew;
     const bool noise = size < roundoff && rate > 0.3;
     // Factors of before may hide what those of this path find: it is held against what such found last.
     const double growth = size / (anew ? std::exchange(found, size) : before);
@@ -121,7 +122,6 @@ bool Continuation::correct(double length, const double* landing) {
       refusal_ = Refusal::no_problem;
       return false;
     }
-    if (k == 1) rate_ = rate;
     if (k > 0 && newton) curvature = rate / before;
     // What is left after a step of Newton's method, and by how much a step with its factors, which are off by
     // all of the last move and not by half of it, shrinks that.
@@ -231,7 +231,8 @@ bool Continuation::go(const Stand& from, double length, bool same_elements, cons
   tangent_ = from.tangent;
   here_.units = from.units;
   branch_.set_units(from.units);
-  landed_ = rate_ = 0;
+  landed_ = 0;
+  factors_ = 0;
   refusal_ = Refusal::no_problem;
   if (!branch_.place(from.coordinate)) return false;
   branch_.bind();
@@ -284,8 +285,8 @@ bool Continuation::step() {
     if (stays(from, length_)) break;
   }
   const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
-  const double passed =
-      std::exchange(length_, std::min(longest_, length_ * (rate_ > slow ? std::min(growth, 0.7) : growth)));
+  const double passed = std::exchange(
+      length_, std::min(longest_, length_ * (factors_ > many_factors ? std::min(growth, 0.7) : growth)));
   measure_anew();
   curve(from, passed);
   length_ = std::min(length_, foreseen());

@@ -184,8 +184,8 @@ class Continuation {
   double largest_extent_ = 0;  ///< of paths so far
   double rest_ = 0;            ///< paths whose extent is less are at rest
   double length_ = 0, longest_ = 0, cosine_ = 1, error_ = 0;
-  double rate_ = 0;    ///< second of the last corrections by the first
   double landed_ = 0;  ///< so far from where go() went, along the tangent, the value wanted was
+  int factors_ = 0;    ///< that the last corrections took
   int count_ = 0, steps_ = 0;
   bool started_ = false;
   Refusal refusal_ = Refusal::none;

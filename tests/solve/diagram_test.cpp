@@ -149,9 +149,9 @@ TEST(Diagram, HaloOrbits) {
     EXPECT_LE(found.branches[branch].worst_action_slope, 1e-6);
     EXPECT_LE(found.branches[branch].worst_momentum, 1e-8);
     const std::vector<BranchPoint> halos = found.of(branch);
-    // Two of the family share the period.
+    // Two of the family share the period; the energy tells them apart.
     const auto distance = [&](const BranchPoint& a) {
-      return std::abs(a.parameter - period) + std::abs(2 * *a.solution.energy + jacobi);
+      return std::hypot(a.parameter - period, 10 * (2 * *a.solution.energy + jacobi));
     };
     const BranchPoint& nearest = *std::min_element(
         halos.begin(), halos.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
@@ -195,31 +195,6 @@ TEST(Diagram, VerticalOrbits) {
   EXPECT_NEAR(last.solution.duration(), decimal(orbit["refined"]["period"]), 1e-8);
   const double largest = std::abs(last.solution.floquet->multipliers[0]);
   EXPECT_NEAR((largest + 1 / largest) / 2 / orbit["stability_index_computed"].get<double>(), 1, 1e-7);
-}
-
-/// Axial orbits join the planar Lyapunov orbits to the vertical ones (Doedel et al. 2007): a closed branch
-/// that turns back where it crosses either, and where the vertical branch says that it does.
-TEST(Diagram, AxialOrbits) {
-  const std::string scenes = std::string(EXTREMAL_SOURCE_DIR) + "/problems/scenes/";
-  const ProblemFamily vertical = load(scenes + "vertical-family.toml").continuation->family;
-  const std::vector<double> energies = follow_branches(vertical, 1e-11, 20).values(PointKind::branch);
-  ASSERT_FALSE(energies.empty());
-  for (const double tolerance : {1e-9, 1e-11}) {
-    const Followed found =
-        follow_branches(load(scenes + "lyapunov-family.toml").continuation->family, tolerance, 30);
-    const std::vector<double> planar = found.values(PointKind::branch);
-    ASSERT_EQ(planar.size(), 2u);
-    for (const int branch : {3, 4}) {
-      EXPECT_EQ(found.branches[branch].end, BranchEnd::closed) << found.branches[branch].message;
-      std::vector<BranchPoint> met = found.of(branch);
-      std::erase_if(met, [](const BranchPoint& point) { return point.kind == PointKind::regular; });
-      ASSERT_EQ(met.size(), 2u);
-      EXPECT_EQ(met[0].kind, PointKind::branch);
-      EXPECT_EQ(met[1].kind, PointKind::branch);
-      EXPECT_NEAR(*met[0].solution.energy, energies[0], 1e-6);
-      EXPECT_NEAR(met[1].parameter, planar[1], 1e-7);
-    }
-  }
 }
 
 }  // namespace

@@ -133,23 +133,30 @@ TEST(Families, HalosAboutL1) {
   }
 }
 
-/// The axial orbits lead from the Lyapunov orbits to the vertical ones.
+/// The axial orbits lead from the Lyapunov orbits to the vertical ones and back: their period has its extrema
+/// where they cross either, which is told once.
 TEST(Families, AxialOrbitsJoinTwoFamilies) {
-  const Study study = family_scene("lyapunov-family");
-  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 30, .seeds = true});
-  std::vector<double> crossings[5];
-  while (diagram.advance())
-    if (diagram.point().kind == PointKind::branch)
-      crossings[diagram.point().branch].push_back(diagram.point().parameter);
-  ASSERT_EQ(diagram.branches().size(), 5u);
-  ASSERT_EQ(crossings[0].size(), 2u);
   Continuation vertical(family_scene("vertical-family").continuation->family, {.solve = within(1e-11)});
   double joined = 0;
   while (vertical.advance())
     if (vertical.point().kind == PointKind::branch) joined = vertical.point().solution.duration();
-  for (const int axial : {3, 4}) {
-    ASSERT_GE(crossings[axial].size(), 1u);
-    EXPECT_NEAR(crossings[axial][0], joined, 1e-5);
+  const Study study = family_scene("lyapunov-family");
+  for (const double tolerance : {1e-9, 1e-11}) {
+    Diagram diagram(study.continuation->family, {.solve = within(tolerance), .points = 30, .seeds = true});
+    std::vector<double> crossings[5];
+    while (diagram.advance()) {
+      const BranchPoint& point = diagram.point();
+      if (point.kind == PointKind::branch) crossings[point.branch].push_back(point.parameter);
+      EXPECT_FALSE(point.branch > 2 && point.kind == PointKind::fold) << point.parameter;
+    }
+    ASSERT_EQ(diagram.branches().size(), 5u);
+    ASSERT_EQ(crossings[0].size(), 2u);
+    for (const int axial : {3, 4}) {
+      EXPECT_EQ(diagram.branches()[axial].end, BranchEnd::closed);
+      ASSERT_EQ(crossings[axial].size(), 2u);
+      EXPECT_NEAR(crossings[axial][0], joined, 1e-5);
+      EXPECT_NEAR(crossings[axial][1], crossings[0][1], 1e-7);
+    }
   }
 }
 
