@@ -13,15 +13,13 @@ namespace {
 /// Lengths are relative, as Branch::dot measures them.
 constexpr double least_length = 1e-7;
 /// A step is refused where corrections shrink less than this or are longer than this part of it.
-constexpr double contraction = 0.5, longest_correction = 0.5;
+constexpr double contraction = 0.5, longest_correction = 0.5, shortening = 0.4;
 /// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
 /// singularity: they may grow so much before they shrink.
 constexpr double small_correction = 0.05, slowest = 4;
 constexpr int most_corrections = 8, most_resolutions = 4;
 /// Steps that take more factors grow no more.
-constexpr int many_factors = 3;
-/// A step is begun no longer than the branch is foreseen to turn by so much, the tangent of an angle.
-constexpr double foreseen_turn = 0.4;
+constexpr int many_factors = 4;
 /// Corrections below this (relative) that shrink no more are roundoff.
 constexpr double roundoff = 1e-9, least_goal = 1e-14;
 /// Corrections are carried on to this share of the tolerance.
@@ -93,7 +91,8 @@ bool Continuation::advance() {
 /// Newton's method across the tangent; or to where what varies has the value `landing`. A gradient costs a
 /// quarter of what factors do: those there are serve as long as they lead to the goal soon.
 bool Continuation::correct(double length, const double* landing) {
-  const double goal = landing ? least_goal : std::max(unfinished * options_.solve.tolerance, least_goal);
+  const double enough = std::max(unfinished * options_.solve.tolerance, least_goal);
+  const double goal = landing ? least_goal : enough;
   double before = INFINITY, curvature = INFINITY, found = INFINITY;
   bool anew = true, newton = true;  // factors of this path; of that before, where the last move began
   refusal_ = Refusal::rough;
@@ -132,7 +131,7 @@ bool Continuation::correct(double length, const double* landing) {
     anew = !branch_.factored() || (k > 0 && !(left * shrinking * shrinking <= goal));
     before = size;
   }
-  return false;
+  return before <= enough;
 }
 
 void Continuation::Stand::scale(double factor) {
@@ -141,47 +140,6 @@ void Continuation::Stand::scale(double factor) {
   rate *= factor;
   action_rate *= factor;
   if (factor < 0) orientation = -orientation;
-}
-
-/// From the place, so far along the tangent.
-Move Continuation::Stand::ahead(double length) const {
-  Move move = tangent;
-  move.scale(length);
-  if (bend.step.nodes.empty()) return move;
-  move.add(bend, length * length);
-  if (!twist.step.nodes.empty()) move.add(twist, length * length * length);
-  return move;
-}
-
-/// Tangents t here, at the place before and at the one before that give, as divided differences D and S over
-/// the ways ℓ between them, t(σ) = t + σD + σ(σ + ℓ)S, and the branch as its integral. Places tell less: they
-/// may differ by a shift of time that no correction takes back, and would pass it on enlarged.
-void Continuation::curve(const Stand& before, double length) {
-  const Move tangent = carried(before.tangent, before.path);
-  const double unit = std::sqrt(branch_.dot(tangent, tangent));  // of lengths before
-  here_.back = unit * length;
-  Move& turning = here_.turning = here_.tangent;
-  turning.add(tangent, -1 / branch_.dot(here_.tangent, tangent));
-  turning.scale(1 / here_.back);
-  here_.bend = turning;
-  if (!before.turning.step.nodes.empty()) {
-    Move& twist = here_.twist = turning;
-    twist.add(carried(before.turning, before.path), -1 / (unit * unit));
-    twist.add(here_.tangent, -branch_.dot(here_.tangent, twist));
-    twist.scale(1 / (here_.back + unit * before.back));
-    here_.bend.add(twist, here_.back);
-    twist.scale(1.0 / 3);
-  }
-  here_.bend.scale(0.5);
-}
-
-/// How far on the tangent turns by no more than foreseen_turn, at most |2σ bend + 3σ² twist|.
-double Continuation::foreseen() const {
-  const auto size = [&](const Move& move) {
-    return move.step.nodes.empty() ? 0 : std::sqrt(branch_.dot(move, move));
-  };
-  const double bend = size(here_.bend), twist = size(here_.twist);
-  return foreseen_turn / (bend + std::sqrt(bend * bend + 3 * twist * foreseen_turn));
 }
 
 /// The next tangent, onward, and what there is to know of the place.
@@ -277,10 +235,11 @@ bool Continuation::give_up(const Stand& from) {
   }
 }
 
-/// The next step that succeeds, with all that is met on it.
+/// The next step that succeeds, with all that is met on it: a shorter one where the value that the branch is
+/// to lead to is passed and not found.
 bool Continuation::step() {
   const Stand from = here_;
-  for (;; length_ *= 0.4) {
+  for (;; length_ *= shortening) {
     if (length_ < least_length) return give_up(from);
     if (stays(from, length_)) break;
   }
@@ -293,7 +252,11 @@ bool Continuation::step() {
   BranchPoint next = read(PointKind::regular);
   const Stand to = here_;
   if (++steps_ % unchecked == 0) check_action();
-  meet(from, to, passed);
+  if (!meet(from, to, passed)) {
+    here_ = from;
+    length_ = shortening * passed;
+    return step();
+  }
   here_ = to;
   if (end_ == BranchEnd::none) found_.push_back({std::move(next)});
   return !found_.empty();

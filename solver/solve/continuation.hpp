@@ -148,7 +148,11 @@ class Continuation {
   bool stop(BranchEnd end, std::string message);
   bool give_up(const Stand& from);
 
-  void meet(const Stand& from, const Stand& to, double length);
+  bool meet(const Stand& start, const Stand& to, double length);
+  struct Turn {
+    double at, varied;
+  };
+  Turn meet_others(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
   Stand aimed(const Stand& from, const Stand& to, double length);
   double find_fold(const Stand& from, const Stand& to, double length);
   double find_value(const Stand& from, double value, double near, double before, double far, double after);

@@ -27,18 +27,6 @@ constexpr double strongest_cut = 16, strongest_growth = 2;
 /// Elements whose error is below this share of the tolerance are more than needed.
 constexpr double lavish = 1e-4;
 
-/// The values of a path as a step from zero.
-Step values_of(const Path& path) {
-  Step step;
-  step.nodes.assign(path.nodes().begin(), path.nodes().end());
-  step.inner.assign(path.x(0), path.x(path.batches()));
-  return step;
-}
-
-bool same_elements(const Path& a, const Path& b) {
-  return a.degree() == b.degree() && std::ranges::equal(a.mesh(), b.mesh());
-}
-
 }  // namespace
 
 bool Continuation::begin() {
@@ -145,31 +133,6 @@ void Continuation::adopt(const Plan& plan) {
     tangent_.step.nodes = interpolated(tangent_.step.nodes, w_.path.coordinates(), before, mesh);
   std::swap(w_.path, w_.other);
   branch_.bind();
-}
-
-/// A move of another path on the elements that there are.
-Move Continuation::carried(const Move& move, const Path& from) {
-  if (move.step.nodes.empty() || same_elements(from, w_.path)) return move;
-  Path whole;
-  whole.reset(w_.levels.at(from.degree()), from.mesh(), from.duration());
-  whole.add(move.step.nodes, move.step.inner, 1);
-  whole.load_ends();
-  w_.other.resample_from(whole, branch_.tables(), w_.path.mesh());
-  Move result = move;
-  const double duration = move.step.duration;
-  result.step = values_of(w_.other);
-  result.step.duration = duration;
-  return result;
-}
-
-/// From the path to another place's, on the elements of the path.
-Move Continuation::way_to(const Stand& to) {
-  w_.other = to.path;
-  if (!same_elements(to.path, w_.path)) w_.other.resample_from(to.path, branch_.tables(), w_.path.mesh());
-  Move way{values_of(w_.other), to.coordinate - branch_.coordinate()};
-  way.add({values_of(w_.path)}, -1);
-  if (family_.varied == Varied::parameter) way.step.duration = to.path.duration() - w_.path.duration();
-  return way;
 }
 
 /// A place on elements that tell also the way to a branch that crosses there; nothing if its own do.

@@ -93,61 +93,47 @@ double Continuation::find_rest(const Stand& from, const Stand& to, double length
       [](double off, double) { return std::abs(off) <= 0.1 * nearly_rest; });
 }
 
-/// A place from which the step to another one is foreseen as the cubic through both, with their tangents:
-/// with ℓ the length of the step and y(σ) what the branch deviates from the tangent t, y(ℓ) = Y and y'(ℓ) = Z
-/// give y = σ²(3Y/ℓ − Z)/ℓ + σ³(Z − 2Y/ℓ)/ℓ².
-Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, double length) {
-  Stand result = from;
-  w_.path = from.path;
-  branch_.set_units(from.units);
-  if (!branch_.place(from.coordinate)) return result;
-  Move off = way_to(to);
-  off.add(from.tangent, -length);
-  off.scale(1 / (length * length));
-  Move slope = carried(to.tangent, to.path);
-  slope.scale(1 / (branch_.dot(from.tangent, slope) * length));
-  slope.add(from.tangent, -1 / length);
-  result.bend = off;
-  result.bend.scale(3);
-  result.bend.add(slope, -1);
-  result.twist = std::move(slope);
-  result.twist.add(off, -2);
-  result.twist.scale(1 / length);
-  return result;
-}
-
-void Continuation::meet(const Stand& start, const Stand& to, double length) {
-  const auto passed = [&](double value) { return (start.varied - value) * (to.varied - value) <= 0; };
-  const bool any = start.rate * to.rate < 0 || start.doubling * to.doubling < 0 || differs(start, to) ||
-                   passed(family_.to) || passed(first_.varied);
-  const Stand from = any ? aimed(start, to, length) : start;
-  std::vector<Meeting> met;
-  double turned_at = length, turned = to.varied;
+/// Folds, crossings and period doublings on a step. Where it turns back, and what varies there, or its end.
+Continuation::Turn Continuation::meet_others(const Stand& from, const Stand& to, double length,
+                                             std::vector<Meeting>& met) {
+  Turn turn{length, to.varied};
   const double fold = find_fold(from, to, length);
   if (std::isfinite(fold)) {
     met.push_back({fold, {read(PointKind::fold)}});
-    turned_at = fold;
-    turned = here_.varied;
+    turn = {fold, here_.varied};
   }
   find_crossings(from, to, length, met);
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
-  if (std::isfinite(fold) && std::ranges::any_of(met, [&](const Meeting& meeting) {
-        return meeting.found.point.kind == PointKind::branch && std::abs(meeting.at - fold) <= one * length;
-      }))
+  const auto explains = [&](const Meeting& meeting) {
+    return meeting.found.point.kind == PointKind::branch && std::abs(meeting.at - fold) <= one * length;
+  };
+  if (std::ranges::any_of(met, explains))
     std::erase_if(met, [](const Meeting& meeting) { return meeting.found.point.kind == PointKind::fold; });
   if (const double at = find_doubling(from, to, length); std::isfinite(at))
     met.push_back({at, {read(PointKind::period_doubling), seed_at(PointKind::period_doubling, from, at)}});
+  return turn;
+}
+
+/// False where the value that the branch is to lead to was passed, and is not found.
+bool Continuation::meet(const Stand& start, const Stand& to, double length) {
   const double distance = std::abs(family_.to - family_.from);
-  const auto between = [&](double value, double a, double b) {
+  const auto passed = [&](double value, double a, double b) {
     return (a - value) * (b - value) <= 0 && std::abs(a - value) > located * distance;
   };
+  const bool at_target = passed(family_.to, start.varied, to.varied);
+  const bool any = start.rate * to.rate < 0 || start.doubling * to.doubling < 0 || differs(start, to) ||
+                   at_target || passed(first_.varied, start.varied, to.varied);
+  const Stand from = any ? aimed(start, to, length) : start;
+  std::vector<Meeting> met;
+  const Turn turn = meet_others(from, to, length, met);
   const auto search = [&](double value, const auto& wanted) {
     double at = NAN;
-    if (between(value, from.varied, turned)) at = find_value(from, value, 0, from.varied, turned_at, turned);
+    if (passed(value, from.varied, turn.varied))
+      at = find_value(from, value, 0, from.varied, turn.at, turn.varied);
     if (std::isfinite(at) && wanted()) return at;
     at = NAN;
-    if (turned_at < length && between(value, turned, to.varied))
-      at = find_value(from, value, turned_at, turned, length, to.varied);
+    if (turn.at < length && passed(value, turn.varied, to.varied))
+      at = find_value(from, value, turn.at, turn.varied, length, to.varied);
     return std::isfinite(at) && wanted() ? at : NAN;
   };
   const auto ends_at = [&](double at, BranchEnd end, std::string message) {
@@ -158,6 +144,8 @@ void Continuation::meet(const Stand& start, const Stand& to, double length) {
     BranchPoint last = read(PointKind::regular);
     ends_at(at, BranchEnd::target, fmt::format("the branch leads to {:.12g}", family_.to));
     met.push_back({at, {std::move(last)}});
+  } else if (at_target) {
+    return false;
   } else if (const double back = search(first_.varied, [&] { return is_first(); }); std::isfinite(back)) {
     ends_at(back, BranchEnd::closed, "the branch is closed: it came back to its first point");
   } else if (const double rest = find_rest(from, to, length); std::isfinite(rest)) {
@@ -169,6 +157,7 @@ void Continuation::meet(const Stand& start, const Stand& to, double length) {
   }
   std::sort(met.begin(), met.end(), [](const Meeting& a, const Meeting& b) { return a.at < b.at; });
   for (Meeting& meeting : met) found_.push_back(std::move(meeting.found));
+  return true;
 }
 
 /// Whether the place is the first point, passed in the same direction.
