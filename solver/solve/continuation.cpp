@@ -238,26 +238,26 @@ bool Continuation::give_up(const Stand& from) {
 /// The next step that succeeds, with all that is met on it: a shorter one where the value that the branch is
 /// to lead to is passed and not found.
 bool Continuation::step() {
-  const Stand from = here_;
+  std::swap(here_, from_);
   for (;; length_ *= shortening) {
-    if (length_ < least_length) return give_up(from);
-    if (stays(from, length_)) break;
+    if (length_ < least_length) return give_up(from_);
+    if (stays(from_, length_)) break;
   }
   const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
   const double passed = std::exchange(
       length_, std::min(longest_, length_ * (factors_ > many_factors ? std::min(growth, 0.7) : growth)));
   measure_anew();
-  curve(from, passed);
+  curve(from_, passed);
   length_ = std::min(length_, foreseen());
   BranchPoint next = read(PointKind::regular);
-  const Stand to = here_;
   if (++steps_ % unchecked == 0) check_action();
-  if (!meet(from, to, passed)) {
-    here_ = from;
+  std::swap(here_, to_);
+  const bool met = meet(from_, to_, passed);
+  std::swap(here_, met ? to_ : from_);
+  if (!met) {
     length_ = shortening * passed;
     return step();
   }
-  here_ = to;
   if (end_ == BranchEnd::none) found_.push_back({std::move(next)});
   return !found_.empty();
 }

@@ -184,6 +184,7 @@ class Continuation {
   std::optional<Seed> seed_;  ///< what the branch begins with
   int side_ = 1;
   Stand here_, first_;         ///< where the path in the workspace stands; the first point
+  Stand from_, to_;            ///< of the last step, whose memory the next one uses
   Move tangent_;               ///< that the path is corrected across
   double largest_extent_ = 0;  ///< of paths so far
   double rest_ = 0;            ///< paths whose extent is less are at rest
