@@ -83,6 +83,8 @@ class Branch {
   /// Mean over τ, by the nodes, relative to an extent of the path; durations relative to another, parameters
   /// to the distance wanted.
   double dot(const Move& a, const Move& b) const;
+  /// The most that a node is moved, which short elements hide in the mean.
+  double largest(const Move& move) const;
   struct Units {
     double extent = 1, duration = 1;
   };

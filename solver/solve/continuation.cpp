@@ -93,7 +93,7 @@ bool Continuation::advance() {
 bool Continuation::correct(double length, const double* landing) {
   const double enough = std::max(unfinished * options_.solve.tolerance, least_goal);
   const double goal = landing ? least_goal : enough;
-  double before = INFINITY, curvature = INFINITY, found = INFINITY;
+  double before = INFINITY, way_before = INFINITY, curvature = INFINITY, found = INFINITY;
   bool anew = true, newton = true;  // factors of this path; of that before, where the last move began
   refusal_ = Refusal::rough;
   for (int k = 0; k < most_corrections; ++k) {
@@ -109,14 +109,14 @@ bool Continuation::correct(double length, const double* landing) {
     if (along == 0) return false;
     move.add(direction, -off / along);
     if (landing) landed_ += branch_.dot(tangent_, move);
-    const double size = std::sqrt(branch_.dot(move, move));
+    const double way = std::sqrt(branch_.dot(move, move)), size = branch_.largest(move);
     const double rate = k > 0 ? size / before : 1;
     factors_ += anew;
     const bool noise = size < roundoff && rate > 0.3;
     // Factors of before may hide what those of this path find: it is held against what such found last.
-    const double growth = size / (anew ? std::exchange(found, size) : before);
-    const double fastest = size > small_correction * length ? contraction : slowest;
-    if (!noise && (!(size <= longest_correction * length) || growth > fastest)) return false;
+    const double growth = way / (anew ? std::exchange(found, way) : way_before);
+    const double fastest = way > small_correction * length ? contraction : slowest;
+    if (!noise && (!(way <= longest_correction * length) || growth > fastest)) return false;
     if (!branch_.apply(move, 1)) {
       refusal_ = Refusal::no_problem;
       return false;
@@ -130,6 +130,7 @@ bool Continuation::correct(double length, const double* landing) {
     newton = anew;
     anew = !branch_.factored() || (k > 0 && !(left * shrinking * shrinking <= goal));
     before = size;
+    way_before = way;
   }
   return before <= enough;
 }
