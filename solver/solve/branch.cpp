@@ -95,7 +95,7 @@ bool Branch::linearise(Factors factors) {
     measure_phases(problem_, w_.path, tables_->scheme(), true, phases_);
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   }
-  const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter(factors);
+  const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter();
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
 }
@@ -173,15 +173,14 @@ std::vector<double> Branch::closing_row(const Move& onward) const {
 
 /// H δx = −∂g/∂p, and what closes a free duration with it, by gradients beside the path with the factors
 /// there are. Ends that depend on p move along a line.
-bool Branch::linearise_parameter(Factors factors) {
+bool Branch::linearise_parameter() {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   ClosingEquation equation;
   const ClosingEquation* closing = closing_equation(problem_, w_.path, equation);
-  if (!evaluate(closing, factors)) return false;
+  if (!evaluate(closing, Factors::anew)) return false;
   model.solve(action, closing, correction.step);
   correction.parameter = 0;
-  if (factors == Factors::before) return true;
   closing_sign_ = 1;
   if (closing) {
     equation.value -= 1 + std::abs(equation.value);

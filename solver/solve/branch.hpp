@@ -45,7 +45,7 @@ class Branch {
   /// With the factors of the path that was linearised before, the direction stays that of there.
   enum class Factors { anew, before };
   bool linearise(Factors factors = Factors::anew);
-  /// Whether there are factors of a path on these elements.
+  /// Whether there are factors of a path in the same problem and on the same elements.
   bool factored() const { return factored_; }
   Move correction, direction;
   /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
@@ -93,7 +93,7 @@ class Branch {
  private:
   bool by_duration() const { return family_.varied != Varied::parameter; }
   bool linearise_duration(Factors factors);
-  bool linearise_parameter(Factors factors);
+  bool linearise_parameter();
   bool evaluate(const ClosingEquation* closing, Factors factors);
   double energy_change(const Move& move) const;
   double solve_beside(double by, Move& move);

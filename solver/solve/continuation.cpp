@@ -12,13 +12,14 @@ namespace {
 
 /// Lengths are relative, as Branch::dot measures them.
 constexpr double least_length = 1e-7;
-/// A step is refused where corrections shrink less than this or are longer than this part of it.
+/// A step is refused where corrections shrink less than this or are longer than this part of it; the next try
+/// is so much of it.
 constexpr double contraction = 0.5, longest_correction = 0.5, shortening = 0.4;
 /// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
 /// singularity: they may grow so much before they shrink.
 constexpr double small_correction = 0.05, slowest = 4;
 constexpr int most_corrections = 8, most_resolutions = 4;
-/// Steps that take more factors grow no more.
+/// Steps whose last corrections take more factors are too long.
 constexpr int many_factors = 4;
 /// Corrections below this (relative) that shrink no more are roundoff.
 constexpr double roundoff = 1e-9, least_goal = 1e-14;
@@ -89,13 +90,15 @@ bool Continuation::advance() {
 }
 
 /// Newton's method across the tangent; or to where what varies has the value `landing`. A gradient costs a
-/// quarter of what factors do: those there are serve as long as they lead to the goal soon.
+/// quarter of what factors do: those there are, while the problem stays what it is, serve as long as they
+/// lead to the goal soon.
 bool Continuation::correct(double length, const double* landing) {
   const double enough = std::max(unfinished * options_.solve.tolerance, least_goal);
   const double goal = landing ? least_goal : enough;
   double before = INFINITY, way_before = INFINITY, curvature = INFINITY, found = INFINITY;
   bool anew = true, newton = true;  // factors of this path; of that before, where the last move began
   refusal_ = Refusal::rough;
+  factors_ = 0;
   for (int k = 0; k < most_corrections; ++k) {
     if (!branch_.linearise(anew ? Branch::Factors::anew : Branch::Factors::before)) {
       if (!branch_.defined()) refusal_ = Refusal::no_problem;
@@ -112,7 +115,7 @@ bool Continuation::correct(double length, const double* landing) {
     const double way = std::sqrt(branch_.dot(move, move)), size = branch_.largest(move);
     const double rate = k > 0 ? size / before : 1;
     factors_ += anew;
-    const bool noise = size < roundoff && rate > 0.3;
+    const bool noise = anew && size < roundoff && rate > 0.3;
     // Factors of before may hide what those of this path find: it is held against what such found last.
     const double growth = way / (anew ? std::exchange(found, way) : way_before);
     const double fastest = way > small_correction * length ? contraction : slowest;
@@ -137,7 +140,6 @@ bool Continuation::correct(double length, const double* landing) {
 
 void Continuation::Stand::scale(double factor) {
   tangent.scale(factor);
-  turning = bend = twist = {};
   rate *= factor;
   action_rate *= factor;
   if (factor < 0) orientation = -orientation;
@@ -191,7 +193,6 @@ bool Continuation::go(const Stand& from, double length, bool same_elements, cons
   here_.units = from.units;
   branch_.set_units(from.units);
   landed_ = 0;
-  factors_ = 0;
   refusal_ = Refusal::no_problem;
   if (!branch_.place(from.coordinate)) return false;
   branch_.bind();
@@ -257,6 +258,7 @@ bool Continuation::step() {
   std::swap(here_, met ? to_ : from_);
   if (!met) {
     length_ = shortening * passed;
+    refusal_ = Refusal::rough;
     return step();
   }
   if (end_ == BranchEnd::none) found_.push_back({std::move(next)});

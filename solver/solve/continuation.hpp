@@ -149,10 +149,10 @@ class Continuation {
   bool give_up(const Stand& from);
 
   bool meet(const Stand& start, const Stand& to, double length);
-  struct Turn {
+  struct Extreme {
     double at, varied;
   };
-  Turn meet_others(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
+  Extreme meet_others(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
   Stand aimed(const Stand& from, const Stand& to, double length);
   double find_fold(const Stand& from, const Stand& to, double length);
   double find_value(const Stand& from, double value, double near, double before, double far, double after);

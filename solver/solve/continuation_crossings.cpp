@@ -73,7 +73,7 @@ double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides
     const double guess = aside_of ? *std::exchange(aside_of, std::nullopt) : secant;
     // Where the crossing lies just there, nothing can be solved.
     const double aside = near ? 0.03 : 0.3;
-    if (near) best = guess;
+    if (near) best = secant;
     double at = guess;
     if (!stays(from, at, true) && !stays(from, at = guess + aside * (sides[1].at - guess), true) &&
         !stays(from, at = guess - aside * (guess - sides[0].at), true))

@@ -74,8 +74,10 @@ double Continuation::find_value(const Stand& from, double value, double near, do
   const double reach = far - near, slope = near == 0 ? from.rate : 0, off = value - before;
   const double bend = ((after - before) / reach - slope) / reach;
   const double guess = 2 * off / (slope + std::copysign(std::sqrt(slope * slope + 4 * bend * off), off));
-  if (guess >= 0 && guess <= reach && go(from, near + guess, false, &value) && cosine_ > sharpest_turn)
-    return near + guess + landed_;
+  if (guess >= 0 && guess <= reach && go(from, near + guess, false, &value) && cosine_ > sharpest_turn) {
+    const double landed = near + guess + landed_;
+    if (landed >= near && landed <= far) return landed;
+  }
   const double at = search(near_value);
   return std::isfinite(at) && correct(1, &value) && turn() ? at : search(1e-13);
 }
@@ -94,13 +96,13 @@ double Continuation::find_rest(const Stand& from, const Stand& to, double length
 }
 
 /// Folds, crossings and period doublings on a step. Where it turns back, and what varies there, or its end.
-Continuation::Turn Continuation::meet_others(const Stand& from, const Stand& to, double length,
-                                             std::vector<Meeting>& met) {
-  Turn turn{length, to.varied};
+Continuation::Extreme Continuation::meet_others(const Stand& from, const Stand& to, double length,
+                                                std::vector<Meeting>& met) {
+  Extreme extreme{length, to.varied};
   const double fold = find_fold(from, to, length);
   if (std::isfinite(fold)) {
     met.push_back({fold, {read(PointKind::fold)}});
-    turn = {fold, here_.varied};
+    extreme = {fold, here_.varied};
   }
   find_crossings(from, to, length, met);
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
@@ -111,7 +113,7 @@ Continuation::Turn Continuation::meet_others(const Stand& from, const Stand& to,
     std::erase_if(met, [](const Meeting& meeting) { return meeting.found.point.kind == PointKind::fold; });
   if (const double at = find_doubling(from, to, length); std::isfinite(at))
     met.push_back({at, {read(PointKind::period_doubling), seed_at(PointKind::period_doubling, from, at)}});
-  return turn;
+  return extreme;
 }
 
 /// False where the value that the branch is to lead to was passed, and is not found.
@@ -120,20 +122,21 @@ bool Continuation::meet(const Stand& start, const Stand& to, double length) {
   const auto passed = [&](double value, double a, double b) {
     return (a - value) * (b - value) <= 0 && std::abs(a - value) > located * distance;
   };
-  const bool at_target = passed(family_.to, start.varied, to.varied);
-  const bool any = start.rate * to.rate < 0 || start.doubling * to.doubling < 0 || differs(start, to) ||
-                   at_target || passed(first_.varied, start.varied, to.varied);
-  const Stand from = any ? aimed(start, to, length) : start;
+  std::optional<Stand> aim;
+  if (start.rate * to.rate < 0 || start.doubling * to.doubling < 0 || differs(start, to) ||
+      passed(family_.to, start.varied, to.varied) || passed(first_.varied, start.varied, to.varied))
+    aim = aimed(start, to, length);
+  const Stand& from = aim ? *aim : start;
   std::vector<Meeting> met;
-  const Turn turn = meet_others(from, to, length, met);
+  const Extreme extreme = meet_others(from, to, length, met);
   const auto search = [&](double value, const auto& wanted) {
     double at = NAN;
-    if (passed(value, from.varied, turn.varied))
-      at = find_value(from, value, 0, from.varied, turn.at, turn.varied);
+    if (passed(value, from.varied, extreme.varied))
+      at = find_value(from, value, 0, from.varied, extreme.at, extreme.varied);
     if (std::isfinite(at) && wanted()) return at;
     at = NAN;
-    if (turn.at < length && passed(value, turn.varied, to.varied))
-      at = find_value(from, value, turn.at, turn.varied, length, to.varied);
+    if (extreme.at < length && passed(value, extreme.varied, to.varied))
+      at = find_value(from, value, extreme.at, extreme.varied, length, to.varied);
     return std::isfinite(at) && wanted() ? at : NAN;
   };
   const auto ends_at = [&](double at, BranchEnd end, std::string message) {
@@ -144,7 +147,8 @@ bool Continuation::meet(const Stand& start, const Stand& to, double length) {
     BranchPoint last = read(PointKind::regular);
     ends_at(at, BranchEnd::target, fmt::format("the branch leads to {:.12g}", family_.to));
     met.push_back({at, {std::move(last)}});
-  } else if (at_target) {
+  } else if (passed(family_.to, from.varied, extreme.varied) ||
+             passed(family_.to, extreme.varied, to.varied)) {
     return false;
   } else if (const double back = search(first_.varied, [&] { return is_first(); }); std::isfinite(back)) {
     ends_at(back, BranchEnd::closed, "the branch is closed: it came back to its first point");
