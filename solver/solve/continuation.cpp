@@ -11,7 +11,7 @@ namespace extremal {
 namespace {
 
 /// Lengths are relative, as Branch::dot measures them.
-constexpr double least_length = 1e-7;
+constexpr double least_length = 1e-6;
 /// A step is refused where corrections shrink less than this or are longer than this part of it; the next try
 /// is so much of it.
 constexpr double contraction = 0.5, longest_correction = 0.5, shortening = 0.4;
