@@ -149,6 +149,7 @@ class Continuation {
   bool give_up(const Stand& from);
 
   bool meet(const Stand& start, const Stand& to, double length);
+  /// Where on a step what varies turns back, or the end of the step; and its value there.
   struct Extreme {
     double at, varied;
   };

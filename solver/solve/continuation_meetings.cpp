@@ -95,7 +95,7 @@ double Continuation::find_rest(const Stand& from, const Stand& to, double length
       [](double off, double) { return std::abs(off) <= 0.1 * nearly_rest; });
 }
 
-/// Folds, crossings and period doublings on a step. Where it turns back, and what varies there, or its end.
+/// Folds, crossings and period doublings on a step.
 Continuation::Extreme Continuation::meet_others(const Stand& from, const Stand& to, double length,
                                                 std::vector<Meeting>& met) {
   Extreme extreme{length, to.varied};
