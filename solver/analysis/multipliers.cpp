@@ -177,14 +177,17 @@ class Collection {
 
 }  // namespace
 
-double doubling_product(const Floquet& floquet) {
-  Complex product = 1;
+std::vector<double> doubling_gaps(const Floquet& floquet) {
+  std::vector<double> gaps;
+  bool first_of_two = false;  // of a pair at −1
   for (const Complex& value : floquet.multipliers) {
-    const Complex sum = 1.0 + value;
-    const double size = std::abs(value);
-    product *= sum / (size > 1 ? size : 1.0);
+    const double x = value.real(), y = value.imag();
+    if (y > 0 && std::abs(std::norm(value) - 1) < same_modulus) gaps.push_back(2 + 2 * x);
+    if (y == 0 && std::abs(x) > 1) gaps.push_back((1 + x) * (1 + 1 / x) / std::abs(x));
+    if (value == -1.0 && (first_of_two = !first_of_two)) gaps.push_back(0);
   }
-  return product.real();
+  std::sort(gaps.begin(), gaps.end());
+  return gaps;
 }
 
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {

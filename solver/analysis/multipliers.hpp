@@ -25,8 +25,8 @@ struct ClosedOrbit {
 /// overflows.
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit);
 
-/// ∏ (1 + λ), of which each pair λ, 1/λ gives λ + 1/λ + 2, divided by the size of large factors. It changes
-/// its sign where a pair passes −1.
-double doubling_product(const Floquet& floquet);
+/// λ + 1/λ + 2 of every pair on the unit circle or real, divided by |λ| >= 1; ascending. One changes its sign
+/// where its pair passes −1. Pairs at 1 are left out.
+std::vector<double> doubling_gaps(const Floquet& floquet);
 
 }  // namespace extremal

@@ -252,6 +252,7 @@ bool Continuation::step() {
   curve(from_, passed);
   length_ = std::min(length_, foreseen());
   BranchPoint next = read(PointKind::regular);
+  here_.gaps_before = from_.gaps;
   if (++steps_ % unchecked == 0) check_action();
   std::swap(here_, to_);
   const bool met = meet(from_, to_, passed);

@@ -46,6 +46,11 @@ struct ContinuationOptions {
   bool seeds = false;       ///< keep what other branches begin with
 };
 
+/// Of a test on a step: where along the tangent, and its value.
+struct Reading {
+  double at, value;
+};
+
 /// A path next to where another branch begins.
 struct Seed {
   PointKind kind;     ///< branch or period_doubling
@@ -60,7 +65,8 @@ struct Seed {
 /// tolerance. Steps grow while Newton's method converges fast and the branch bends little. Found to 1e-11 of
 /// the distance wanted: folds, where the derivative of what varies changes its sign; crossings, where the
 /// orientation of the equations does (Branch::orientation) and their response to a load has no bound; period
-/// doublings of periodic orbits, where a multiplier passes −1.
+/// doublings of periodic orbits, where a multiplier passes −1. Two folds or two doublings on one step are
+/// seen where its ends foresee them.
 ///
 ///     Continuation branch(family, options);
 ///     while (branch.advance()) use(branch.point());
@@ -103,7 +109,7 @@ class Continuation {
     double action_rate = 0;   ///< ∂S/∂s as its derivatives tell it
     double energy_time = 0;   ///< |E T|
     int orientation = 1, index = 0;
-    double doubling = 1;  ///< of the sign of ∏ (1 + λ) over all multipliers λ
+    std::vector<double> gaps, gaps_before;  ///< see doubling_gaps; those of the place before
     void scale(double factor);
     Move ahead(double length) const;
   };
@@ -149,17 +155,23 @@ class Continuation {
   bool give_up(const Stand& from);
 
   bool meet(const Stand& start, const Stand& to, double length);
-  /// Where on a step what varies turns back, or the end of the step; and its value there.
-  struct Extreme {
-    double at, varied;
-  };
-  Extreme meet_others(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
+  std::vector<Reading> meet_others(const Stand& from, const Stand& to, double length,
+                                   std::vector<Meeting>& met);
   Stand aimed(const Stand& from, const Stand& to, double length);
-  double find_fold(const Stand& from, const Stand& to, double length);
-  double find_value(const Stand& from, double value, double near, double before, double far, double after);
+  struct Rates;
+  static Rates rates_between(const Stand& from, const Stand& to, double length);
+  static bool may_fold(const Stand& from, const Stand& to, double length);
+  void find_folds(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
+  double find_value(const Stand& from, double value, const Reading& near, const Reading& far);
   template <class Test, class Done>
-  double root(const Stand& from, double low, double at_low, double high, double at_high, const Test& test,
+  double root(const Stand& from, Reading low, Reading high, std::optional<Reading> third, const Test& test,
               const Done& done);
+  template <class Test, class Use>
+  void find_roots(const Stand& from, const std::vector<Reading>& places, std::optional<Reading> beside,
+                  const Test& test, const Use& use);
+  template <class Test>
+  std::optional<Reading> dip(const Stand& from, const Reading& low, const Reading& high, double at,
+                             const Test& test);
   bool settled(double change) const;
   bool is_first() const;
   void check_action();
@@ -171,8 +183,11 @@ class Continuation {
   static bool differs(const Stand& a, const Stand& b);
   std::optional<BranchPoint> crossing_at(const Stand& from, double at, double length);
   std::optional<Stand> resolved_for(const Stand& from, const Move& response);
-  double find_doubling(const Stand& from, const Stand& to, double length);
-  double doubling();
+  static bool may_double(const Stand& from, const Stand& to, double length);
+  struct Nearing;
+  static std::optional<Nearing> nearing_doubling(const Stand& from, const Stand& to, double length);
+  void find_doublings(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
+  std::vector<double> read_gaps();
   double find_rest(const Stand& from, const Stand& to, double length);
   std::optional<Seed> seed_at(PointKind kind, const Stand& from, double at);
 

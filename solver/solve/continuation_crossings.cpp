@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "solve/continuation.hpp"
@@ -21,6 +22,10 @@ constexpr double opposite = -0.9;
 constexpr double beyond_it = 1e-4;
 /// From a seed to the crossing.
 constexpr double seed_distance = 1e-4;
+
+double product(const std::vector<double>& x) {
+  return std::accumulate(x.begin(), x.end(), 1.0, std::multiplies());
+}
 
 }  // namespace
 
@@ -136,20 +141,63 @@ void Continuation::find_crossings(const Stand& from, const Stand& to, double len
   }
 }
 
-/// ∏ (1 + λ) at the place, by multipliers as they are, however near to −1.
-double Continuation::doubling() {
+/// Of the place, by multipliers as they are, however near to −1. NaN if they are not known.
+std::vector<double> Continuation::read_gaps() {
   const Problem& problem = branch_.problem();
   const Trajectory trajectory = trajectory_of(here_.path);
-  if (!variation_.assemble(problem.lagrangian, trajectory, condensed())) return NAN;
+  if (!variation_.assemble(problem.lagrangian, trajectory, condensed())) return {NAN};
   const std::optional<Floquet> found = floquet(variation_, closed_orbit(problem, trajectory, 0));
-  return found ? doubling_product(*found) : NAN;
+  return found ? doubling_gaps(*found) : std::vector<double>{NAN};
 }
 
-double Continuation::find_doubling(const Stand& from, const Stand& to, double length) {
-  if (!(from.doubling * to.doubling < 0)) return NAN;
-  return root(
-      from, 0, from.doubling, length, to.doubling, [this] { return doubling(); },
-      [this](double, double change) { return settled(change); });
+/// Which gap may pass zero twice on a step, and where it would be least.
+struct Continuation::Nearing {
+  std::size_t gap;
+  double at;
+};
+
+/// One that keeps its sign on the step, and would not if it went on as before: it bends away from zero. Where
+/// the parabola through its last three values is level.
+std::optional<Continuation::Nearing> Continuation::nearing_doubling(const Stand& from, const Stand& to,
+                                                                    double length) {
+  const std::size_t count = from.gaps.size();
+  if (from.gaps_before.size() != count || to.gaps.size() != count) return std::nullopt;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double gap = from.gaps[k], change = to.gaps[k] - gap;
+    const double before = (gap - from.gaps_before[k]) / from.back;
+    if (!(gap * to.gaps[k] > 0 && gap * (gap + before * length) <= 0)) continue;
+    const double bend = (change / length - before) / (length + from.back);
+    const double level = 0.5 * (length - change / (length * bend));
+    return Nearing{k, std::clamp(level, 0.1 * length, 0.9 * length)};
+  }
+  return std::nullopt;
+}
+
+bool Continuation::may_double(const Stand& from, const Stand& to, double length) {
+  return product(from.gaps) * product(to.gaps) < 0 || nearing_doubling(from, to, length).has_value();
+}
+
+void Continuation::find_doublings(const Stand& from, const Stand& to, double length,
+                                  std::vector<Meeting>& met) {
+  std::vector<Reading> places = {{0, product(from.gaps)}, {length, product(to.gaps)}};
+  const std::optional<Nearing> nearing = nearing_doubling(from, to, length);
+  if (nearing && places[0].value * places[1].value > 0) {
+    const std::size_t k = nearing->gap;
+    const auto gap = [&] {
+      const std::vector<double> gaps = read_gaps();
+      return gaps.size() == from.gaps.size() ? gaps[k] : NAN;
+    };
+    if (const auto between = dip(from, {0, from.gaps[k]}, {length, to.gaps[k]}, nearing->at, gap))
+      places.insert(places.begin() + 1, {between->at, -places[0].value});
+  }
+  std::optional<Reading> before;
+  if (from.back > 0) before = {-from.back, product(from.gaps_before)};
+  find_roots(
+      from, places, before, [this] { return product(read_gaps()); },
+      [&](double at) {
+        BranchPoint point = read(PointKind::period_doubling);
+        met.push_back({at, {std::move(point), seed_at(PointKind::period_doubling, from, at)}});
+      });
 }
 
 std::optional<Seed> Continuation::seed_at(PointKind kind, const Stand& from, double at) {

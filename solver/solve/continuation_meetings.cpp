@@ -51,32 +51,53 @@ bool Continuation::settled(double change) const {
          std::abs(change) <= 1e-6;
 }
 
-/// |∂varied/∂s| times the distance from the fold bounds how much more or less it is there.
-double Continuation::find_fold(const Stand& from, const Stand& to, double length) {
-  if (!(from.rate * to.rate < 0)) return NAN;
-  return root(
-      from, 0, from.rate, length, to.rate, [this] { return here_.rate; },
-      [this](double, double change) { return settled(change); });
+/// Of the derivative of what varies, on the step, as the parabola tells that has its values at both ends and
+/// the integral that it must have: the least against its sign at the first end, and that in the middle.
+struct Continuation::Rates {
+  Reading least, middle;
+};
+
+Continuation::Rates Continuation::rates_between(const Stand& from, const Stand& to, double length) {
+  const double first = from.rate, last = to.rate * to.back / length;
+  const double mean = (to.varied - from.varied) / length;
+  const double slope = 6 * mean - 4 * first - 2 * last, bend = 3 * (first + last - 2 * mean);
+  const double at = -slope / (2 * bend);
+  const bool between = at > 0 && at < 1;
+  return {between ? Reading{at * length, first + 0.5 * slope * at} : Reading{0, first},
+          {0.5 * length, first + 0.5 * slope + 0.25 * bend}};
+}
+
+bool Continuation::may_fold(const Stand& from, const Stand& to, double length) {
+  return from.rate * to.rate < 0 || from.rate * rates_between(from, to, length).least.value < 0;
+}
+
+/// |∂varied/∂s| times the distance from a fold bounds how much more or less it is there.
+void Continuation::find_folds(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met) {
+  std::vector<Reading> places = {{0, from.rate}, {length, to.rate}};
+  const auto rate = [this] { return here_.rate; };
+  const auto [least, middle] = rates_between(from, to, length);
+  if (from.rate * to.rate > 0 && from.rate * least.value < 0)
+    if (const auto between = dip(from, places[0], places[1], least.at, rate))
+      places.insert(places.begin() + 1, *between);
+  find_roots(from, places, middle, rate, [&](double at) { met.push_back({at, {read(PointKind::fold)}}); });
 }
 
 /// To a value between those before and after: exactly, or, where Newton's method does not land there, nearly.
-double Continuation::find_value(const Stand& from, double value, double near, double before, double far,
-                                double after) {
-  const double distance = std::abs(family_.to - family_.from);
+double Continuation::find_value(const Stand& from, double value, const Reading& near, const Reading& far) {
+  const double distance = std::abs(family_.to - family_.from), reach = far.at - near.at;
   const auto search = [&](double enough) {
     return root(
-        from, near, before - value, far, after - value, [&] { return here_.varied - value; },
-        [&](double off, double change) {
-          return std::abs(off * change) <= enough * distance * (far - near);
-        });
+        from, {near.at, near.value - value}, {far.at, far.value - value}, std::nullopt,
+        [&] { return here_.varied - value; },
+        [&](double off, double) { return std::abs(off) <= enough * distance; });
   };
   // What varies as a parabola, level at a fold: v(σ) = before + slope σ + bend σ².
-  const double reach = far - near, slope = near == 0 ? from.rate : 0, off = value - before;
-  const double bend = ((after - before) / reach - slope) / reach;
+  const double slope = near.at == 0 ? from.rate : 0, off = value - near.value;
+  const double bend = ((far.value - near.value) / reach - slope) / reach;
   const double guess = 2 * off / (slope + std::copysign(std::sqrt(slope * slope + 4 * bend * off), off));
-  if (guess >= 0 && guess <= reach && go(from, near + guess, false, &value) && cosine_ > sharpest_turn) {
-    const double landed = near + guess + landed_;
-    if (landed >= near && landed <= far) return landed;
+  if (guess >= 0 && guess <= reach && go(from, near.at + guess, false, &value) && cosine_ > sharpest_turn) {
+    const double landed = near.at + guess + landed_;
+    if (landed >= near.at && landed <= far.at) return landed;
   }
   const double at = search(near_value);
   return std::isfinite(at) && correct(1, &value) && turn() ? at : search(1e-13);
@@ -90,30 +111,29 @@ double Continuation::find_rest(const Stand& from, const Stand& to, double length
   const double size = swing(from.path, from.path), after = swing(to.path, from.path) / size;
   if (!(after < 0)) return NAN;
   return root(
-      from, 0, 1 - nearly_rest, length, after - nearly_rest,
+      from, {0, 1 - nearly_rest}, {length, after - nearly_rest}, std::nullopt,
       [&] { return swing(here_.path, from.path) / size - nearly_rest; },
       [](double off, double) { return std::abs(off) <= 0.1 * nearly_rest; });
 }
 
-/// Folds, crossings and period doublings on a step.
-Continuation::Extreme Continuation::meet_others(const Stand& from, const Stand& to, double length,
-                                                std::vector<Meeting>& met) {
-  Extreme extreme{length, to.varied};
-  const double fold = find_fold(from, to, length);
-  if (std::isfinite(fold)) {
-    met.push_back({fold, {read(PointKind::fold)}});
-    extreme = {fold, here_.varied};
-  }
+/// Folds, crossings and period doublings on a step. What varies at its ends and where it turns back.
+std::vector<Reading> Continuation::meet_others(const Stand& from, const Stand& to, double length,
+                                               std::vector<Meeting>& met) {
+  std::vector<Reading> extremes = {{0, from.varied}};
+  find_folds(from, to, length, met);
+  for (const Meeting& fold : met) extremes.push_back({fold.at, fold.found.point.parameter});
+  extremes.push_back({length, to.varied});
   find_crossings(from, to, length, met);
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
-  const auto explains = [&](const Meeting& meeting) {
-    return meeting.found.point.kind == PointKind::branch && std::abs(meeting.at - fold) <= one * length;
-  };
-  if (std::ranges::any_of(met, explains))
-    std::erase_if(met, [](const Meeting& meeting) { return meeting.found.point.kind == PointKind::fold; });
-  if (const double at = find_doubling(from, to, length); std::isfinite(at))
-    met.push_back({at, {read(PointKind::period_doubling), seed_at(PointKind::period_doubling, from, at)}});
-  return extreme;
+  std::vector<double> crossings;
+  for (std::size_t k = extremes.size() - 2; k < met.size(); ++k) crossings.push_back(met[k].at);
+  std::erase_if(met, [&](const Meeting& meeting) {
+    return meeting.found.point.kind == PointKind::fold && std::ranges::any_of(crossings, [&](double at) {
+             return std::abs(at - meeting.at) <= one * length;
+           });
+  });
+  find_doublings(from, to, length, met);
+  return extremes;
 }
 
 /// False where the value that the branch is to lead to was passed, and is not found.
@@ -123,21 +143,21 @@ bool Continuation::meet(const Stand& start, const Stand& to, double length) {
     return (a - value) * (b - value) <= 0 && std::abs(a - value) > located * distance;
   };
   std::optional<Stand> aim;
-  if (start.rate * to.rate < 0 || start.doubling * to.doubling < 0 || differs(start, to) ||
+  if (may_fold(start, to, length) || may_double(start, to, length) || differs(start, to) ||
       passed(family_.to, start.varied, to.varied) || passed(first_.varied, start.varied, to.varied))
     aim = aimed(start, to, length);
   const Stand& from = aim ? *aim : start;
   std::vector<Meeting> met;
-  const Extreme extreme = meet_others(from, to, length, met);
+  const std::vector<Reading> extremes = meet_others(from, to, length, met);
+  bool missed = false;
   const auto search = [&](double value, const auto& wanted) {
-    double at = NAN;
-    if (passed(value, from.varied, extreme.varied))
-      at = find_value(from, value, 0, from.varied, extreme.at, extreme.varied);
-    if (std::isfinite(at) && wanted()) return at;
-    at = NAN;
-    if (extreme.at < length && passed(value, extreme.varied, to.varied))
-      at = find_value(from, value, extreme.at, extreme.varied, length, to.varied);
-    return std::isfinite(at) && wanted() ? at : NAN;
+    for (std::size_t k = 1; k < extremes.size(); ++k) {
+      if (!passed(value, extremes[k - 1].value, extremes[k].value)) continue;
+      const double at = find_value(from, value, extremes[k - 1], extremes[k]);
+      if (std::isfinite(at) && wanted()) return at;
+      missed = true;
+    }
+    return double(NAN);
   };
   const auto ends_at = [&](double at, BranchEnd end, std::string message) {
     std::erase_if(met, [&](const Meeting& meeting) { return meeting.at > at; });
@@ -147,8 +167,7 @@ bool Continuation::meet(const Stand& start, const Stand& to, double length) {
     BranchPoint last = read(PointKind::regular);
     ends_at(at, BranchEnd::target, fmt::format("the branch leads to {:.12g}", family_.to));
     met.push_back({at, {std::move(last)}});
-  } else if (passed(family_.to, from.varied, extreme.varied) ||
-             passed(family_.to, extreme.varied, to.varied)) {
+  } else if (missed) {
     return false;
   } else if (const double back = search(first_.varied, [&] { return is_first(); }); std::isfinite(back)) {
     ends_at(back, BranchEnd::closed, "the branch is closed: it came back to its first point");

@@ -45,6 +45,29 @@ TEST(Continuation, BratuFoldAndBothBranches) {
   EXPECT_LE(branch.worst_action_slope(), 1e-6);
 }
 
+/// q'' = q³ − εq − λ at rest, pushed at no end: λ = q³ − εq turns back at q = ∓√(ε/3), by less than a step.
+TEST(Continuation, TwoFoldsOnOneStep) {
+  const double epsilon = 0.01;
+  const auto problem = [=](double lambda) {
+    const auto lagrangian = trace(1, [=](auto q, auto v, auto) {
+      const auto square = q[0] * q[0];
+      return v[0] * v[0] / 2 + square * square / 4 - epsilon * square / 2 - lambda * q[0];
+    });
+    return guessed(with_ends(lagrangian, 1, [](BoundaryRelation&) {}), [](double) { return Values{-1}; });
+  };
+  Continuation branch(varied(problem, -0.99, 0.99), {within(1e-10), 60});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  const std::vector<double> folds = values(points, PointKind::fold);
+  ASSERT_EQ(folds.size(), 2u);
+  EXPECT_NEAR(folds[0], 2 * std::pow(epsilon / 3, 1.5), 1e-10);
+  EXPECT_NEAR(folds[1], -2 * std::pow(epsilon / 3, 1.5), 1e-10);
+  for (const BranchPoint& point : points) {
+    const double q = start_of(point).q[0];
+    EXPECT_NEAR(q * (q * q - epsilon), point.parameter, 1e-9);
+  }
+}
+
 TEST(Continuation, BucklingLoads) {
   const auto problem = [](double lambda) {
     return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 + lambda * cos(q[0]); }),

@@ -68,28 +68,28 @@ TEST(Diagram, BuckledRods) {
   EXPECT_LT(start_of(found.of(1).front()).v[0] * start_of(found.of(2).front()).v[0], 0);
 }
 
-/// The lowest characteristic values of q'' + (a − 2 cos 2t) q = 0 by Fourier series: even or odd ones of the
+/// The lowest characteristic values of q'' + (a − 2θ cos 2t) q = 0 by Fourier series: even or odd ones of the
 /// period π, or those that change sign over it (DLMF 28.4).
-Values characteristic(bool changing, bool odd) {
+Values characteristic(bool changing, bool odd, double theta = 1) {
   const int count = 20;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
   for (int k = 0; k < count; ++k) {
     const int frequency = changing ? 2 * k + 1 : odd ? 2 * k + 2 : 2 * k;
     matrix(k, k) = frequency * frequency;
-    if (k + 1 < count) matrix(k, k + 1) = matrix(k + 1, k) = !changing && !odd && k == 0 ? std::sqrt(2.0) : 1;
+    if (k + 1 < count)
+      matrix(k, k + 1) = matrix(k + 1, k) = theta * (!changing && !odd && k == 0 ? std::sqrt(2.0) : 1);
   }
-  if (changing) matrix(0, 0) += odd ? -1 : 1;
+  if (changing) matrix(0, 0) += odd ? -theta : theta;
   const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues();
   return {values[0], values[1]};
 }
 
-/// A spring that stiffens, shaken: from rest, motions of the period π begin at a_0, b_2, a_2, and such of
-/// twice the period at b_1, a_1. Rest is stable where none of them is negative.
-TEST(Diagram, MathieusEquation) {
-  const auto problem = [](double a) {
+/// A spring that stiffens, shaken by 2θ at twice the frequency one.
+ProblemFamily shaken_spring(double theta, double from, double to) {
+  const auto problem = [theta](double a) {
     const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
       const auto square = q[0] * q[0];
-      return v[0] * v[0] / 2 - (a - 2 * cos(2 * t)) * square / 2 - square * square / 4;
+      return v[0] * v[0] / 2 - (a - 2 * theta * cos(2 * t)) * square / 2 - square * square / 4;
     });
     Problem periodic = with_ends(lagrangian, pi, [](BoundaryRelation& r) {
       const int row = r.add_row(0);
@@ -99,7 +99,13 @@ TEST(Diagram, MathieusEquation) {
     periodic.periodic = true;
     return guessed(std::move(periodic), [](double) { return Values{0}; });
   };
-  const Followed found = follow_branches(varied(problem, -1, 5), 1e-10, 40);
+  return varied(problem, from, to);
+}
+
+/// From rest, motions of the period π begin at a_0, b_2, a_2, and such of
+/// twice the period at b_1, a_1. Rest is stable where none of them is negative.
+TEST(Diagram, MathieusEquation) {
+  const Followed found = follow_branches(shaken_spring(1, -1, 5), 1e-10, 40);
   const Values even = characteristic(false, false), odd = characteristic(false, true);
   const std::vector<double> crossings = found.values(PointKind::branch);
   ASSERT_EQ(crossings.size(), 3u);
@@ -130,6 +136,19 @@ TEST(Diagram, MathieusEquation) {
         EXPECT_NEAR(at(point.solution.trajectory, t + pi).q[0], -now, 1e-7);
       }
     }
+  }
+}
+
+/// Shaken ever so little it is unstable for so few a about 1 that both ends of them fall within one step.
+TEST(Diagram, TwoDoublingsOnOneStep) {
+  for (const double theta : {0.05, 0.01, 0.001}) {
+    const Followed found = follow_branches(shaken_spring(theta, 0.3, 3), 1e-10, 60);
+    const std::vector<double> doublings = found.values(PointKind::period_doubling);
+    ASSERT_EQ(doublings.size(), 2u) << theta;
+    EXPECT_NEAR(doublings[0], characteristic(true, true, theta)[0], 1e-8);
+    EXPECT_NEAR(doublings[1], characteristic(true, false, theta)[0], 1e-8);
+    for (const BranchPoint& point : found.of(0))
+      EXPECT_TRUE(point.kind != PointKind::regular || point.solution.floquet->stable()) << point.parameter;
   }
 }
 
