@@ -150,16 +150,9 @@ std::vector<double> Continuation::read_gaps() {
   return found ? doubling_gaps(*found) : std::vector<double>{NAN};
 }
 
-/// Which gap may pass zero twice on a step, and where it would be least.
-struct Continuation::Nearing {
-  std::size_t gap;
-  double at;
-};
-
-/// One that keeps its sign on the step, and would not if it went on as before: it bends away from zero. Where
-/// the parabola through its last three values is level.
-std::optional<Continuation::Nearing> Continuation::nearing_doubling(const Stand& from, const Stand& to,
-                                                                    double length) {
+/// Where on a step a gap may pass zero twice: one that keeps its sign, and would not if it went on as before,
+/// bends away from zero. Where the parabola through its last three values is level.
+std::optional<double> Continuation::nearing_doubling(const Stand& from, const Stand& to, double length) {
   const std::size_t count = from.gaps.size();
   if (from.gaps_before.size() != count || to.gaps.size() != count) return std::nullopt;
   for (std::size_t k = 0; k < count; ++k) {
@@ -168,7 +161,7 @@ std::optional<Continuation::Nearing> Continuation::nearing_doubling(const Stand&
     if (!(gap * to.gaps[k] > 0 && gap * (gap + before * length) <= 0)) continue;
     const double bend = (change / length - before) / (length + from.back);
     const double level = 0.5 * (length - change / (length * bend));
-    return Nearing{k, std::clamp(level, 0.1 * length, 0.9 * length)};
+    return std::clamp(level, 0.1 * length, 0.9 * length);
   }
   return std::nullopt;
 }
@@ -180,24 +173,17 @@ bool Continuation::may_double(const Stand& from, const Stand& to, double length)
 void Continuation::find_doublings(const Stand& from, const Stand& to, double length,
                                   std::vector<Meeting>& met) {
   std::vector<Reading> places = {{0, product(from.gaps)}, {length, product(to.gaps)}};
-  const std::optional<Nearing> nearing = nearing_doubling(from, to, length);
-  if (nearing && places[0].value * places[1].value > 0) {
-    const std::size_t k = nearing->gap;
-    const auto gap = [&] {
-      const std::vector<double> gaps = read_gaps();
-      return gaps.size() == from.gaps.size() ? gaps[k] : NAN;
-    };
-    if (const auto between = dip(from, {0, from.gaps[k]}, {length, to.gaps[k]}, nearing->at, gap))
-      places.insert(places.begin() + 1, {between->at, -places[0].value});
-  }
+  const auto gap = [this] { return product(read_gaps()); };
+  const std::optional<double> level = nearing_doubling(from, to, length);
+  if (level && places[0].value * places[1].value > 0)
+    if (const auto between = dip(from, places[0], places[1], *level, gap))
+      places.insert(places.begin() + 1, *between);
   std::optional<Reading> before;
   if (from.back > 0) before = {-from.back, product(from.gaps_before)};
-  find_roots(
-      from, places, before, [this] { return product(read_gaps()); },
-      [&](double at) {
-        BranchPoint point = read(PointKind::period_doubling);
-        met.push_back({at, {std::move(point), seed_at(PointKind::period_doubling, from, at)}});
-      });
+  find_roots(from, places, before, gap, [&](double at) {
+    BranchPoint point = read(PointKind::period_doubling);
+    met.push_back({at, {std::move(point), seed_at(PointKind::period_doubling, from, at)}});
+  });
 }
 
 std::optional<Seed> Continuation::seed_at(PointKind kind, const Stand& from, double at) {

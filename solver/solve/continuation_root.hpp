@@ -41,8 +41,10 @@ double Continuation::root(const Stand& from, Reading low, Reading high, std::opt
     third = std::exchange(here.value * high.value > 0 ? high : low, here);
     const double next =
         (k + 1) % most_parabolas == 0 ? 0.5 * (low.at + high.at) : parabola_root(low, high, third);
-    fprintf(stderr, "root %d at %.15g value %.3g next %.2g\n", k, at, here.value, next-at);
-    if (here.value == 0 || done(here.value, next - at) || next == at) return at;
+    // A test that jumps is not zero where a parabola through the jump is.
+    const double by_chord = here.value * (at - third->at) / (third->value - here.value);
+    const double change = std::max(std::abs(next - at), std::abs(by_chord));
+    if (here.value == 0 || done(here.value, change) || next == at) return at;
     at = next;
   }
   return NAN;

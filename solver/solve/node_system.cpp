@@ -13,6 +13,7 @@ namespace {
 constexpr double usual_null = 1e-8;
 /// Of the size of the terms that a row of the border is the difference of.
 constexpr double negligible = 1e-10;
+constexpr double roundoff = std::numeric_limits<double>::epsilon();
 /// Null directions of the chain, by coordinates, that are believed.
 constexpr std::size_t most_deflated = 4;
 
@@ -47,6 +48,7 @@ void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool f
   free_ = ends.free;
   free_duration_ = free_duration;
   null_below_ = usual_null;
+  border_ = 0;
   right_.resize(static_cast<std::size_t>(std::max(elements - 1, 0)) * n_);
 }
 
@@ -166,6 +168,12 @@ void NodeSystem::set_null_below(double threshold) {
 void NodeSystem::factor_border() {
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
+  // A null direction is to be had, as what there is most of in a step: a pivot of zero is its roundoff.
+  if (null_below_ == 0 && pivots.minCoeff() == 0) {
+    schur_.diagonal().array() +=
+        roundoff * std::max(corner_.cwiseAbs().maxCoeff(), schur_.cwiseAbs().maxCoeff());
+    lu_.compute(schur_);
+  }
   // All pivots are roundoff where large entries stand beside a null row and column alone.
   const double largest = schur_.cwiseAbs().maxCoeff();
   if (pivots.minCoeff() > null_below_ * pivots.maxCoeff() && pivots.maxCoeff() > null_below_ * largest) {
