@@ -9,8 +9,10 @@
 namespace bench {
 
 struct FamilyCost {
-  int points = 0;      ///< after the first
-  double seconds = 0;  ///< median for one of them, with its index and multipliers
+  int points = 0;       ///< at the ends of steps on which nothing was met
+  double seconds = 0;   ///< median for one of them, with its index and multipliers
+  int met = 0;          ///< folds, crossings and period doublings
+  double locating = 0;  ///< median for one of them, with its share of the step
   double worst_action_slope = 0, worst_momentum = 0;  ///< see extremal::Continuation
   std::string end;                                    ///< why the family ended
 };

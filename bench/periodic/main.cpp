@@ -83,10 +83,10 @@ void report_family(const Options& options) {
     study.options.tolerance = tolerance;
     const FamilyCost cost = measure_family(study, options.family_to, std::max(options.repeat / 10, 1));
     fmt::print(
-        "{:18} {:8.0e} {:8.1f} µs a point with index and multipliers, {} points; dS = -E dT to {:.0e}, "
-        "dS/dq = p to {:.0e}; {}\n",
-        "halo family", tolerance, 1e6 * cost.seconds, cost.points, cost.worst_action_slope,
-        cost.worst_momentum, cost.end);
+        "{:18} {:8.0e} {:8.1f} µs a point with index and multipliers, {} points; {:.0f} µs to locate a "
+        "bifurcation, {} of them; dS = -E dT to {:.0e}, dS/dq = p to {:.0e}; {}\n",
+        "halo family", tolerance, 1e6 * cost.seconds, cost.points, 1e6 * cost.locating, cost.met,
+        cost.worst_action_slope, cost.worst_momentum, cost.end);
   }
 }
 

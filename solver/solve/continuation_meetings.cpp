@@ -48,7 +48,7 @@ double swing(const Path& a, const Path& b) {
 /// Folds and crossings are located so well.
 bool Continuation::settled(double change) const {
   return std::abs(change * here_.rate) <= located * std::abs(family_.to - family_.from) &&
-         std::abs(change) <= 1e-6;
+         std::abs(change) <= 1e-8;
 }
 
 /// Of the derivative of what varies, on the step, as the parabola tells that has its values at both ends and

@@ -71,34 +71,29 @@ template <class Test>
 std::optional<Reading> Continuation::dip(const Stand& from, const Reading& low, const Reading& high,
                                          double at, const Test& test) {
   constexpr int most_trials = 12;
-  constexpr double clear = 0.5, near = 1e-3, next_to_an_end = 0.02;
+  constexpr double clear = 0.5, near = 1e-3;
   const double sign = std::copysign(1.0, low.value), length = high.at - low.at;
-  const auto less = [sign](const Reading& a, const Reading& b) { return sign * a.value < sign * b.value; };
   Reading left = low, right = high;
-  std::optional<Reading> least;
+  std::optional<Reading> middle;
   for (int k = 0; k < most_trials; ++k) {
     if (!go(from, at)) return std::nullopt;
     Reading next = {at, test()};
     if (std::isnan(next.value)) return std::nullopt;
     if (sign * next.value <= 0) return next;
-    if (least) {
-      if (less(next, *least)) std::swap(next, *least);
-      (next.at < least->at ? left : right) = next;
-    } else {
-      least = next;
+    if (!middle)
+      middle = next;
+    else {
+      if (sign * next.value < sign * middle->value) std::swap(next, *middle);
+      (next.at < middle->at ? left : right) = next;
     }
-    if (!less(*least, left) || !less(*least, right)) {
-      (less(left, right) ? right : left) = *std::exchange(least, std::nullopt);
-      if (right.at - left.at < next_to_an_end * length) return std::nullopt;
-      at = 0.5 * (left.at + right.at);
-      continue;
-    }
-    const double a = left.at - least->at, b = right.at - least->at;
-    const double u = (left.value - least->value) / a, v = (right.value - least->value) / b;
+    const double a = left.at - middle->at, b = right.at - middle->at;
+    const double u = (left.value - middle->value) / a, v = (right.value - middle->value) / b;
     const double bend = (v - u) / (b - a), slope = u - a * bend, off = -0.5 * slope / bend;
-    if (std::abs(off) <= near * length) return std::nullopt;
-    if (k > 1 && sign * (least->value + 0.5 * slope * off) > clear * sign * least->value) return std::nullopt;
-    at = least->at + off;
+    const bool turns = sign * bend > 0 && off > a && off < b;
+    if (!turns || std::abs(off) <= near * length) return std::nullopt;
+    if (k > 0 && sign * (middle->value + 0.5 * slope * off) > clear * sign * middle->value)
+      return std::nullopt;
+    at = middle->at + off;
   }
   return std::nullopt;
 }
