@@ -180,7 +180,7 @@ bool DormandPrince<T>::prepare_interpolation(std::span<const T> y, int component
 
 template <class T>
 void DormandPrince<T>::interpolate(T theta, std::span<T> y) const {
-  for (int m = 0; m < interpolated_; ++m) {
+  for (std::size_t m = 0; m < y.size(); ++m) {
     const T* const shape = shape_.data() + std::size_t(7) * m;
     T value = 0;
     for (int r = 6; r >= 0; --r) value = (value + shape[r]) * (r % 2 == 0 ? theta : 1 - theta);

@@ -40,7 +40,7 @@ class DormandPrince {
   /// Interpolation of order 7 in the last accepted step, of the first `components` of y, which must have a
   /// slope of their own. False where the right-hand side cannot be evaluated.
   bool prepare_interpolation(std::span<const T> y, int components);
-  /// At the fraction theta of the step.
+  /// At the fraction theta of the step, as many components as y has.
   void interpolate(T theta, std::span<T> y) const;
 
   /// One step of length h from (t, y) into next(); false if a stage cannot be evaluated.

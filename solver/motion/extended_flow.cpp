@@ -1,5 +1,7 @@
 #include "motion/extended_flow.hpp"
 
+#include <qd/dd_real.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,56 +10,82 @@ namespace extremal {
 namespace {
 
 constexpr int most_coordinates = 64;
+/// Each gives the digits of a double, less what the condition of M costs.
+constexpr int mass_refinements = 3;
 
-using Real = ExtendedFlow::Real;
-using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+double rounded(const Extended& x) { return static_cast<double>(x); }
+double rounded(const DoubleDouble& x) { return to_double(x); }
 
+template <class Real>
 bool finite(std::span<const Real> x) {
-  return std::all_of(x.begin(), x.end(), [](Real a) { return std::isfinite(a); });
+  return std::all_of(x.begin(), x.end(), [](const Real& a) { return std::isfinite(rounded(a)); });
 }
 
 }  // namespace
 
-bool ExtendedFlow::suits(const Lagrangian& lagrangian) {
+template <class Real>
+bool ExtendedFlow<Real>::suits(const Lagrangian& lagrangian) {
   const Structure& structure = lagrangian.structure();
   if (!structure.quadratic || !structure.velocity_free || structure.coordinates > most_coordinates)
     return false;
-  const std::vector<Real> at(structure.coordinates, 0);
+  const std::vector<Real> at(structure.coordinates, 0.0);
   std::vector<Real> rows(lagrangian.rows(Order::gradient));
-  PointScratch<Extended> scratch;
-  return lagrangian.evaluate_extended(at.data(), at.data(), 0, rows.data(), scratch);
+  PointScratch<Real> scratch;
+  return lagrangian.evaluate_extended(at.data(), at.data(), Real(0.0), rows.data(), scratch);
 }
 
-ExtendedFlow::ExtendedFlow(const Lagrangian& lagrangian)
-    : lagrangian_(lagrangian), structure_(lagrangian.structure()), rows_(lagrangian.rows(Order::gradient)) {
-  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> mass;
-  mass.setZero(structure_.coordinates, structure_.coordinates);
+template <class Real>
+ExtendedFlow<Real>::ExtendedFlow(const Lagrangian& lagrangian)
+    : lagrangian_(lagrangian),
+      structure_(lagrangian.structure()),
+      part_(structure_.coordinates),
+      rows_(lagrangian.rows(Order::gradient)),
+      rest_(structure_.coordinates) {
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(structure_.coordinates, structure_.coordinates);
   for (const Triplet& m : structure_.mass) mass(m.row, m.column) += m.value;
   mass_.compute(mass);
 }
 
-bool ExtendedFlow::momentum(std::span<const Real> q, std::span<const Real> v, Real, std::span<Real> p) const {
-  std::fill(p.begin(), p.end(), Real(0));
+template <class Real>
+bool ExtendedFlow<Real>::momentum(std::span<const Real> q, std::span<const Real> v, Real,
+                                  std::span<Real> p) const {
+  std::fill(p.begin(), p.end(), 0.0);
   for (const Triplet& m : structure_.mass) p[m.row] += m.value * v[m.column];
   for (const Triplet& c : structure_.gyroscopic) p[c.row] += c.value * q[c.column];
   for (std::size_t a = 0; a < structure_.linear.size(); ++a) p[a] += structure_.linear[a];
-  return finite(p);
+  return finite(std::span<const Real>(p));
 }
 
-bool ExtendedFlow::slope(Real t, std::span<const Real> y, std::span<Real> slope) {
+/// v becomes M⁻¹ v, by refinement of factors in double precision.
+template <class Real>
+void ExtendedFlow<Real>::solve_mass(std::span<Real> v) {
+  std::ranges::copy(v, rest_.begin());
+  std::fill(v.begin(), v.end(), 0.0);
+  for (int pass = 0; pass < mass_refinements; ++pass) {
+    std::transform(rest_.begin(), rest_.end(), part_.begin(), [](const Real& x) { return rounded(x); });
+    part_ = mass_.solve(part_).eval();
+    for (std::size_t a = 0; a < v.size(); ++a) v[a] += part_[a];
+    for (const Triplet& m : structure_.mass) rest_[m.row] -= Real(m.value) * part_[m.column];
+  }
+}
+
+template <class Real>
+bool ExtendedFlow<Real>::slope(Real t, std::span<const Real> y, std::span<Real> slope) {
   const std::size_t n = structure_.coordinates;
   const std::span<const Real> q = y.first(n);
   const std::span<Real> v = slope.first(n), force = slope.subspan(n, n);
   std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(n), n, v.begin());
   for (const Triplet& c : structure_.gyroscopic) v[c.row] -= c.value * q[c.column];
   for (std::size_t a = 0; a < structure_.linear.size(); ++a) v[a] -= structure_.linear[a];
-  Eigen::Map<Vector> velocity(v.data(), structure_.coordinates);
-  velocity = mass_.solve(velocity).eval();
+  solve_mass(v);
   lagrangian_.evaluate_extended(q.data(), v.data(), t, rows_.data(), scratch_);
-  std::fill(force.begin(), force.end(), Real(0));
+  std::fill(force.begin(), force.end(), 0.0);
   for (const Triplet& c : structure_.gyroscopic) force[c.column] += c.value * v[c.row];
   for (std::size_t g = 0; g < structure_.gradient.size(); ++g) force[structure_.gradient[g]] += rows_[1 + g];
-  return finite(slope.first(2 * n));
+  return finite<Real>(slope.first(2 * n));
 }
+
+template class ExtendedFlow<Extended>;
+template class ExtendedFlow<DoubleDouble>;
 
 }  // namespace extremal

@@ -10,11 +10,10 @@
 
 namespace extremal {
 
-/// As Flow, for L = ½ q'ᵀ M q' + q'ᵀ C q + aᵀ q' + R(q, t).
+/// As Flow, for L = ½ q'ᵀ M q' + q'ᵀ C q + aᵀ q' + R(q, t); Real is Extended or DoubleDouble.
+template <class Real>
 class ExtendedFlow {
  public:
-  using Real = long double;
-
   /// Whether L has that form, few coordinates, and derivatives in extended precision.
   static bool suits(const Lagrangian& lagrangian);
   /// `lagrangian` must outlive it.
@@ -26,11 +25,14 @@ class ExtendedFlow {
   bool slope(Real t, std::span<const Real> y, std::span<Real> slope);
 
  private:
+  void solve_mass(std::span<Real> v);
+
   const Lagrangian& lagrangian_;
   const Structure& structure_;
-  Eigen::PartialPivLU<Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>> mass_;
-  std::vector<Real> rows_;
-  PointScratch<Extended> scratch_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> mass_;
+  Eigen::VectorXd part_;
+  std::vector<Real> rows_, rest_;
+  PointScratch<Real> scratch_;
 };
 
 }  // namespace extremal

@@ -10,25 +10,30 @@
 
 namespace extremal {
 
-/// Times from one to another, later or earlier, and q there, row by row.
+/// Times from one to another, later or earlier, in a unit, and q there, row by row.
 struct SampledMotion {
-  std::vector<double> t, q;
+  std::vector<double> share, q;
 };
 
 struct MotionSampling {
-  double tolerance;  ///< of the integrator's steps, relative
-  int a_step;        ///< samples, equally spaced
-  double unit;       ///< no two samples are at one t/unit: extended times may be one in double precision
+  double tolerance;                          ///< of the integrator's steps, relative
+  int a_step;                                ///< samples, equally spaced
+  double unit;                               ///< of time
   std::function<bool(int steps)> more = {};  ///< whether there may be another step after so many
 };
 
-/// The motion from (q, v) at t = `from`, as a flow in (q, p), to t = `to`. False where it cannot be followed:
-/// the samples end there, and there are none if L is not finite at (q, v).
+/// Moves y = (q, p) to where it is at a time, known better; false where that is not.
+template <class Real>
+using Anchor = std::function<bool(Real t, std::span<Real> y)>;
+
+/// The motion from (q, v) at t = `from`, as a flow in (q, p), to t = `to`. Samples are of times that doubles
+/// have. False where it cannot be followed: the samples end there, and there are none if L is not finite at
+/// (q, v).
 template <class Real, class AnyFlow>
 bool sample_motion(AnyFlow flow, std::span<const double> q, std::span<const double> v, double from, double to,
-                   const MotionSampling& options, SampledMotion& samples) {
+                   const MotionSampling& options, SampledMotion& samples, const Anchor<Real>& anchor = {}) {
   const std::size_t n = q.size();
-  std::vector<Real> y(q.begin(), q.end()), between(2 * n);
+  std::vector<Real> y(q.begin(), q.end()), between(n);
   const std::vector<Real> velocity(v.begin(), v.end());
   y.resize(2 * n);
   samples = {};
@@ -39,24 +44,24 @@ bool sample_motion(AnyFlow flow, std::span<const double> q, std::span<const doub
   IntegrationOptions integration;
   integration.tolerance = options.tolerance;
   integration.block = static_cast<int>(n);
-  const auto add = [&](Real t, std::span<const Real> point) {
-    const double rounded = static_cast<double>(t);
-    if (!samples.t.empty() && samples.t.back() / options.unit == rounded / options.unit) return;
-    samples.t.push_back(rounded);
-    for (const Real x : point) samples.q.push_back(static_cast<double>(x));
+  const auto add = [&](double share, std::span<const Real> point) {
+    samples.share.push_back(share);
+    for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));
   };
-  add(from, std::span(y).first(n));
+  add(from / options.unit, y);
   for (Real t = from, before = from; t != to; before = t) {
     if ((options.more && !options.more(method.steps())) ||
         method.accept_step(t, y, to, integration) != Integrated::done ||
         !method.prepare_interpolation(y, static_cast<int>(2 * n)))
       return false;
-    for (int k = 1; k < options.a_step; ++k) {
-      const Real theta = Real(k) / options.a_step;
-      method.interpolate(theta, between);
-      add(before + theta * (t - before), std::span(between).first(n));
+    for (int k = 1; k <= options.a_step; ++k) {
+      const Real near = before + (t - before) * k / options.a_step;
+      const auto share = static_cast<double>(near / options.unit);
+      if (share == samples.share.back()) continue;
+      method.interpolate((share * Real(options.unit) - before) / (t - before), between);
+      add(share, between);
     }
-    add(t, std::span(y).first(n));
+    if (anchor && !anchor(t, y)) return false;
   }
   return true;
 }

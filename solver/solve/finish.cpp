@@ -224,6 +224,7 @@ OtherPoints examine_part(const SolveOptions& options, Outcome& outcome, Workspac
     others = try_other_points(reduction.part, outcome, solution, w);
     unfold(reduction, w.path, *outcome.tables, w.whole);
   }
+  others.told_apart = true;  // periodic orbits may come in families
   residual = residual_under_others(reduction.part, outcome, w);
   std::swap(w.path, w.whole);
   return others;

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <qd/dd_real.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "motion/extended_flow.hpp"
+#include "motion/extrapolation.hpp"
 #include "motion/flow.hpp"
 #include "motion/sample.hpp"
 #include "problem/closing.hpp"
@@ -40,27 +43,69 @@ constexpr std::size_t many_steps = 750;
 template <class Real>
 constexpr double tolerance = 1e-14;
 template <>
-constexpr double tolerance<long double> = 1e-17;
+constexpr double tolerance<Extended> = 1e-17;
 
 template <class Real, class AnyFlow>
 SampledMotion sample(const InitialState& state, double from, double to, const Problem& problem,
-                     const Location& at) {
+                     const Location& at, const Anchor<Real>& anchor = {}) {
   SampledMotion samples;
   const MotionSampling options{tolerance<Real>, samples_a_step, problem.duration.value};
-  if (sample_motion<Real>(AnyFlow(*problem.lagrangian), state.q, state.v, from, to, options, samples))
+  if (sample_motion<Real>(AnyFlow(*problem.lagrangian), state.q, state.v, from, to, options, samples, anchor))
     return samples;
-  if (samples.t.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
+  if (samples.share.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
   throw SceneError(at, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}",
-                                   samples.t.back()));
+                                   samples.share.back() * problem.duration.value));
 }
+
+/// The same motion in twice the precision, from place to place where samples begin anew.
+class ExactMotion {
+ public:
+  ExactMotion(const InitialState& state, double from, const Lagrangian& lagrangian)
+      : flow_(lagrangian),
+        method_([this](DoubleDouble t, auto y, auto slope) { return flow_.slope(t, y, slope); },
+                static_cast<int>(2 * state.q.size())),
+        t_(from),
+        y_(state.q.begin(), state.q.end()) {
+    const std::vector<DoubleDouble> v(state.v.begin(), state.v.end());
+    y_.resize(2 * v.size());
+    flow_.momentum(std::span(y_).first(v.size()), v, t_, std::span(y_).subspan(v.size()));
+  }
+
+  bool operator()(Extended t, std::span<Extended> y) {
+    if (++steps_ % steps_between != 0) return true;
+    const DoubleDouble to = wide(t);
+    if (!method_.advance(t_, y_, to - t_, exact)) return false;
+    t_ = to;
+    std::transform(y_.begin(), y_.end(), y.begin(),
+                   [](const DoubleDouble& x) { return static_cast<Extended>(x.x[0]) + x.x[1]; });
+    return true;
+  }
+
+ private:
+  static constexpr double exact = 1e-28;
+  /// So many are one of extrapolation.
+  static constexpr int steps_between = 4;
+  static DoubleDouble wide(Extended t) {
+    const auto high = static_cast<double>(t);
+    return {high, static_cast<double>(t - high)};
+  }
+
+  ExtendedFlow<DoubleDouble> flow_;
+  Extrapolation method_;
+  DoubleDouble t_;
+  std::vector<DoubleDouble> y_;
+  int steps_ = 0;
+};
 
 /// Where it takes many steps, in extended precision if L has it.
 SampledMotion motion_from(const InitialState& state, double from, double to, const Problem& problem,
                           const Location& at) {
   SampledMotion samples = sample<double, Flow>(state, from, to, problem, at);
-  if (samples.t.size() > many_steps * samples_a_step && ExtendedFlow::suits(*problem.lagrangian))
-    samples = sample<long double, ExtendedFlow>(state, from, to, problem, at);
-  return samples;
+  const Lagrangian& lagrangian = *problem.lagrangian;
+  if (samples.share.size() <= many_steps * samples_a_step || !ExtendedFlow<DoubleDouble>::suits(lagrangian))
+    return samples;
+  ExactMotion exact(state, from, lagrangian);
+  return sample<Extended, ExtendedFlow<Extended>>(state, from, to, problem, at, std::ref(exact));
 }
 
 /// Where an orbit that closes arrives.
@@ -73,18 +118,18 @@ InitialState closed(const ClosingMap& map, const InitialState& state) {
 
 /// Of an orbit that closes only the first half is integrated onwards; the second is integrated back from
 /// where it has to arrive: errors grow for half as long. Halfway each gives way to the other.
-void add_halves(const SampledMotion& first, const SampledMotion& second, double duration, Guess& guess) {
-  const std::size_t n = first.q.size() / first.t.size();
+void add_halves(const SampledMotion& first, const SampledMotion& second, Guess& guess) {
+  const std::size_t n = first.q.size() / first.share.size();
   const auto add = [&](const SampledMotion& half, std::size_t k, double weight) {
-    const double share = half.t.front() == 0 ? half.t[k] : duration - half.t[k];
-    guess.tau.push_back(half.t[k] / duration);
+    const double share = half.share.front() == 0 ? half.share[k] : 1 - half.share[k];
+    guess.tau.push_back(half.share[k]);
     for (std::size_t a = 0; a < n; ++a) {
       const double gap = second.q[second.q.size() - n + a] - first.q[first.q.size() - n + a];
-      guess.q.push_back(half.q[k * n + a] + weight * gap * share / duration);
+      guess.q.push_back(half.q[k * n + a] + weight * gap * share);
     }
   };
-  for (std::size_t k = 0; k < first.t.size(); ++k) add(first, k, 1);
-  for (std::size_t k = second.t.size() - 1; k-- > 0;) add(second, k, -1);
+  for (std::size_t k = 0; k < first.share.size(); ++k) add(first, k, 1);
+  for (std::size_t k = second.share.size() - 1; k-- > 0;) add(second, k, -1);
 }
 
 }  // namespace
@@ -97,11 +142,11 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
     const SampledMotion first = motion_from(state, 0, duration / 2, problem, at);
     const SampledMotion second =
         motion_from(closed(closing_map(problem), state), duration, duration / 2, problem, at);
-    add_halves(first, second, duration, problem.guess);
+    add_halves(first, second, problem.guess);
   } else {
-    const SampledMotion samples = motion_from(state, 0, duration, problem, at);
-    for (const double t : samples.t) problem.guess.tau.push_back(t / duration);
-    problem.guess.q = samples.q;
+    SampledMotion samples = motion_from(state, 0, duration, problem, at);
+    problem.guess.tau = std::move(samples.share);
+    problem.guess.q = std::move(samples.q);
   }
   problem.guess.motion = true;
 }

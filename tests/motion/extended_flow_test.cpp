@@ -1,17 +1,17 @@
 #include "motion/extended_flow.hpp"
 
 #include <gtest/gtest.h>
+#include <qd/dd_real.h>
 
 #include <cmath>
 
 #include "motion/dop853.hpp"
+#include "motion/extrapolation.hpp"
 #include "motion/flow.hpp"
 #include "rivals/problems.hpp"
 
 namespace extremal {
 namespace {
-
-using Real = long double;
 
 /// A charge in a field along z and a spring, a constant momentum that does nothing, unequal masses coupled.
 std::shared_ptr<const Lagrangian> charge() {
@@ -21,11 +21,20 @@ std::shared_ptr<const Lagrangian> charge() {
   });
 }
 
-TEST(ExtendedFlow, IsTheFlow) {
+double rounded(const Extended& x) { return static_cast<double>(x); }
+double rounded(const DoubleDouble& x) { return to_double(x); }
+
+template <class Real>
+class ExtendedFlows : public testing::Test {};
+using Numbers = testing::Types<Extended, DoubleDouble>;
+TYPED_TEST_SUITE(ExtendedFlows, Numbers);
+
+TYPED_TEST(ExtendedFlows, AreTheFlow) {
+  using Real = TypeParam;
   for (const auto& lagrangian : {kepler(), henon_heiles(), charge()}) {
-    ASSERT_TRUE(ExtendedFlow::suits(*lagrangian));
+    ASSERT_TRUE(ExtendedFlow<Real>::suits(*lagrangian));
     Flow flow(*lagrangian);
-    ExtendedFlow extended(*lagrangian);
+    ExtendedFlow<Real> extended(*lagrangian);
     const std::vector<double> q{0.6, -0.3}, v{0.2, 1.1};
     std::vector<double> y(q), slope(4);
     y.resize(4);
@@ -33,16 +42,25 @@ TEST(ExtendedFlow, IsTheFlow) {
     const std::vector<Real> wide_q(q.begin(), q.end()), wide_v(v.begin(), v.end());
     std::vector<Real> wide(wide_q), wide_slope(4);
     wide.resize(4);
-    ASSERT_TRUE(extended.momentum(wide_q, wide_v, 0, std::span(wide).subspan(2)));
-    ASSERT_TRUE(extended.slope(0, wide, wide_slope));
+    ASSERT_TRUE(extended.momentum(wide_q, wide_v, Real(0.0), std::span(wide).subspan(2)));
+    ASSERT_TRUE(extended.slope(Real(0.0), wide, wide_slope));
     for (int k = 0; k < 4; ++k) {
-      EXPECT_NEAR(static_cast<double>(wide[k]), y[k], 1e-15) << k;
-      EXPECT_NEAR(static_cast<double>(wide_slope[k]), slope[k], 1e-14) << k;
+      EXPECT_NEAR(rounded(wide[k]), y[k], 1e-15) << k;
+      EXPECT_NEAR(rounded(wide_slope[k]), slope[k], 1e-14) << k;
     }
   }
 }
 
-TEST(ExtendedFlow, RefusesInertiaThatVaries) { EXPECT_FALSE(ExtendedFlow::suits(*double_pendulum())); }
+TYPED_TEST(ExtendedFlows, RefuseInertiaThatVaries) {
+  EXPECT_FALSE(ExtendedFlow<TypeParam>::suits(*double_pendulum()));
+}
+
+TYPED_TEST(ExtendedFlows, StopWhereForcesAreNotFinite) {
+  const auto lagrangian = kepler();
+  std::vector<TypeParam> slope(4);
+  const std::vector<TypeParam> collision{0.0, 0.0, 1.0, 0.0};
+  EXPECT_FALSE(ExtendedFlow<TypeParam>(*lagrangian).slope(TypeParam(0.0), collision, slope));
+}
 
 /// By how much Kepler's ellipse of eccentricity 7/8 is open after a revolution.
 template <class Real, class AnyFlow>
@@ -63,15 +81,21 @@ double opening(double tolerance) {
 }
 
 TEST(ExtendedFlow, ClosesAnEllipse) {
-  EXPECT_LT((opening<long double, ExtendedFlow>(1e-18)), 1e-14);
+  EXPECT_LT((opening<Extended, ExtendedFlow<Extended>>(1e-18)), 1e-14);
   EXPECT_GT((opening<double, Flow>(1e-15)), 1e-13);
 }
 
-TEST(ExtendedFlow, StopsWhereForcesAreNotFinite) {
+/// The same ellipse in steps that are too long for one extrapolation and have to be halved.
+TEST(Extrapolation, ClosesAnEllipse) {
   const auto lagrangian = kepler();
-  std::vector<Real> slope(4);
-  const std::vector<Real> collision{0, 0, 1, 0};
-  EXPECT_FALSE(ExtendedFlow(*lagrangian).slope(0, collision, slope));
+  ExtendedFlow<DoubleDouble> flow(*lagrangian);
+  Extrapolation method([&](DoubleDouble t, auto y, auto slope) { return flow.slope(t, y, slope); }, 4);
+  const DoubleDouble e = 0.875;
+  const std::vector<DoubleDouble> start{1.0 - e, 0.0, 0.0, sqrt((1.0 + e) / (1.0 - e))};
+  std::vector<DoubleDouble> y = start;
+  const DoubleDouble step = dd_real::_2pi / 4.0;
+  for (int k = 0; k < 4; ++k) ASSERT_TRUE(method.advance(k * step, y, step, 1e-28));
+  for (int k = 0; k < 4; ++k) EXPECT_LT(std::abs(to_double(y[k] - start[k])), 1e-24) << k;
 }
 
 }  // namespace
