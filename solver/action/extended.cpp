@@ -117,7 +117,7 @@ void ExtendedGradient::Element::load(int k) {
   const double *const x = path.x(0) + lane, *const by = change ? change->inner.data() + lane : nullptr;
   for (std::size_t u = 0; u < deviation.size(); ++u)
     deviation[u] = dd_real(x[u * lanes]) + (by ? part * by[u * lanes] : 0);
-  h = (dd_real(path.mesh()[k + 1]) - path.mesh()[k]) * duration;
+  h = path.lengths()[k] * duration;
 }
 
 /// q, q' and t at point i of element k.

@@ -7,13 +7,16 @@
 
 namespace extremal {
 
-void Path::reset(const ElementTables& tables, std::span<const double> mesh, double duration) {
+void Path::reset(const ElementTables& tables, std::span<const double> mesh, double duration,
+                 std::span<const double> lengths) {
   n_ = tables.coordinates();
   degree_ = tables.scheme().degree;
   unknowns_ = tables.unknowns();
   elements_ = static_cast<int>(mesh.size()) - 1;
   batches_ = (elements_ + lanes - 1) / lanes;
   mesh_.assign(mesh.begin(), mesh.end());
+  lengths_.assign(lengths.begin(), lengths.end());
+  if (lengths.empty()) measure_mesh();
   lobatto_.assign(tables.scheme().lobatto.begin(), tables.scheme().lobatto.end());
   high_.assign(static_cast<std::size_t>(elements_ + 1) * n_, 0);
   low_.assign(high_.size(), 0);
@@ -23,19 +26,25 @@ void Path::reset(const ElementTables& tables, std::span<const double> mesh, doub
   set_duration(duration);
 }
 
+void Path::measure_mesh() {
+  lengths_.resize(elements_);
+  for (int k = 0; k < elements_; ++k) lengths_[k] = mesh_[k + 1] - mesh_[k];
+}
+
 void Path::set_duration(double duration) {
   duration_ = duration;
   for (int k = 0; k < batches_ * lanes; ++k) {
     const int e = std::min(k, elements_ - 1);
-    h_[k] = (mesh_[e + 1] - mesh_[e]) * duration;
+    h_[k] = lengths_[e] * duration;
     start_[k] = mesh_[e] * duration;
   }
 }
 
 bool Path::move_mesh(std::span<const double> times, double factor, double least) {
   for (int k = 0; k < elements_; ++k)
-    if (!(factor * (times[k + 1] - times[k]) > (least - 1) * (mesh_[k + 1] - mesh_[k]))) return false;
+    if (!(factor * (times[k + 1] - times[k]) > (least - 1) * lengths_[k])) return false;
   for (int k = 1; k < elements_; ++k) mesh_[k] += factor * times[k];
+  measure_mesh();
   set_duration(duration_);
   return true;
 }
@@ -114,7 +123,7 @@ void Path::load_ends() {
 }
 
 void Path::interpolate_from(const Path& other, const ElementTables& tables, std::span<const double> matrix) {
-  reset(tables, other.mesh(), other.duration());
+  reset(tables, other.mesh(), other.duration(), other.lengths());
   high_ = other.high_;
   low_ = other.low_;
   const int old_inner = other.degree_ - 1, old_count = other.degree_ + 1;

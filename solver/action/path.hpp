@@ -17,8 +17,10 @@ namespace extremal {
 /// element.
 class Path {
  public:
-  /// N = mesh.size() − 1 elements over `mesh` (t/T, 0 to 1), all zero. Keeps memory.
-  void reset(const ElementTables& tables, std::span<const double> mesh, double duration);
+  /// N = mesh.size() − 1 elements over `mesh` (t/T, 0 to 1), all zero, of `lengths` if they are known to more
+  /// digits than differences of the mesh. Keeps memory.
+  void reset(const ElementTables& tables, std::span<const double> mesh, double duration,
+             std::span<const double> lengths = {});
 
   int coordinates() const { return n_; }
   int degree() const { return degree_; }
@@ -26,6 +28,7 @@ class Path {
   int batches() const { return batches_; }
   double duration() const { return duration_; }
   std::span<const double> mesh() const { return mesh_; }
+  std::span<const double> lengths() const { return lengths_; }  ///< N, in t/T
 
   /// Sets the values at the s + 1 Lobatto nodes of element k from q[(j)*n + a].
   void set_element(int k, const double* q);
@@ -80,11 +83,12 @@ class Path {
 
  private:
   void values(int k, int count, const double* tau, double* q) const;
+  void measure_mesh();
 
   static constexpr int lanes_of = 8;
   int n_ = 0, degree_ = 0, elements_ = 0, batches_ = 0, unknowns_ = 0;
   double duration_ = 0;
-  std::vector<double> mesh_, high_, low_, lobatto_;
+  std::vector<double> mesh_, lengths_, high_, low_, lobatto_;
   AlignedDoubles x_, h_, start_;
 };
 

@@ -83,7 +83,7 @@ void DiscreteAction::gather(const Path& path, int b) {
   for (int k = first; k < last; ++k) {
     const int lane = k - first;
     action_ += action[lane];
-    if (border_) slope_duration_ += slope[lane] * (path.mesh()[k + 1] - path.mesh()[k]);
+    if (border_) slope_duration_ += slope[lane] * path.lengths()[k];
     double* node = raw_nodes_.data() + static_cast<std::size_t>(k) * n_;
     for (int a = 0; a < 2 * n_; ++a) {
       const double g = ends[a * lanes + lane];

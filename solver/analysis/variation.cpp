@@ -131,13 +131,9 @@ bool SecondVariation::cut() {
 
 void SecondVariation::evaluate(std::span<const Part> parts) {
   const int n = coordinates(), s = trajectory_->degree, count = static_cast<int>(parts.size());
-  const std::vector<double>& times = trajectory_->times;
-  const auto time = [&](int element, double tau) {
-    return times[element] + tau * (times[element + 1] - times[element]);
-  };
-  mesh_.clear();
-  for (const Part& part : parts) mesh_.push_back(time(part.element, part.tau0));
-  mesh_.push_back(time(parts.back().element, parts.back().tau1));
+  // Where time does not matter it begins with the first part: lengths keep their digits.
+  mesh_ = {lagrangian_->structure().autonomous ? 0 : start(parts.front())};
+  for (const Part& part : parts) mesh_.push_back(mesh_.back() + length(part));
   path_.reset(tables_, mesh_, 1);
   values_.resize(static_cast<std::size_t>(scheme_->functions) * n);
   for (int k = 0; k < count; ++k) {
@@ -158,7 +154,6 @@ void SecondVariation::evaluate(std::span<const Part> parts) {
 bool SecondVariation::take(const Condensed& condensed) {
   const int elements = trajectory_->elements();
   if (!resolved(*condensed.action, elements, condensed.tail)) return false;
-  mesh_ = trajectory_->times;
   batch_.clear();
   for (int k = 0; k < elements; ++k) batch_.push_back({k, 0, 1});
   keep(*condensed.action, batch_);
@@ -196,7 +191,7 @@ bool SecondVariation::resolved(const DiscreteAction& action, int count, double a
 void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> parts) {
   const int n = coordinates(), first = count();
   for (int k = 0; k < static_cast<int>(parts.size()); ++k) {
-    pieces_.push_back({parts[k], mesh_[k], mesh_[k + 1] - mesh_[k], first + k / lanes * lanes});
+    pieces_.push_back({parts[k], start(parts[k]), length(parts[k]), first + k / lanes * lanes});
     const std::size_t size = static_cast<std::size_t>(n) * n, at = forms_.size();
     forms_.resize(at + 3 * size);
     double *const a = forms_.data() + at, *const b = a + size, *const d = b + size;

@@ -71,6 +71,12 @@ class SecondVariation {
     double start, length;
     int first;  ///< the first piece of those that were evaluated with it
   };
+  double start(const Part& part) const {
+    return trajectory_->times[part.element] + part.tau0 * trajectory_->length(part.element);
+  }
+  double length(const Part& part) const {
+    return (part.tau1 - part.tau0) * trajectory_->length(part.element);
+  }
   bool cut();
   void evaluate(std::span<const Part> parts);
   bool resolved(const DiscreteAction& action, int count, double allowed);

@@ -23,7 +23,7 @@ void element_point(const Trajectory& trajectory, int k, const Basis::Row& basis,
     }
     return;
   }
-  const double h = trajectory.times[k + 1] - trajectory.times[k];
+  const double h = trajectory.length(k);
   for (int a = 0; a < n; ++a) {
     const double q0 = nodes[reference + a], v0 = slopes ? slopes[reference + a] : 0;
     double change = 0, slope = 0;

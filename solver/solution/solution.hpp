@@ -42,9 +42,13 @@ struct Trajectory {
   std::vector<double> nodes;  ///< (s + 1) values an element at its Lobatto points: [(k*(s+1) + j)*n + a]
   /// q' likewise: values rounded to double tell derivatives only to ε|q|s²/h. Empty: taken from the values.
   std::vector<double> slopes = {};
+  std::vector<double> lengths = {};  ///< of elements, to more digits than times tell. Empty: taken from those
 
   int elements() const { return static_cast<int>(times.size()) - 1; }
   double duration() const { return times.empty() ? 0 : times.back(); }
+  double length(int element) const {
+    return lengths.empty() ? times[element + 1] - times[element] : lengths[element];
+  }
   /// q and q' at t in [0, T], n entries each; between two elements of the later one. Throws
   /// std::invalid_argument for other t.
   void at(double t, std::span<double> q, std::span<double> v) const;

@@ -155,6 +155,7 @@ Trajectory trajectory_of(const Path& path) {
   t.coordinates = path.coordinates();
   t.degree = path.degree();
   for (double tau : path.mesh()) t.times.push_back(tau * path.duration());
+  for (double length : path.lengths()) t.lengths.push_back(length * path.duration());
   const std::size_t size = static_cast<std::size_t>(path.degree() + 1) * path.coordinates();
   t.nodes.resize(path.elements() * size);
   t.slopes.resize(path.elements() * size);

@@ -7,11 +7,13 @@ namespace extremal {
 void unfold(const Reduction& reduction, const Path& part, const ElementTables& tables, Path& whole) {
   const int count = part.elements(), parts = reduction.parts();
   const auto backwards = [&](int i) { return reduction.mirror && i % 2 == 1; };
-  std::vector<double> mesh{0};
+  std::vector<double> mesh{0}, lengths;
   for (int i = 0; i < parts; ++i)
-    for (int k = 1; k <= count; ++k)
+    for (int k = 1; k <= count; ++k) {
       mesh.push_back((i + (backwards(i) ? 1 - part.mesh()[count - k] : part.mesh()[k])) / parts);
-  whole.reset(tables, mesh, parts * part.duration());
+      lengths.push_back(part.lengths()[backwards(i) ? count - k : k - 1] / parts);
+    }
+  whole.reset(tables, mesh, parts * part.duration(), lengths);
   // In turn M^k on [k, k + 1/2] T/turns and M^k M S backwards on the rest, or M^k on all of it.
   SignedPermutation turns = SignedPermutation::identity(part.coordinates());
   for (int i = 0; i < parts; ++i) {

@@ -43,6 +43,7 @@ Trajectory repeated(const Trajectory& once, int times) {
       result.times.push_back(k * once.duration() + once.times[i]);
     result.nodes.insert(result.nodes.end(), once.nodes.begin(), once.nodes.end());
     result.slopes.insert(result.slopes.end(), once.slopes.begin(), once.slopes.end());
+    result.lengths.insert(result.lengths.end(), once.lengths.begin(), once.lengths.end());
   }
   return result;
 }
