@@ -142,13 +142,14 @@ void Path::interpolate_from(const Path& other, const ElementTables& tables, std:
 }
 
 void Path::split_from(const Path& other, const ElementTables& tables, std::span<const double> halves) {
-  std::vector<double> mesh;
+  std::vector<double> mesh, lengths;
   for (int k = 0; k < other.elements_; ++k) {
+    lengths.insert(lengths.end(), 2, 0.5 * other.lengths_[k]);
     mesh.push_back(other.mesh_[k]);
     mesh.push_back(0.5 * (other.mesh_[k] + other.mesh_[k + 1]));
   }
   mesh.push_back(1);
-  reset(tables, mesh, other.duration_);
+  reset(tables, mesh, other.duration_, lengths);
   const int count = degree_ + 1;
   std::vector<double> whole(static_cast<std::size_t>(count) * n_), part(whole.size());
   for (int k = 0; k < elements_; ++k) {

@@ -91,7 +91,10 @@ Eigen::VectorXd SecondVariation::shift(int k) const {
   const int n = coordinates();
   const double t = k < count() ? pieces_[k].start : trajectory_->duration();
   std::vector<double> q(n), v(n);
-  trajectory_->at(t, q, v);
+  if (k < count())
+    trajectory_->in_element(pieces_[k].part.element, pieces_[k].part.tau0, q, v);
+  else
+    trajectory_->in_element(trajectory_->elements() - 1, 1, q, v);
   Scratch memory;
   const PointValues values = evaluate_at(*lagrangian_, q, v, t, Order::gradient, memory);
   Eigen::VectorXd field(2 * n);
@@ -131,10 +134,14 @@ bool SecondVariation::cut() {
 
 void SecondVariation::evaluate(std::span<const Part> parts) {
   const int n = coordinates(), s = trajectory_->degree, count = static_cast<int>(parts.size());
-  // Where time does not matter it begins with the first part: lengths keep their digits.
-  mesh_ = {lagrangian_->structure().autonomous ? 0 : start(parts.front())};
-  for (const Part& part : parts) mesh_.push_back(mesh_.back() + length(part));
-  path_.reset(tables_, mesh_, 1);
+  mesh_.clear();
+  lengths_.clear();
+  for (const Part& part : parts) {
+    mesh_.push_back(start(part));
+    lengths_.push_back(length(part));
+  }
+  mesh_.push_back(mesh_.back() + lengths_.back());
+  path_.reset(tables_, mesh_, 1, lengths_);
   values_.resize(static_cast<std::size_t>(scheme_->functions) * n);
   for (int k = 0; k < count; ++k) {
     const Part& part = parts[k];

@@ -152,7 +152,6 @@ Integrated DormandPrince<T>::advance(T& t, std::span<T> y, T end, const Integrat
 template <class T>
 bool DormandPrince<T>::prepare_interpolation(std::span<const T> y, int components) {
   const auto k = [&](int i) { return std::span<T>(k_).subspan(std::size_t(i) * size_, components); };
-  interpolated_ = components;
   if (!slope_(last_t_ + last_h_, y.first(components), k(dop853::stages))) return false;
   for (int i = 0; i < 3; ++i) {
     for (int m = 0; m < components; ++m) {

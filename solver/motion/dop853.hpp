@@ -58,7 +58,6 @@ class DormandPrince {
   int size_, steps_ = 0, rejected_ = 0;
   T h_ = 0;
   T last_t_ = 0, last_h_ = 0;  ///< of the last accepted step
-  int interpolated_ = 0;
   std::vector<T> k_, stage_, next_;
   std::vector<T> last_y_, shape_;  ///< where that step began; 7 coefficients for each component
 };

@@ -6,7 +6,7 @@
 
 #include "system/lagrangian.hpp"
 
-/// \file The motion of a Lagrangian system in extended precision: encounters amplify the roundoff of double.
+/// \file The motion of a Lagrangian system with more digits: encounters amplify the roundoff of double.
 
 namespace extremal {
 

@@ -45,7 +45,7 @@ bool Extrapolation::midpoint(dd_real t, std::span<const dd_real> y, dd_real h, i
       std::swap(before_[m], end[m]);
     }
   }
-  return true;
+  return std::ranges::all_of(end, [](const dd_real& x) { return std::isfinite(to_double(x)); });
 }
 
 /// Neville's scheme upwards from the last row: the first becomes the best value. By how much it was changed

@@ -12,7 +12,7 @@ namespace extremal {
 
 /// Times from one to another, later or earlier, in a unit, and q there, row by row.
 struct SampledMotion {
-  std::vector<double> share, q;
+  std::vector<double> tau, q;
 };
 
 struct MotionSampling {
@@ -22,13 +22,13 @@ struct MotionSampling {
   std::function<bool(int steps)> more = {};  ///< whether there may be another step after so many
 };
 
-/// Moves y = (q, p) to where it is at a time, known better; false where that is not.
+/// After each step: moves y = (q, p) to where the motion is at t, if that is known better. Whether to go on.
 template <class Real>
 using Anchor = std::function<bool(Real t, std::span<Real> y)>;
 
-/// The motion from (q, v) at t = `from`, as a flow in (q, p), to t = `to`. Samples are of times that doubles
-/// have. False where it cannot be followed: the samples end there, and there are none if L is not finite at
-/// (q, v).
+/// The motion from (q, v) at t = `from`, as a flow in (q, p), to t = `to`. q is that at tau·unit exactly,
+/// though steps end elsewhere. False where it cannot be followed: the samples end there, and there are none
+/// if L is not finite at (q, v).
 template <class Real, class AnyFlow>
 bool sample_motion(AnyFlow flow, std::span<const double> q, std::span<const double> v, double from, double to,
                    const MotionSampling& options, SampledMotion& samples, const Anchor<Real>& anchor = {}) {
@@ -44,8 +44,8 @@ bool sample_motion(AnyFlow flow, std::span<const double> q, std::span<const doub
   IntegrationOptions integration;
   integration.tolerance = options.tolerance;
   integration.block = static_cast<int>(n);
-  const auto add = [&](double share, std::span<const Real> point) {
-    samples.share.push_back(share);
+  const auto add = [&](double tau, std::span<const Real> point) {
+    samples.tau.push_back(tau);
     for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));
   };
   add(from / options.unit, y);
@@ -55,11 +55,11 @@ bool sample_motion(AnyFlow flow, std::span<const double> q, std::span<const doub
         !method.prepare_interpolation(y, static_cast<int>(2 * n)))
       return false;
     for (int k = 1; k <= options.a_step; ++k) {
-      const Real near = before + (t - before) * k / options.a_step;
-      const auto share = static_cast<double>(near / options.unit);
-      if (share == samples.share.back()) continue;
-      method.interpolate((share * Real(options.unit) - before) / (t - before), between);
-      add(share, between);
+      const Real near = k < options.a_step ? before + (t - before) * k / options.a_step : t;
+      const auto tau = static_cast<double>(near / options.unit);
+      if (tau == samples.tau.back()) continue;
+      method.interpolate((tau * Real(options.unit) - before) / (t - before), between);
+      add(tau, between);
     }
     if (anchor && !anchor(t, y)) return false;
   }

@@ -51,10 +51,13 @@ void Trajectory::at(double t, std::span<double> q, std::span<double> v) const {
   const double time = checked_time(t, duration());
   const auto after = std::upper_bound(times.begin() + 1, times.end() - 1, time);
   const int k = static_cast<int>(after - times.begin()) - 1;
-  const double tau = local_time(*this, k, time);
+  in_element(k, local_time(*this, k, time), q, v);
+}
+
+void Trajectory::in_element(int element, double tau, std::span<double> q, std::span<double> v) const {
   std::array<double, max_degree + 1> value, derivative;
   lobatto_basis_at(degree, tau, value.data(), slopes.empty() ? derivative.data() : nullptr);
-  element_point(*this, k, {value.data(), derivative.data()}, q.data(), v.data(), 1);
+  element_point(*this, element, {value.data(), derivative.data()}, q.data(), v.data(), 1);
 }
 
 }  // namespace extremal

@@ -52,6 +52,8 @@ struct Trajectory {
   /// q and q' at t in [0, T], n entries each; between two elements of the later one. Throws
   /// std::invalid_argument for other t.
   void at(double t, std::span<double> q, std::span<double> v) const;
+  /// The same where tau of an element has passed, which may be told better than t.
+  void in_element(int element, double tau, std::span<double> q, std::span<double> v) const;
 };
 
 /// One step of the iteration, for the history.

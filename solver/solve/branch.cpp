@@ -47,7 +47,7 @@ void Branch::bind() {
   w_.levels.bind(problem_.lagrangian);
   tables_ = &w_.levels.at(w_.path.degree());
   w_.iteration.reset(problem_, *tables_, w_.path.elements());
-  if (turns_ == true) w_.iteration.model().set_null_below(0);
+  if (folds_ == true) w_.iteration.model().set_null_below(0);
   factored_ = false;
 }
 
@@ -181,7 +181,7 @@ bool Branch::linearise_parameter() {
   const ClosingEquation* closing = closing_equation(problem_, w_.path, equation);
   if (!evaluate(closing, Factors::anew)) return false;
   model.solve(action, closing, correction.step);
-  if (!turns_) turns_ = model.left_out() == 0;
+  if (!folds_) folds_ = model.left_out() == 0;
   correction.parameter = 0;
   closing_sign_ = 1;
   if (closing) {

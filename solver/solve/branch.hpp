@@ -109,7 +109,7 @@ class Branch {
   const ElementTables* tables_ = nullptr;
   double coordinate_ = 0, unit_, threshold_ = 1e-8;
   bool defined_ = true, factored_ = false;
-  std::optional<bool> turns_;  ///< its null directions are folds, and not those of a degenerate family
+  std::optional<bool> folds_;  ///< its null directions are those of folds, not of a degenerate family
   Units units_;
   ClosingEquation closing_;     ///< where the duration or the energy varies
   double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction

@@ -184,7 +184,8 @@ class Continuation {
   std::optional<BranchPoint> crossing_at(const Stand& from, double at, double length);
   std::optional<Stand> resolved_for(const Stand& from, const Move& response);
   static bool may_double(const Stand& from, const Stand& to, double length);
-  static std::optional<double> nearing_doubling(const Stand& from, const Stand& to, double length);
+  static std::optional<double> nearing_doubling(const Stand& from, const Stand& to, double length,
+                                                std::size_t k);
   void find_doublings(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met);
   std::vector<double> read_gaps();
   double find_rest(const Stand& from, const Stand& to, double length);

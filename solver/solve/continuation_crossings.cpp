@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -86,7 +87,7 @@ double Continuation::narrow(const Stand& from, const Stand& before, Side (&sides
     branch_.respond(here_.tangent, response);
     const double size = std::sqrt(branch_.dot(response, response));
     const bool lower = near ? branch_.dot(response, sides[0].response) > 0 : !differs(here_, before);
-    // At the crossing itself the way along the other branch counts as null and is left out. The secant
+    // At the crossing itself the way along the other branch may count as null and be left out. The secant
     // between points as far on either side tells where that is.
     const bool gone = near && size < std::min(sides[0].size, sides[1].size);
     if (gone && !balanced) {
@@ -150,40 +151,47 @@ std::vector<double> Continuation::read_gaps() {
   return found ? doubling_gaps(*found) : std::vector<double>{NAN};
 }
 
-/// Where on a step a gap may pass zero twice: one that keeps its sign, and would not if it went on as before,
+/// Where on a step gap k may pass zero twice: it keeps its sign, and would not if it went on as before, but
 /// bends away from zero. Where the parabola through its last three values is level.
-std::optional<double> Continuation::nearing_doubling(const Stand& from, const Stand& to, double length) {
-  const std::size_t count = from.gaps.size();
-  if (from.gaps_before.size() != count || to.gaps.size() != count) return std::nullopt;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double gap = from.gaps[k], change = to.gaps[k] - gap;
-    const double before = (gap - from.gaps_before[k]) / from.back;
-    if (!(gap * to.gaps[k] > 0 && gap * (gap + before * length) <= 0)) continue;
-    const double bend = (change / length - before) / (length + from.back);
-    const double level = 0.5 * (length - change / (length * bend));
-    return std::clamp(level, 0.1 * length, 0.9 * length);
-  }
-  return std::nullopt;
+std::optional<double> Continuation::nearing_doubling(const Stand& from, const Stand& to, double length,
+                                                     std::size_t k) {
+  if (from.gaps_before.size() != from.gaps.size()) return std::nullopt;
+  const double gap = from.gaps[k], change = to.gaps[k] - gap;
+  const double before = (gap - from.gaps_before[k]) / from.back;
+  if (!(gap * to.gaps[k] > 0 && gap * (gap + before * length) <= 0)) return std::nullopt;
+  const double bend = (change / length - before) / (length + from.back);
+  const double level = 0.5 * (length - change / (length * bend));
+  return std::clamp(level, 0.1 * length, 0.9 * length);
 }
 
 bool Continuation::may_double(const Stand& from, const Stand& to, double length) {
-  return product(from.gaps) * product(to.gaps) < 0 || nearing_doubling(from, to, length).has_value();
+  if (from.gaps.size() != to.gaps.size()) return changes_sign(product(from.gaps), product(to.gaps));
+  for (std::size_t k = 0; k < from.gaps.size(); ++k)
+    if (changes_sign(from.gaps[k], to.gaps[k]) || nearing_doubling(from, to, length, k)) return true;
+  return false;
 }
 
+/// Gap by gap, in their order; of all together where pairs have met or parted.
 void Continuation::find_doublings(const Stand& from, const Stand& to, double length,
                                   std::vector<Meeting>& met) {
-  std::vector<Reading> places = {{0, product(from.gaps)}, {length, product(to.gaps)}};
-  const auto gap = [this] { return product(read_gaps()); };
-  const std::optional<double> level = nearing_doubling(from, to, length);
-  if (level && places[0].value * places[1].value > 0)
-    if (const auto between = dip(from, places[0], places[1], *level, gap))
-      places.insert(places.begin() + 1, *between);
-  std::optional<Reading> before;
-  if (from.back > 0) before = {-from.back, product(from.gaps_before)};
-  find_roots(from, places, before, gap, [&](double at) {
-    BranchPoint point = read(PointKind::period_doubling);
-    met.push_back({at, {std::move(point), seed_at(PointKind::period_doubling, from, at)}});
-  });
+  const bool same = from.gaps.size() == to.gaps.size();
+  const std::size_t count = same ? from.gaps.size() : 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto of = [&](const std::vector<double>& gaps) {
+      return same && gaps.size() == count ? gaps[k] : product(gaps);
+    };
+    const auto gap = [&] { return of(read_gaps()); };
+    std::vector<Reading> places = {{0, of(from.gaps)}, {length, of(to.gaps)}};
+    if (const auto level = same ? nearing_doubling(from, to, length, k) : std::nullopt)
+      if (const auto between = dip(from, places[0], places[1], *level, gap))
+        places.insert(places.begin() + 1, *between);
+    std::optional<Reading> before;
+    if (from.back > 0) before = {-from.back, of(from.gaps_before)};
+    find_roots(from, places, before, gap, [&](double at) {
+      BranchPoint point = read(PointKind::period_doubling);
+      met.push_back({at, {std::move(point), seed_at(PointKind::period_doubling, from, at)}});
+    });
+  }
 }
 
 std::optional<Seed> Continuation::seed_at(PointKind kind, const Stand& from, double at) {

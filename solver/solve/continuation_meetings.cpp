@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "solve/continuation.hpp"
@@ -21,6 +22,7 @@ constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
 constexpr double same = 1e-6;
 /// What is met within this share of a step is one.
 constexpr double one = 1e-2;
+constexpr double roundoff = std::numeric_limits<double>::epsilon();
 /// An orbit this small against the one before the step is next to rest.
 constexpr double nearly_rest = 1e-3;
 
@@ -45,16 +47,16 @@ double swing(const Path& a, const Path& b) {
 
 }  // namespace
 
-/// Folds and crossings are located so well.
+/// Folds and period doublings are located so well.
 bool Continuation::settled(double change) const {
   return std::abs(change * here_.rate) <= located * std::abs(family_.to - family_.from) &&
          std::abs(change) <= 1e-8;
 }
 
 /// Of the derivative of what varies, on the step, as the parabola tells that has its values at both ends and
-/// the integral that it must have: the least against its sign at the first end, and that in the middle.
+/// the integral that it must have: its extremum between, and that in the middle.
 struct Continuation::Rates {
-  Reading least, middle;
+  Reading extremum, middle;
 };
 
 Continuation::Rates Continuation::rates_between(const Stand& from, const Stand& to, double length) {
@@ -68,16 +70,16 @@ Continuation::Rates Continuation::rates_between(const Stand& from, const Stand& 
 }
 
 bool Continuation::may_fold(const Stand& from, const Stand& to, double length) {
-  return from.rate * to.rate < 0 || from.rate * rates_between(from, to, length).least.value < 0;
+  return from.rate * to.rate < 0 || from.rate * rates_between(from, to, length).extremum.value < 0;
 }
 
 /// |∂varied/∂s| times the distance from a fold bounds how much more or less it is there.
 void Continuation::find_folds(const Stand& from, const Stand& to, double length, std::vector<Meeting>& met) {
-  std::vector<Reading> places = {{0, from.rate}, {length, to.rate}};
+  std::vector<Reading> places = {{0, from.rate}, {length, to.rate * to.back / length}};
   const auto rate = [this] { return here_.rate; };
-  const auto [least, middle] = rates_between(from, to, length);
-  if (from.rate * to.rate > 0 && from.rate * least.value < 0)
-    if (const auto between = dip(from, places[0], places[1], least.at, rate))
+  const auto [extremum, middle] = rates_between(from, to, length);
+  if (from.rate * to.rate > 0 && from.rate * extremum.value < 0)
+    if (const auto between = dip(from, places[0], places[1], extremum.at, rate))
       places.insert(places.begin() + 1, *between);
   find_roots(from, places, middle, rate, [&](double at) { met.push_back({at, {read(PointKind::fold)}}); });
 }
@@ -89,7 +91,10 @@ double Continuation::find_value(const Stand& from, double value, const Reading& 
     return root(
         from, {near.at, near.value - value}, {far.at, far.value - value}, std::nullopt,
         [&] { return here_.varied - value; },
-        [&](double off, double) { return std::abs(off) <= enough * distance; });
+        [&](double off, double change) {
+          return std::abs(off) <= std::max(enough * distance, 4 * roundoff * std::abs(value)) ||
+                 change <= roundoff * reach;
+        });
   };
   // What varies as a parabola, level at a fold: v(σ) = before + slope σ + bend σ².
   const double slope = near.at == 0 ? from.rate : 0, off = value - near.value;

@@ -31,7 +31,7 @@ BranchPoint Continuation::read(PointKind kind) {
   if (problem.coordinates() <= most_coordinates_for_multipliers)
     variation_.assemble(problem.lagrangian, solution.trajectory, condensed());
   read_stability(problem, variation_, sizes().q, solution, false);
-  here_.gaps = solution.floquet ? doubling_gaps(*solution.floquet) : std::vector<double>{};
+  here_.gaps = solution.floquet ? doubling_gaps(*solution.floquet) : std::vector<double>{NAN};
   return point;
 }
 

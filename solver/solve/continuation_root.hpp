@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "solve/continuation.hpp"
 
@@ -12,6 +14,9 @@ namespace extremal {
 
 /// What is met on a step is located to this, relative to the distance wanted.
 inline constexpr double located = 1e-11;
+
+/// A test that is zero counts as positive: of two steps that meet there one sees it.
+inline bool changes_sign(double a, double b) { return (a < 0) != (b < 0) && std::isfinite(a + b); }
 
 /// Where the parabola through three readings is zero, between two of opposite signs: the chord where they are
 /// all that there is.
@@ -44,7 +49,7 @@ double Continuation::root(const Stand& from, Reading low, Reading high, std::opt
     // A test that jumps is not zero where a parabola through the jump is.
     const double by_chord = here.value * (at - third->at) / (third->value - here.value);
     const double change = std::max(std::abs(next - at), std::abs(by_chord));
-    if (here.value == 0 || done(here.value, change) || next == at) return at;
+    if (here.value == 0 || done(here.value, change)) return at;
     at = next;
   }
   return NAN;
@@ -56,7 +61,7 @@ template <class Test, class Use>
 void Continuation::find_roots(const Stand& from, const std::vector<Reading>& places,
                               std::optional<Reading> beside, const Test& test, const Use& use) {
   for (std::size_t k = 1; k < places.size(); ++k) {
-    if (!(places[k - 1].value * places[k].value < 0)) continue;
+    if (!changes_sign(places[k - 1].value, places[k].value)) continue;
     const std::optional<Reading> third =
         places.size() == 2 ? beside : places[k + 1 < places.size() ? k + 1 : k - 2];
     const double at = root(from, places[k - 1], places[k], third, test,
@@ -79,7 +84,7 @@ std::optional<Reading> Continuation::dip(const Stand& from, const Reading& low, 
     if (!go(from, at)) return std::nullopt;
     Reading next = {at, test()};
     if (std::isnan(next.value)) return std::nullopt;
-    if (sign * next.value <= 0) return next;
+    if (sign * next.value < 0) return next;
     if (!middle)
       middle = next;
     else {

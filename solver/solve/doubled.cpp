@@ -66,10 +66,11 @@ ProblemFamily doubled(const ProblemFamily& family) {
 void double_path(const Problem& problem, const Path& path, const ElementTables& tables, Path& twice) {
   const ClosingMap map = closing_map(problem);
   const int n = path.coordinates(), count = path.elements();
-  std::vector<double> mesh;
+  std::vector<double> mesh, lengths;
   for (const double tau : path.mesh()) mesh.push_back(tau / 2);
   for (int k = 1; k <= count; ++k) mesh.push_back(0.5 + path.mesh()[k] / 2);
-  twice.reset(tables, mesh, 2 * path.duration());
+  for (int k = 0; k < 2 * count; ++k) lengths.push_back(path.lengths()[k % count] / 2);
+  twice.reset(tables, mesh, 2 * path.duration(), lengths);
   MatrixXd values(n, path.degree() + 1);
   for (int k = 0; k < count; ++k) {
     path.element(k, values.data());

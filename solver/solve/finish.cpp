@@ -225,20 +225,9 @@ OtherPoints examine_part(const SolveOptions& options, Outcome& outcome, Workspac
     others = try_other_points(reduction.part, outcome, solution, w);
     unfold(reduction, w.path, *outcome.tables, w.whole);
   }
-  others.told_apart = true;  // periodic orbits may come in families
   residual = residual_under_others(reduction.part, outcome, w);
   std::swap(w.path, w.whole);
   return others;
-}
-
-/// What the last digits of t/T, an element of length h at their mercy, make of momenta q'/h and of their
-/// sums.
-double rounded_mesh(const Workspace& w) {
-  constexpr double last_digits = 0x1p-50;
-  double shortest = 1;
-  for (int k = 0; k < w.path.elements(); ++k)
-    shortest = std::min(shortest, w.path.mesh()[k + 1] - w.path.mesh()[k]);
-  return (least_roundoff + last_digits / shortest) * w.iteration.action().momentum_scale();
 }
 
 /// Of what was found, all but minimality and stability.
@@ -249,7 +238,8 @@ void examine_all(const Problem& problem, const SolveOptions& options, Outcome& o
   std::optional<Survey> found = examine(problem, options, outcome, w, solution);
   if (!solution.converged()) return;
   if (outcome.reduction) {
-    others.unlike = !(residual_under_others(problem, outcome, w) <= 10 * residual + rounded_mesh(w));
+    const double roundoff = least_roundoff * w.iteration.action().momentum_scale();
+    others.unlike = !(residual_under_others(problem, outcome, w) <= 10 * residual + roundoff);
   } else if (try_others(problem, options, outcome, w, solution, others)) {
     solution = {};
     found = examine(problem, options, outcome, w, solution);

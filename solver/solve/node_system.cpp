@@ -48,7 +48,7 @@ void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool f
   free_ = ends.free;
   free_duration_ = free_duration;
   null_below_ = usual_null;
-  border_ = 0;
+  border_ = 0;  // no factors yet
   right_.resize(static_cast<std::size_t>(std::max(elements - 1, 0)) * n_);
 }
 
@@ -168,10 +168,10 @@ void NodeSystem::set_null_below(double threshold) {
 void NodeSystem::factor_border() {
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
-  // A null direction is to be had, as what there is most of in a step: a pivot of zero is its roundoff.
+  // As roundoff a pivot of zero makes a null direction what there is most of in a step.
   if (null_below_ == 0 && pivots.minCoeff() == 0) {
-    schur_.diagonal().array() +=
-        roundoff * std::max(corner_.cwiseAbs().maxCoeff(), schur_.cwiseAbs().maxCoeff());
+    const double size = free_ > 0 ? corner_.topLeftCorner(free_, free_).cwiseAbs().maxCoeff() : 1;
+    schur_.diagonal().array() += roundoff * std::max(size, schur_.cwiseAbs().maxCoeff());
     lu_.compute(schur_);
   }
   // All pivots are roundoff where large entries stand beside a null row and column alone.

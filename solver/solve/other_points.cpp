@@ -80,7 +80,8 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, con
   OtherPoints others;
   others.moved = moved(outcome.error);
   const QuadraticModel& model = w.iteration.model();
-  if (!problem.periodic && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
+  const bool orbit = problem.periodic || outcome.reduction;  // or a part of one: they come in families
+  if (!orbit && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
     // Directions that are null because symmetries move the ends belong to a family of extremals. Others may
     // be soft: weak forces tell, if to the last digit. Where forces vanish nothing does.
     const int family = symmetries_about(problem, solution.trajectory);

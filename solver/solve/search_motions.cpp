@@ -59,7 +59,7 @@ Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::
   if (!sample_motion<double>(Flow(lagrangian), q, v, 0, duration,
                              {step_error, samples_a_step, duration, more}, samples))
     return {};
-  return {std::move(samples.share), std::move(samples.q), true};
+  return {std::move(samples.tau), std::move(samples.q), true};
 }
 
 }  // namespace

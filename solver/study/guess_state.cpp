@@ -38,8 +38,8 @@ constexpr int samples_a_step = 64;
 /// Roundoff of so many steps is amplified by the encounters that they follow.
 constexpr std::size_t many_steps = 750;
 
-/// Steps of the integrator, relative: their errors come back amplified by what errors grow over half a
-/// period.
+/// Of the integrator's steps, relative: what they err by is amplified until the end, or until the motion is
+/// known better.
 template <class Real>
 constexpr double tolerance = 1e-14;
 template <>
@@ -52,12 +52,12 @@ SampledMotion sample(const InitialState& state, double from, double to, const Pr
   const MotionSampling options{tolerance<Real>, samples_a_step, problem.duration.value};
   if (sample_motion<Real>(AnyFlow(*problem.lagrangian), state.q, state.v, from, to, options, samples, anchor))
     return samples;
-  if (samples.share.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
+  if (samples.tau.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
   throw SceneError(at, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}",
-                                   samples.share.back() * problem.duration.value));
+                                   samples.tau.back() * problem.duration.value));
 }
 
-/// The same motion in twice the precision, from place to place where samples begin anew.
+/// The same motion in twice the precision, from where samples begin anew.
 class ExactMotion {
  public:
   ExactMotion(const InitialState& state, double from, const Lagrangian& lagrangian)
@@ -70,11 +70,14 @@ class ExactMotion {
     y_.resize(2 * v.size());
     flow_.momentum(std::span(y_).first(v.size()), v, t_, std::span(y_).subspan(v.size()));
   }
+  ExactMotion(const ExactMotion&) = delete;
 
+  /// An anchor, as far as it can be followed.
   bool operator()(Extended t, std::span<Extended> y) {
-    if (++steps_ % steps_between != 0) return true;
+    if (!followed_ || ++steps_ % steps_between != 0) return true;
     const DoubleDouble to = wide(t);
-    if (!method_.advance(t_, y_, to - t_, exact)) return false;
+    followed_ = method_.advance(t_, y_, to - t_, step_error);
+    if (!followed_) return true;
     t_ = to;
     std::transform(y_.begin(), y_.end(), y.begin(),
                    [](const DoubleDouble& x) { return static_cast<Extended>(x.x[0]) + x.x[1]; });
@@ -82,7 +85,7 @@ class ExactMotion {
   }
 
  private:
-  static constexpr double exact = 1e-28;
+  static constexpr double step_error = 1e-28;
   /// So many are one of extrapolation.
   static constexpr int steps_between = 4;
   static DoubleDouble wide(Extended t) {
@@ -95,14 +98,15 @@ class ExactMotion {
   DoubleDouble t_;
   std::vector<DoubleDouble> y_;
   int steps_ = 0;
+  bool followed_ = true;
 };
 
-/// Where it takes many steps, in extended precision if L has it.
+/// Where it takes many steps, with as many digits as L can be evaluated in.
 SampledMotion motion_from(const InitialState& state, double from, double to, const Problem& problem,
                           const Location& at) {
   SampledMotion samples = sample<double, Flow>(state, from, to, problem, at);
   const Lagrangian& lagrangian = *problem.lagrangian;
-  if (samples.share.size() <= many_steps * samples_a_step || !ExtendedFlow<DoubleDouble>::suits(lagrangian))
+  if (samples.tau.size() <= many_steps * samples_a_step || !ExtendedFlow<DoubleDouble>::suits(lagrangian))
     return samples;
   ExactMotion exact(state, from, lagrangian);
   return sample<Extended, ExtendedFlow<Extended>>(state, from, to, problem, at, std::ref(exact));
@@ -119,17 +123,17 @@ InitialState closed(const ClosingMap& map, const InitialState& state) {
 /// Of an orbit that closes only the first half is integrated onwards; the second is integrated back from
 /// where it has to arrive: errors grow for half as long. Halfway each gives way to the other.
 void add_halves(const SampledMotion& first, const SampledMotion& second, Guess& guess) {
-  const std::size_t n = first.q.size() / first.share.size();
+  const std::size_t n = first.q.size() / first.tau.size();
   const auto add = [&](const SampledMotion& half, std::size_t k, double weight) {
-    const double share = half.share.front() == 0 ? half.share[k] : 1 - half.share[k];
-    guess.tau.push_back(half.share[k]);
+    const double share = half.tau.front() == 0 ? half.tau[k] : 1 - half.tau[k];
+    guess.tau.push_back(half.tau[k]);
     for (std::size_t a = 0; a < n; ++a) {
       const double gap = second.q[second.q.size() - n + a] - first.q[first.q.size() - n + a];
       guess.q.push_back(half.q[k * n + a] + weight * gap * share);
     }
   };
-  for (std::size_t k = 0; k < first.share.size(); ++k) add(first, k, 1);
-  for (std::size_t k = second.share.size() - 1; k-- > 0;) add(second, k, -1);
+  for (std::size_t k = 0; k < first.tau.size(); ++k) add(first, k, 1);
+  for (std::size_t k = second.tau.size() - 1; k-- > 0;) add(second, k, -1);
 }
 
 }  // namespace
@@ -145,7 +149,7 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
     add_halves(first, second, problem.guess);
   } else {
     SampledMotion samples = motion_from(state, 0, duration, problem, at);
-    problem.guess.tau = std::move(samples.share);
+    problem.guess.tau = std::move(samples.tau);
     problem.guess.q = std::move(samples.q);
   }
   problem.guess.motion = true;

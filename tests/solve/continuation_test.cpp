@@ -45,7 +45,7 @@ TEST(Continuation, BratuFoldAndBothBranches) {
   EXPECT_LE(branch.worst_action_slope(), 1e-6);
 }
 
-/// q'' = q³ − εq − λ at rest, pushed at no end: λ = q³ − εq turns back at q = ∓√(ε/3), by less than a step.
+/// q'' = q³ − εq − λ at rest, with free ends: λ = q³ − εq turns back at q = ∓√(ε/3), by less than a step.
 TEST(Continuation, TwoFoldsOnOneStep) {
   const double epsilon = 0.01;
   const auto problem = [=](double lambda) {

@@ -152,6 +152,25 @@ TEST(Diagram, TwoDoublingsOnOneStep) {
   }
 }
 
+/// Two springs shaken at once, one a little stiffer: on one step a pair of each passes −1.
+TEST(Diagram, TwoPairsOnOneStep) {
+  const double theta = 0.2, stiffer = 1.001;
+  const auto problem = [=](double a) {
+    const auto lagrangian = trace(2, [=](auto q, auto v, auto t) {
+      const auto first = a - 2 * theta * cos(2 * t), second = a * stiffer - 2 * theta * cos(2 * t);
+      return (v[0] * v[0] + v[1] * v[1] - first * q[0] * q[0] - second * q[1] * q[1]) / 2;
+    });
+    return guessed(periodic(lagrangian, pi), [](double) { return Values{0, 0}; });
+  };
+  const Followed found = follow_branches(varied(problem, 0.4, 2), 1e-10, 60);
+  std::vector<double> doublings = found.values(PointKind::period_doubling);
+  std::sort(doublings.begin(), doublings.end());
+  const double b = characteristic(true, true, theta)[0], a = characteristic(true, false, theta)[0];
+  const Values expected{b / stiffer, b, a / stiffer, a};
+  ASSERT_EQ(doublings.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(doublings[k], expected[k], 1e-8);
+}
+
 /// The halo orbits, north and south, where planar ones about L1 of Earth and Moon lose their stability out of
 /// the plane; and an orbit of the catalogue on the way.
 TEST(Diagram, HaloOrbits) {
