@@ -35,6 +35,8 @@ constexpr double border_cost = 2;
 constexpr double planned_slopes = 6;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
+/// An orbit so much smaller than what it began with is a point.
+constexpr double point = 1e-6;
 
 }  // namespace
 
@@ -78,6 +80,8 @@ double Refinement::step_cost() const {
 }
 
 Refinement::Result Refinement::pursue() {
+  const double first_range = scales(w_.path, *tables_).range;
+  const bool may_shrink = problem_.periodic && problem_.lagrangian->structure().autonomous;
   first_magnitude_ = scales(w_.path, *tables_).magnitude;
   varied_mass_ = !problem_.lagrangian->structure().quadratic;
   inertia_ = inertia();
@@ -92,7 +96,9 @@ Refinement::Result Refinement::pursue() {
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
-    if (hopeless || 2 * w_.path.elements() > most_elements_) {
+    // Nor do they help an orbit that has shrunk onto an equilibrium: no digits tell its range.
+    const bool shrunk = may_shrink && scales(w_.path, *tables_).range <= point * first_range;
+    if (hopeless || shrunk || 2 * w_.path.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
                                      w_.path.elements(), w_.path.degree(), options_.tolerance);
       return hopeless ? Result::unreachable : Result::failed;
