@@ -85,9 +85,9 @@ std::optional<Reading> Continuation::dip(const Stand& from, const Reading& low, 
     Reading next = {at, test()};
     if (std::isnan(next.value)) return std::nullopt;
     if (sign * next.value < 0) return next;
-    if (!middle)
+    if (!middle) {
       middle = next;
-    else {
+    } else {
       if (sign * next.value < sign * middle->value) std::swap(next, *middle);
       (next.at < middle->at ? left : right) = next;
     }

@@ -23,7 +23,7 @@ class NodeSystem {
   bool factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases = nullptr);
 
   /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing
-  /// along them; for 0 it has. From now until reset(); the factors there are follow.
+  /// along them. For 0 none is, however small. From now until reset(); the factors there are follow.
   void set_null_below(double threshold);
   /// How many directions the last step had nothing along.
   int left_out() const { return left_out_; }
