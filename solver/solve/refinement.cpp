@@ -35,8 +35,6 @@ constexpr double border_cost = 2;
 constexpr double planned_slopes = 6;
 /// Errors below this (relative) may be roundoff.
 constexpr double near_roundoff = 1e-9;
-/// An orbit so much smaller than what it began with is a point.
-constexpr double point = 1e-6;
 
 }  // namespace
 
@@ -97,7 +95,7 @@ Refinement::Result Refinement::pursue() {
     // Truncation this small that finer elements do not reduce is roundoff.
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
     // Nor do they help an orbit that has shrunk onto an equilibrium: no digits tell its range.
-    const bool shrunk = may_shrink && scales(w_.path, *tables_).range <= point * first_range;
+    const bool shrunk = may_shrink && scales(w_.path, *tables_).range <= at_rest * first_range;
     if (hopeless || shrunk || 2 * w_.path.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
                                      w_.path.elements(), w_.path.degree(), options_.tolerance);

@@ -34,6 +34,8 @@ class Refinement {
   bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= affordable(); }
 
   static constexpr int first_degree = 4;
+  /// An orbit so much smaller than what it began with is at rest.
+  static constexpr double at_rest = 1e-6;
   /// Puts an empty path on `mesh` into the workspace, to be filled by the caller.
   void open(const std::vector<double>& mesh, int degree = first_degree);
   /// The same for a path on elements of `tables` that the workspace holds already.

@@ -18,8 +18,6 @@ namespace {
 constexpr int most_steps = 4000;
 constexpr double most_work = 1e7;
 constexpr double least_steps = 100;
-/// A periodic path that is so much smaller than the guess is at rest.
-constexpr double rest = 1e-6;
 /// Starts with noise that are cheaper than other durations are; and at most.
 constexpr unsigned first_noises = 8, most_noises = 10000, collision_noises = 100;
 /// Of the guess's extent, in turn.
@@ -38,7 +36,7 @@ Search::Search(const Problem& problem, const SolveOptions& options, Workspace& w
 
 /// An equilibrium has every period.
 bool Search::collapsed() const {
-  return extent_ > 0 && scales(w_.path, refinement_.tables()).range <= rest * extent_;
+  return extent_ > 0 && scales(w_.path, refinement_.tables()).range <= Refinement::at_rest * extent_;
 }
 
 /// Pursues the path in the workspace.
