@@ -70,7 +70,7 @@ void Descent::solve_windows() {
 double Descent::slope() {
   DiscreteAction& action = w_.iteration.action();
   const Path& path = w_.path;
-  const int n = path.coordinates(), inner = (path.degree() - 1) * n, m = inner + 2 * n;
+  const int n = path.coordinates(), inner = (path.degree() - 1) * n, m = inner + 2 * n, lanes = path.lanes();
   double sum = 0;
   action.visit(path, false, [&](int b, const BatchValues& values) {
     const double* const inner_step = step_.inner.data() + static_cast<std::size_t>(b) * m * lanes;

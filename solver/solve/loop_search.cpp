@@ -31,7 +31,7 @@ bool LoopSearch::pursue(const Problem& problem, Search& search, Loops& loops, co
   search.renew(share);
   const unsigned seed = loops.count++;
   loops.draw(seed);
-  const ElementTables& coarse = search.open(uniform_mesh(2 * lanes), Refinement::first_degree);
+  const ElementTables& coarse = search.open(uniform_mesh(Search::sketch_elements), Refinement::first_degree);
   loops.settle(w_.iteration.action(), coarse, w_.path);
   if (!search.place([&](const ElementTables& tables, Path& path) { loops.fill(tables, path); })) return false;
   if (seed % 2) {

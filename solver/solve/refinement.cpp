@@ -72,8 +72,10 @@ void Refinement::take(const ElementTables& tables) {
 
 double Refinement::step_cost() const {
   const double n = w_.path.coordinates(), columns = problem_.ends.free + problem_.duration.free;
-  const double cost = w_.path.batches() * batch_cost(*tables_, w_.path.degree()) +
-                      border_cost * w_.path.elements() * n * n * columns;
+  // Effort does not depend on how many elements go together: it is that of batches of the widest level.
+  const double batches = static_cast<double>(w_.path.batches()) * w_.path.lanes() / most_lanes;
+  const double cost =
+      batches * batch_cost(*tables_, w_.path.degree()) + border_cost * w_.path.elements() * n * n * columns;
   return followed_ ? cost / followed_growth : cost;
 }
 

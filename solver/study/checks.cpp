@@ -66,7 +66,7 @@ bool wholly_fixed(const EndMap& ends, bool at_end) {
 class GuessValues {
  public:
   explicit GuessValues(const Problem& problem) : problem_(problem), n_(problem.coordinates()) {
-    stride_ = 8 * lanes;
+    stride_ = 8 * most_lanes;
     rows_ = inputs_.reserve(std::size_t(2 * n_ + 2) * stride_);
   }
 
