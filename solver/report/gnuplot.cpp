@@ -16,7 +16,7 @@ constexpr Colour ink = 0x262A33, quiet_ink = 0x5A606B, frame = 0x8C929C, rule = 
 constexpr double font_size = 13, title_size = 18;  // pixels
 constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
 constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
-constexpr double flatness = 0.05;  ///< pixels by which a curve may be off where points of it are left out
+constexpr double flatness = 0.05;  ///< largest distance, in pixels, of a curve from the chords drawn for it
 
 /// A literal between double quotes. All but letters, spaces and what is not ASCII is written as an octal
 /// escape, so that no text can end the literal or have gnuplot substitute a command in it. Digits too: one
@@ -44,8 +44,8 @@ double distance_to_chord(const Point& p, const Point& from, const Point& to) {
   return std::hypot(p.x - from.x - t * x, p.y - from.y - t * y);
 }
 
-/// Points of a path, by Douglas and Peucker's algorithm (1973), from whose chords none of the others is
-/// farther than `most`.
+/// The path with fewer points: no point that is left out is farther than `most` from the chords of the others
+/// (Douglas and Peucker 1973).
 std::vector<Point> thinned(const std::vector<Point>& path, double most) {
   if (path.size() < 3) return path;
   std::vector<char> kept(path.size(), 0);

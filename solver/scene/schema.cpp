@@ -57,7 +57,8 @@ constexpr KeyRecord keys[] = {
      "Equation between end values; it determines a free duration. The duration is varied until the extremal "
      "satisfies it.",
      R"(where = "x(0) = 0.777413")"},
-    {"boundary", "periodic", Kind::boolean, "false", "Periodic orbit: q(T) = q(0), and the momenta agree.",
+    {"boundary", "periodic", Kind::boolean, "false",
+     "Periodic orbit: q(T) = q(0), and the momenta agree; without other conditions at the ends.",
      "periodic = true"},
     {"boundary", "map", Kind::quantities, "none",
      "Orbit closed up to a symmetry of L: each formula of q(0) gives a coordinate at T. The formulas are "

@@ -56,7 +56,7 @@ TEST_F(Shown, ResultIsThatOfTheScene) {
   EXPECT_EQ(shown, 1);
 }
 
-TEST(Pages, LinksLead) {
+TEST(Pages, LinksExist) {
   for (const char* name : {"README.md", "problems/README.md", "problems/gallery.md", "solver/README.md",
                            "bench/README.md", "bench/data/README.md", "tests/data/README.md"}) {
     const fs::path page = root() / name;

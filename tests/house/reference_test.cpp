@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "action/scheme.hpp"
 #include "app/command.hpp"
 #include "house/pages.hpp"
 #include "scene/document.hpp"
@@ -131,6 +132,22 @@ TEST(Reference, FunctionsOfFormulasAreNamed) {
   }
   for (const auto& function : extremal::formula::functions())
     EXPECT_TRUE(named.contains(std::string(function.name))) << function.name;
+}
+
+TEST(Reference, SchemesAreThoseOfTheProgram) {
+  const std::vector<std::string> lines = section(root() / "solver/README.md", "## Schemes");
+  for (const extremal::Scheme& scheme : extremal::schemes()) {
+    const bool family = scheme.name.find('(') != std::string::npos;
+    const std::string name = std::regex_replace(scheme.name, std::regex(R"(\(\d+\))"), "(s)");
+    const std::string start =
+        family ? fmt::format("| `{}` | s, ", name) : fmt::format("| `{}` | {}, ", name, scheme.degree);
+    const std::string order = family ? "| 2s |" : fmt::format("| {} ", scheme.order);
+    const auto row = std::find_if(lines.begin(), lines.end(),
+                                  [&](const std::string& line) { return line.starts_with(start); });
+    ASSERT_NE(row, lines.end()) << "no row " << start;
+    EXPECT_NE(row->find(order), std::string::npos) << *row;
+    EXPECT_TRUE(row->ends_with(fmt::format("| {} |", scheme.source))) << *row;
+  }
 }
 
 /// One key a line.

@@ -10,14 +10,14 @@ namespace extremal {
 namespace {
 
 /// In gnuplot's units, 40 a pixel.
-struct Place {
+struct Vertex {
   double x, y;
 };
 constexpr double pixel = 40, side = 400 * pixel;
 
 /// The points that the script draws for a curve y(x) over the unit square.
 template <class Function>
-std::vector<Place> drawn(const Function& y) {
+std::vector<Vertex> drawn(const Function& y) {
   Panel panel{.box = {0, 0, 400, 400}, .x = make_axis("x", 0, 1, 5), .y = make_axis("y", 0, 1, 5)};
   Curve curve;
   for (int k = 0; k <= 800; ++k) {
@@ -29,15 +29,15 @@ std::vector<Place> drawn(const Function& y) {
   const std::string script = gnuplot_script(figure, Format::svg, "out");
   const std::string start = "$d0 << EOD\n";
   std::istringstream in(script.substr(script.find(start) + start.size()));
-  std::vector<Place> places;
-  for (Place place{}; in >> place.x >> place.y;) places.push_back(place);
-  return places;
+  std::vector<Vertex> vertices;
+  for (Vertex vertex{}; in >> vertex.x >> vertex.y;) vertices.push_back(vertex);
+  return vertices;
 }
 
-double distance(const std::vector<Place>& polygon, const Place& p) {
+double distance(const std::vector<Vertex>& polygon, const Vertex& p) {
   double least = INFINITY;
   for (std::size_t k = 0; k + 1 < polygon.size(); ++k) {
-    const Place &a = polygon[k], &b = polygon[k + 1];
+    const Vertex &a = polygon[k], &b = polygon[k + 1];
     const double x = b.x - a.x, y = b.y - a.y;
     const double t = std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / (x * x + y * y), 0.0, 1.0);
     least = std::min(least, std::hypot(p.x - a.x - t * x, p.y - a.y - t * y));
@@ -51,7 +51,7 @@ TEST(Gnuplot, ALineHasTwoPoints) {
 
 TEST(Gnuplot, CurvesAreExactToATwentiethOfAPixel) {
   const auto wave = [](double x) { return 0.5 + 0.5 * std::sin(12 * x); };
-  const std::vector<Place> polygon = drawn(wave);
+  const std::vector<Vertex> polygon = drawn(wave);
   EXPECT_LT(polygon.size(), 200u);
   constexpr double rounding = 1.5;
   for (int k = 0; k <= 800; ++k)
