@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace extremal {
 
@@ -14,6 +16,7 @@ constexpr Colour ink = 0x262A33, quiet_ink = 0x5A606B, frame = 0x8C929C, rule = 
 constexpr double font_size = 13, title_size = 18;  // pixels
 constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
 constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
+constexpr double flatness = 0.05;  ///< largest distance, in pixels, of a curve from the chords drawn for it
 
 /// A literal between double quotes. All but letters, spaces and what is not ASCII is written as an octal
 /// escape, so that no text can end the literal or have gnuplot substitute a command in it. Digits too: one
@@ -29,6 +32,44 @@ std::string quoted(const std::string& text) {
 }
 
 std::string hexadecimal(Colour colour) { return fmt::format("'#{:06X}'", colour); }
+
+struct Point {
+  double x = 0, y = 0;
+};
+
+double distance_to_chord(const Point& p, const Point& from, const Point& to) {
+  const double x = to.x - from.x, y = to.y - from.y, length2 = x * x + y * y;
+  const double along = length2 > 0 ? ((p.x - from.x) * x + (p.y - from.y) * y) / length2 : 0;
+  const double t = std::clamp(along, 0.0, 1.0);
+  return std::hypot(p.x - from.x - t * x, p.y - from.y - t * y);
+}
+
+/// The path with fewer points: no point that is left out is farther than `most` from the chords of the others
+/// (Douglas and Peucker 1973).
+std::vector<Point> thinned(const std::vector<Point>& path, double most) {
+  if (path.size() < 3) return path;
+  std::vector<char> kept(path.size(), 0);
+  kept.front() = kept.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> pieces{{0, path.size() - 1}};
+  while (!pieces.empty()) {
+    const auto [from, to] = pieces.back();
+    pieces.pop_back();
+    double farthest = most;
+    std::size_t corner = from;
+    for (std::size_t k = from + 1; k < to; ++k)
+      if (const double d = distance_to_chord(path[k], path[from], path[to]); d > farthest) {
+        farthest = d;
+        corner = k;
+      }
+    if (corner == from) continue;
+    kept[corner] = 1;
+    pieces.insert(pieces.end(), {{from, corner}, {corner, to}});
+  }
+  std::vector<Point> result;
+  for (std::size_t k = 0; k < path.size(); ++k)
+    if (kept[k]) result.push_back(path[k]);
+  return result;
+}
 
 /// What gnuplot measures in units of its own, which differ with the format.
 struct Sizes {
@@ -194,15 +235,18 @@ class Script {
   /// curve turns; so no step is quite that.
   std::string points(const Panel& panel, const Column& x, const Column& y) {
     const Box box = whole_pixels(panel.box);
+    std::vector<Point> path(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k)
+      path[k] = {panel.x.place(x[k]) * box.width * raster, panel.y.place(y[k]) * box.height * raster};
     const std::string block = open_block();
     long across = -1, up = -1;
     const auto next = [](double position, long before) {
       const long rounded = std::lround(position);
       return rounded == before ? rounded + 1 : rounded;
     };
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      across = next(panel.x.place(x[k]) * box.width * raster, across);
-      up = next(panel.y.place(y[k]) * box.height * raster, up);
+    for (const Point& point : thinned(path, flatness * raster)) {
+      across = next(point.x, across);
+      up = next(point.y, up);
       add("{} {}\n", across, up);
     }
     add("EOD\n");
