@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "scene/read.hpp"
 #include "scene/systems.hpp"
@@ -96,10 +97,21 @@ const toml::table* table(const Document& document, std::string_view name, bool n
   return found;
 }
 
+/// The text of a scene. Where the file is missing, a scene of that name in the library is named.
+std::shared_ptr<const Source> read_text(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const bool here = fs::exists(path, error) || fs::exists(path + ".toml", error);
+  const std::string other = here ? "" : find_scene(fs::path(path).filename().string());
+  if (other.empty()) return read_source(path);
+  const auto source = std::make_shared<Source>(Source{path, ""});
+  throw SceneError({source, 0, 0}, fmt::format("no such file; did you mean '{}'?", other));
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& sets) {
-  Document document = parse_document(read_source(path));
+  Document document = parse_document(read_text(path));
   for (const std::string& argument : sets) set_value(document, argument);
   check_keys(document, document.root, "");
   check_relations(document);
