@@ -174,6 +174,8 @@ std::string summary(const Result& result) {
   lines.add("status", name(solution.status));
   lines.add("message", printable(solution.message, 2000));
   lines.add("strategy", printable(solution.strategy, 200));
+  if (result.natural_conditions > 0)
+    lines.add("boundary", counted(result.natural_conditions, "natural condition"));
   if (trajectory.elements() > 0) {
     lines.add_number("duration", solution.duration());
     lines.add_number("action", solution.action);
