@@ -118,6 +118,6 @@ TEST_F(Command, FamiliesThatAreRefused) {
             "parameter\n");
   write("scene.toml", bratu);
   EXPECT_EQ(extremal({"continue", "scene.toml", "--plot", "b.gif"}).exit, 2);
-  EXPECT_EQ(extremal({"continue", "scene.toml", "--output", "none/b.json"}).error,
-            "error: --output none/b.json: there is no such folder\n");
+  EXPECT_EQ(extremal({"continue", "scene.toml", "--output", "scene.toml/b.json"}).error,
+            "error: --output: 'scene.toml' is not a folder (see extremal help continue)\n");
 }
