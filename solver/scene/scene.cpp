@@ -35,10 +35,13 @@ SystemTable merge(SystemTable file, const SystemTable& scene) {
 }
 
 void check_system(const SystemTable& system) {
-  if (system.coordinates.empty()) throw SceneError(system.at, "[system] has no coordinates");
-  if (!system.lagrangian) throw SceneError(system.at, "[system] has no lagrangian");
+  if (system.coordinates.empty())
+    throw SceneError(system.at, "[system] has no 'coordinates'; list them, or name a system by 'use'");
+  if (!system.lagrangian)
+    throw SceneError(system.at, "[system] has no 'lagrangian'; write one, or name a system by 'use'");
   if (system.curvature && system.curvature->value < 0)
-    throw SceneError(system.curvature->at, "curvature is a bound and cannot be negative");
+    throw SceneError(system.curvature->at,
+                     fmt::format("curvature = {}; need 0 or more", system.curvature->value));
 }
 
 /// What the duration allows and asks for.
@@ -54,8 +57,9 @@ void check_duration(const Scene& scene) {
                                    "duration = \"free\" or leave '" +
                                    name + "' out");
   if (!boundary.free && scene.guess.duration)
-    throw SceneError(scene.guess.duration->at,
-                     "a guessed duration is for duration = \"free\", but duration is fixed");
+    throw SceneError(
+        scene.guess.duration->at,
+        "'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or leave the guess out");
   if (boundary.free && !closing)
     throw SceneError(boundary.duration.at, "a free duration needs 'energy' or 'where' to close it");
   if (boundary.free && !scene.guess.duration && !scene.guess.file)

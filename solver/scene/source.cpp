@@ -197,7 +197,7 @@ void check_key_depth(const std::shared_ptr<const Source>& source) {
       dots = 0;
     if (dots >= deepest_key)
       throw SceneError({source, cursor.line, cursor.column},
-                       fmt::format("a key of more than {} parts", deepest_key));
+                       fmt::format("this key has more than {} parts", deepest_key));
     last = part ? 'a' : c;
     blank = false;
     if (c == '#')
