@@ -37,7 +37,7 @@ Range range_of(const std::string& name, const Location& at, const System& system
     if (c.name != stem) continue;
     if (bracket == std::string::npos) return {c.first, c.count, c.array};
     if (!c.array)
-      throw SceneError(at, fmt::format("'{}' is not an array, so '{}' names nothing", stem, name));
+      throw SceneError(at, fmt::format("'{0}' is not an array; write '{0}' in place of '{1}'", stem, name));
     const int index = index_of(name, bracket);
     if (index < 1 || index > c.count)
       throw SceneError(at,

@@ -86,7 +86,7 @@ void check_memory(const Study& study) {
   const double available = available_bytes();
   if (needed > available)
     throw std::length_error(
-        fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; there are {}",
+        fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; {} are available",
                     study.scene, n, elements, degree, byte_text(needed), byte_text(available)));
 }
 

@@ -98,12 +98,13 @@ TEST_F(Scenes, GuessFilesThatAreWrong) {
     write("g.csv", content);
     return message(masses + ends + "[guess]\nfile = \"g.csv\"\n");
   };
-  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"), "g.csv:1:1: there is no column 'q[3]'");
+  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"), "g.csv:1:1: the file has no column 'q[3]'");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,a,1,1\n"), "g.csv:3:5: 'a' is not a finite number");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,nan,1,1\n"), "g.csv:3:5: 'nan' is not a finite number");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,1,1\n"), "g.csv:3:1: found 4 values for 5 columns");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n"), "g.csv: found 1 samples; need at least 2");
-  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"), "g.csv: the times must ascend; 0 follows 0");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"),
+            "g.csv: the times must increase; found 0 after 0");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"), "none.csv: no such file");
 }
 
