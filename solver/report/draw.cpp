@@ -53,7 +53,7 @@ bool run_gnuplot(const std::string& folder, const char* script, const char* log)
   pid_t child = 0;
   const int error = posix_spawnp(&child, "gnuplot", actions.get(), nullptr, argv, environ);
   if (error == ENOENT) {
-    throw std::runtime_error("plots are drawn by gnuplot, which was not found: apt install gnuplot-nox");
+    throw std::runtime_error("gnuplot draws the plots and was not found: apt install gnuplot-nox");
   }
   if (error != 0) throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
   int status = 0;
