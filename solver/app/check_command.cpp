@@ -68,8 +68,8 @@ void print_structure(const Inspection& found) {
                               found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
   for (const Inspection::Tape& tape : found.tapes)
     line(tape.order.c_str(),
-         fmt::format("{} instructions in {} kernel{}, {} played a point", tape.instructions, tape.kernels,
-                     tape.kernels == 1 ? "" : "s", tape.played));
+         fmt::format("{} instructions in {} kernel{}, {} executed at each point", tape.instructions,
+                     tape.kernels, tape.kernels == 1 ? "" : "s", tape.played));
 }
 
 std::string point_text(const Study& study, const WorstDerivative& worst) {
@@ -85,7 +85,7 @@ std::string point_text(const Study& study, const WorstDerivative& worst) {
 void print_worst(const Study& study, const char* order, const WorstDerivative& worst) {
   if (worst.name.empty()) return;
   const std::string off =
-      worst.error > 0 ? fmt::format("off by {:.1e}", worst.error) : "equal but for roundoff";
+      worst.error > 0 ? fmt::format("off by {:.1e}", worst.error) : "equal up to roundoff";
   line(order, fmt::format("at worst {} = {:.15g}, by differences {:.15g}: {}", worst.name, worst.derivative,
                           worst.difference, off));
   line("", "at " + point_text(study, worst));
@@ -109,8 +109,8 @@ int check(const CheckArguments& arguments) {
   print_worst(study, "second", derivatives.hessian);
   if (derivatives.agree()) return Exit::done;
   fmt::print(stderr, "error: {}: {}\n", arguments.scene,
-             derivatives.points ? "derivatives and differences do not agree"
-                                : "L is not finite at any of the points that were tried");
+             derivatives.points ? "derivatives and difference quotients do not agree"
+                                : "L is not finite at any point that was tried");
   return Exit::not_converged;
 }
 
