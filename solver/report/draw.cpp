@@ -65,6 +65,13 @@ bool run_gnuplot(const std::string& folder, const char* script, const char* log)
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+/// Output is deterministic: the time at which a PDF was made gives way to one of the same length.
+void reset_date(std::string& pdf) {
+  const std::string key = "/CreationDate (D:", date = "20000101000000";
+  const std::size_t at = pdf.find(key);
+  if (at != std::string::npos) pdf.replace(at + key.size(), date.size(), date);
+}
+
 }  // namespace
 
 std::string draw(const Figure& figure, Format format) {
@@ -75,6 +82,7 @@ std::string draw(const Figure& figure, Format format) {
   if (!ended_well || image.empty()) {
     throw std::runtime_error("gnuplot failed: " + printable(content(folder / "log"), 400));
   }
+  if (format == Format::pdf) reset_date(image);
   return image;
 }
 

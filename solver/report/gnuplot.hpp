@@ -8,7 +8,7 @@
 
 namespace extremal {
 
-enum class Format { svg, png };
+enum class Format { svg, png, pdf };
 
 /// The commands that draw a figure into the file `output` of the working directory. Every text is a quoted
 /// literal in which gnuplot substitutes nothing.
