@@ -59,17 +59,16 @@ void print_structure(const Inspection& found) {
   line("time", found.autonomous ? "L does not depend on t: energy is conserved" : "L depends on t");
   if (found.quadratic)
     line("velocities",
-         fmt::format("constant mass, {} entries; {} gyroscopic{}", found.mass_entries,
+         fmt::format("constant mass, entries: {}; gyroscopic: {}{}", found.mass_entries,
                      found.gyroscopic_entries,
                      found.velocity_free ? "; separable: the rest of L depends on positions only" : ""));
   else
     line("velocities", "L is not quadratic in them with a constant mass");
-  line("Hessian", fmt::format("{} entries evaluated: {} in (q, q), {} in (q', q), {} in (q', q')",
+  line("Hessian", fmt::format("entries evaluated: {}; in (q, q): {}, in (q', q): {}, in (q', q'): {}",
                               found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
   for (const Inspection::Tape& tape : found.tapes)
-    line(tape.order.c_str(),
-         fmt::format("{} instructions in {} kernel{}, {} executed at each point", tape.instructions,
-                     tape.kernels, tape.kernels == 1 ? "" : "s", tape.played));
+    line(tape.order.c_str(), fmt::format("instructions: {}; kernels: {}; executed at each point: {}",
+                                         tape.instructions, tape.kernels, tape.played));
 }
 
 std::string point_text(const Study& study, const WorstDerivative& worst) {

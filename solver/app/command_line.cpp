@@ -70,7 +70,7 @@ void add_csv(CLI::App& command, std::string& path, const char* help) {
 }
 
 void add_plot(CLI::App& command, std::string& path, const char* help) {
-  command.add_option("--plot", path, help)->type_name("FILE.svg|FILE.png")->check(plot_refusal);
+  command.add_option("--plot", path, help)->type_name("FILE.svg|.png|.pdf")->check(plot_refusal);
 }
 
 void add_quiet(CLI::App& command, bool& quiet) {

@@ -132,7 +132,7 @@ TEST_F(CommandLine, VersionAndHelp) {
 TEST_F(CommandLine, HelpNamesOptionsTypesAndDefaults) {
   const std::string help = extremal({"solve", "--help"}).out;
   for (const char* option :
-       {"--output FILE.json ", "--csv FILE.csv ", "--plot FILE.svg|FILE.png ", "--samples N ",
+       {"--output FILE.json ", "--csv FILE.csv ", "--plot FILE.svg|.png|.pdf ", "--samples N ",
         "--at T1,T2,... ", "--set KEY=VALUE ", "--repeat N=1 ", "--quiet ", "SCENE (required) "})
     EXPECT_NE(help.find(option), std::string::npos) << option << "\n" << help;
 }
@@ -190,8 +190,8 @@ TEST_F(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeSolving) {
   refused("--csv", "scene.toml/r.csv", "'scene.toml' is not a folder");
   refused("--csv", "", "the name of the file is empty");
   refused("--plot", "scene.toml/p.svg", "'scene.toml' is not a folder");
-  refused("--plot", "p.gif", "cannot plot into p.gif: the name must end in .svg or .png");
-  refused("--plot", "-", "cannot plot into -: the name must end in .svg or .png");
+  refused("--plot", "p.gif", "cannot plot into p.gif: the name must end in .svg, .png or .pdf");
+  refused("--plot", "-", "cannot plot into -: the name must end in .svg, .png or .pdf");
   EXPECT_EQ(extremal({"solve", "scene.toml", "--output", "/dev/full"}).exit, 2);
 }
 

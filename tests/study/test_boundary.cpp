@@ -37,7 +37,8 @@ TEST_F(Scenes, EndsThatAreWrong) {
   const auto start = [&](const std::string& s) {
     return message(masses + "[boundary]\nstart = { " + s + " }\nduration = 2\n");
   };
-  EXPECT_EQ(start("xx = 0"), "scene.toml:7:11: unknown coordinate 'xx'; did you mean 'x'?");
+  EXPECT_EQ(start("xx = 0"),
+            "scene.toml:7:11: unknown coordinate 'xx'; the system has x, q; did you mean 'x'?");
   EXPECT_EQ(start("\"q[4]\" = 0"), "scene.toml:7:11: 'q[4]' is out of range: 'q' has elements 1 to 3");
   EXPECT_EQ(start("\"q[0]\" = 0"), "scene.toml:7:11: 'q[0]' is out of range: 'q' has elements 1 to 3");
   EXPECT_EQ(start("\"x[1]\" = 0"), "scene.toml:7:11: 'x' is not an array; write 'x' in place of 'x[1]'");

@@ -39,7 +39,8 @@ TEST_F(Scenes, GuessListsElementsAndWhatIsLeftOut) {
 
 TEST_F(Scenes, GuessFormulasThatAreWrong) {
   const auto guess = [&](const std::string& s) { return message(masses + ends + "[guess]\n" + s + "\n"); };
-  EXPECT_EQ(guess("fiel = \"a.csv\""), "scene.toml:11:1: unknown coordinate 'fiel'; did you mean 'file'?");
+  EXPECT_EQ(guess("fiel = \"a.csv\""),
+            "scene.toml:11:1: unknown coordinate 'fiel'; the system has x, q; did you mean 'file'?");
   EXPECT_EQ(guess("q = [\"t\", \"t\"]"), "scene.toml:11:5: 'q' has 3 elements; found 2 values");
   EXPECT_EQ(guess("x = \"log(t - 1)\""), "scene.toml:11:6: the guess is not finite at t = 0");
   EXPECT_EQ(guess("x = \"2*tt\"").rfind("scene.toml:11:8: ", 0), 0u);
@@ -120,7 +121,7 @@ TEST_F(Scenes, GuessFromAState) {
   EXPECT_EQ(message(masses + ends + "[guess.state]\nq = [0, 1]\n"),
             "scene.toml:11:5: 'q' has 3 elements; found 2 values");
   EXPECT_EQ(message(masses + ends + "[guess]\nstate = { \"y'\" = 1 }\n"),
-            "scene.toml:11:11: unknown coordinate 'y'");
+            "scene.toml:11:11: unknown coordinate 'y'; the system has x, q");
 }
 
 TEST_F(Scenes, GuessFromAStateThatEndsInACollision) {
