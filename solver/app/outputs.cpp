@@ -10,6 +10,7 @@
 
 #include "app/commands.hpp"
 #include "report/file.hpp"
+#include "report/gnuplot.hpp"
 #include "report/plot.hpp"
 
 namespace extremal::app {
@@ -39,7 +40,8 @@ std::string output_refusal(const std::string& path) {
 std::string plot_refusal(const std::string& path) {
   try {
     check_plot_path(path);
-  } catch (const std::invalid_argument& e) {
+    require_gnuplot();
+  } catch (const std::exception& e) {
     return e.what();
   }
   return output_refusal(path);

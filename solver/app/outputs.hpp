@@ -12,7 +12,7 @@ namespace extremal::app {
 /// is written, so the nearest folder that exists counts.
 std::string output_refusal(const std::string& path);
 
-/// The same for a plot, whose suffix must be one that can be drawn.
+/// The same for a plot, whose suffix must be one that gnuplot can draw, and gnuplot be there.
 std::string plot_refusal(const std::string& path);
 
 /// Whether one of the outputs is standard output: nothing else is printed there then. Throws OptionError if

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <ostream>
@@ -18,6 +19,10 @@
 namespace extremal {
 
 namespace {
+
+[[noreturn]] void refuse_missing_gnuplot() {
+  throw std::runtime_error("gnuplot draws the plots and was not found: apt install gnuplot-nox");
+}
 
 std::string content(const std::string& path) {
   std::ostringstream text;
@@ -52,9 +57,7 @@ bool run_gnuplot(const std::string& folder, const char* script, const char* log)
   const FileActions actions(folder, log);
   pid_t child = 0;
   const int error = posix_spawnp(&child, "gnuplot", actions.get(), nullptr, argv, environ);
-  if (error == ENOENT) {
-    throw std::runtime_error("gnuplot draws the plots and was not found: apt install gnuplot-nox");
-  }
+  if (error == ENOENT) refuse_missing_gnuplot();
   if (error != 0) throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
@@ -73,6 +76,14 @@ void reset_date(std::string& pdf) {
 }
 
 }  // namespace
+
+void require_gnuplot() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "/bin:/usr/bin");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((folder + "/gnuplot").c_str(), X_OK) == 0) return;
+  refuse_missing_gnuplot();
+}
 
 std::string draw(const Figure& figure, Format format) {
   const TemporaryFolder folder;

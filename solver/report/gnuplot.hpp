@@ -14,6 +14,9 @@ enum class Format { svg, png, pdf };
 /// literal in which gnuplot substitutes nothing.
 std::string gnuplot_script(const Figure& figure, Format format, const std::string& output);
 
+/// Throws std::runtime_error unless gnuplot is on the PATH: to be called before the work that is plotted.
+void require_gnuplot();
+
 /// Bytes of the drawn file. gnuplot runs without a shell, without start-up files and without anything to
 /// print to, in a temporary folder that is removed. Throws std::runtime_error if it is missing or fails.
 std::string draw(const Figure& figure, Format format);

@@ -195,6 +195,17 @@ TEST_F(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeSolving) {
   EXPECT_EQ(extremal({"solve", "scene.toml", "--output", "/dev/full"}).exit, 2);
 }
 
+TEST_F(CommandLine, WithoutGnuplotAPlotIsRefusedBeforeSolving) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder.c_str(), 1);
+  const Refusal refusal{{"solve", "scene.toml", "--output", "r.json", "--plot", "p.svg"},
+                        "--plot: gnuplot draws the plots and was not found: apt install gnuplot-nox (see "
+                        "extremal help solve)"};
+  expect(refusal);
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_FALSE(fs::exists(folder / "r.json"));
+}
+
 TEST_F(CommandLine, RefusedScenesLeaveNoFolders) {
   write("bad.toml", "[system]\n");
   EXPECT_EQ(extremal({"solve", "bad.toml", "--output", "new/r.json"}).exit, 2);
