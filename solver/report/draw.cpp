@@ -68,7 +68,7 @@ bool run_gnuplot(const std::string& folder, const char* script, const char* log)
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-/// Output is deterministic: the time at which a PDF was made gives way to one of the same length.
+/// Replaces the time at which a PDF was made by a fixed one of the same length: output is deterministic.
 void reset_date(std::string& pdf) {
   const std::string key = "/CreationDate (D:", date = "20000101000000";
   const std::size_t at = pdf.find(key);

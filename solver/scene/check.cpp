@@ -99,7 +99,7 @@ struct Checker {
     check_finite(node, label);
   }
 
-  /// A key that stands outside every table may belong to one.
+  /// A key outside every table may belong to one of them.
   [[noreturn]] static void refuse_key(const Location& at, const std::string& key, std::string_view table,
                                       const std::string& within) {
     std::vector<std::string> known = keys_of(table);
