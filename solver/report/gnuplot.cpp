@@ -12,9 +12,8 @@ namespace {
 
 constexpr Colour ink = 0x262A33, quiet_ink = 0x5A606B, frame = 0x8C929C, rule = 0xE8EAED, paper = 0xFFFFFF;
 constexpr double font_size = 13, title_size = 18;  // pixels
-constexpr double pixels_an_inch = 96;
-constexpr int zoom = 2;            ///< pixels of a PNG for one of the layout
-constexpr int raster = 20 * zoom;  ///< gnuplot's own units in one pixel of the layout
+constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
+constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
 
 /// A literal between double quotes. All but letters, spaces and what is not ASCII is written as an octal
 /// escape, so that no text can end the literal or have gnuplot substitute a command in it. Digits too: one
@@ -40,6 +39,7 @@ struct Sizes {
 };
 constexpr Sizes svg_sizes{.font = 1, .point = 0.6, .tick = 0.4, .number = 0.35};
 constexpr Sizes png_sizes{.font = 0.75, .point = 0.8, .tick = 1, .number = 0};
+constexpr double pixels_an_inch = 96;  // of a PDF
 constexpr Sizes pdf_sizes{.font = 0.75, .point = 0.5, .tick = 0.75, .number = 0};
 
 const Sizes& sizes_of(Format format) {
