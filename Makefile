@@ -1,10 +1,13 @@
 # `make demo` and `make test` work on a fresh clone: what is missing is installed, then built.
 SCENE = problems/scenes/cr3bp.toml
+# Where `make install` installs; the program looks for system files there.
+PREFIX = /usr/local
 
 .PHONY: configure build demo test bench debug asan ubsan sanitize gallery reference format install packages clean
 
 configure: packages
-	@cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
+	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) >build/configure.log 2>&1 || { \
+	  cat build/configure.log; exit 1; }
 
 build: configure
 	@cmake --build --preset release
@@ -41,9 +44,8 @@ reference: configure
 format:
 	@git ls-files -co --exclude-standard '*.hpp' '*.cpp' | xargs clang-format -i
 
-# PREFIX=/usr/local by default
 install: build
-	@cmake --install build/release $(if $(PREFIX),--prefix $(PREFIX))
+	@cmake --install build/release
 
 packages:
 	@mkdir -p build

@@ -80,6 +80,12 @@ struct Sizes {
 };
 constexpr Sizes svg_sizes{.font = 1, .point = 0.6, .tick = 0.4, .number = 0.35};
 constexpr Sizes png_sizes{.font = 0.75, .point = 0.8, .tick = 1, .number = 0};
+constexpr double pixels_an_inch = 96;  // of a PDF
+constexpr Sizes pdf_sizes{.font = 0.75, .point = 0.5, .tick = 0.75, .number = 0};
+
+const Sizes& sizes_of(Format format) {
+  return format == Format::svg ? svg_sizes : format == Format::png ? png_sizes : pdf_sizes;
+}
 
 Box whole_pixels(const Box& box) {
   return {std::round(box.left), std::round(box.top), std::round(box.width), std::round(box.height)};
@@ -93,7 +99,7 @@ class Script {
       : figure_(figure),
         width_(std::round(figure.width)),
         height_(std::round(figure.height)),
-        sizes_(format == Format::svg ? svg_sizes : png_sizes) {
+        sizes_(sizes_of(format)) {
     terminal(format);
     add("set output {}\nset encoding utf8\nset key off\nset multiplot\n", quoted(output));
     add("set cbrange [0:1]\n");
@@ -114,6 +120,11 @@ class Script {
     const double size = font_size * sizes_.font;
     if (format == Format::svg) {
       add("set terminal svg size {:.0f},{:.0f} {} font 'Helvetica,{}'\n", width_, height_, common, size);
+    } else if (format == Format::pdf) {
+      // Its scale of fonts is 0.5 unless it is given; a line of width 1 is three quarters of a pixel.
+      add("set terminal pdfcairo size {:.4f}in,{:.4f}in {} font 'Helvetica,{}' fontscale 0.75 linewidth "
+          "1.33\n",
+          width_ / pixels_an_inch, height_ / pixels_an_inch, common, size);
     } else {
       add("set terminal pngcairo size {:.0f},{:.0f} {} font 'Helvetica,{}'", zoom * width_, zoom * height_,
           common, size);

@@ -113,11 +113,11 @@ constexpr KeyRecord keys[] = {
 };
 
 constexpr Exclusion pairs[] = {
-    {"solve.tolerance", "solve.elements", "elements pins the discretisation, so no tolerance can be met"},
+    {"solve.tolerance", "solve.elements", "'elements' fixes the discretisation and with it the error"},
     {"system.use", "system.coordinates", "the system file declares the coordinates"},
-    {"boundary.periodic", "boundary.start", "a periodic orbit has no fixed ends; use where to select it"},
-    {"boundary.periodic", "boundary.end", "a periodic orbit has no fixed ends; use where to select it"},
-    {"boundary.periodic", "boundary.conditions", "both say how the ends are related"},
+    {"boundary.periodic", "boundary.start", "a periodic orbit has no fixed ends; 'where' selects it"},
+    {"boundary.periodic", "boundary.end", "a periodic orbit has no fixed ends; 'where' selects it"},
+    {"boundary.periodic", "boundary.conditions", "both relate the ends"},
     {"boundary.conditions", "boundary.start", "write the fixed ends as conditions too"},
     {"boundary.conditions", "boundary.end", "write the fixed ends as conditions too"},
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration"},
@@ -128,13 +128,13 @@ constexpr Exclusion pairs[] = {
 
 constexpr Requirement needs[] = {
     {"solve.elements", "solve.scheme", "the number of elements alone does not fix a discretisation"},
-    {"boundary.map", "boundary.periodic", "a map closes a periodic orbit"},
+    {"boundary.map", "boundary.periodic", "a map relates the ends of a periodic orbit"},
 };
 
 constexpr MethodRecord methods[] = {
-    {"newton", "damped Newton for the stationary point, mesh and degree raised until the tolerance is met"},
-    {"ceres", "least squares of the residual lead from the guess to where Newton's method ends it"},
-    {"ipopt", "the same by an interior point method with the equations as constraints"},
+    {"newton", "damped Newton method; elements and degree rise until the tolerance is met"},
+    {"ceres", "least squares of the residual by Ceres, then Newton's method"},
+    {"ipopt", "interior point method of Ipopt with the equations as constraints, then Newton's method"},
 };
 
 }  // namespace
