@@ -115,18 +115,18 @@ void print_scene(const SceneRecord& scene) {
 void print_summary(const std::vector<SceneRecord>& scenes, const Peers& peers) {
   fmt::print(
       "\nTime at error E: the fastest of all runs whose true error is at most E.\n"
-      "Rivals in this run: single and multiple shooting with equations coded by hand; the same, general, on "
-      "the "
-      "tapes of\nthis library; scipy's solve_bvp. Peers were measured separately.\n"
-      "All with the setting that is best in hindsight. Last two columns: time over ours of the best rival of "
-      "this "
-      "run,\nand of the best peer.\n");
+      "Rivals in this run: shooting with equations coded by hand, general shooting on the tapes of this "
+      "library,\n"
+      "and scipy's solve_bvp, each with the setting that is best in hindsight. Peers were measured "
+      "separately.\n"
+      "Last two columns: the time of the best rival of this run, and of the best peer, over ours.\n");
   for (double error : compared_errors) print_error(scenes, peers, error);
 }
 
 void print_means(const std::vector<SceneRecord>& scenes, const Peers& peers) {
   GeometricMean best, peer;
-  std::vector<GeometricMean> rivals(SceneRecord().rivals().size());
+  const SceneRecord names;
+  std::vector<GeometricMean> rivals(names.rivals().size());
   int problems = 0, cells = 0, reached = 0;
   for (const SceneRecord& scene : scenes) {
     if (!scene.boundary || !scene.refusal.empty()) continue;
@@ -147,7 +147,7 @@ void print_means(const std::vector<SceneRecord>& scenes, const Peers& peers) {
     fmt::print("  {:<28} {}\n", name, mean.text());
   };
   line("best rival of this run", best);
-  for (std::size_t k = 0; k < rivals.size(); ++k) line(SceneRecord().rivals()[k]->name, rivals[k]);
+  for (std::size_t k = 0; k < rivals.size(); ++k) line(names.rivals()[k]->name, rivals[k]);
   line("best peer measured apart", peer);
 }
 

@@ -166,7 +166,7 @@ struct DoublePendulum : FewCoordinates<2> {
 };
 
 /// In the rotating frame, primaries at −μ and 1 − μ:
-///   x'' = 2 y' + ∂U/∂x, y'' = −2 x' + ∂U/∂y, z'' = ∂U/∂z, U = (x² + y²)/2 + (1 − μ)/r1 + μ/r2.
+///   U = (x² + y²)/2 + (1 − μ)/r1 + μ/r2,   x'' = 2 y' + ∂U/∂x, y'' = −2 x' + ∂U/∂y, z'' = ∂U/∂z.
 struct RestrictedThreeBody : FewCoordinates<3> {
   static constexpr bool velocity_free = false;
   struct Slope {
