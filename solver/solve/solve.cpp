@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "solve/distinct.hpp"
-#include "solve/finish.hpp"
-#include "solve/pinned.hpp"
-#include "solve/search.hpp"
-#include "solve/several.hpp"
-#include "solve/unfold.hpp"
+#include "solve/accept/finish.hpp"
+#include "solve/adapt/pinned.hpp"
+#include "solve/periodic/reconstruct_orbit.hpp"
+#include "solve/search/distinct.hpp"
+#include "solve/search/search.hpp"
+#include "solve/search/several.hpp"
 
 namespace extremal {
 
@@ -43,7 +43,7 @@ Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Work
   if (outcome.status != Status::converged) return outcome;
   outcome.reduction = &reduction;
   outcome.message += fmt::format(" on 1/{} of the orbit, which symmetries continue", reduction.parts());
-  unfold(reduction, w.path, *outcome.tables, w.whole);
+  reconstruct_orbit(reduction, w.path, *outcome.tables, w.whole);
   return outcome;
 }
 

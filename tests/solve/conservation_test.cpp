@@ -1,4 +1,4 @@
-#include "solve/conservation.hpp"
+#include "solve/mesh/conservation.hpp"
 
 #include "solve/laws.hpp"
 

@@ -1,10 +1,10 @@
-#include "solve/descent.hpp"
+#include "solve/search/descent.hpp"
 
 #include <numbers>
 
-#include "solve/ends.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
-#include "solve/start.hpp"
 
 /// \file Minimisation in windows: downhill where the action is convex, to a saddle where it is not.
 

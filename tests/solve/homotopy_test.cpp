@@ -1,10 +1,10 @@
-#include "solve/homotopy.hpp"
+#include "solve/homotopy/duration_homotopy.hpp"
 
 #include <numbers>
 
-#include "solve/ends.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
-#include "solve/start.hpp"
 
 /// \file Families of extremals of all durations.
 

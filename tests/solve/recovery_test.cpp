@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solve/finish.hpp"
+#include "solve/accept/finish.hpp"
 #include "solve/laws.hpp"
 #include "solve/scenes.hpp"
 

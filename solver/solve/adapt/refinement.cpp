@@ -1,0 +1,287 @@
+#include "solve/adapt/refinement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace extremal {
+
+namespace {
+
+/// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.
+constexpr int most_elements = 1 << 12, most_cuts = 64;
+/// Coarse elements have done their work when the path is known to this, relative to its range.
+constexpr double coarse_goal = 1e-3;
+/// A coarse element becomes at most so many at a time.
+constexpr double coarse_cut = 4;
+/// Steps allowed for one run of damped Newton.
+constexpr int coarse_steps = 25, fine_steps = 12;
+/// Corrections below this (relative) are roundoff.
+constexpr double roundoff = 1e-15;
+/// Times that elements are planned before all are halved.
+constexpr int most_plans = 6;
+/// An undamped step longer than this, relative to the path, casts doubt on the equations.
+constexpr double suspicious_step = 1e6;
+/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
+/// guess that asks for more elements may make of it.
+constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
+/// Of a step, to fill a path.
+constexpr double filling = 0.1;
+/// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
+constexpr double border_cost = 2;
+/// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
+/// harder to foresee than what is between.
+constexpr double planned_slopes = 6;
+/// Errors below this (relative) may be roundoff.
+constexpr double near_roundoff = 1e-9;
+
+}  // namespace
+
+Refinement::Refinement(const Problem& problem, const SolveOptions& options, Workspace& workspace,
+                       Outcome& outcome)
+    : problem_(problem), options_(options), w_(workspace), outcome_(outcome) {}
+
+void Refinement::rebind() {
+  w_.iteration.reset(problem_, *tables_, w_.path.elements(), &w_.levels.at(first_degree));
+}
+
+bool Refinement::count_step() {
+  record();
+  return !exhausted();
+}
+
+void Refinement::open(const std::vector<double>& mesh, int degree) {
+  const ElementTables& tables = w_.levels.at(degree);
+  w_.path.reset(tables, mesh, problem_.duration.value);
+  take(tables);
+  cost_ += filling * step_cost();
+}
+
+void Refinement::take(const ElementTables& tables) {
+  longest_ = 0;
+  followed_ = false;
+  w_.iteration.forget();
+  tables_ = &tables;
+  rebind();
+  most_elements_ = std::max(most_elements, most_cuts * w_.path.elements());
+  const double wanted = std::max(most_cost, most_first_steps * step_cost());
+  if (first_cost_ == 0) first_cost_ = wanted;
+  most_cost_ = std::max(most_cost_, std::min(wanted, most_cost_growth * first_cost_));
+}
+
+double Refinement::step_cost() const {
+  const double n = w_.path.coordinates(), columns = problem_.ends.free + problem_.duration.free;
+  const double cost = w_.path.batches() * batch_cost(*tables_, w_.path.degree()) +
+                      border_cost * w_.path.elements() * n * n * columns;
+  return followed_ ? cost / followed_growth : cost;
+}
+
+Refinement::Result Refinement::pursue() {
+  const double first_range = scales(w_.path, *tables_).range;
+  const bool may_shrink = problem_.periodic && problem_.lagrangian->structure().autonomous;
+  first_magnitude_ = scales(w_.path, *tables_).magnitude;
+  varied_mass_ = !problem_.lagrangian->structure().quadratic;
+  inertia_ = inertia();
+  momentum_range_ = 0;
+  held_ = INFINITY;
+  if (followed_) {
+    w_.iteration.action().evaluate_plain(w_.path);
+    measure_momenta();
+    w_.iteration.extend();
+  }
+  Attempt result = attempt();
+  for (double before = INFINITY; result == Attempt::refine; before = worst_) {
+    // Truncation this small that finer elements do not reduce is roundoff.
+    const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
+    // Nor do they help an orbit that has shrunk onto an equilibrium: no digits tell its range.
+    const bool shrunk = may_shrink && scales(w_.path, *tables_).range <= at_rest * first_range;
+    if (hopeless || shrunk || 2 * w_.path.elements() > most_elements_) {
+      outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
+                                     w_.path.elements(), w_.path.degree(), options_.tolerance);
+      return hopeless ? Result::unreachable : Result::failed;
+    }
+    refine();
+    result = attempt();
+  }
+  outcome_.tables = tables_;
+  if (result == Attempt::converged) return Result::converged;
+  return result == Attempt::failed ? Result::failed : Result::unreachable;
+}
+
+bool Refinement::suspicious() const { return longest_ > suspicious_step; }
+
+/// A second variation may be nearly singular only by the error of the elements: then other elements give
+/// another path.
+bool Refinement::confirmed() {
+  if (!suspicious()) return true;
+  w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
+  raise(std::min(w_.path.degree() + 2, max_degree));
+  const NewtonReport report = converge(w_.iteration, w_.path, *tables_, {loosest_newton, fine_steps},
+                                       [this] { return count_step(); });
+  outcome_.tables = tables_;
+  double moved = 0;
+  for (std::size_t k = 0; k < w_.before.size(); ++k)
+    moved = std::max(moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
+  return report.reached && moved <= 10 * outcome_.error + loosest_newton * scales_.q;
+}
+
+/// Finer elements would not see what happens between the points of those there are, others may.
+bool Refinement::holds_on_other_elements() {
+  const std::span<const double> mesh = w_.path.mesh();
+  std::vector<double> other{0};
+  for (std::size_t k = 0; k + 1 < mesh.size(); ++k) other.push_back(0.5 * (mesh[k] + mesh[k + 1]));
+  other.push_back(1);
+  w_.other.resample_from(w_.path, *tables_, other);
+  w_.before.assign(w_.other.nodes().begin(), w_.other.nodes().end());
+  w_.iteration.reset(problem_, *tables_, w_.other.elements());
+  w_.iteration.set_scale(scales_.q);
+  const NewtonReport report =
+      converge(w_.iteration, w_.other, *tables_,
+               {std::clamp(0.5 * options_.tolerance, roundoff, loosest_newton), fine_steps},
+               [this] { return count_step(); });
+  double moved = 0;
+  for (std::size_t k = 0; k < w_.before.size(); ++k)
+    moved = std::max(moved, std::abs(w_.other.nodes()[k] - w_.before[k]));
+  rebind();
+  outcome_.error = std::max(outcome_.error, moved);
+  const bool holds = report.reached && moved <= options_.tolerance * scales_.q;
+  if (!holds) outcome_.message = "other elements told another path";
+  return holds;
+}
+
+void Refinement::record() {
+  longest_ = std::max(longest_, w_.iteration.undamped());
+  cost_ += step_cost() * w_.iteration.burden();
+  outcome_.record(w_, options_);
+}
+
+/// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
+Plan Refinement::plan(double aim) {
+  // Other elements bend a path where they begin.
+  if (followed_) return {std::min(w_.path.degree() + 2, highest_degree), {}};
+  const bool last = aim <= options_.tolerance;
+  const auto error = [&](double share) {
+    return Resolution::Error{share * scales_.q, last ? planned_slopes * share * scales_.v : INFINITY};
+  };
+  return w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
+                         {.aim = error(aim),
+                          .tolerated = error(std::max(aim, 0.7 * options_.tolerance)),
+                          .raised_degree = std::min(w_.path.degree() + 1, highest_degree),
+                          .least_degree = first_degree + 1,
+                          .highest_degree = highest_degree,
+                          .most_elements = std::min(16 * w_.path.elements(), most_elements_),
+                          .strongest_cut = 16});
+}
+
+void Refinement::raise(int degree) {
+  const std::vector<double>& matrix = w_.levels.raise(w_.path.degree(), degree);
+  tables_ = &w_.levels.at(degree);
+  w_.other.interpolate_from(w_.path, *tables_, matrix);
+  std::swap(w_.path, w_.other);
+  rebind();
+  w_.iteration.set_scale(scales_.q);
+}
+
+void Refinement::adopt(const Plan& plan) {
+  if (plan.mesh.empty()) {
+    if (plan.degree > w_.path.degree()) raise(plan.degree);
+    return;
+  }
+  tables_ = &w_.levels.at(plan.degree);
+  w_.other.resample_from(w_.path, *tables_, plan.mesh);
+  std::swap(w_.path, w_.other);
+  rebind();
+  w_.iteration.set_scale(scales_.q);
+}
+
+/// Elements of the present degree that should know the path to a few digits, if those are more; else halves.
+void Refinement::refine() {
+  const int elements = w_.path.elements(), degree = w_.path.degree();
+  if (degree == first_degree) {
+    const Resolution::Error aim{coarse_goal * scales_.q, INFINITY, INFINITY};
+    const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
+                                       {aim, aim, degree, degree, degree, most_elements_, coarse_cut});
+    if (static_cast<int>(finer.mesh.size()) > elements + 1) return adopt(finer);
+  }
+  w_.other.split_from(w_.path, *tables_, w_.levels.halve(w_.path.degree()));
+  std::swap(w_.path, w_.other);
+  rebind();
+}
+
+int Refinement::steps_left(int wanted) const {
+  const double more = std::min((affordable() - cost_) / step_cost(), 1e6);
+  return std::max(0, std::min({wanted, steps_left(), static_cast<int>(more)}));
+}
+
+NewtonReport Refinement::converge_to(double error, bool reuse) {
+  const NewtonGoal goal{std::clamp(0.5 * error, roundoff, loosest_newton), steps_left(fine_steps), reuse,
+                        std::max(options_.tolerance, error)};
+  const NewtonReport report =
+      converge(w_.iteration, w_.path, *tables_, goal, [this] { return count_step(); });
+  measure();
+  return report;
+}
+
+Refinement::Attempt Refinement::attempt() {
+  const auto on_step = [this] { return count_step(); };
+  NewtonReport newton =
+      approach(w_.iteration, w_.path, *tables_, {coarse_goal, steps_left(coarse_steps)}, w_.saved, on_step);
+  if (newton.held) {
+    const ElementTables* const coarse = tables_;
+    const Attempt result = follow(newton);
+    if (result != Attempt::failed || exhausted()) return result;
+    // Steps that fail on finer elements may succeed on the coarse ones, and are cheaper there.
+    w_.path = w_.saved;
+    tables_ = coarse;
+    rebind();
+    newton = converge(w_.iteration, w_.path, *coarse, {coarse_goal, steps_left(coarse_steps)}, on_step);
+  }
+  outcome_.message = newton.failure;
+  return newton.reached ? follow(newton) : Attempt::failed;
+}
+
+/// From a path that coarse elements know, to elements that meet the tolerance.
+Refinement::Attempt Refinement::follow(NewtonReport newton) {
+  measure();
+  const double finest = spare * options_.tolerance;
+  for (int plans = 0;; ++plans) {
+    const bool risen = followed_ && w_.path.degree() == highest_degree;
+    if (plans == most_plans || (plans > 0 && risen)) return Attempt::refine;
+    // Finer elements than one more step makes use of would be wasted.
+    NodeError nodes{w_.resolution.at(w_.path.degree()), 0, plans > 0};
+    const double known = nodes.left_out.q / scales_.q + newton.remaining;
+    const double aim = std::max(finest, std::min(w_.iteration.expected(known), 0.1 * known));
+    const Plan next = plan(aim);
+    if (next.degree == 0) {
+      worst_ = INFINITY;  // not measured yet
+      return Attempt::refine;
+    }
+    const double unfinished = 2 * newton.remaining * scales_.q;
+    adopt(next);
+    w_.before.assign(w_.path.nodes().begin(), w_.path.nodes().end());
+    newton = converge_to(aim, false);
+    if (newton.reached && aim > finest && excess(w_.resolution.at(w_.path.degree())) <= 1)
+      newton = converge_to(finest, true);
+    for (std::size_t k = 0; k < w_.before.size(); ++k)
+      nodes.moved = std::max(nodes.moved, std::abs(w_.path.nodes()[k] - w_.before[k]));
+    // What Newton's method had left to do is no error of the elements, or not all of it.
+    nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
+    Attempt result = judge(newton, aim, nodes);
+    // With gradients that have digits to spare, steps shrink as long as the factors allow.
+    for (double before = w_.iteration.extended() ? INFINITY : 0;
+         result == Attempt::unreachable && (w_.iteration.extend() || newton.remaining < 0.5 * before);) {
+      before = newton.remaining;
+      newton = converge_to(aim, false);
+      result = judge(newton, aim, nodes);
+    }
+    if (result == Attempt::converged) {
+      const Attempt settled = settle(newton);
+      if (settled == Attempt::refine) worst_ = INFINITY;
+      return settled;
+    }
+    if (result != Attempt::refine) return result;
+  }
+}
+
+}  // namespace extremal

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/adapt/refinement.hpp"
+
+/// \file Whether the path that Newton's method left meets the tolerance.
+
+namespace extremal {
+
+namespace {
+
+/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large;
+/// the least may be roundoff.
+constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
+/// Eigenvalues above this, relative to the largest, are never taken for null.
+constexpr double largest_soft = 1e-8;
+/// Errors of finer elements are less than this part of those before.
+constexpr double element_fall = 0.25;
+/// Of the size of the path that was started from: a path smaller than this is at rest.
+constexpr double rest = 1e-12;
+/// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
+constexpr double much_less = 0.25;
+/// Of roundoff that was measured.
+constexpr double certain = 3;
+/// Steps that end what Newton's method began.
+constexpr int most_polish = 3;
+/// They use the factors there are as long as they contract so much.
+constexpr double worst_chord = 0.5;
+
+}  // namespace
+
+void Refinement::measure() {
+  w_.resolution.measure(w_.path, *tables_);
+  scales_ = scales(w_.path, *tables_);
+  scales_.q = std::max(scales_.q, rest * first_magnitude_);
+  scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
+  measure_momenta();
+  if (inertia_ == 0 || momentum_range_ == 0) return;
+  // The largest inertia, where it varies, bounds errors of momenta from far above.
+  const double range = momentum_range_ / inertia_;
+  if (!varied_mass_ || range < much_less * scales_.v)
+    scales_.v = std::min(scales_.v, std::max(range, scales_.slowest));
+}
+
+/// Momenta may vary much less than velocities: of slow bodies in a frame that rotates, or beside a pole. What
+/// extended precision does not show was measured before.
+void Refinement::measure_momenta() {
+  const DiscreteAction& action = w_.iteration.action();
+  if (const double varied = varied_mass_ ? action.inertia(w_.path) : 0; varied > 0) inertia_ = varied;
+  if (inertia_ == 0) return;
+  if (const double range = action.momentum_range(); range > 0) momentum_range_ = range;
+}
+
+/// Of momenta by velocities in a frame that rotates or a magnetic field; 0 elsewhere.
+double Refinement::inertia() const {
+  const Structure& structure = problem_.lagrangian->structure();
+  double largest = 0;
+  if (!structure.gyroscopic.empty())
+    for (const Triplet& m : structure.mass)
+      if (m.row == m.column) largest = std::max(largest, std::abs(m.value));
+  return largest;
+}
+
+/// In units of what the tolerance allows.
+double Refinement::excess(const Resolution::Error& error) const {
+  if (error.q == 0 && error.v == 0) return 0;  // at rest
+  return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
+}
+
+/// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft
+/// then, not null. Not so in periodic problems: families there, as about Kepler's circle, would count as
+/// soft.
+double Refinement::softest(double error, const Path& path, double magnitude) {
+  const double roundoff = 8 * 0x1p-52 * path.elements();
+  return std::clamp(magnitude > 0 ? 3 * error / magnitude : 0, roundoff, largest_soft);
+}
+
+/// What may hold the phase of a periodic path, relative to the largest momentum: what elements leave out
+/// explains, to second order. Where weak forces all but allow a family, it is more, however fine they are.
+double Refinement::phase_force() const {
+  const double explained = std::max(left_out_ / scales_.q, least_phase_force);
+  return std::min({spare * options_.tolerance, most_phase_force, explained});
+}
+
+/// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
+/// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows:
+/// it tells better than what was expected to remain.
+/// A residual that was left within the tolerance becomes roundoff in a few.
+Refinement::Attempt Refinement::settle(const NewtonReport& report) {
+  if (problem_.ends.free == 0) return Attempt::converged;
+  const double phase = problem_.periodic ? phase_force() : 0;
+  NewtonIteration& newton = w_.iteration;
+  if (!problem_.periodic) newton.model().set_null_below(softest(left_out_, w_.path, scales_.magnitude));
+  bool passed = false;
+  for (int step = 0; step <= most_polish; ++step) {
+    const bool again = step == 0 || newton.contraction() <= worst_chord;
+    const StepResult result = again ? newton.chord_step(w_.path) : newton.full_step(w_.path, 0);
+    record();
+    passed = result == StepResult::ok && test_.passed(problem_, newton, w_.path, phase);
+    if (passed && newton.norm() <= options_.tolerance) {
+      outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
+      return Attempt::converged;
+    }
+    // What is left was told before the step; the first may follow one that was damped.
+    const double allowed = std::min(10 * options_.tolerance, loosest_newton);
+    if (result != StepResult::ok || (step > 0 && test_.share() > allowed) || exhausted()) break;
+  }
+  if (passed && newton.extend()) return settle(report);
+  outcome_.message = passed ? hidden(newton.norm()) : test_.message();
+  if (passed) return Attempt::unreachable;
+  // What holds the phase is an error of the elements if it falls with them.
+  const double before = std::exchange(held_, test_.share());
+  const bool falls = held_ <= options_.tolerance && held_ < element_fall * before;
+  return problem_.periodic && falls ? Attempt::refine : Attempt::failed;
+}
+
+/// A tolerance, by what roundoff became.
+std::string Refinement::hidden(double amplified) const {
+  return fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
+                     amplified, options_.tolerance);
+}
+
+/// What the momenta of a path make of its elements, which tell q but not q', if that is enough. The
+/// resolution is then that of the polynomials recovered.
+std::optional<Resolution::Error> Refinement::recovered(double q) {
+  if (!recover(problem_, w_)) return std::nullopt;
+  const int degree = w_.path.degree();
+  w_.resolution.measure(w_.recovered, w_.levels.at(degree + Recovery::raised_by));
+  const Resolution::Error less = w_.resolution.at(degree + Recovery::gained(*problem_.lagrangian));
+  if (excess({q, less.v}) <= 1) return less;
+  w_.resolution.measure(w_.path, *tables_);
+  return std::nullopt;
+}
+
+/// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
+/// which comes from the forces and velocities left out and falls with their product (order 2s) from what
+/// the nodes moved when the elements changed; corrections not made; roundoff, a random walk over the points.
+Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {
+  outcome_.message = newton.failure;
+  if (!newton.reached) return Attempt::failed;
+  Resolution::Error error = w_.resolution.at(w_.path.degree());
+  const Resolution::Error& before = nodes.left_out;
+  const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
+  const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
+  const double at_nodes = nodes.moved * std::min(1.0, fall);
+  const double longest = std::sqrt(2 * std::log(points * w_.path.coordinates()));
+  double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  const auto with = [&](double walk) { return excess({error.q + at_nodes + longest * walk, error.v}); };
+  // Where it decides it is measured: more elements would not help.
+  if (with(roundoff) > 1 && with(0) <= 1) {
+    const double measured = certain * w_.iteration.roundoff(w_.path) * scales_.q;
+    roundoff = std::clamp(measured, 0x1p-53 * scales_.magnitude, roundoff);
+  }
+  const double truncation = error.q + roundoff;
+  error.q = left_out_ = truncation + at_nodes;
+  outcome_.tolerance = options_.tolerance * scales_.q;
+  outcome_.error = error.q + newton.most_remaining * scales_.q;
+  if (newton.remaining > std::max(options_.tolerance, aim)) {
+    outcome_.message = hidden(newton.remaining);
+    return Attempt::unreachable;
+  }
+  // Of so many walks the longest is expected to be this much longer than one.
+  error.q += roundoff * (longest - 1);
+  worst_ = excess(error);
+  outcome_.recovered = false;
+  if (worst_ > 1 && excess({error.q}) <= 1 && newton.most_remaining <= spare * options_.tolerance) {
+    const double alone = truncation - roundoff;  // of the elements
+    if (const std::optional<Resolution::Error> less = recovered(error.q)) {
+      outcome_.recovered = true;
+      outcome_.error += less->q - alone;
+      worst_ = excess({error.q, less->v});
+    }
+  }
+  if (!(worst_ <= 1)) return Attempt::refine;
+  // Much movement may have been Newton's, not the elements': from this converged path it is not.
+  if (at_nodes > truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
+    return Attempt::refine;
+  outcome_.message = "converged";
+  return Attempt::converged;
+}
+
+}  // namespace extremal

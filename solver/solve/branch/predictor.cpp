@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/branch/continuation.hpp"
+
+/// \file How a branch goes on from a place, as tangents and other places tell.
+
+namespace extremal {
+
+namespace {
+
+/// A step is begun no longer than the branch is foreseen to turn by so much, the tangent of an angle.
+constexpr double foreseen_turn = 0.4;
+
+/// The values of a path as a step from zero.
+Step values_of(const Path& path) {
+  Step step;
+  step.nodes.assign(path.nodes().begin(), path.nodes().end());
+  step.inner.assign(path.x(0), path.x(path.batches()));
+  return step;
+}
+
+bool same_elements(const Path& a, const Path& b) {
+  return a.degree() == b.degree() && std::ranges::equal(a.mesh(), b.mesh());
+}
+
+}  // namespace
+
+/// From the place, so far along the tangent.
+Move Continuation::Stand::ahead(double length) const {
+  Move move = tangent;
+  move.scale(length);
+  if (bend.step.nodes.empty()) return move;
+  move.add(bend, length * length);
+  if (!twist.step.nodes.empty()) move.add(twist, length * length * length);
+  return move;
+}
+
+/// Tangents t here, at the place before and at the one before that give, as divided differences D and S over
+/// the ways ℓ between them, t(σ) = t + σD + σ(σ + ℓ)S, and the branch as its integral. Places tell less: they
+/// may differ by a shift of time that no correction takes back, and would pass it on enlarged.
+void Continuation::curve(const Stand& before, double length) {
+  const Move tangent = carried(before.tangent, before.path);
+  const double unit = std::sqrt(branch_.dot(tangent, tangent));  // of lengths before
+  here_.back = unit * length;
+  Move& turning = here_.turning = here_.tangent;
+  turning.add(tangent, -1 / branch_.dot(here_.tangent, tangent));
+  turning.scale(1 / here_.back);
+  here_.bend = turning;
+  if (!before.turning.step.nodes.empty()) {
+    Move& twist = here_.twist = turning;
+    twist.add(carried(before.turning, before.path), -1 / (unit * unit));
+    twist.add(here_.tangent, -branch_.dot(here_.tangent, twist));
+    twist.scale(1 / (here_.back + unit * before.back));
+    here_.bend.add(twist, here_.back);
+    twist.scale(1.0 / 3);
+  }
+  here_.bend.scale(0.5);
+}
+
+/// How far on the tangent turns by no more than foreseen_turn, at most |2σ bend + 3σ² twist|.
+double Continuation::foreseen() const {
+  const auto size = [&](const Move& move) {
+    return move.step.nodes.empty() ? 0 : std::sqrt(branch_.dot(move, move));
+  };
+  const double bend = size(here_.bend), twist = size(here_.twist);
+  return foreseen_turn / (bend + std::sqrt(bend * bend + 3 * twist * foreseen_turn));
+}
+
+/// A place from which the step to another one is foreseen as the cubic through both, with their tangents:
+/// with ℓ the length of the step and y(σ) what the branch deviates from the tangent t, y(ℓ) = Y and y'(ℓ) = Z
+/// give y = σ²(3Y/ℓ − Z)/ℓ + σ³(Z − 2Y/ℓ)/ℓ².
+Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, double length) {
+  Stand result = from;
+  w_.path = from.path;
+  branch_.set_units(from.units);
+  if (!branch_.place(from.coordinate)) return result;
+  Move off = way_to(to);
+  off.add(from.tangent, -length);
+  off.scale(1 / (length * length));
+  Move slope = carried(to.tangent, to.path);
+  slope.scale(1 / (branch_.dot(from.tangent, slope) * length));
+  slope.add(from.tangent, -1 / length);
+  result.bend = off;
+  result.bend.scale(3);
+  result.bend.add(slope, -1);
+  result.twist = std::move(slope);
+  result.twist.add(off, -2);
+  result.twist.scale(1 / length);
+  return result;
+}
+
+/// A move of another path on the elements that there are.
+Move Continuation::carried(const Move& move, const Path& from) {
+  if (move.step.nodes.empty() || same_elements(from, w_.path)) return move;
+  Path whole;
+  whole.reset(w_.levels.at(from.degree()), from.mesh(), from.duration());
+  whole.add(move.step.nodes, move.step.inner, 1);
+  whole.load_ends();
+  w_.other.resample_from(whole, branch_.tables(), w_.path.mesh());
+  Move result = move;
+  const double duration = move.step.duration;
+  result.step = values_of(w_.other);
+  result.step.duration = duration;
+  return result;
+}
+
+/// From the path to another place's, on the elements of the path.
+Move Continuation::way_to(const Stand& to) {
+  w_.other = to.path;
+  if (!same_elements(to.path, w_.path)) w_.other.resample_from(to.path, branch_.tables(), w_.path.mesh());
+  Move way{values_of(w_.other), to.coordinate - branch_.coordinate()};
+  way.add({values_of(w_.path)}, -1);
+  if (family_.varied == Varied::parameter) way.step.duration = to.path.duration() - w_.path.duration();
+  return way;
+}
+
+}  // namespace extremal

@@ -1,0 +1,111 @@
+#include "solve/homotopy/duration_homotopy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/mesh/resolution.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Durations that are looked at: so many octaves either side, in quarters.
+constexpr int octaves = 6;
+/// Forces that bend a path by less than this, relative to its range, leave it nearly as it is.
+constexpr double slight = 0.2;
+/// A duration is natural if the path is not further from a motion than this times the least distance.
+constexpr double nearly_least = 1.3;
+constexpr std::size_t most_durations = 4;
+/// As T → 0: this much of the wanted duration.
+constexpr double instant = 1e-4;
+
+double largest(const std::vector<double>& values) {
+  double result = 0;
+  for (double x : values) result = std::max(result, std::abs(x));
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> natural_durations(const Problem& problem, Workspace& w, const ElementTables& tables) {
+  const double wanted = problem.duration.value, short_one = instant * wanted;
+  QuadraticModel& model = w.iteration.model();
+  DiscreteAction& action = w.iteration.action();
+  w.path.set_duration(short_one);
+  if (!model.evaluate(action, w.path, nullptr) || !action.finite()) return {};
+  const double range = scales(w.path, tables).q;
+  struct Candidate {
+    double distance, duration, ratio;
+  };
+  std::vector<Candidate> candidates;
+  double least = INFINITY;
+  for (int k = -4 * octaves; k <= 4 * octaves; ++k) {
+    const double duration = wanted * std::pow(2.0, 0.25 * k);
+    w.path.set_duration(duration);
+    model.evaluate_gradient(action, w.path);
+    Step step;
+    model.solve(action, nullptr, step);
+    const double distance = largest(step.nodes) * duration / (short_one * range);
+    if (!action.finite() || !std::isfinite(distance)) continue;
+    candidates.push_back({std::max(distance, slight), duration, std::abs(std::log(duration / wanted))});
+    least = std::min(least, candidates.back().distance);
+  }
+  std::erase_if(candidates, [&](const Candidate& c) { return c.distance > nearly_least * least; });
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.ratio < b.ratio;
+  });
+  std::vector<double> durations;
+  for (const Candidate& c : candidates)
+    if (durations.size() < most_durations) durations.push_back(c.duration);
+  return durations;
+}
+
+DurationHomotopy::DurationHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count)
+    : ExtremalFamily(workspace, std::move(count), problem.duration.value),
+      problem_(problem),
+      wanted_(problem.duration.value) {
+  problem_.duration = {.value = wanted_, .free = true, .energy = 0, .where = {}};
+}
+
+/// With H and t the second derivatives of S_h in x and in x and T, H δx + t δT = −g leaves one direction
+/// free. Two right-hand sides of the equation that would close it give two solutions, even where H is
+/// singular.
+bool DurationHomotopy::solve_linearised(Move& correction, Move& direction) {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  ClosingEquation closing;
+  if (!model.evaluate(action, w_.path, &closing) || !action.finite()) return false;
+  const double energy = std::abs(action.slope_duration()) + std::abs(action.action()) / w_.path.duration();
+  const auto solve = [&](double excess, Move& move) {
+    closing.value = excess - action.slope_duration();
+    model.solve(action, &closing, move.step);
+    move.parameter = std::exchange(move.step.duration, 0);
+  };
+  solve(0, correction);
+  solve(energy > 0 ? energy : 1, direction);
+  direction.add(correction, -1);
+  return true;
+}
+
+bool DurationHomotopy::set_parameter(double value) {
+  const double duration = value == 0 ? wanted_ : wanted_ + value;
+  if (duration > 0) w_.path.set_duration(duration);
+  return duration > 0;
+}
+
+double DurationHomotopy::onward(const Move& direction) const {
+  return direction.parameter * (sense_ != 0 ? sense_ : -parameter());
+}
+
+bool DurationHomotopy::follow(const ElementTables& tables) {
+  sense_ = 0;
+  return begin(tables, most_steps_there) && approach() && set_out() && reach();
+}
+
+bool DurationHomotopy::leave(const ElementTables& tables, bool longer) {
+  sense_ = longer ? 1 : -1;
+  return begin(tables, most_steps_on) && set_out();
+}
+
+}  // namespace extremal

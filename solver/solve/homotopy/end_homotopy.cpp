@@ -1,0 +1,83 @@
+#include "solve/homotopy/end_homotopy.hpp"
+
+#include "linear/dense.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// A displacement for difference quotients, in units of the extent.
+constexpr double small = 1e-6;
+
+}  // namespace
+
+std::vector<double> unit_displacement(const BoundaryRelation& relation, int row) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(relation.rows, 2 * relation.coordinates);
+  for (const Triplet& entry : relation.matrix) matrix(entry.row, entry.column) += entry.value;
+  const Eigen::VectorXd x = least_norm(matrix, Eigen::VectorXd::Unit(relation.rows, row));
+  return {x.begin(), x.end()};
+}
+
+EndHomotopy::EndHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count,
+                         std::vector<double> displacement, double unit)
+    : ExtremalFamily(workspace, std::move(count), unit),
+      problem_(problem),
+      ends_(std::move(displacement)),
+      unit_(unit) {}
+
+bool EndHomotopy::set_parameter(double value) {
+  parameter_ = value;
+  return true;
+}
+
+/// Along the nodes of the path; `inner` numbers stand for what moves with them.
+void EndHomotopy::place_displacement(std::size_t inner) {
+  const std::size_t n = problem_.coordinates();
+  displacement_.inner.assign(inner, 0);
+  displacement_.nodes.clear();
+  for (const double tau : w_.path.mesh())
+    for (std::size_t a = 0; a < n; ++a)
+      displacement_.nodes.push_back((1 - tau) * ends_[a] + tau * ends_[n + a]);
+}
+
+/// The path moved along a line x(τ) whose ends meet the row, and a Newton step from there: H δx = −g at the
+/// path and at the one moved by a little give the direction.
+bool EndHomotopy::solve_linearised(Move& correction, Move& direction) {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  if (!model.evaluate(action, w_.path, w_.iteration.closing(w_.path)) || !action.finite()) return false;
+  model.solve(action, w_.iteration.closing(w_.path), correction.step);
+  correction.parameter = 0;
+  const double by = small * unit_;
+  at_ = w_.path;
+  place_displacement(correction.step.inner.size());
+  w_.path.add(displacement_.nodes, displacement_.inner, by);
+  w_.path.load_ends();
+  model.evaluate_gradient(action, w_.path);
+  model.solve(action, w_.iteration.closing(w_.path), direction.step);
+  w_.path.copy_values(at_);
+  w_.path.load_ends();
+  direction.parameter = 0;
+  direction.add(correction, -1);
+  for (double& x : direction.step.nodes) x /= by;
+  for (double& x : direction.step.inner) x /= by;
+  direction.step.duration /= by;
+  for (std::size_t k = 0; k < displacement_.nodes.size(); ++k)
+    direction.step.nodes[k] += displacement_.nodes[k];
+  direction.parameter = 1;
+  return true;
+}
+
+bool EndHomotopy::follow(const ElementTables& tables, double parameter) {
+  sense_ = 0;
+  parameter_ = parameter;
+  return begin(tables, most_steps_there) && approach() && set_out() && reach();
+}
+
+bool EndHomotopy::leave(const ElementTables& tables, bool along) {
+  sense_ = along ? 1 : -1;
+  parameter_ = 0;
+  return begin(tables, most_steps_on) && set_out();
+}
+
+}  // namespace extremal

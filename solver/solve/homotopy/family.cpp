@@ -1,0 +1,257 @@
+#include "solve/homotopy/family.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/mesh/resolution.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Lengths are relative: root mean square over the nodes by the path's range, and the parameter by its unit.
+constexpr double first_length = 0.1, least_length = 1e-5, largest_approach = 0.2;
+constexpr double on_curve = 1e-2, close_to_curve = 1e-3, farthest_landing = 0.05, landed = 1e-5;
+/// Of the last correction, by the length of the step: where the second variation is nearly singular, what is
+/// left makes the tangent turn.
+constexpr double corrected = 3e-3;
+/// An element keeps so much of its length in one move.
+constexpr double least_element = 0.3;
+/// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
+/// family turns by more than the angle with this cosine.
+constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
+constexpr int refusals_before_polish = 2;
+constexpr int most_corrections = 4, most_landings = 8, most_approaches = 25;
+/// The family has run away where the path is so much larger than at first, or the parameter so many units
+/// off, and further than at first.
+constexpr double runaway = 1e3, farthest = 4;
+/// Truncation error at which elements are chosen anew, and what is aimed at then; relative to the range.
+constexpr double unresolved = 1e-5, resolved = 1e-7;
+constexpr int most_elements = 256;
+constexpr double strongest_cut = 4;
+
+}  // namespace
+
+void Move::scale(double factor) {
+  for (double& x : step.nodes) x *= factor;
+  for (double& x : step.inner) x *= factor;
+  for (double& x : times) x *= factor;
+  step.duration *= factor;
+  parameter *= factor;
+}
+
+void Move::add(const Move& other, double factor) {
+  for (std::size_t k = 0; k < step.nodes.size(); ++k) step.nodes[k] += factor * other.step.nodes[k];
+  for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] += factor * other.step.inner[k];
+  for (std::size_t k = 0; k < times.size(); ++k) times[k] += factor * other.times[k];
+  step.duration += factor * other.step.duration;
+  parameter += factor * other.parameter;
+}
+
+ExtremalFamily::ExtremalFamily(Workspace& workspace, std::function<bool()> count, double unit)
+    : w_(workspace), count_(std::move(count)), unit_(unit) {}
+
+bool ExtremalFamily::linearise() {
+  if (++steps_ > most_steps_) return false;
+  if (!count_()) {
+    steps_ = most_steps_;
+    return false;
+  }
+  if (!solve_linearised(correction_, direction_)) return false;
+  for (Move* move : {&correction_, &direction_}) {
+    move->times.clear();
+    if (!std::isfinite(dot(*move, *move))) return false;
+    comoving_.take_along(w_.path, scale_, move->step, move->times);
+  }
+  const double length = dot(direction_, direction_);
+  return std::isfinite(dot(correction_, correction_)) && std::isfinite(length) && length > 0;
+}
+
+double ExtremalFamily::dot(const Move& a, const Move& b) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.step.nodes.size(); ++k) sum += a.step.nodes[k] * b.step.nodes[k];
+  const double duration = w_.path.duration();
+  return sum / (scale_ * scale_ * static_cast<double>(a.step.nodes.size())) +
+         a.step.duration * b.step.duration / (duration * duration) +
+         a.parameter * b.parameter / (unit_ * unit_) + strain_product(w_.path, a.times, b.times);
+}
+
+bool ExtremalFamily::apply(const Move& move, double factor) {
+  const double duration = w_.path.duration() + factor * move.step.duration;
+  if (!(duration > 0) || !w_.path.move_mesh(move.times, factor, least_element) ||
+      !set_parameter(parameter() + factor * move.parameter))
+    return false;
+  w_.path.add(move.step.nodes, move.step.inner, factor);
+  if (move.step.duration != 0) w_.path.set_duration(duration);
+  w_.path.load_ends();
+  return true;
+}
+
+void ExtremalFamily::restore() {
+  w_.path = saved_;
+  set_parameter(saved_parameter_);
+}
+
+bool ExtremalFamily::begin(const ElementTables& tables, int most_steps) {
+  most_steps_ = most_steps;
+  tables_ = &tables;
+  steps_ = 0;
+  length_ = first_length;
+  farthest_ = std::max(farthest * unit_, 2 * std::abs(parameter()));
+  refusals_ = 0;
+  last_length_ = 0;
+  tangent_ = {};
+  w_.iteration.reset(problem(), tables, w_.path.elements());
+  first_scale_ = scale_ = scales(w_.path, tables).q;
+  return scale_ > 0;
+}
+
+bool ExtremalFamily::approach() {
+  double longest = largest_approach, before = INFINITY;
+  for (int k = 0; k < most_approaches && linearise(); ++k) {
+    correction_.add(direction_, -dot(direction_, correction_) / dot(direction_, direction_));
+    const double size = std::sqrt(dot(correction_, correction_));
+    longest = size < before ? std::min(2 * longest, largest_approach) : 0.5 * longest;
+    before = size;
+    if (!apply(correction_, std::min(1.0, longest / size))) return false;
+    if (size < close_to_curve) return true;
+  }
+  return false;
+}
+
+bool ExtremalFamily::set_out() {
+  if (!linearise() || !turn()) return false;
+  std::swap(tangent_, next_);
+  return true;
+}
+
+/// Newton's method across the tangent.
+bool ExtremalFamily::correct() {
+  double before = INFINITY;
+  for (int k = 0; k < most_corrections && linearise(); ++k) {
+    const double along = dot(tangent_, direction_);
+    if (along == 0) return false;
+    correction_.add(direction_, -dot(tangent_, correction_) / along);
+    const double size = std::sqrt(dot(correction_, correction_));
+    const bool short_enough =
+        size < contraction * before && size < std::max(longest_correction * length_, on_curve);
+    if (!short_enough || !apply(correction_, 1)) return false;
+    if (size < std::min(on_curve, corrected * length_)) return true;
+    before = size;
+  }
+  return false;
+}
+
+/// The next tangent, onward.
+bool ExtremalFamily::turn() {
+  const bool first = tangent_.step.nodes.empty();
+  const double length = std::sqrt(dot(direction_, direction_));
+  const double along = first ? onward(direction_) : dot(tangent_, direction_);
+  next_ = direction_;
+  next_.scale(std::copysign(1 / length, along));
+  cosine_ = first ? 1 : std::abs(along) / (length * std::sqrt(dot(tangent_, tangent_)));
+  return cosine_ > sharpest_turn;
+}
+
+/// Goes to where the parameter is zero, which the last step has passed, if that is near; else the next step
+/// becomes shorter.
+bool ExtremalFamily::land(double from) {
+  const double passed = parameter();
+  double allowed = farthest_landing;
+  for (int k = 0; k < most_landings && linearise(); ++k) {
+    correction_.add(direction_, (-parameter() - correction_.parameter) / direction_.parameter);
+    const double size = std::sqrt(dot(correction_, correction_));
+    if (!(size <= allowed) || !apply(correction_, 1)) break;
+    if (size < landed) {
+      set_parameter(0);
+      return true;
+    }
+    allowed = contraction * size;
+  }
+  length_ *= std::clamp(from / (from - passed), 0.1, 0.9);
+  return false;
+}
+
+/// Other elements where those there are do not resolve the path. False if it takes too many.
+bool ExtremalFamily::resolve() {
+  const int degree = w_.path.degree();
+  w_.resolution.measure(w_.path, *tables_);
+  if (w_.resolution.at(degree).q <= unresolved * scale_) return true;
+  const Resolution::Error aim{resolved * scale_, INFINITY, INFINITY};
+  const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
+                                     {aim, aim, degree, degree, degree, most_elements, strongest_cut});
+  if (finer.mesh.empty()) return finer.degree != 0;
+  std::vector<double> nodes =
+      interpolated(tangent_.step.nodes, w_.path.coordinates(), w_.path.mesh(), finer.mesh);
+  w_.other.resample_from(w_.path, *tables_, finer.mesh);
+  std::swap(w_.path, w_.other);
+  w_.iteration.reset(problem(), *tables_, w_.path.elements());
+  tangent_.step.nodes = std::move(nodes);
+  tangent_.times.clear();
+  last_length_ = 0;
+  if (!linearise()) return false;
+  turn();
+  std::swap(tangent_, next_);
+  return true;
+}
+
+/// Nearer to the family, where its tangent is known better.
+void ExtremalFamily::polish() {
+  last_length_ = 0;
+  if (!approach() || !linearise()) return restore();
+  turn();
+  std::swap(tangent_, next_);
+}
+
+/// The parabola through the tangents here and before.
+Move ExtremalFamily::ahead() const {
+  Move move = tangent_;
+  if (last_length_ == 0) return move;
+  const double half = 0.5 * length_ / last_length_;
+  move.add(tangent_, half);
+  move.add(previous_, -half);
+  return move;
+}
+
+bool ExtremalFamily::reach() {
+  while (length_ > least_length && steps_ < most_steps_) {
+    saved_ = w_.path;
+    saved_parameter_ = parameter();
+    const int began = steps_;
+    if (!apply(ahead(), length_) || !correct() || !turn()) {
+      restore();
+      length_ *= 0.4;
+      if (++refusals_ == refusals_before_polish) polish();
+      continue;
+    }
+    const bool passed = saved_parameter_ != 0 && saved_parameter_ * parameter() <= 0;
+    if (passed) {
+      beyond_ = w_.path;
+      beyond_parameter_ = parameter();
+      if (!land(saved_parameter_)) {
+        restore();
+        continue;
+      }
+    }
+    previous_ = std::exchange(tangent_, next_);
+    last_length_ = length_;
+    if (passed) return true;
+    scale_ = scales(w_.path, *tables_).q;
+    const bool away = std::abs(parameter()) > farthest_;
+    if (away || scale_ > runaway * first_scale_ || !resolve()) return false;
+    const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.93 ? 1.4 : 1;
+    if (refusals_ == 0) length_ *= growth * (steps_ - began > 2 ? 0.7 : 1);
+    refusals_ = 0;
+  }
+  return false;
+}
+
+void ExtremalFamily::resume() {
+  steps_ = 0;
+  w_.path = beyond_;
+  w_.iteration.reset(problem(), *tables_, w_.path.elements());
+  set_parameter(beyond_parameter_);
+}
+
+}  // namespace extremal

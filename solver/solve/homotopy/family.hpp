@@ -1,0 +1,90 @@
+#pragma once
+
+#include <functional>
+
+#include "solve/adapt/workspace.hpp"
+#include "solve/homotopy/comoving.hpp"
+
+/// \file Curves of extremals: one parameter of a problem varies.
+
+namespace extremal {
+
+/// A change of the path and of the parameter.
+struct Move {
+  Step step;
+  double parameter = 0;
+  std::vector<double> times = {};  ///< by which the mesh nodes move, in τ; empty: they stay
+  void add(const Move& other, double factor);
+  void scale(double factor);
+};
+
+/// Extremals of which one parameter varies, in the workspace's path, followed past folds by pseudo-arclength
+/// (Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977). The parameter is zero
+/// where an extremal belongs to the problem.
+class ExtremalFamily {
+ public:
+  virtual ~ExtremalFamily() = default;
+
+  /// Onward from the path in the workspace, which is the family's until this returns, to where the parameter
+  /// is zero again: nearly an extremal of the problem then. False where the family does not come there.
+  bool reach();
+  /// Back to where the last reach() passed zero, after the workspace was used for something else.
+  void resume();
+
+ protected:
+  /// `count` is called for each factorisation and says whether there may be more; `unit` is the size of the
+  /// parameter that counts as much as the extent of the path.
+  ExtremalFamily(Workspace& workspace, std::function<bool()> count, double unit);
+
+  /// All solutions of the linearised equations at the path: correction_ + α·direction_. False where they
+  /// cannot be solved.
+  virtual bool solve_linearised(Move& correction, Move& direction) = 0;
+  virtual const Problem& problem() const = 0;
+  virtual double parameter() const = 0;
+  /// False if the parameter cannot have this value.
+  virtual bool set_parameter(double value) = 0;
+  /// Which way the first step goes along `direction`: the sign of what is returned.
+  virtual double onward(const Move& direction) const = 0;
+
+  Workspace& w_;
+
+  /// Linearisations until the parameter must be zero: on the way to the problem, and from one extremal of it
+  /// to the next.
+  static constexpr int most_steps_there = 200, most_steps_on = 600;
+
+  /// To be called with the path that the family begins near or on.
+  bool begin(const ElementTables& tables, int most_steps);
+  /// From a path nearby onto the family: the shortest correction each time (Gauss-Newton), regular also where
+  /// the problem with the parameter fixed is singular.
+  bool approach();
+  /// The tangent at the first point.
+  bool set_out();
+
+ private:
+  bool linearise();
+  bool correct();
+  Move ahead() const;
+  bool turn();
+  bool land(double from);
+  void polish();
+  bool resolve();
+  double dot(const Move& a, const Move& b) const;
+  bool apply(const Move& move, double factor);
+  void restore();
+
+  std::function<bool()> count_;
+  const ElementTables* tables_ = nullptr;
+  double unit_, scale_ = 1, first_scale_ = 1, length_ = 0, farthest_ = 0;
+  int most_steps_ = 0, steps_ = 0,
+      refusals_ = 0;  ///< linearisations; steps refused since the last that was not
+  Comoving comoving_;
+  Move correction_, direction_;
+  Move tangent_, next_;     ///< of length one
+  Move previous_;           ///< tangent before, on the same elements
+  double last_length_ = 0;  ///< from there; 0 if there is none
+  double cosine_ = 1;       ///< between the last two
+  Path saved_, beyond_;
+  double saved_parameter_ = 0, beyond_parameter_ = 0;
+};
+
+}  // namespace extremal

@@ -1,0 +1,65 @@
+#include "solve/mesh/conservation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace extremal {
+
+namespace {
+
+/// Drift by what explains it.
+constexpr double margin = 10;
+constexpr double eps = std::numeric_limits<double>::epsilon();
+/// Units in the last place of what the energy is made up of, and of q.
+constexpr double roundoff_of_terms = 1e3 * eps, roundoff_of_q = 4 * eps;
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double x : values) most = std::max(most, std::abs(x));
+  return most;
+}
+
+double shortest_element(const Trajectory& trajectory) {
+  double shortest = trajectory.duration();
+  for (int k = 0; k < trajectory.elements(); ++k)
+    shortest = std::min(shortest, trajectory.times[k + 1] - trajectory.times[k]);
+  return shortest;
+}
+
+/// What errors of q are multiplied by in the slopes at the ends of the shortest element.
+double amplification(const Trajectory& trajectory) {
+  return trajectory.degree * (trajectory.degree + 1) / shortest_element(trajectory);
+}
+
+double noise(const Survey& survey, const Trajectory& trajectory) {
+  return roundoff_of_terms * survey.terms +
+         roundoff_of_q * largest(trajectory.nodes) * amplification(trajectory) * survey.momentum;
+}
+
+/// Whether the energy drifts by no more than that.
+bool drifts_within(double explained, const Survey& survey, const Trajectory& trajectory) {
+  return survey.energy_drift <= margin * (explained + noise(survey, trajectory));
+}
+
+}  // namespace
+
+bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double tolerance) {
+  const double explained =
+      tolerance * (momentum_tolerances * survey.speed * largest(survey.p) + survey.force * largest(survey.q));
+  return drifts_within(explained, survey, trajectory);
+}
+
+bool conserves_energy(const Survey& survey, const Trajectory& trajectory, const Resolution::Error& left_out) {
+  const double explained = survey.momentum * left_out.v + survey.force * left_out.q;
+  return drifts_within(explained, survey, trajectory);
+}
+
+double error_behind_drift(const Survey& survey, const Trajectory& trajectory, double estimate) {
+  const double explained = estimate * (survey.momentum * amplification(trajectory) + survey.force);
+  if (drifts_within(explained, survey, trajectory)) return estimate;
+  return std::max(estimate,
+                  survey.energy_drift / (survey.momentum / shortest_element(trajectory) + survey.force));
+}
+
+}  // namespace extremal

@@ -1,0 +1,84 @@
+#include "solve/search/deflation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/mesh/resolution.hpp"
+
+namespace extremal {
+
+namespace {
+
+constexpr int most_steps = 40;
+/// Of a step, and where plain Newton takes over; root mean square by the extent of the path.
+constexpr double longest = 0.5, settled = 0.02;
+/// A path this much larger than at first has run away.
+constexpr double runaway = 1e3;
+
+}  // namespace
+
+DeflatedNewton::DeflatedNewton(const Problem& problem, Workspace& workspace, std::function<bool()> count)
+    : problem_(problem), w_(workspace), count_(std::move(count)) {}
+
+/// Where the known extremals are at the nodes of the path.
+void DeflatedNewton::place(const std::vector<Solution>& known) {
+  const std::size_t n = problem_.coordinates();
+  std::vector<double> v(n);
+  places_.clear();
+  for (const Solution& solution : known) {
+    Place place{std::vector<double>(w_.path.nodes().size()), solution.duration()};
+    for (std::size_t k = 0; k < w_.path.mesh().size(); ++k)
+      solution.trajectory.at(w_.path.mesh()[k] * place.duration, {place.nodes.data() + k * n, n}, v);
+    places_.push_back(std::move(place));
+  }
+}
+
+double DeflatedNewton::dot(const std::vector<double>& nodes, const std::vector<double>& others) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k) sum += nodes[k] * others[k];
+  return sum / (scale_ * scale_ * static_cast<double>(nodes.size()));
+}
+
+/// τ. With r² = |x − x_i|² the gradient of log(1/r² + 1) is −2 (x − x_i)/(r² (1 + r²)).
+double DeflatedNewton::stretch(const Step& step) {
+  const double unit = w_.path.duration();
+  double slope = 0;
+  for (const Place& place : places_) {
+    away_.assign(w_.path.nodes().begin(), w_.path.nodes().end());
+    for (std::size_t k = 0; k < away_.size(); ++k) away_[k] -= place.nodes[k];
+    const double longer = (w_.path.duration() - place.duration) / unit;
+    const double square = dot(away_, away_) + longer * longer;
+    if (square == 0) continue;
+    slope -= 2 * (dot(away_, step.nodes) + longer * step.duration / unit) / (square * (1 + square));
+  }
+  return slope == 1 ? INFINITY : 1 / (1 - slope);
+}
+
+bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution>& known) {
+  place(known);
+  w_.iteration.reset(problem_, tables, w_.path.elements());
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  const double first = scale_ = scales(w_.path, tables).q;
+  if (scale_ == 0) scale_ = 1;
+  for (int k = 0; k < most_steps && count_(); ++k) {
+    if (!w_.iteration.factor_quickly(w_.path)) return false;
+    model.solve(action, w_.iteration.closing(w_.path), step_);
+    const double duration = w_.path.duration();
+    const double size = std::hypot(std::sqrt(dot(step_.nodes, step_.nodes)), step_.duration / duration);
+    if (!std::isfinite(size)) return false;
+    if (size == 0) return true;
+    const double factor = stretch(step_), allowed = longest / size;
+    if (std::abs(factor) * size < settled && size < settled) return true;
+    const double taken = std::clamp(factor, -allowed, allowed);
+    if (!(duration + taken * step_.duration > 0)) return false;
+    w_.path.add(step_.nodes, step_.inner, taken);
+    if (step_.duration != 0) w_.path.set_duration(duration + taken * step_.duration);
+    w_.path.load_ends();
+    scale_ = std::max(scale_, scales(w_.path, tables).q);
+    if (first > 0 && scale_ > runaway * first) return false;
+  }
+  return false;
+}
+
+}  // namespace extremal

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "solve/adapt/refinement.hpp"
+#include "solve/guess/first_path.hpp"
+
+/// \file Where Newton's method starts from: the guess, and what else where that fails.
+
+namespace extremal {
+
+/// Starting paths in turn, cheapest first, each pursued to the tolerance, within a bounded number of steps.
+class Search {
+ public:
+  Search(const Problem& problem, const SolveOptions& options, Workspace& workspace);
+  Outcome run();
+  /// The same from the guess only; an extremal far from it is none.
+  Outcome run_near_guess();
+
+  /// An empty path into the workspace, to be filled by the caller and settled.
+  const ElementTables& open(const std::vector<double>& mesh, int degree);
+  /// Pursues the path in the workspace, on elements of `tables`; whether an extremal was found.
+  bool settle(const ElementTables& tables, const char* strategy);
+  /// Puts the path that `fill` fills on elements that follow it; false if it comes too near a singularity.
+  bool place(const std::function<void(const ElementTables& tables, Path& path)>& fill,
+             int degree = Refinement::first_degree);
+  const ElementTables& tables() const { return refinement_.tables(); }
+  /// Sizes of paths and effort are those of another search.
+  void be_like(const Search& other);
+  /// Effort that further paths may take together, in shares of that of one solve.
+  void renew(double share = 1);
+  /// Counts a step that the caller takes; false if there may be no more.
+  bool count_step() { return refinement_.count_step(); }
+  bool exhausted() const { return refinement_.exhausted(); }
+  const Outcome& outcome() const { return outcome_; }
+  const std::vector<double>& ends() const { return ends_; }
+  const std::vector<double>& mesh() const { return mesh_; }
+
+ private:
+  static constexpr int most_first_elements = 1 << 12;
+  /// Coarse elements may not follow a family of extremals as it grows.
+  static constexpr int homotopy_degree = 8;
+  static int first_elements(const Frequency& frequency);
+  void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
+  bool prepare();
+  bool begin();
+  bool follow_motion();
+  bool resolve_guess();
+  Refinement::Result pursue(const char* strategy);
+  bool collapsed() const;
+  bool found(const char* strategy);
+  bool from_other_guesses();
+  bool through_other_durations();
+  bool by_descent(const std::vector<double>& mesh);
+  bool from_finer_elements();
+  bool from_line();
+  bool from_motions();
+  bool from_motion(const Guess& motion, double duration);
+  bool from_noise(unsigned tries);
+
+  const Problem& problem_;
+  const Problem* guess_;  ///< whose guess is started from
+  const SolveOptions& options_;
+  Workspace& w_;
+  Outcome outcome_;
+  Refinement refinement_;
+  std::vector<double> ends_, mesh_;
+  double magnitude_ = 0;        ///< of the guess
+  double extent_ = 0;           ///< of the guess, of a periodic problem
+  int allowance_ = 0;           ///< of Newton steps
+  Bend bend_;                   ///< of the default guess, where L is not finite on it
+  std::optional<Path> unheld_;  ///< found on some elements, but not on others
+  unsigned seed_ = 0;
+  bool colliding_ = false;  ///< a guess that comes too near a singularity
+  bool shrank_ = false;     ///< a path, to a point of equilibrium
+  bool continued_ = false;  ///< extremals of other durations were followed
+  bool bent_ = false;       ///< guesses were bent by noise
+  bool launched_ = false;   ///< motions were led to the end
+  bool doubtful_ = false;   ///< the equations of the last path were nearly singular
+};
+
+}  // namespace extremal

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "solve/accept/finish.hpp"
+#include "solve/search/loop_search.hpp"
+#include "solve/search/search.hpp"
+
+/// \file Several extremals of one problem.
+
+namespace extremal {
+
+class ExtremalFamily;
+
+/// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
+/// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
+/// that other durations and other ends make of it, which come past more of the problem's. What finds nothing
+/// new for as many steps as one solve may take ends the search. For a periodic problem, random loops that
+/// close as it asks take the place of arcs, and an orbit that closes after part of the time, so that it is
+/// run through several times, is left out.
+class Several {
+ public:
+  Several(const Problem& problem, const SolveOptions& options, Workspace& workspace,
+          SecondVariation& variation);
+
+  /// At most so many, sorted by action; the first one's message tells if there are fewer. Where there is
+  /// none, one that has not converged.
+  std::vector<Solution> run(int most);
+
+ private:
+  bool wanted() const;
+  int keep();
+  int settle(const ElementTables& tables, const char* strategy);
+  double size_of_guess();
+  void deflate();
+  void guess();
+  void bend();
+  bool repeats(const Solution& candidate) const;
+  void wind();
+  double natural_duration(Arc arc, const ElementTables& tables);
+  bool follow_families();
+  void follow_family(std::size_t solution, int family);
+  std::unique_ptr<ExtremalFamily> leave(int family, bool onward);
+  void load(const Solution& solution);
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  Workspace& w_;
+  SecondVariation& variation_;
+  Search search_;
+  LoopSearch loops_;
+  std::vector<Solution> found_;
+  std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times
+  double scale_ = 1;                   ///< size of the problem
+  int most_ = 1;
+  int in_vain_ = 0;    ///< guesses since the last find
+  unsigned seed_ = 0;  ///< of the next guess
+  int families_ = 0;
+  std::vector<std::vector<char>> followed_;  ///< for each extremal, whether each family of it was
+  std::chrono::steady_clock::time_point start_;
+  double analysing_ = 0;  ///< seconds
+};
+
+}  // namespace extremal
