@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/windows.hpp"
 #include "solve/newton/converge.hpp"
@@ -24,8 +23,8 @@ constexpr double suspicious = 1e-6;
 /// A path that failed on more elements is not resolved: its second variation would take long and tell
 /// nothing.
 constexpr int most_elements = 512;
-/// Roundoff of the elements' lengths, which acts as one of T.
-constexpr double roundoff = 0.25 * std::numeric_limits<double>::epsilon();
+/// Roundoff of the elements' lengths, half a rounding on average, which acts as one of T.
+constexpr double roundoff = unit_roundoff / 2;
 
 constexpr int finer = 3, steps = 12;
 

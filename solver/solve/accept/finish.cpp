@@ -13,7 +13,9 @@
 #include "solve/accept/other_quadrature.hpp"
 #include "solve/external/method.hpp"
 #include "solve/mesh/conservation.hpp"
+#include "solve/mesh/roundoff.hpp"
 #include "solve/newton/residual_test.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/periodic/stability.hpp"
 
@@ -25,11 +27,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Of the largest momentum.
 constexpr double largest_residual = 1e-6;
-/// The same, that may be roundoff.
-constexpr double least_roundoff = 1e-13, half_a_digit = 0x1p-53;
 /// Of the range of momenta, as momentum_tolerances: forces that closed paths are held by.
 constexpr double held_tolerances = 0.1;
-constexpr double least_null = 1e-8, largest_null = 1e-3;
 
 /// Momenta, residual, index and nullity from one evaluation at the path found, on the iteration's elements.
 void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
@@ -47,7 +46,8 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
   solution.residual = newton.residual() / (momentum > 0 ? momentum : 1);
   if (!factored) return;
   const double size = scales(w.path, *outcome.tables).q;
-  const Inertia inertia = newton.model().inertia(null_threshold(outcome.error, size, w.path.elements()));
+  const Inertia inertia =
+      newton.model().inertia(zero_eigenvalue_along(size, outcome.error, w.path.elements()));
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
@@ -55,7 +55,7 @@ void read_off(const Problem& problem, const Outcome& outcome, Workspace& w, Solu
 
 /// Forces so strong that steps are roundoff while δS is not: atoms that overlap.
 bool balanced(const Solution& solution, Workspace& w) {
-  const double roundoff = 1e-12 * w.iteration.stiffness() * size_at_start(w.path);
+  const double roundoff = 100 * force_roundoff * w.iteration.stiffness() * size_at_start(w.path);
   return solution.residual <= largest_residual || w.iteration.residual() <= roundoff;
 }
 
@@ -83,11 +83,11 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
   if (nullity > 0 && !problem.periodic) {
     const double error = tolerance * *std::max_element(survey.q.begin(), survey.q.end());
     return natural_residual(problem, action, w.path, error) <=
-           std::max(momentum_tolerances * tolerance * range, half_a_digit * action.momentum_scale());
+           std::max(momentum_tolerances * tolerance * range, unit_roundoff * action.momentum_scale());
   }
   const double part = problem.periodic ? held_tolerances : momentum_tolerances;
   return natural_residual(problem, action, w.path) <=
-         std::max(part * tolerance * range, least_roundoff * action.momentum_scale());
+         std::max(part * tolerance * range, momentum_roundoff * action.momentum_scale());
 }
 
 /// Whether the elements have seen all of the path, and the equations had a solution.
@@ -142,14 +142,6 @@ std::string irregularity(const Problem& problem) {
   if (!mass.allFinite() || mass.fullPivLu().rank() == n) return {};
   return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
 }
-
-}  // namespace
-
-double null_threshold(double error, double size, int elements) {
-  return size > 0 ? std::clamp(3 * error / (size * elements), least_null, largest_null) : least_null;
-}
-
-namespace {
 
 void read_path(const Problem& problem, const Outcome& outcome, Workspace& w, Solution& solution) {
   w.iteration.reset(problem, *outcome.tables, w.path.elements());
@@ -220,7 +212,7 @@ void examine_all(const Problem& problem, const SolveOptions& options, Outcome& o
   std::optional<Survey> found = examine(problem, options, outcome, w, solution);
   if (!solution.converged()) return;
   if (outcome.reduction) {
-    const double roundoff = least_roundoff * w.iteration.action().momentum_scale();
+    const double roundoff = momentum_roundoff * w.iteration.action().momentum_scale();
     others.unlike = !(residual_under_others(problem, outcome, w) <= 10 * residual + roundoff);
   } else if (try_others(problem, options, outcome, w, solution, others)) {
     solution = {};

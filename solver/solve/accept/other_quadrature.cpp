@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/adapt/refinement.hpp"
 #include "solve/mesh/conservation.hpp"
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
 
@@ -20,8 +21,6 @@ constexpr double most_turned = honest * momentum_tolerances;
 constexpr int most_coordinates = 18;
 /// That tell where a path is.
 constexpr int guess_points = 32;
-/// Of momenta, relative to the largest.
-constexpr double roundoff = 1e-13;
 
 /// Symmetries of the problem, found about a path and nearer to the origin: at some of those points forces
 /// count.
@@ -46,7 +45,7 @@ double kick(const DiscreteAction& action, const Solution& solution) {
   for (std::size_t a = 0; a < solution.momentum_start.size(); ++a)
     largest = std::max({largest, std::abs(action.start_gradient()[a] + solution.momentum_start[a]),
                         std::abs(action.end_gradient()[a] - solution.momentum_end[a])});
-  return largest > roundoff * action.momentum_scale() ? largest : 0;
+  return largest > momentum_roundoff * action.momentum_scale() ? largest : 0;
 }
 
 void refuse(Solution& solution, Status status, std::string message) {
@@ -74,7 +73,7 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, con
   if (outcome.recovered) w.recovery.misplaced(w.path, explained);
   const auto moved = [&](double error) {
     if (!problem.periodic)
-      w.iteration.model().set_null_below(Refinement::softest(error, w.path, size.magnitude));
+      w.iteration.model().set_null_below(largest_null_eigenvalue(size.magnitude, error, w.path));
     return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path, explained);
   };
   OtherPoints others;

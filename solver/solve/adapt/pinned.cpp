@@ -18,9 +18,9 @@ namespace {
 constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
 constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
 constexpr int most_elements = 1 << 20;
-/// An error below the second, relative to the range, or the third, to the values, that more elements reduce
-/// less than by the first is roundoff.
-constexpr double stagnation = 0.9, near_roundoff = 1e-9, at_roundoff = 1e-14;
+/// An error below amplified_roundoff, relative to the range, or below the second, relative to the values, is
+/// roundoff if more elements reduce it by less than the first.
+constexpr double stagnation = 0.9, at_roundoff = 1e-14;
 /// Where an error is below the second, relative to the range, and so many times more elements did not reduce
 /// it, more hardly will, unless few had stepped over something.
 constexpr int futile_growth = 8;
@@ -35,9 +35,6 @@ constexpr double regular_fall = 0.5;
 /// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails or is futile, and no
 /// more of the steps that are dearer than others; or of one step.
 constexpr double most_cost = 1e8;
-constexpr double roundoff = 1e-15;
-/// Of the largest value.
-constexpr double unit_roundoff = 0x1p-53;
 /// Relative to the largest momentum; of periodic paths.
 constexpr double stationary_residual = 1e-10;
 
@@ -70,7 +67,7 @@ NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, do
 /// found, perhaps not to many digits.
 NewtonReport PinnedSolve::converge_to_roundoff() {
   const auto run = [&] {
-    return run_newton(w_.pinned, w_.path, roundoff, std::min(steps, options_.max_iterations));
+    return run_newton(w_.pinned, w_.path, least_correction, std::min(steps, options_.max_iterations));
   };
   if (!problem_.periodic) return run();
   const auto stationary = [&] {
@@ -237,7 +234,7 @@ Outcome PinnedSolve::run() {
       outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
       break;
     }
-    const double noise = std::max(near_roundoff * size.q, at_roundoff * size.magnitude);
+    const double noise = std::max(amplified_roundoff * size.q, at_roundoff * size.magnitude);
     if (outcome_.error < stagnation * least) {
       least = outcome_.error;
       of_least = elements;

@@ -17,8 +17,6 @@ constexpr double coarse_goal = 1e-3;
 constexpr double coarse_cut = 4;
 /// Steps allowed for one run of damped Newton.
 constexpr int coarse_steps = 25, fine_steps = 12;
-/// Corrections below this (relative) are roundoff.
-constexpr double roundoff = 1e-15;
 /// Times that elements are planned before all are halved.
 constexpr int most_plans = 6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
@@ -33,8 +31,6 @@ constexpr double border_cost = 2;
 /// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
 /// harder to foresee than what is between.
 constexpr double planned_slopes = 6;
-/// Errors below this (relative) may be roundoff.
-constexpr double near_roundoff = 1e-9;
 
 }  // namespace
 
@@ -93,7 +89,7 @@ Refinement::Result Refinement::pursue() {
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
-    const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < near_roundoff;
+    const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < amplified_roundoff;
     // Nor do they help an orbit that has shrunk onto an equilibrium: no digits tell its range.
     const bool shrunk = may_shrink && scales(w_.path, *tables_).range <= at_rest * first_range;
     if (hopeless || shrunk || 2 * w_.path.elements() > most_elements_) {
@@ -138,7 +134,7 @@ bool Refinement::holds_on_other_elements() {
   w_.iteration.set_scale(scales_.q);
   const NewtonReport report =
       converge(w_.iteration, w_.other, *tables_,
-               {std::clamp(0.5 * options_.tolerance, roundoff, loosest_newton), fine_steps},
+               {std::clamp(0.5 * options_.tolerance, least_correction, loosest_newton), fine_steps},
                [this] { return count_step(); });
   double moved = 0;
   for (std::size_t k = 0; k < w_.before.size(); ++k)
@@ -215,8 +211,8 @@ int Refinement::steps_left(int wanted) const {
 }
 
 NewtonReport Refinement::converge_to(double error, bool reuse) {
-  const NewtonGoal goal{std::clamp(0.5 * error, roundoff, loosest_newton), steps_left(fine_steps), reuse,
-                        std::max(options_.tolerance, error)};
+  const NewtonGoal goal{std::clamp(0.5 * error, least_correction, loosest_newton), steps_left(fine_steps),
+                        reuse, std::max(options_.tolerance, error)};
   const NewtonReport report =
       converge(w_.iteration, w_.path, *tables_, goal, [this] { return count_step(); });
   measure();

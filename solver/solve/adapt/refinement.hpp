@@ -61,10 +61,6 @@ class Refinement {
   /// Whether a step from this path was much longer than the path.
   bool suspicious() const;
 
-  /// Eigenvalues of the second variation that may be zero along a path known to `error`, relative to the
-  /// largest.
-  static double softest(double error, const Path& path, double magnitude);
-
  private:
   enum class Attempt { converged, refine, failed, unreachable };
   static constexpr int highest_degree = 16;

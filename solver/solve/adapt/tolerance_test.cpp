@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "solve/adapt/refinement.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 /// \file Whether the path that Newton's method left meets the tolerance.
 
@@ -15,8 +16,6 @@ namespace {
 /// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large;
 /// the least may be roundoff.
 constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
-/// Eigenvalues above this, relative to the largest, are never taken for null.
-constexpr double largest_soft = 1e-8;
 /// Errors of finer elements are less than this part of those before.
 constexpr double element_fall = 0.25;
 /// Of the size of the path that was started from: a path smaller than this is at rest.
@@ -70,14 +69,6 @@ double Refinement::excess(const Resolution::Error& error) const {
   return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
 }
 
-/// Eigenvalues above this, relative, are no error of the elements nor of elimination: a direction is soft
-/// then, not null. Not so in periodic problems: families there, as about Kepler's circle, would count as
-/// soft.
-double Refinement::softest(double error, const Path& path, double magnitude) {
-  const double roundoff = 8 * 0x1p-52 * path.elements();
-  return std::clamp(magnitude > 0 ? 3 * error / magnitude : 0, roundoff, largest_soft);
-}
-
 /// What may hold the phase of a periodic path, relative to the largest momentum: what elements leave out
 /// explains, to second order. Where weak forces all but allow a family, it is more, however fine they are.
 double Refinement::phase_force() const {
@@ -93,7 +84,9 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
   const double phase = problem_.periodic ? phase_force() : 0;
   NewtonIteration& newton = w_.iteration;
-  if (!problem_.periodic) newton.model().set_null_below(softest(left_out_, w_.path, scales_.magnitude));
+  // In periodic problems families, as about Kepler's circle, would count as soft.
+  if (!problem_.periodic)
+    newton.model().set_null_below(largest_null_eigenvalue(scales_.magnitude, left_out_, w_.path));
   bool passed = false;
   for (int step = 0; step <= most_polish; ++step) {
     const bool again = step == 0 || newton.contraction() <= worst_chord;
@@ -147,12 +140,12 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
   const double at_nodes = nodes.moved * std::min(1.0, fall);
   const double longest = std::sqrt(2 * std::log(points * w_.path.coordinates()));
-  double roundoff = 0x1p-53 * scales_.magnitude * std::sqrt(points);
+  double roundoff = unit_roundoff * scales_.magnitude * std::sqrt(points);
   const auto with = [&](double walk) { return excess({error.q + at_nodes + longest * walk, error.v}); };
   // Where it decides it is measured: more elements would not help.
   if (with(roundoff) > 1 && with(0) <= 1) {
     const double measured = certain * w_.iteration.roundoff(w_.path) * scales_.q;
-    roundoff = std::clamp(measured, 0x1p-53 * scales_.magnitude, roundoff);
+    roundoff = std::clamp(measured, unit_roundoff * scales_.magnitude, roundoff);
   }
   const double truncation = error.q + roundoff;
   error.q = left_out_ = truncation + at_nodes;

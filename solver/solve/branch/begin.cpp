@@ -2,8 +2,9 @@
 #include <cmath>
 #include <utility>
 
-#include "solve/accept/finish.hpp"
 #include "solve/branch/continuation.hpp"
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/search/search.hpp"
 
 /// \file How a branch begins, and on which elements it goes on.
@@ -97,8 +98,8 @@ Continuation::Elements Continuation::resolve() {
   w_.resolution.measure(w_.path, tables);
   const Resolution::Error error = w_.resolution.at(w_.path.degree());
   const double tolerance = options_.solve.tolerance;
-  error_ = error.q + 0x1p-53 * size.magnitude * std::sqrt(w_.path.elements() * w_.path.degree());
-  branch_.set_null_threshold(null_threshold(error_, size.q, w_.path.elements()));
+  error_ = error.q + unit_roundoff * size.magnitude * std::sqrt(w_.path.elements() * w_.path.degree());
+  branch_.set_null_threshold(zero_eigenvalue_along(size.q, error_, w_.path.elements()));
   const double excess = size.q > 0 ? std::max(error.q / size.q, 0.1 * error.v / size.v) / tolerance : 0;
   if (excess <= 1 && (excess == 0 || excess > lavish)) return Elements::fine;
   const Plan plan = plan_for(size);

@@ -5,6 +5,7 @@
 
 #include "action/rule.hpp"
 #include "solve/homotopy/family.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 /// \file The equations of a branch of extremals, linearised at one path of it.
 
@@ -107,7 +108,7 @@ class Branch {
   Problem problem_;
   Levels beside_;
   const ElementTables* tables_ = nullptr;
-  double coordinate_ = 0, unit_, threshold_ = 1e-8;
+  double coordinate_ = 0, unit_, threshold_ = zero_eigenvalue;
   bool defined_ = true, factored_ = false;
   std::optional<bool> folds_;  ///< its null directions are those of folds, not of a degenerate family
   Units units_;

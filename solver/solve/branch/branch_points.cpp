@@ -4,7 +4,6 @@
 #include <numeric>
 #include <utility>
 
-#include "solve/accept/finish.hpp"
 #include "solve/branch/continuation.hpp"
 #include "solve/branch/root.hpp"
 #include "solve/periodic/doubled_orbit.hpp"

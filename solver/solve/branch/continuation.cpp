@@ -1,4 +1,5 @@
 #include "solve/branch/continuation.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,8 @@ constexpr double small_correction = 0.05, slowest = 4;
 constexpr int most_corrections = 8, most_resolutions = 4;
 /// Steps whose last corrections take more factors are too long.
 constexpr int many_factors = 4;
-/// Corrections below this (relative) that shrink no more are roundoff.
-constexpr double roundoff = 1e-9, least_goal = 1e-14;
+/// Corrections are carried on no further than this.
+constexpr double least_goal = 10 * least_correction;
 /// Corrections are carried on to this share of the tolerance.
 constexpr double unfinished = 0.01;
 /// The unit of lengths is no smaller than this share of the largest path so far.
@@ -115,7 +116,7 @@ bool Continuation::correct(double length, const double* landing) {
     const double way = std::sqrt(branch_.dot(move, move)), size = branch_.largest(move);
     const double rate = k > 0 ? size / before : 1;
     factors_ += anew;
-    const bool noise = anew && size < roundoff && rate > 0.3;
+    const bool noise = anew && size < amplified_roundoff && rate > 0.3;
     // Factors of before may hide what those of this path find: it is held against what such found last.
     const double growth = way / (anew ? std::exchange(found, way) : way_before);
     const double fastest = way > small_correction * length ? contraction : slowest;

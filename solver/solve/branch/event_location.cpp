@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "solve/branch/continuation.hpp"
 #include "solve/branch/root.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 /// \file What is met on a step along a branch: folds, the value wanted, rest, the first point again.
 
@@ -22,7 +22,6 @@ constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
 constexpr double same = 1e-6;
 /// What is met within this share of a step is one.
 constexpr double one = 1e-2;
-constexpr double roundoff = std::numeric_limits<double>::epsilon();
 /// An orbit this small against the one before the step is next to rest.
 constexpr double nearly_rest = 1e-3;
 
@@ -92,8 +91,8 @@ double Continuation::find_value(const Stand& from, double value, const Reading& 
         from, {near.at, near.value - value}, {far.at, far.value - value}, std::nullopt,
         [&] { return here_.varied - value; },
         [&](double off, double change) {
-          return std::abs(off) <= std::max(enough * distance, 4 * roundoff * std::abs(value)) ||
-                 change <= roundoff * reach;
+          return std::abs(off) <= std::max(enough * distance, 8 * unit_roundoff * std::abs(value)) ||
+                 change <= 2 * unit_roundoff * reach;
         });
   };
   // What varies as a parabola, level at a fold: v(σ) = before + slope σ + bend σ².

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "solution/observe.hpp"
-#include "solve/accept/finish.hpp"
 #include "solve/branch/continuation.hpp"
 #include "solve/periodic/stability.hpp"
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 
@@ -10,9 +11,8 @@ namespace {
 
 /// Drift by what explains it.
 constexpr double margin = 10;
-constexpr double eps = std::numeric_limits<double>::epsilon();
-/// Units in the last place of what the energy is made up of, and of q.
-constexpr double roundoff_of_terms = 1e3 * eps, roundoff_of_q = 4 * eps;
+/// Roundings of the terms of the energy, one for each that is summed up, and of q.
+constexpr double roundoff_of_terms = 2e3 * unit_roundoff, roundoff_of_q = 8 * unit_roundoff;
 
 double largest(const std::vector<double>& values) {
   double most = 0;

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 
 namespace {
 
-constexpr double noise = 0x1p-50;
+/// Coefficients are known to so many roundings of the extent of their element.
+constexpr double noise = 8 * unit_roundoff;
 /// Squares of how much smaller one coefficient may be expected than the last, of all coordinates together.
 /// Where all of one is in the coefficients before, another's seem to fall faster than they do: what falls by
 /// more than `fast` is judged by the coordinate with the largest of the last.

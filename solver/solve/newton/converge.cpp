@@ -12,9 +12,6 @@ namespace {
 constexpr double chord_contraction = 0.2;
 /// A first step that needs more is not trusted.
 constexpr double mild_damping = 0.25;
-/// Corrections below this that shrink no more are amplified roundoff.
-constexpr double stagnation = 1e-9;
-
 /// Steps this short that stall, though gradients have digits to spare, are told by factors that have none.
 constexpr double stalled_by_factors = 1e-5;
 
@@ -36,8 +33,8 @@ bool arrived(const NewtonIteration& newton, const NewtonGoal& goal, bool chord, 
              NewtonReport& report) {
   report.remaining = newton.remaining();
   report.most_remaining = newton.most_remaining();
-  const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < stagnation && report.steps > 1 &&
-                        newton.norm() > 0.3 * before;
+  const bool roundoff = !chord && newton.damping() == 1 && newton.norm() < amplified_roundoff &&
+                        report.steps > 1 && newton.norm() > 0.3 * before;
   const bool enough = report.remaining <= goal.remaining && report.most_remaining <= goal.most_remaining;
   // Or a step stalled at its own roundoff.
   return report.reached = enough || roundoff || newton.noise() > 0;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "solve/mesh/resolution.hpp"
+#include "solve/mesh/roundoff.hpp"
 #include "solve/newton/iteration.hpp"
 
 /// \file Newton's method run to a goal.
@@ -12,7 +13,7 @@ namespace extremal {
 
 /// When a run of Newton steps may end, all relative to the largest range of a coordinate.
 struct NewtonGoal {
-  double remaining = 1e-15;  ///< expected size of the next correction
+  double remaining = least_correction;  ///< expected size of the next correction
   int steps = 50;
   bool reuse = false;                                               ///< begins with the factors there are
   double most_remaining = std::numeric_limits<double>::infinity();  ///< and, at worst

@@ -16,7 +16,7 @@ constexpr double breakdown = 1e-11;
 /// Floating-point operations, elements times the cube of their unknowns, beyond which they are not.
 constexpr double most_pivoted_work = 1e9;
 /// Steps below this may fail to contract because they are roundoff; they are taken.
-constexpr double amplified_roundoff = 1e-11;
+constexpr double roundoff_step = 1e-11;
 /// Roundoff of a step is measured where one below the first stalls; a step that is no longer than so many
 /// times it is no more.
 constexpr double loudest = 1e-5, quiet = 10;
@@ -212,12 +212,12 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
     const bool positive = path.duration() > 0;
     if (positive) model_->evaluate_gradient(action_, path);
     const double simplified = positive ? solve_for_step(path, simplified_) : NAN;
-    if (approximate() && !(simplified <= worst_approximate * step) && !(step < amplified_roundoff)) {
+    if (approximate() && !(simplified <= worst_approximate * step) && !(step < roundoff_step)) {
       path.copy_values(saved_);
       use_sparse(path.elements());
       return full_step(path, enough, least_damping);
     }
-    const bool small = step < std::max(amplified_roundoff, quiet * noise_);
+    const bool small = step < std::max(roundoff_step, quiet * noise_);
     if (positive && (simplified <= (1 - factor / 4) * step || small)) {
       contraction_ = simplified / step;
       damping_ = factor;
@@ -228,7 +228,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
   }
   if (damping_ == 1 && !approximate()) {
     curvature_ = contraction_ / step;
-    if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, curvature_);
+    if (norm_ > roundoff_step) largest_curvature_ = std::max(largest_curvature_, curvature_);
   }
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
   remaining_ = norm_;
@@ -276,7 +276,7 @@ StepResult NewtonIteration::chord_step(Path& path) {
   if (std::isnan(norm) || !leaves_duration(path, step_)) return StepResult::not_finite;
   norm_ = norm;
   contraction_ = before > 0 ? norm_ / before : 0;
-  if (norm_ > amplified_roundoff) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);
+  if (norm_ > roundoff_step) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);
   remaining_ = norm_ * std::min(contraction_, 1.0);
   apply(path, step_, 1);
   return StepResult::ok;

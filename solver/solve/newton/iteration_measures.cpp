@@ -2,6 +2,7 @@
 #include <cmath>
 #include <random>
 
+#include "solve/mesh/roundoff.hpp"
 #include "solve/newton/iteration.hpp"
 
 /// \file What an iteration tells of the equations where it is.
@@ -16,11 +17,12 @@ constexpr double trial_burden = 0.4;
 constexpr double pivoted_burden = 100, sparse_burden = 1000;
 /// Roundoff of a step is the most that so many shifts make of it: one may meet little by chance.
 constexpr int shifts = 3;
-/// Of two terms that cancel, half the last digit of one.
-constexpr double half_a_digit = 0x1p-54, half_an_extended_digit = 0x1p-106;
-
-/// Of T, what no time is told closer than: t is rounded, and so is t/T.
-constexpr double last_digits = 0x1p-51;
+/// Of two terms that cancel one is rounded, to half a unit on average.
+constexpr double half_a_digit = unit_roundoff / 2, half_an_extended_digit = extended_roundoff;
+/// Times are known to so much of T: t is rounded, and so is t/T, at both ends of an element.
+constexpr double last_digits = 4 * unit_roundoff;
+/// Nodes are moved by as many roundings of the largest |q|.
+constexpr double moved_digits = 8 * unit_roundoff;
 
 /// The largest change of q by `scale` or of T by `duration`.
 double difference(const Step& a, const Step& b, double scale, double duration) {
@@ -79,7 +81,7 @@ double NewtonIteration::measure_noise(Path& path) {
   double magnitude = 0;
   for (double q : path.nodes()) magnitude = std::max(magnitude, std::abs(q));
   std::minstd_rand random;
-  std::uniform_real_distribution<double> digits(-magnitude * 0x1p-50, magnitude * 0x1p-50);
+  std::uniform_real_distribution<double> digits(-moved_digits * magnitude, moved_digits * magnitude);
   saved_.copy_values(path);
   noise_ = 0;
   for (int shift = 0; shift < shifts; ++shift) {

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
 
 namespace {
 
-/// What of the border is this small, relative, are null directions unless told otherwise: families of
-/// extremals, whose eigenvalue is zero but for the error of the elements.
-constexpr double usual_null = 1e-8;
 /// Of the size of the terms that a row of the border is the difference of.
 constexpr double negligible = 1e-10;
-constexpr double roundoff = std::numeric_limits<double>::epsilon();
 /// Null directions of the chain, by coordinates, that are believed.
 constexpr std::size_t most_deflated = 4;
 
@@ -47,7 +45,7 @@ void NodeSystem::reset(const EndMap& ends, int elements, int coordinates, bool f
   elements_ = elements;
   free_ = ends.free;
   free_duration_ = free_duration;
-  null_below_ = usual_null;
+  null_below_ = zero_eigenvalue;
   border_ = 0;  // no factors yet
   right_.resize(static_cast<std::size_t>(std::max(elements - 1, 0)) * n_);
 }
@@ -131,7 +129,7 @@ bool NodeSystem::factor(NodeEquations& nodes, const ClosingEquation* closing, co
   columns_.resize(right_.size() * border_);
   solved_.resize(columns_.size());
   // Alone, an almost singular chain is the whole system; with a border it is better left to that.
-  const bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? Border::deflated_below : 0);
+  const bool regular = elements_ < 2 || chain_->factor(border_ > 0 ? zero_eigenvalue : 0);
   exact_ = !regular && border_ > 0 && !chain_->deflated().empty();
   if (!regular && !exact_) return false;
   // Between fixed ends there are as many null directions as coordinates, at most; many more are noise.
@@ -171,7 +169,7 @@ void NodeSystem::factor_border() {
   // As roundoff a pivot of zero makes a null direction what there is most of in a step.
   if (null_below_ == 0 && pivots.minCoeff() == 0) {
     const double size = free_ > 0 ? corner_.topLeftCorner(free_, free_).cwiseAbs().maxCoeff() : 1;
-    schur_.diagonal().array() += roundoff * std::max(size, schur_.cwiseAbs().maxCoeff());
+    schur_.diagonal().array() += 2 * unit_roundoff * std::max(size, schur_.cwiseAbs().maxCoeff());
     lu_.compute(schur_);
   }
   // All pivots are roundoff where large entries stand beside a null row and column alone.
@@ -294,7 +292,7 @@ Inertia NodeSystem::inertia(double threshold) const {
       corner(free_ + j, z.column) = corner(z.column, free_ + j);
     }
   }
-  ends.factor(chain, std::max(threshold, Border::deflated_below));
+  ends.factor(chain, std::max(threshold, zero_eigenvalue));
   // With more null directions than can be afforded: as for steps.
   if (!ends.finite()) ends.factor(chain);
   Inertia result = ends.inertia(threshold);

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <vector>
 
+#include "solve/mesh/roundoff.hpp"
+
 namespace extremal {
 
 namespace {
 
 /// A residual below this, relative to the largest momentum, may be roundoff.
 constexpr double least = 1e-10;
-/// Of a body at rest, relative to forces that cancel.
-constexpr double roundoff = 1e-14;
 
 /// Largest |q| of each coordinate.
 std::vector<double> magnitudes(const Path& path) {
@@ -49,7 +49,7 @@ double natural_residual(const Problem& problem, const DiscreteAction& action, co
     const std::vector<double>& beside = start || path.elements() == 1 ? nodes.first_lower : nodes.last_lower;
     for (int b = 0; b < n; ++b) {
       const double stiffness = block[a * n + b] + beside[start ? b * n + a : a * n + b];
-      rounding[z.column] += std::abs(z.value * stiffness) * (roundoff * q[b] + displacement);
+      rounding[z.column] += std::abs(z.value * stiffness) * (force_roundoff * q[b] + displacement);
     }
   }
   double largest = 0;
@@ -64,7 +64,7 @@ bool ResidualTest::passed(const Problem& problem, const NewtonIteration& newton,
                part = std::max(least, allowed) * momentum;
   share_ = left / momentum;
   return natural_residual(problem, newton.action(), path) <= part &&
-         left <= std::max(part, roundoff * newton.stiffness() * size_at_start(path));
+         left <= std::max(part, force_roundoff * newton.stiffness() * size_at_start(path));
 }
 
 std::string ResidualTest::message() const {

@@ -7,7 +7,8 @@ namespace extremal {
 
 namespace {
 
-constexpr double roundoff = 1e-9;
+/// Entries of R^m − 1 that are zero: R may come from a formula with as many digits.
+constexpr double zero_entry = 1e-9;
 constexpr int most_segments = 64;
 
 /// The path beyond T.
@@ -44,7 +45,7 @@ int segments_to_close(const ClosingMap& map) {
   Eigen::MatrixXd power = map.r;
   Eigen::VectorXd shift = map.c;
   for (int m = 1; m <= most_segments; ++m) {
-    if (power.isIdentity(roundoff) && shift.isZero(roundoff)) return m;
+    if (power.isIdentity(zero_entry) && shift.isZero(zero_entry)) return m;
     shift = map.r * shift + map.c;
     power = map.r * power;
   }

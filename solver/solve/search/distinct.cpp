@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "solve/mesh/roundoff.hpp"
+
 namespace extremal {
 
 namespace {
@@ -83,11 +85,10 @@ bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
 }
 
 bool same_discrete(const Solution& a, const Solution& b) {
-  constexpr double roundoff = 1e-9;
   const double size = std::max(extent(a.trajectory), extent(b.trajectory));
   return a.trajectory.nodes.size() == b.trajectory.nodes.size() &&
-         agree(a.duration(), b.duration(), a.duration(), roundoff) &&
-         near(a.trajectory, b.trajectory, margin * roundoff * size);
+         agree(a.duration(), b.duration(), a.duration(), amplified_roundoff) &&
+         near(a.trajectory, b.trajectory, margin * amplified_roundoff * size);
 }
 
 void sort_by_action(std::vector<Solution>& solutions) {

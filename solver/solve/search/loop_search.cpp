@@ -1,7 +1,6 @@
 #include "solve/search/loop_search.hpp"
 
 #include "machine/simd.hpp"
-#include "solve/accept/finish.hpp"
 #include "solve/search/deflation.hpp"
 
 namespace extremal {
