@@ -31,15 +31,15 @@ constexpr int finer = 3, steps = 12;
 bool fixed(const Problem& problem) { return problem.ends.free == 0 && !problem.duration.free; }
 
 /// By how much the nodes move when elements get a higher degree; infinite if Newton's method then fails.
-double moved_by_finer_elements(const Problem& problem, Workspace& w, double goal) {
-  const int degree = std::min(w.path.degree() + finer, max_degree);
+double moved_by_finer_elements(const Problem& problem, const Path& path, Workspace& w, double goal) {
+  const int degree = std::min(path.degree() + finer, max_degree);
   const ElementTables& tables = w.levels.at(degree);
-  w.other.interpolate_from(w.path, tables, w.levels.raise(w.path.degree(), degree));
+  w.other.interpolate_from(path, tables, w.levels.raise(path.degree(), degree));
   w.iteration.reset(problem, tables, w.other.elements());
   if (!converge(w.iteration, w.other, tables, {goal, steps}, {}).reached) return INFINITY;
   double moved = 0;
-  for (std::size_t k = 0; k < w.path.nodes().size(); ++k)
-    moved = std::max(moved, std::abs(w.other.nodes()[k] - w.path.nodes()[k]));
+  for (std::size_t k = 0; k < path.nodes().size(); ++k)
+    moved = std::max(moved, std::abs(w.other.nodes()[k] - path.nodes()[k]));
   return moved;
 }
 
@@ -50,9 +50,9 @@ void refuse(Solution& solution, Status status, std::string message) {
 
 }  // namespace
 
-void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, double distance, Workspace& w,
-                          Solution& solution) {
-  const double T = solution.duration(), size = scales(w.path, *w.final_tables).q;
+void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, const Path& path,
+                          const ElementTables& tables, double distance, Workspace& w, Solution& solution) {
+  const double T = solution.duration(), size = scales(path, tables).q;
   // Where conjugate times are many, one of them is never far.
   if (!fixed(problem) || distance > near * T / (1.0 + solution.conjugate_times.size())) return;
   const double known = size > 0 ? solution.error_estimate / size : 0;
@@ -64,7 +64,7 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, d
                     "the duration",
                     distance, T));
   const double moved =
-      size > 0 && !options.scheme ? moved_by_finer_elements(problem, w, 0.1 * options.tolerance) : 0;
+      size > 0 && !options.scheme ? moved_by_finer_elements(problem, path, w, 0.1 * options.tolerance) : 0;
   const double amplified = moved + roundoff * T / distance * size;
   solution.error_estimate += amplified;
   const double allowed = options.elements > 0 ? INFINITY : options.tolerance * size;

@@ -55,7 +55,7 @@ NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, do
   const double most = std::max(most_cost, most_steps * step);
   double cost = 0;
   const NewtonReport report = converge(w_.iteration, path, tables, {goal, most_steps}, [&] {
-    if (&tables == &w_.pinned) outcome_.record(w_, options_);
+    if (&tables == &w_.pinned) outcome_.record(w_.iteration, options_);
     cost += step * w_.iteration.burden();
     return cost < most;
   });
@@ -67,21 +67,21 @@ NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, do
 /// found, perhaps not to many digits.
 NewtonReport PinnedSolve::converge_to_roundoff() {
   const auto run = [&] {
-    return run_newton(w_.pinned, w_.path, least_correction, std::min(steps, options_.max_iterations));
+    return run_newton(w_.pinned, path_, least_correction, std::min(steps, options_.max_iterations));
   };
   if (!problem_.periodic) return run();
   const auto stationary = [&] {
-    const double residual = w_.iteration.residual_at(w_.path);
+    const double residual = w_.iteration.residual_at(path_);
     return residual <= stationary_residual * w_.iteration.action().momentum_scale();
   };
-  w_.saved = w_.path;
+  saved_ = path_;
   NewtonReport report = run();
   if (report.reached && stationary()) return report;
   for (const bool from_orbit : {true, false}) {
     if (from_orbit && !report.reached) continue;
     if (!from_orbit) {
-      w_.path.copy_values(w_.saved);
-      w_.path.load_ends();
+      path_.copy_values(saved_);
+      path_.load_ends();
     }
     w_.iteration.free_phase(true);
     report = run();
@@ -101,23 +101,23 @@ bool PinnedSolve::solve_discrete(int elements) {
     bind(points);
     w_.iteration.reset(problem_, w_.pinned, elements);
     for (unsigned seed = 0; !again && seed <= most_bends; ++seed) {
-      w_.path.reset(w_.pinned, mesh, problem_.duration.value);
-      start_path(problem_, ends, w_.pinned, w_.path);
-      bend_path(problem_, {seed * 0.1, seed}, w_.pinned, w_.path);
-      w_.iteration.action().evaluate_plain(w_.path);
+      path_.reset(w_.pinned, mesh, problem_.duration.value);
+      start_path(problem_, ends, w_.pinned, path_);
+      bend_path(problem_, {seed * 0.1, seed}, w_.pinned, path_);
+      w_.iteration.action().evaluate_plain(path_);
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
     if (!again) {
-      magnitude_ = scales(w_.path, w_.pinned).magnitude;
-      run_external_solver(options_.method, problem_, w_.pinned, w_.path,
+      magnitude_ = scales(path_, w_.pinned).magnitude;
+      run_external_solver(options_.method, problem_, w_.pinned, path_,
                           [this] { return ++outcome_.iterations < options_.max_iterations; });
     }
     ResidualTest test;
     const NewtonReport report = converge_to_roundoff();
     outcome_.message = report.failure;
     if (!report.reached) return false;
-    w_.iteration.residual_at(w_.path);
-    if (!test.passed(problem_, w_.iteration, w_.path)) {
+    w_.iteration.residual_at(path_);
+    if (!test.passed(problem_, w_.iteration, path_)) {
       outcome_.message = test.message();
       return false;
     }
@@ -129,15 +129,15 @@ bool PinnedSolve::solve_discrete(int elements) {
 
 /// Whether two more points leave S_h as it is.
 bool PinnedSolve::exact_quadrature_settled() {
-  w_.iteration.action().evaluate_plain(w_.path);
+  w_.iteration.action().evaluate_plain(path_);
   const double action = w_.iteration.action().action();
   const int points = std::min(w_.pinned_scheme->points + 2, most_points);
   const SchemeTables finer(scheme_, points);
   ElementTables tables;
   tables.bind(finer, *problem_.lagrangian);
   DiscreteAction check;
-  check.reset(*problem_.lagrangian, tables, w_.path.elements(), false);
-  check.evaluate_plain(w_.path);
+  check.reset(*problem_.lagrangian, tables, path_.elements(), false);
+  check.evaluate_plain(path_);
   return std::abs(check.action() - action) <= 1e-15 * std::abs(action);
 }
 
@@ -159,9 +159,9 @@ double PinnedSolve::distance_to_companion() {
   const int degree = halved ? scheme_.degree : std::max(scheme_.degree + 3, 6);
   const ElementTables& tables = w_.levels.at(degree);
   if (halved)
-    w_.other.split_from(w_.path, tables, w_.levels.halve(degree));
+    w_.other.split_from(path_, tables, w_.levels.halve(degree));
   else
-    w_.other.interpolate_from(w_.path, tables, w_.levels.raise(w_.path.degree(), degree));
+    w_.other.interpolate_from(path_, tables, w_.levels.raise(path_.degree(), degree));
   const Path start = w_.other;
   w_.iteration.reset(problem_, tables, w_.other.elements());
   const NewtonReport report = run_newton(tables, w_.other, 1e-12, companion_steps);
@@ -209,7 +209,7 @@ Outcome PinnedSolve::run() {
       elements *= 4;
       continue;
     }
-    const Scales size = scales(w_.path, w_.pinned);
+    const Scales size = scales(path_, w_.pinned);
     outcome_.error = distance_to_companion();
     outcome_.tolerance = options_.tolerance * size.q;
     outcome_.tables = &w_.pinned;
@@ -258,7 +258,7 @@ Outcome PinnedSolve::run() {
     expected = outcome_.error * std::pow(factor, -order());
     elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * factor)));
   }
-  return outcome_;
+  return std::move(outcome_);
 }
 
 }  // namespace extremal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solve/adapt/outcome.hpp"
 #include "solve/adapt/workspace.hpp"
 #include "solve/newton/converge.hpp"
 #include "solve/newton/residual_test.hpp"
@@ -36,6 +37,8 @@ class PinnedSolve {
   Workspace& w_;
   Scheme scheme_;
   Outcome outcome_;
+  Path& path_ = outcome_.path;
+  Path saved_;
   double magnitude_ = 0;  ///< of the guess
   double cost_ = 0;       ///< nanoseconds so far, by batch_cost()
 };

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "solve/adapt/outcome.hpp"
 #include "solve/adapt/workspace.hpp"
 #include "solve/newton/converge.hpp"
 #include "solve/newton/residual_test.hpp"
@@ -17,7 +18,7 @@ namespace extremal {
 class Refinement {
  public:
   enum class Result {
-    converged,    ///< the path in the workspace meets the tolerance
+    converged,    ///< the path meets the tolerance
     failed,       ///< Newton found no extremal from this path; another may do
     unreachable,  ///< an extremal is near, but the tolerance is not met
   };
@@ -36,9 +37,9 @@ class Refinement {
   static constexpr int first_degree = 4;
   /// An orbit so much smaller than what it began with is at rest.
   static constexpr double at_rest = 1e-6;
-  /// Puts an empty path on `mesh` into the workspace, to be filled by the caller.
+  /// Makes the path of the outcome an empty one on `mesh`, to be filled by the caller.
   void open(const std::vector<double>& mesh, int degree = first_degree);
-  /// The same for a path on elements of `tables` that the workspace holds already.
+  /// The same for the path that there is, on elements of `tables`.
   void take(const ElementTables& tables);
   /// The path that was opened follows a motion through many encounters: its elements keep their ends, degrees
   /// rise before all are halved, and gradients are in extended precision.
@@ -50,7 +51,7 @@ class Refinement {
   /// Of the path that was opened last.
   const ElementTables& tables() const { return *tables_; }
 
-  /// Refines the path in the workspace.
+  /// Refines the path.
   Result pursue();
 
   /// False if steps from this path were so long that the second variation is nearly singular, and other
@@ -103,6 +104,8 @@ class Refinement {
   const SolveOptions& options_;
   Workspace& w_;
   Outcome& outcome_;
+  Path& path_;  ///< of the outcome
+  Path saved_;  ///< that coarse elements left
   Scales scales_;
   int most_steps_ = 0, most_elements_ = 0;
   double cost_ = 0, first_cost_ = 0, most_cost_ = 0, share_ = 1;

@@ -32,10 +32,10 @@ constexpr double worst_chord = 0.5;
 }  // namespace
 
 void Refinement::measure() {
-  w_.resolution.measure(w_.path, *tables_);
-  scales_ = scales(w_.path, *tables_);
+  w_.resolution.measure(path_, *tables_);
+  scales_ = scales(path_, *tables_);
   scales_.q = std::max(scales_.q, rest * first_magnitude_);
-  scales_.v = std::max(scales_.v, rest * first_magnitude_ / w_.path.duration());
+  scales_.v = std::max(scales_.v, rest * first_magnitude_ / path_.duration());
   measure_momenta();
   if (inertia_ == 0 || momentum_range_ == 0) return;
   // The largest inertia, where it varies, bounds errors of momenta from far above.
@@ -48,7 +48,7 @@ void Refinement::measure() {
 /// extended precision does not show was measured before.
 void Refinement::measure_momenta() {
   const DiscreteAction& action = w_.iteration.action();
-  if (const double varied = varied_mass_ ? action.inertia(w_.path) : 0; varied > 0) inertia_ = varied;
+  if (const double varied = varied_mass_ ? action.inertia(path_) : 0; varied > 0) inertia_ = varied;
   if (inertia_ == 0) return;
   if (const double range = action.momentum_range(); range > 0) momentum_range_ = range;
 }
@@ -86,13 +86,13 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   NewtonIteration& newton = w_.iteration;
   // In periodic problems families, as about Kepler's circle, would count as soft.
   if (!problem_.periodic)
-    newton.model().set_null_below(largest_null_eigenvalue(scales_.magnitude, left_out_, w_.path));
+    newton.model().set_null_below(largest_null_eigenvalue(scales_.magnitude, left_out_, path_));
   bool passed = false;
   for (int step = 0; step <= most_polish; ++step) {
     const bool again = step == 0 || newton.contraction() <= worst_chord;
-    const StepResult result = again ? newton.chord_step(w_.path) : newton.full_step(w_.path, 0);
+    const StepResult result = again ? newton.chord_step(path_) : newton.full_step(path_, 0);
     record();
-    passed = result == StepResult::ok && test_.passed(problem_, newton, w_.path, phase);
+    passed = result == StepResult::ok && test_.passed(problem_, newton, path_, phase);
     if (passed && newton.norm() <= options_.tolerance) {
       outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
       return Attempt::converged;
@@ -119,12 +119,12 @@ std::string Refinement::hidden(double amplified) const {
 /// What the momenta of a path make of its elements, which tell q but not q', if that is enough. The
 /// resolution is then that of the polynomials recovered.
 std::optional<Resolution::Error> Refinement::recovered(double q) {
-  if (!recover(problem_, w_)) return std::nullopt;
-  const int degree = w_.path.degree();
-  w_.resolution.measure(w_.recovered, w_.levels.at(degree + Recovery::raised_by));
+  if (!recover(problem_, path_, w_, w_.raised)) return std::nullopt;
+  const int degree = path_.degree();
+  w_.resolution.measure(w_.raised, w_.levels.at(degree + Recovery::raised_by));
   const Resolution::Error less = w_.resolution.at(degree + Recovery::gained(*problem_.lagrangian));
   if (excess({q, less.v}) <= 1) return less;
-  w_.resolution.measure(w_.path, *tables_);
+  w_.resolution.measure(path_, *tables_);
   return std::nullopt;
 }
 
@@ -134,17 +134,17 @@ std::optional<Resolution::Error> Refinement::recovered(double q) {
 Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {
   outcome_.message = newton.failure;
   if (!newton.reached) return Attempt::failed;
-  Resolution::Error error = w_.resolution.at(w_.path.degree());
+  Resolution::Error error = w_.resolution.at(path_.degree());
   const Resolution::Error& before = nodes.left_out;
   const double fall = before.v > 0 ? (error.a / before.a) * (error.v / before.v) : 0;
-  const double points = static_cast<double>(w_.path.elements()) * w_.path.degree();
+  const double points = static_cast<double>(path_.elements()) * path_.degree();
   const double at_nodes = nodes.moved * std::min(1.0, fall);
-  const double longest = std::sqrt(2 * std::log(points * w_.path.coordinates()));
+  const double longest = std::sqrt(2 * std::log(points * path_.coordinates()));
   double roundoff = unit_roundoff * scales_.magnitude * std::sqrt(points);
   const auto with = [&](double walk) { return excess({error.q + at_nodes + longest * walk, error.v}); };
   // Where it decides it is measured: more elements would not help.
   if (with(roundoff) > 1 && with(0) <= 1) {
-    const double measured = certain * w_.iteration.roundoff(w_.path) * scales_.q;
+    const double measured = certain * w_.iteration.roundoff(path_) * scales_.q;
     roundoff = std::clamp(measured, unit_roundoff * scales_.magnitude, roundoff);
   }
   const double truncation = error.q + roundoff;
@@ -169,7 +169,7 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   }
   if (!(worst_ <= 1)) return Attempt::refine;
   // Much movement may have been Newton's, not the elements': from this converged path it is not.
-  if (at_nodes > truncation && !nodes.from_converged && w_.path.degree() < highest_degree)
+  if (at_nodes > truncation && !nodes.from_converged && path_.degree() < highest_degree)
     return Attempt::refine;
   outcome_.message = "converged";
   return Attempt::converged;

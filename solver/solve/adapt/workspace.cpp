@@ -1,29 +1,14 @@
 #include "solve/adapt/workspace.hpp"
 
-#include <limits>
-
 namespace extremal {
 
-bool recover(const Problem& problem, Workspace& w) {
+bool recover(const Problem& problem, const Path& path, Workspace& w, Path& recovered) {
   DiscreteAction& action = w.iteration.action();
-  const int degree = w.path.degree();
-  if (!Recovery::suits(action.tables().scheme()) || !w.recovery.measure(*problem.lagrangian, action, w.path))
+  const int degree = path.degree(), raised = degree + Recovery::raised_by;
+  if (!Recovery::suits(action.tables().scheme()) || !w.recovery.measure(*problem.lagrangian, action, path))
     return false;
-  const int raised = degree + Recovery::raised_by;
-  w.recovery.raise(w.path, w.levels.at(raised), w.levels.raise(degree, raised), w.recovered);
+  w.recovery.raise(path, w.levels.at(raised), w.levels.raise(degree, raised), recovered);
   return true;
-}
-
-void Outcome::record(const Workspace& workspace, const SolveOptions& options) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  const double residual = workspace.iteration.action().residual();
-  ++iterations;
-  if (options.progress)
-    options.progress({.elements = workspace.path.elements(),
-                      .degree = workspace.path.degree(),
-                      .residual = residual <= largest ? residual : largest,  // where the action overflowed
-                      .step = workspace.iteration.norm(),
-                      .damping = workspace.iteration.damping()});
 }
 
 }  // namespace extremal

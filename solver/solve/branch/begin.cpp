@@ -47,11 +47,13 @@ bool Continuation::begin_from_solve() {
   SolveOptions adaptive = options_.solve;
   adaptive.scheme.reset();
   adaptive.elements = 0;
-  const Outcome outcome = Search(family_.problem, adaptive, w_).run();
+  Search search(family_.problem, adaptive, w_);
+  const Outcome& outcome = search.run();
+  std::swap(path_, search.path());
   if (outcome.status != Status::converged)
     return stop(BranchEnd::not_started, "no extremal to begin with: " + outcome.message);
   for (const double x : family_.problem.guess.q) rest_ = std::max(rest_, rest * std::abs(x));
-  const double coordinate = family_.varied == Varied::parameter ? family_.from : w_.path.duration();
+  const double coordinate = family_.varied == Varied::parameter ? family_.from : path_.duration();
   if (!branch_.place(coordinate) || resolve() == Elements::too_many || !turn(true))
     return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
   if (here_.rate * (family_.to - family_.from) < 0) here_.scale(-1);
@@ -62,7 +64,7 @@ bool Continuation::begin_from_solve() {
 /// crossed, and across it that branch does not go far.
 bool Continuation::begin_from_seed() {
   const Seed seed = *std::exchange(seed_, std::nullopt);
-  w_.path = seed.path;
+  path_ = seed.path;
   branch_.set_units(seed.units);
   here_.units = seed.units;
   rest_ = rest * seed.units.extent;
@@ -86,7 +88,7 @@ bool Continuation::begin_from_seed() {
 }
 
 Scales Continuation::sizes() const {
-  Scales size = scales(w_.path, branch_.tables());
+  Scales size = scales(path_, branch_.tables());
   if (size.q <= rest_) size.q = 0;
   return size;
 }
@@ -95,15 +97,15 @@ Scales Continuation::sizes() const {
 Continuation::Elements Continuation::resolve() {
   const ElementTables& tables = branch_.tables();
   const Scales size = sizes();
-  w_.resolution.measure(w_.path, tables);
-  const Resolution::Error error = w_.resolution.at(w_.path.degree());
+  w_.resolution.measure(path_, tables);
+  const Resolution::Error error = w_.resolution.at(path_.degree());
   const double tolerance = options_.solve.tolerance;
-  error_ = error.q + unit_roundoff * size.magnitude * std::sqrt(w_.path.elements() * w_.path.degree());
-  branch_.set_null_threshold(zero_eigenvalue_along(size.q, error_, w_.path.elements()));
+  error_ = error.q + unit_roundoff * size.magnitude * std::sqrt(path_.elements() * path_.degree());
+  branch_.set_null_threshold(zero_eigenvalue_along(size.q, error_, path_.elements()));
   const double excess = size.q > 0 ? std::max(error.q / size.q, 0.1 * error.v / size.v) / tolerance : 0;
   if (excess <= 1 && (excess == 0 || excess > lavish)) return Elements::fine;
   const Plan plan = plan_for(size);
-  const bool fewer = plan.degree * plan.mesh.size() < 0.7 * w_.path.degree() * (w_.path.elements() + 1);
+  const bool fewer = plan.degree * plan.mesh.size() < 0.7 * path_.degree() * (path_.elements() + 1);
   if (excess <= 1 && (plan.mesh.empty() || !fewer)) return Elements::fine;
   if (plan.degree == 0) return Elements::too_many;
   adopt(plan);
@@ -114,10 +116,10 @@ Continuation::Elements Continuation::resolve() {
 Plan Continuation::plan_for(const Scales& size) {
   const double tolerance = options_.solve.tolerance;
   const auto aim = [&](double share) { return Resolution::Error{share * size.q, 10 * share * size.v}; };
-  return w_.planner.plan(w_.resolution, w_.path.mesh(), branch_.tables(),
+  return w_.planner.plan(w_.resolution, path_.mesh(), branch_.tables(),
                          {.aim = aim(spare * tolerance),
                           .tolerated = aim(0.7 * tolerance),
-                          .raised_degree = std::min(w_.path.degree() + 1, highest_degree),
+                          .raised_degree = std::min(path_.degree() + 1, highest_degree),
                           .least_degree = least_degree,
                           .highest_degree = highest_degree,
                           .most_elements = most_elements,
@@ -127,33 +129,33 @@ Plan Continuation::plan_for(const Scales& size) {
 
 /// The path and the tangent on other elements.
 void Continuation::adopt(const Plan& plan) {
-  const std::vector<double> before(w_.path.mesh().begin(), w_.path.mesh().end());
+  const std::vector<double> before(path_.mesh().begin(), path_.mesh().end());
   const std::vector<double>& mesh = plan.mesh.empty() ? before : plan.mesh;
-  w_.other.resample_from(w_.path, w_.levels.at(plan.degree), mesh);
+  w_.other.resample_from(path_, w_.levels.at(plan.degree), mesh);
   if (!tangent_.step.nodes.empty())
-    tangent_.step.nodes = interpolated(tangent_.step.nodes, w_.path.coordinates(), before, mesh);
-  std::swap(w_.path, w_.other);
+    tangent_.step.nodes = interpolated(tangent_.step.nodes, path_.coordinates(), before, mesh);
+  std::swap(path_, w_.other);
   branch_.bind();
 }
 
 /// A place on elements that tell also the way to a branch that crosses there; nothing if its own do.
 std::optional<Continuation::Stand> Continuation::resolved_for(const Stand& from, const Move& response) {
-  w_.path = from.path;
+  path_ = from.path;
   tangent_ = from.tangent;
   branch_.set_units(from.units);
   if (!branch_.place(from.coordinate)) return std::nullopt;
   branch_.bind();
   branch_.close_by(from.row);
   const double length = std::sqrt(branch_.dot(response, response));
-  w_.path.add(response.step.nodes, response.step.inner, 1 / length);
-  w_.path.load_ends();
-  const Scales size = scales(w_.path, branch_.tables());
-  w_.resolution.measure(w_.path, branch_.tables());
-  const Resolution::Error error = w_.resolution.at(w_.path.degree());
+  path_.add(response.step.nodes, response.step.inner, 1 / length);
+  path_.load_ends();
+  const Scales size = scales(path_, branch_.tables());
+  w_.resolution.measure(path_, branch_.tables());
+  const Resolution::Error error = w_.resolution.at(path_.degree());
   if (std::max(error.q / size.q, 0.1 * error.v / size.v) <= options_.solve.tolerance) return std::nullopt;
   const Plan plan = plan_for(size);
   if (plan.degree == 0) return std::nullopt;
-  w_.path = from.path;
+  path_ = from.path;
   adopt(plan);
   if (!correct(1, nullptr) || !turn()) return std::nullopt;
   here_.units = from.units;

@@ -22,16 +22,20 @@ void add_scaled(std::vector<double>& to, double factor, std::span<const double> 
 
 }  // namespace
 
-Branch::Branch(const ProblemFamily& family, Workspace& workspace)
-    : family_(family), w_(workspace), problem_(family.problem), unit_(std::abs(family.to - family.from)) {
+Branch::Branch(const ProblemFamily& family, Path& path, Workspace& workspace)
+    : family_(family),
+      path_(path),
+      w_(workspace),
+      problem_(family.problem),
+      unit_(std::abs(family.to - family.from)) {
   if (by_duration()) problem_.duration = {.value = 0, .free = true, .energy = 0, .where = {}};
 }
 
 bool Branch::place(double coordinate) {
   if (by_duration()) {
     if (!(coordinate > 0)) return false;
-    w_.path.set_duration(coordinate);
-    if (!tables_ || tables_->scheme().degree != w_.path.degree()) bind();
+    path_.set_duration(coordinate);
+    if (!tables_ || tables_->scheme().degree != path_.degree()) bind();
     return true;
   }
   std::optional<Problem> problem = family_.at(coordinate);
@@ -45,38 +49,38 @@ bool Branch::place(double coordinate) {
 
 void Branch::bind() {
   w_.levels.bind(problem_.lagrangian);
-  tables_ = &w_.levels.at(w_.path.degree());
-  w_.iteration.reset(problem_, *tables_, w_.path.elements());
+  tables_ = &w_.levels.at(path_.degree());
+  w_.iteration.reset(problem_, *tables_, path_.elements());
   if (folds_ == true) w_.iteration.model().set_null_below(0);
   factored_ = false;
 }
 
 /// Ends, and a duration that is given, are the problem's exactly.
 void Branch::fit_path(const Problem& problem) {
-  if (!problem.duration.free) w_.path.set_duration(problem.duration.value);
-  meet_ends(problem, w_.path);
+  if (!problem.duration.free) path_.set_duration(problem.duration.value);
+  meet_ends(problem, path_);
 }
 
 bool Branch::apply(const Move& move, double factor) {
-  const double duration = w_.path.duration() + factor * move.step.duration;
+  const double duration = path_.duration() + factor * move.step.duration;
   if (!(duration > 0)) return false;
   const double coordinate = this->coordinate() + factor * move.parameter;
-  w_.path.add(move.step.nodes, move.step.inner, factor);
-  if (!by_duration()) w_.path.set_duration(duration);
-  w_.path.load_ends();
+  path_.add(move.step.nodes, move.step.inner, factor);
+  if (!by_duration()) path_.set_duration(duration);
+  path_.load_ends();
   const std::vector<double> before = ends();
   if (!place(coordinate)) return false;
   ends_ = ends();
   for (std::size_t e = 0; e < ends_.size(); ++e) ends_[e] -= before[e];
-  stretch_ = by_duration() ? 0 : w_.path.duration() - duration;
+  stretch_ = by_duration() ? 0 : path_.duration() - duration;
   return true;
 }
 
 /// q(0), q(T).
 std::vector<double> Branch::ends() const {
-  const int n = w_.path.coordinates();
-  std::vector<double> both(w_.path.node(0), w_.path.node(0) + n);
-  both.insert(both.end(), w_.path.node(w_.path.elements()), w_.path.node(w_.path.elements()) + n);
+  const int n = path_.coordinates();
+  std::vector<double> both(path_.node(0), path_.node(0) + n);
+  both.insert(both.end(), path_.node(path_.elements()), path_.node(path_.elements()) + n);
   return both;
 }
 
@@ -85,7 +89,7 @@ double Branch::drift(const Move& tangent) const {
   double sum = 0;
   for (std::size_t a = 0; a < n; ++a)
     sum += weight(0) * tangent.step.nodes[a] * ends_[a] +
-           weight(w_.path.elements()) * tangent.step.nodes[last + a] * ends_[n + a];
+           weight(path_.elements()) * tangent.step.nodes[last + a] * ends_[n + a];
   return sum / (units_.extent * units_.extent * static_cast<double>(n)) +
          tangent.step.duration * stretch_ / (units_.duration * units_.duration);
 }
@@ -93,7 +97,7 @@ double Branch::drift(const Move& tangent) const {
 bool Branch::linearise(Factors factors) {
   if (factors == Factors::anew) {
     inertia_.reset();
-    measure_phases(problem_, w_.path, tables_->scheme(), true, phases_);
+    measure_phases(problem_, path_, tables_->scheme(), true, phases_);
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   }
   const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter();
@@ -105,9 +109,9 @@ bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   if (factors == Factors::anew)
-    factored_ = model.evaluate(action, w_.path, closing);
+    factored_ = model.evaluate(action, path_, closing);
   else
-    model.evaluate_gradient(action, w_.path);
+    model.evaluate_gradient(action, path_);
   defined_ = action.finite();
   if (!factored_ || !defined_) return false;
   note_action();
@@ -131,7 +135,7 @@ bool Branch::linearise_duration(Factors factors) {
   DiscreteAction& action = w_.iteration.action();
   if (!evaluate(&closing_, factors)) return false;
   const bool anew = factors == Factors::anew;
-  if (anew) energy_unit_ = std::abs(energy_) + std::abs(action_) / w_.path.duration();
+  if (anew) energy_unit_ = std::abs(energy_) + std::abs(action_) / path_.duration();
   if (energy_unit_ == 0) energy_unit_ = 1;
   const bool by_energy = closing_.row.empty();
   const auto solve = [&](double excess, Move& move) {
@@ -163,7 +167,7 @@ double Branch::energy_change(const Move& move) const {
 /// that a displacement of the ends closes, where they do not move.
 std::vector<double> Branch::closing_row(const Move& onward) const {
   if (!by_duration() || tables_->unknowns() > most_dense_unknowns) return {};
-  const std::size_t n = w_.path.coordinates(), last = onward.step.nodes.size() - n;
+  const std::size_t n = path_.coordinates(), last = onward.step.nodes.size() - n;
   std::vector<double> row(onward.step.nodes.begin(), onward.step.nodes.begin() + n);
   row.insert(row.end(), onward.step.nodes.begin() + last, onward.step.nodes.end());
   const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
@@ -178,7 +182,7 @@ bool Branch::linearise_parameter() {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   ClosingEquation equation;
-  const ClosingEquation* closing = closing_equation(problem_, w_.path, equation);
+  const ClosingEquation* closing = closing_equation(problem_, path_, equation);
   if (!evaluate(closing, Factors::anew)) return false;
   model.solve(action, closing, correction.step);
   if (!folds_) folds_ = model.left_out() == 0;
@@ -209,18 +213,18 @@ double Branch::solve_beside(double by, Move& move) {
   if (!problem) return NAN;
   beside_.bind(problem->lagrangian);
   DiscreteAction& action = w_.iteration.action();
-  at_ = w_.path;
+  at_ = path_;
   fit_path(*problem);
-  action.substitute(*problem->lagrangian, beside_.at(w_.path.degree()));
-  w_.iteration.model().evaluate_gradient(action, w_.path);
+  action.substitute(*problem->lagrangian, beside_.at(path_.degree()));
+  w_.iteration.model().evaluate_gradient(action, path_);
   ClosingEquation equation;
-  w_.iteration.model().solve(action, closing_equation(*problem, w_.path, equation), move.step);
-  add_scaled(move.step.nodes, 1, w_.path.nodes(), at_.nodes());
-  move.step.duration += w_.path.duration() - at_.duration();
+  w_.iteration.model().solve(action, closing_equation(*problem, path_, equation), move.step);
+  add_scaled(move.step.nodes, 1, path_.nodes(), at_.nodes());
+  move.step.duration += path_.duration() - at_.duration();
   move.parameter = by;
   action.substitute(*problem_.lagrangian, *tables_);
-  w_.path.copy_values(at_);
-  w_.path.load_ends();
+  path_.copy_values(at_);
+  path_.load_ends();
   return action.finite() ? action.action() : NAN;
 }
 
@@ -237,15 +241,15 @@ const Inertia& Branch::inertia() const {
 }
 
 void Branch::respond(const Move& onward, Move& response) {
-  const std::size_t n = w_.path.coordinates(), count = w_.path.elements() + 1;
+  const std::size_t n = path_.coordinates(), count = path_.elements() + 1;
   std::vector<double> load(count * n);
   for (std::size_t k = 1; k + 1 < count; ++k)
     for (std::size_t a = 0; a < n; ++a) {
-      const double tau = w_.path.mesh()[k], weight = w_.path.mesh()[k + 1] - w_.path.mesh()[k - 1];
+      const double tau = path_.mesh()[k], weight = path_.mesh()[k + 1] - path_.mesh()[k - 1];
       load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
     }
   ClosingEquation equation;
-  const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, w_.path, equation);
+  const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, path_, equation);
   w_.iteration.model().respond(w_.iteration.action(), closing, load, response.step);
   response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
   response.add(direction, -dot(onward, response) / dot(onward, direction));
@@ -258,14 +262,14 @@ int Branch::orientation(double onward) const {
 
 /// Of node k in the mean over τ.
 double Branch::weight(int k) const {
-  const std::span<const double> mesh = w_.path.mesh();
-  return 0.5 * (mesh[std::min(k + 1, w_.path.elements())] - mesh[std::max(k - 1, 0)]);
+  const std::span<const double> mesh = path_.mesh();
+  return 0.5 * (mesh[std::min(k + 1, path_.elements())] - mesh[std::max(k - 1, 0)]);
 }
 
 double Branch::dot(const Move& a, const Move& b) const {
-  const std::size_t n = w_.path.coordinates();
+  const std::size_t n = path_.coordinates();
   double sum = 0;
-  for (int k = 0; k <= w_.path.elements(); ++k) {
+  for (int k = 0; k <= path_.elements(); ++k) {
     double product = 0;
     for (std::size_t i = k * n; i < (k + 1) * n; ++i) product += a.step.nodes[i] * b.step.nodes[i];
     sum += weight(k) * product;

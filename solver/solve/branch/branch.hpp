@@ -24,18 +24,18 @@ struct ProblemFamily {
   std::function<std::optional<Problem>(double)> at = {};
 };
 
-/// Curves through the workspace's path: with x the path, δS = 0 and what closes a free duration leave of (x,
+/// Curves through a path: with x the path, δS = 0 and what closes a free duration leave of (x,
 /// T) one direction where the duration or the energy varies, and of (x, T, p) one where a parameter p does.
 class Branch {
  public:
-  Branch(const ProblemFamily& family, Workspace& workspace);
+  Branch(const ProblemFamily& family, Path& path, Workspace& workspace);
 
-  /// Takes over the path in the workspace, on elements of its degree, with this value of the coordinate.
+  /// Takes over the path as it is, on elements of its degree, with this value of the coordinate.
   bool place(double coordinate);
   /// The same after the elements changed.
   void bind();
   /// What Move::parameter changes: the parameter, or the duration.
-  double coordinate() const { return by_duration() ? w_.path.duration() : coordinate_; }
+  double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
   /// Moves path and coordinate; false if there is no problem there.
   bool apply(const Move& move, double factor);
   /// Scalar product of a tangent with what the last apply() moved besides: ends and durations that do not
@@ -104,6 +104,7 @@ class Branch {
   double weight(int k) const;
 
   const ProblemFamily& family_;
+  Path& path_;
   Workspace& w_;
   Problem problem_;
   Levels beside_;

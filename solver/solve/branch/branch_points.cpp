@@ -145,8 +145,8 @@ void Continuation::find_crossings(const Stand& from, const Stand& to, double len
 std::vector<double> Continuation::read_gaps() {
   const Problem& problem = branch_.problem();
   const Trajectory trajectory = trajectory_of(here_.path);
-  if (!variation_.assemble(problem.lagrangian, trajectory, condensed())) return {NAN};
-  const std::optional<Floquet> found = floquet(variation_, closed_orbit(problem, trajectory, 0));
+  if (!w_.variation.assemble(problem.lagrangian, trajectory, condensed())) return {NAN};
+  const std::optional<Floquet> found = floquet(w_.variation, closed_orbit(problem, trajectory, 0));
   return found ? doubling_gaps(*found) : std::vector<double>{NAN};
 }
 

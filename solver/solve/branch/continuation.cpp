@@ -60,12 +60,12 @@ const char* name(PointKind kind) {
 }
 
 Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
-    : family_(std::move(family)), options_(std::move(options)), branch_(family_, w_) {}
+    : family_(std::move(family)), options_(std::move(options)), branch_(family_, path_, w_) {}
 
 Continuation::Continuation(ProblemFamily family, ContinuationOptions options, Seed seed, int side)
     : family_(std::move(family)),
       options_(std::move(options)),
-      branch_(family_, w_),
+      branch_(family_, path_, w_),
       seed_(std::move(seed)),
       side_(side) {}
 
@@ -159,7 +159,7 @@ bool Continuation::turn(bool first) {
   const double along = first ? 1 : branch_.dot(tangent_, branch_.direction);
   const double onward = std::copysign(1 / length, along);
   cosine_ = first ? 1 : std::abs(along) / (length * std::sqrt(branch_.dot(tangent_, tangent_)));
-  here_.path = w_.path;
+  here_.path = path_;
   here_.coordinate = branch_.coordinate();
   here_.varied = branch_.varied();
   here_.action = branch_.action();
@@ -169,7 +169,7 @@ bool Continuation::turn(bool first) {
   here_.rate = onward * branch_.change(true);
   here_.turning = here_.bend = here_.twist = {};
   here_.action_rate = onward * branch_.action_slope();
-  here_.energy_time = std::abs(branch_.energy() * w_.path.duration());
+  here_.energy_time = std::abs(branch_.energy() * path_.duration());
   here_.orientation = branch_.orientation(onward);
   here_.index = branch_.inertia().negative;
   return true;
@@ -181,7 +181,7 @@ void Continuation::measure_anew() {
   const double extent = sizes().q;
   largest_extent_ = std::max(largest_extent_, extent);
   const double unit = std::max(extent, least_extent * largest_extent_);
-  here_.units = {unit > 0 ? unit : 1, w_.path.duration()};
+  here_.units = {unit > 0 ? unit : 1, path_.duration()};
   branch_.set_units(here_.units);
   here_.scale(1 / std::sqrt(branch_.dot(here_.tangent, here_.tangent)));
 }
@@ -189,7 +189,7 @@ void Continuation::measure_anew() {
 /// So far along the tangent from a place, and back onto the branch, or to where what varies has the value
 /// `landing`; on elements that meet the tolerance, or on those of the place. False if that fails.
 bool Continuation::go(const Stand& from, double length, bool same_elements, const double* landing) {
-  w_.path = from.path;
+  path_ = from.path;
   tangent_ = from.tangent;
   here_.units = from.units;
   branch_.set_units(from.units);

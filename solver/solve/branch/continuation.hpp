@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/variation.hpp"
+#include "solve/adapt/options.hpp"
 #include "solve/branch/branch.hpp"
 
 /// \file A branch of extremals, point by point.
@@ -194,12 +194,12 @@ class Continuation {
   ProblemFamily family_;
   ContinuationOptions options_;
   Workspace w_;
-  SecondVariation variation_;
+  Path path_;  ///< that is corrected
   Scratch momentum_memory_;
   Branch branch_;
   std::optional<Seed> seed_;  ///< what the branch begins with
   int side_ = 1;
-  Stand here_, first_;         ///< where the path in the workspace stands; the first point
+  Stand here_, first_;         ///< where the path stands; the first point
   Stand from_, to_;            ///< of the last step, whose memory the next one uses
   Move tangent_;               ///< that the path is corrected across
   double largest_extent_ = 0;  ///< of paths so far

@@ -73,7 +73,7 @@ double Continuation::foreseen() const {
 /// give y = σ²(3Y/ℓ − Z)/ℓ + σ³(Z − 2Y/ℓ)/ℓ².
 Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, double length) {
   Stand result = from;
-  w_.path = from.path;
+  path_ = from.path;
   branch_.set_units(from.units);
   if (!branch_.place(from.coordinate)) return result;
   Move off = way_to(to);
@@ -93,12 +93,12 @@ Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, doub
 
 /// A move of another path on the elements that there are.
 Move Continuation::carried(const Move& move, const Path& from) {
-  if (move.step.nodes.empty() || same_elements(from, w_.path)) return move;
+  if (move.step.nodes.empty() || same_elements(from, path_)) return move;
   Path whole;
   whole.reset(w_.levels.at(from.degree()), from.mesh(), from.duration());
   whole.add(move.step.nodes, move.step.inner, 1);
   whole.load_ends();
-  w_.other.resample_from(whole, branch_.tables(), w_.path.mesh());
+  w_.other.resample_from(whole, branch_.tables(), path_.mesh());
   Move result = move;
   const double duration = move.step.duration;
   result.step = values_of(w_.other);
@@ -109,10 +109,10 @@ Move Continuation::carried(const Move& move, const Path& from) {
 /// From the path to another place's, on the elements of the path.
 Move Continuation::way_to(const Stand& to) {
   w_.other = to.path;
-  if (!same_elements(to.path, w_.path)) w_.other.resample_from(to.path, branch_.tables(), w_.path.mesh());
+  if (!same_elements(to.path, path_)) w_.other.resample_from(to.path, branch_.tables(), path_.mesh());
   Move way{values_of(w_.other), to.coordinate - branch_.coordinate()};
-  way.add({values_of(w_.path)}, -1);
-  if (family_.varied == Varied::parameter) way.step.duration = to.path.duration() - w_.path.duration();
+  way.add({values_of(path_)}, -1);
+  if (family_.varied == Varied::parameter) way.step.duration = to.path.duration() - path_.duration();
   return way;
 }
 

@@ -28,8 +28,8 @@ BranchPoint Continuation::read(PointKind kind) {
   read_momenta(solution);
   if (!problem.periodic) return point;
   if (problem.coordinates() <= most_coordinates_for_multipliers)
-    variation_.assemble(problem.lagrangian, solution.trajectory, condensed());
-  read_stability(problem, variation_, sizes().q, solution, false);
+    w_.variation.assemble(problem.lagrangian, solution.trajectory, condensed());
+  read_stability(problem, w_.variation, sizes().q, solution, false);
   here_.gaps = solution.floquet ? doubling_gaps(*solution.floquet) : std::vector<double>{NAN};
   return point;
 }

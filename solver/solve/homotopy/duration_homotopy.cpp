@@ -28,13 +28,14 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<double> natural_durations(const Problem& problem, Workspace& w, const ElementTables& tables) {
+std::vector<double> natural_durations(const Problem& problem, Path& path, Workspace& w,
+                                      const ElementTables& tables) {
   const double wanted = problem.duration.value, short_one = instant * wanted;
   QuadraticModel& model = w.iteration.model();
   DiscreteAction& action = w.iteration.action();
-  w.path.set_duration(short_one);
-  if (!model.evaluate(action, w.path, nullptr) || !action.finite()) return {};
-  const double range = scales(w.path, tables).q;
+  path.set_duration(short_one);
+  if (!model.evaluate(action, path, nullptr) || !action.finite()) return {};
+  const double range = scales(path, tables).q;
   struct Candidate {
     double distance, duration, ratio;
   };
@@ -42,8 +43,8 @@ std::vector<double> natural_durations(const Problem& problem, Workspace& w, cons
   double least = INFINITY;
   for (int k = -4 * octaves; k <= 4 * octaves; ++k) {
     const double duration = wanted * std::pow(2.0, 0.25 * k);
-    w.path.set_duration(duration);
-    model.evaluate_gradient(action, w.path);
+    path.set_duration(duration);
+    model.evaluate_gradient(action, path);
     Step step;
     model.solve(action, nullptr, step);
     const double distance = largest(step.nodes) * duration / (short_one * range);
@@ -61,8 +62,9 @@ std::vector<double> natural_durations(const Problem& problem, Workspace& w, cons
   return durations;
 }
 
-DurationHomotopy::DurationHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count)
-    : ExtremalFamily(workspace, std::move(count), problem.duration.value),
+DurationHomotopy::DurationHomotopy(const Problem& problem, Path& path, Workspace& workspace,
+                                   std::function<bool()> count)
+    : ExtremalFamily(path, workspace, std::move(count), problem.duration.value),
       problem_(problem),
       wanted_(problem.duration.value) {
   problem_.duration = {.value = wanted_, .free = true, .energy = 0, .where = {}};
@@ -75,8 +77,8 @@ bool DurationHomotopy::solve_linearised(Move& correction, Move& direction) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   ClosingEquation closing;
-  if (!model.evaluate(action, w_.path, &closing) || !action.finite()) return false;
-  const double energy = std::abs(action.slope_duration()) + std::abs(action.action()) / w_.path.duration();
+  if (!model.evaluate(action, path_, &closing) || !action.finite()) return false;
+  const double energy = std::abs(action.slope_duration()) + std::abs(action.action()) / path_.duration();
   const auto solve = [&](double excess, Move& move) {
     closing.value = excess - action.slope_duration();
     model.solve(action, &closing, move.step);
@@ -90,7 +92,7 @@ bool DurationHomotopy::solve_linearised(Move& correction, Move& direction) {
 
 bool DurationHomotopy::set_parameter(double value) {
   const double duration = value == 0 ? wanted_ : wanted_ + value;
-  if (duration > 0) w_.path.set_duration(duration);
+  if (duration > 0) path_.set_duration(duration);
   return duration > 0;
 }
 

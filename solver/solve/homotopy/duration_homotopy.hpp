@@ -8,11 +8,11 @@
 
 namespace extremal {
 
-/// Durations, the best first, in which the forces along the workspace's path bend it about as it is bent;
+/// Durations, the best first, in which the forces along a path bend it about as it is bent;
 /// those near the wanted one first where the forces bend it little. With g the gradient of S_h in a duration
 /// T and K the second variation as T → 0, which is that of the motion without forces, K⁻¹g is how far the
 /// path is from such a motion; for a straight line it grows like T², for a curved one it has a minimum.
-std::vector<double> natural_durations(const Problem& problem, Workspace& workspace,
+std::vector<double> natural_durations(const Problem& problem, Path& path, Workspace& workspace,
                                       const ElementTables& tables);
 
 /// The family of extremals of all durations, with the boundary relation given; the parameter is what the
@@ -20,9 +20,9 @@ std::vector<double> natural_durations(const Problem& problem, Workspace& workspa
 /// λ = (duration/T)², from the straight line. The Lagrangian must not depend on t.
 class DurationHomotopy : public ExtremalFamily {
  public:
-  DurationHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count);
+  DurationHomotopy(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count);
 
-  /// From the workspace's path with the duration it has onto the family, and along it to the problem's
+  /// Takes the path with the duration it has onto the family, and along it to the problem's
   /// duration: nearly an extremal then. False if it does not lead there.
   bool follow(const ElementTables& tables);
   /// From an extremal of the problem, to longer durations or to shorter ones. False if it cannot set out.
@@ -31,7 +31,7 @@ class DurationHomotopy : public ExtremalFamily {
  private:
   bool solve_linearised(Move& correction, Move& direction) override;
   const Problem& problem() const override { return problem_; }
-  double parameter() const override { return w_.path.duration() - wanted_; }
+  double parameter() const override { return path_.duration() - wanted_; }
   bool set_parameter(double value) override;
   double onward(const Move& direction) const override;
 

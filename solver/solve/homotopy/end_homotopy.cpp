@@ -18,9 +18,9 @@ std::vector<double> unit_displacement(const BoundaryRelation& relation, int row)
   return {x.begin(), x.end()};
 }
 
-EndHomotopy::EndHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count,
-                         std::vector<double> displacement, double unit)
-    : ExtremalFamily(workspace, std::move(count), unit),
+EndHomotopy::EndHomotopy(const Problem& problem, Path& path, Workspace& workspace,
+                         std::function<bool()> count, std::vector<double> displacement, double unit)
+    : ExtremalFamily(path, workspace, std::move(count), unit),
       problem_(problem),
       ends_(std::move(displacement)),
       unit_(unit) {}
@@ -35,7 +35,7 @@ void EndHomotopy::place_displacement(std::size_t inner) {
   const std::size_t n = problem_.coordinates();
   displacement_.inner.assign(inner, 0);
   displacement_.nodes.clear();
-  for (const double tau : w_.path.mesh())
+  for (const double tau : path_.mesh())
     for (std::size_t a = 0; a < n; ++a)
       displacement_.nodes.push_back((1 - tau) * ends_[a] + tau * ends_[n + a]);
 }
@@ -45,18 +45,18 @@ void EndHomotopy::place_displacement(std::size_t inner) {
 bool EndHomotopy::solve_linearised(Move& correction, Move& direction) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
-  if (!model.evaluate(action, w_.path, w_.iteration.closing(w_.path)) || !action.finite()) return false;
-  model.solve(action, w_.iteration.closing(w_.path), correction.step);
+  if (!model.evaluate(action, path_, w_.iteration.closing(path_)) || !action.finite()) return false;
+  model.solve(action, w_.iteration.closing(path_), correction.step);
   correction.parameter = 0;
   const double by = small * unit_;
-  at_ = w_.path;
+  at_ = path_;
   place_displacement(correction.step.inner.size());
-  w_.path.add(displacement_.nodes, displacement_.inner, by);
-  w_.path.load_ends();
-  model.evaluate_gradient(action, w_.path);
-  model.solve(action, w_.iteration.closing(w_.path), direction.step);
-  w_.path.copy_values(at_);
-  w_.path.load_ends();
+  path_.add(displacement_.nodes, displacement_.inner, by);
+  path_.load_ends();
+  model.evaluate_gradient(action, path_);
+  model.solve(action, w_.iteration.closing(path_), direction.step);
+  path_.copy_values(at_);
+  path_.load_ends();
   direction.parameter = 0;
   direction.add(correction, -1);
   for (double& x : direction.step.nodes) x /= by;

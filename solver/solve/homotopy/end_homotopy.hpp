@@ -17,10 +17,10 @@ std::vector<double> unit_displacement(const BoundaryRelation& relation, int row)
 class EndHomotopy : public ExtremalFamily {
  public:
   /// A displacement (2n) of which `unit` is about the extent of a path.
-  EndHomotopy(const Problem& problem, Workspace& workspace, std::function<bool()> count,
+  EndHomotopy(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count,
               std::vector<double> displacement, double unit);
 
-  /// From the workspace's path, whose ends are displaced by `parameter`, onto the family and along it to the
+  /// Takes the path, whose ends are displaced by `parameter`, onto the family and along it to the
   /// problem's ends. False if it does not lead there.
   bool follow(const ElementTables& tables, double parameter);
   /// From an extremal of the problem along the displacement or against it. False if it cannot set out.

@@ -49,8 +49,8 @@ void Move::add(const Move& other, double factor) {
   parameter += factor * other.parameter;
 }
 
-ExtremalFamily::ExtremalFamily(Workspace& workspace, std::function<bool()> count, double unit)
-    : w_(workspace), count_(std::move(count)), unit_(unit) {}
+ExtremalFamily::ExtremalFamily(Path& path, Workspace& workspace, std::function<bool()> count, double unit)
+    : path_(path), w_(workspace), count_(std::move(count)), unit_(unit) {}
 
 bool ExtremalFamily::linearise() {
   if (++steps_ > most_steps_) return false;
@@ -62,7 +62,7 @@ bool ExtremalFamily::linearise() {
   for (Move* move : {&correction_, &direction_}) {
     move->times.clear();
     if (!std::isfinite(dot(*move, *move))) return false;
-    comoving_.take_along(w_.path, scale_, move->step, move->times);
+    comoving_.take_along(path_, scale_, move->step, move->times);
   }
   const double length = dot(direction_, direction_);
   return std::isfinite(dot(correction_, correction_)) && std::isfinite(length) && length > 0;
@@ -71,25 +71,25 @@ bool ExtremalFamily::linearise() {
 double ExtremalFamily::dot(const Move& a, const Move& b) const {
   double sum = 0;
   for (std::size_t k = 0; k < a.step.nodes.size(); ++k) sum += a.step.nodes[k] * b.step.nodes[k];
-  const double duration = w_.path.duration();
+  const double duration = path_.duration();
   return sum / (scale_ * scale_ * static_cast<double>(a.step.nodes.size())) +
          a.step.duration * b.step.duration / (duration * duration) +
-         a.parameter * b.parameter / (unit_ * unit_) + strain_product(w_.path, a.times, b.times);
+         a.parameter * b.parameter / (unit_ * unit_) + strain_product(path_, a.times, b.times);
 }
 
 bool ExtremalFamily::apply(const Move& move, double factor) {
-  const double duration = w_.path.duration() + factor * move.step.duration;
-  if (!(duration > 0) || !w_.path.move_mesh(move.times, factor, least_element) ||
+  const double duration = path_.duration() + factor * move.step.duration;
+  if (!(duration > 0) || !path_.move_mesh(move.times, factor, least_element) ||
       !set_parameter(parameter() + factor * move.parameter))
     return false;
-  w_.path.add(move.step.nodes, move.step.inner, factor);
-  if (move.step.duration != 0) w_.path.set_duration(duration);
-  w_.path.load_ends();
+  path_.add(move.step.nodes, move.step.inner, factor);
+  if (move.step.duration != 0) path_.set_duration(duration);
+  path_.load_ends();
   return true;
 }
 
 void ExtremalFamily::restore() {
-  w_.path = saved_;
+  path_ = saved_;
   set_parameter(saved_parameter_);
 }
 
@@ -102,8 +102,8 @@ bool ExtremalFamily::begin(const ElementTables& tables, int most_steps) {
   refusals_ = 0;
   last_length_ = 0;
   tangent_ = {};
-  w_.iteration.reset(problem(), tables, w_.path.elements());
-  first_scale_ = scale_ = scales(w_.path, tables).q;
+  w_.iteration.reset(problem(), tables, path_.elements());
+  first_scale_ = scale_ = scales(path_, tables).q;
   return scale_ > 0;
 }
 
@@ -175,18 +175,18 @@ bool ExtremalFamily::land(double from) {
 
 /// Other elements where those there are do not resolve the path. False if it takes too many.
 bool ExtremalFamily::resolve() {
-  const int degree = w_.path.degree();
-  w_.resolution.measure(w_.path, *tables_);
+  const int degree = path_.degree();
+  w_.resolution.measure(path_, *tables_);
   if (w_.resolution.at(degree).q <= unresolved * scale_) return true;
   const Resolution::Error aim{resolved * scale_, INFINITY, INFINITY};
-  const Plan finer = w_.planner.plan(w_.resolution, w_.path.mesh(), *tables_,
+  const Plan finer = w_.planner.plan(w_.resolution, path_.mesh(), *tables_,
                                      {aim, aim, degree, degree, degree, most_elements, strongest_cut});
   if (finer.mesh.empty()) return finer.degree != 0;
   std::vector<double> nodes =
-      interpolated(tangent_.step.nodes, w_.path.coordinates(), w_.path.mesh(), finer.mesh);
-  w_.other.resample_from(w_.path, *tables_, finer.mesh);
-  std::swap(w_.path, w_.other);
-  w_.iteration.reset(problem(), *tables_, w_.path.elements());
+      interpolated(tangent_.step.nodes, path_.coordinates(), path_.mesh(), finer.mesh);
+  w_.other.resample_from(path_, *tables_, finer.mesh);
+  std::swap(path_, w_.other);
+  w_.iteration.reset(problem(), *tables_, path_.elements());
   tangent_.step.nodes = std::move(nodes);
   tangent_.times.clear();
   last_length_ = 0;
@@ -216,7 +216,7 @@ Move ExtremalFamily::ahead() const {
 
 bool ExtremalFamily::reach() {
   while (length_ > least_length && steps_ < most_steps_) {
-    saved_ = w_.path;
+    saved_ = path_;
     saved_parameter_ = parameter();
     const int began = steps_;
     if (!apply(ahead(), length_) || !correct() || !turn()) {
@@ -227,7 +227,7 @@ bool ExtremalFamily::reach() {
     }
     const bool passed = saved_parameter_ != 0 && saved_parameter_ * parameter() <= 0;
     if (passed) {
-      beyond_ = w_.path;
+      beyond_ = path_;
       beyond_parameter_ = parameter();
       if (!land(saved_parameter_)) {
         restore();
@@ -237,7 +237,7 @@ bool ExtremalFamily::reach() {
     previous_ = std::exchange(tangent_, next_);
     last_length_ = length_;
     if (passed) return true;
-    scale_ = scales(w_.path, *tables_).q;
+    scale_ = scales(path_, *tables_).q;
     const bool away = std::abs(parameter()) > farthest_;
     if (away || scale_ > runaway * first_scale_ || !resolve()) return false;
     const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.93 ? 1.4 : 1;
@@ -249,8 +249,8 @@ bool ExtremalFamily::reach() {
 
 void ExtremalFamily::resume() {
   steps_ = 0;
-  w_.path = beyond_;
-  w_.iteration.reset(problem(), *tables_, w_.path.elements());
+  path_ = beyond_;
+  w_.iteration.reset(problem(), *tables_, path_.elements());
   set_parameter(beyond_parameter_);
 }
 

@@ -18,14 +18,14 @@ struct Move {
   void scale(double factor);
 };
 
-/// Extremals of which one parameter varies, in the workspace's path, followed past folds by pseudo-arclength
-/// (Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977). The parameter is zero
-/// where an extremal belongs to the problem.
+/// Extremals of which one parameter varies, along which a path is led, followed past folds by
+/// pseudo-arclength (Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977). The
+/// parameter is zero where an extremal belongs to the problem.
 class ExtremalFamily {
  public:
   virtual ~ExtremalFamily() = default;
 
-  /// Onward from the path in the workspace, which is the family's until this returns, to where the parameter
+  /// Takes the path onward to where the parameter
   /// is zero again: nearly an extremal of the problem then. False where the family does not come there.
   bool reach();
   /// Back to where the last reach() passed zero, after the workspace was used for something else.
@@ -34,7 +34,7 @@ class ExtremalFamily {
  protected:
   /// `count` is called for each factorisation and says whether there may be more; `unit` is the size of the
   /// parameter that counts as much as the extent of the path.
-  ExtremalFamily(Workspace& workspace, std::function<bool()> count, double unit);
+  ExtremalFamily(Path& path, Workspace& workspace, std::function<bool()> count, double unit);
 
   /// All solutions of the linearised equations at the path: correction_ + α·direction_. False where they
   /// cannot be solved.
@@ -46,6 +46,7 @@ class ExtremalFamily {
   /// Which way the first step goes along `direction`: the sign of what is returned.
   virtual double onward(const Move& direction) const = 0;
 
+  Path& path_;
   Workspace& w_;
 
   /// Linearisations until the parameter must be zero: on the way to the problem, and from one extremal of it

@@ -17,8 +17,9 @@ constexpr double runaway = 1e3;
 
 }  // namespace
 
-DeflatedNewton::DeflatedNewton(const Problem& problem, Workspace& workspace, std::function<bool()> count)
-    : problem_(problem), w_(workspace), count_(std::move(count)) {}
+DeflatedNewton::DeflatedNewton(const Problem& problem, Path& path, Workspace& workspace,
+                               std::function<bool()> count)
+    : problem_(problem), path_(path), w_(workspace), count_(std::move(count)) {}
 
 /// Where the known extremals are at the nodes of the path.
 void DeflatedNewton::place(const std::vector<Solution>& known) {
@@ -26,9 +27,9 @@ void DeflatedNewton::place(const std::vector<Solution>& known) {
   std::vector<double> v(n);
   places_.clear();
   for (const Solution& solution : known) {
-    Place place{std::vector<double>(w_.path.nodes().size()), solution.duration()};
-    for (std::size_t k = 0; k < w_.path.mesh().size(); ++k)
-      solution.trajectory.at(w_.path.mesh()[k] * place.duration, {place.nodes.data() + k * n, n}, v);
+    Place place{std::vector<double>(path_.nodes().size()), solution.duration()};
+    for (std::size_t k = 0; k < path_.mesh().size(); ++k)
+      solution.trajectory.at(path_.mesh()[k] * place.duration, {place.nodes.data() + k * n, n}, v);
     places_.push_back(std::move(place));
   }
 }
@@ -41,12 +42,12 @@ double DeflatedNewton::dot(const std::vector<double>& nodes, const std::vector<d
 
 /// τ. With r² = |x − x_i|² the gradient of log(1/r² + 1) is −2 (x − x_i)/(r² (1 + r²)).
 double DeflatedNewton::stretch(const Step& step) {
-  const double unit = w_.path.duration();
+  const double unit = path_.duration();
   double slope = 0;
   for (const Place& place : places_) {
-    away_.assign(w_.path.nodes().begin(), w_.path.nodes().end());
+    away_.assign(path_.nodes().begin(), path_.nodes().end());
     for (std::size_t k = 0; k < away_.size(); ++k) away_[k] -= place.nodes[k];
-    const double longer = (w_.path.duration() - place.duration) / unit;
+    const double longer = (path_.duration() - place.duration) / unit;
     const double square = dot(away_, away_) + longer * longer;
     if (square == 0) continue;
     slope -= 2 * (dot(away_, step.nodes) + longer * step.duration / unit) / (square * (1 + square));
@@ -56,15 +57,15 @@ double DeflatedNewton::stretch(const Step& step) {
 
 bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution>& known) {
   place(known);
-  w_.iteration.reset(problem_, tables, w_.path.elements());
+  w_.iteration.reset(problem_, tables, path_.elements());
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
-  const double first = scale_ = scales(w_.path, tables).q;
+  const double first = scale_ = scales(path_, tables).q;
   if (scale_ == 0) scale_ = 1;
   for (int k = 0; k < most_steps && count_(); ++k) {
-    if (!w_.iteration.factor_quickly(w_.path)) return false;
-    model.solve(action, w_.iteration.closing(w_.path), step_);
-    const double duration = w_.path.duration();
+    if (!w_.iteration.factor_quickly(path_)) return false;
+    model.solve(action, w_.iteration.closing(path_), step_);
+    const double duration = path_.duration();
     const double size = std::hypot(std::sqrt(dot(step_.nodes, step_.nodes)), step_.duration / duration);
     if (!std::isfinite(size)) return false;
     if (size == 0) return true;
@@ -72,10 +73,10 @@ bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution
     if (std::abs(factor) * size < settled && size < settled) return true;
     const double taken = std::clamp(factor, -allowed, allowed);
     if (!(duration + taken * step_.duration > 0)) return false;
-    w_.path.add(step_.nodes, step_.inner, taken);
-    if (step_.duration != 0) w_.path.set_duration(duration + taken * step_.duration);
-    w_.path.load_ends();
-    scale_ = std::max(scale_, scales(w_.path, tables).q);
+    path_.add(step_.nodes, step_.inner, taken);
+    if (step_.duration != 0) path_.set_duration(duration + taken * step_.duration);
+    path_.load_ends();
+    scale_ = std::max(scale_, scales(path_, tables).q);
     if (first > 0 && scale_ > runaway * first) return false;
   }
   return false;

@@ -17,9 +17,9 @@ namespace extremal {
 /// and costs no more. |x| is the root mean square over the nodes, by the extent of the path, and T by T.
 class DeflatedNewton {
  public:
-  DeflatedNewton(const Problem& problem, Workspace& workspace, std::function<bool()> count);
+  DeflatedNewton(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count);
 
-  /// From the path in the workspace to where plain Newton steps are short. False if it does not come there.
+  /// Takes the path to where plain Newton steps are short. False if it does not come there.
   bool run(const ElementTables& tables, const std::vector<Solution>& known);
 
  private:
@@ -28,6 +28,7 @@ class DeflatedNewton {
   double stretch(const Step& step);
 
   const Problem& problem_;
+  Path& path_;
   Workspace& w_;
   std::function<bool()> count_;
   struct Place {

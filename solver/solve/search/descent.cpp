@@ -23,8 +23,8 @@ constexpr double nearly_minimal = 0.03, close = 1e-3;
 
 }  // namespace
 
-Descent::Descent(const Problem& problem, Workspace& workspace, std::function<bool()> count)
-    : problem_(problem), w_(workspace), count_(std::move(count)) {}
+Descent::Descent(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count)
+    : problem_(problem), path_(path), w_(workspace), count_(std::move(count)) {}
 
 /// Cholesky along the nodes; one whose pivot block is not positive definite ends a window.
 bool Descent::find_windows() {
@@ -69,12 +69,11 @@ void Descent::solve_windows() {
 /// Of the action along the step.
 double Descent::slope() {
   DiscreteAction& action = w_.iteration.action();
-  const Path& path = w_.path;
-  const int n = path.coordinates(), inner = (path.degree() - 1) * n, m = inner + 2 * n;
+  const int n = path_.coordinates(), inner = (path_.degree() - 1) * n, m = inner + 2 * n;
   double sum = 0;
-  action.visit(path, false, [&](int b, const BatchValues& values) {
+  action.visit(path_, false, [&](int b, const BatchValues& values) {
     const double* const inner_step = step_.inner.data() + static_cast<std::size_t>(b) * m * lanes;
-    for (int lane = 0; lane < std::min(lanes, path.elements() - b * lanes); ++lane) {
+    for (int lane = 0; lane < std::min(lanes, path_.elements() - b * lanes); ++lane) {
       const double* const ends = step_.nodes.data() + static_cast<std::size_t>(b * lanes + lane) * n;
       for (int u = 0; u < m; ++u)
         sum +=
@@ -87,27 +86,27 @@ double Descent::slope() {
 /// The step, or a part of it with which the action falls enough. False if there is none.
 bool Descent::shorten(double slope, double before, double longest) {
   for (double factor = std::min(1.0, longest); factor > shortest; factor /= 2) {
-    saved_.copy_values(w_.path);
-    w_.path.add(step_.nodes, step_.inner, factor);
-    w_.path.load_ends();
+    saved_.copy_values(path_);
+    path_.add(step_.nodes, step_.inner, factor);
+    path_.load_ends();
     DiscreteAction& action = w_.iteration.action();
-    action.evaluate_plain(w_.path);
+    action.evaluate_plain(path_);
     if (action.finite() && action.action() <= before + sufficient * factor * slope) return true;
-    w_.path.copy_values(saved_);
-    w_.path.load_ends();
+    path_.copy_values(saved_);
+    path_.load_ends();
   }
   return false;
 }
 
 Descent::Result Descent::descend(const ElementTables& tables) {
   DiscreteAction& action = w_.iteration.action();
-  action.evaluate(w_.path);
+  action.evaluate(path_);
   if (!count_() || !action.finite() || !find_windows()) return Result::failed;
   solve_windows();
   double size = 0;
   for (double x : step_.nodes) size = std::max(size, std::abs(x));
   for (double x : step_.inner) size = std::max(size, std::abs(x));
-  const double range = scales(w_.path, tables).q;
+  const double range = scales(path_, tables).q;
   if (!std::isfinite(size)) return Result::failed;
   const bool one_window = std::find(held_.begin(), held_.end(), true) == held_.end();
   if (size <= (one_window ? close : nearly_minimal) * range) return Result::minimal;
@@ -117,13 +116,13 @@ Descent::Result Descent::descend(const ElementTables& tables) {
 }
 
 bool Descent::run(const ElementTables& tables) {
-  saved_ = w_.path;
+  saved_ = path_;
   for (;;) {
     const Result result = descend(tables);
     if (result == Result::failed) return false;
     if (result == Result::moved) continue;
-    w_.iteration.set_scale(scales(w_.path, tables).q);
-    if (!count_() || w_.iteration.full_step(w_.path, 0) != StepResult::ok) return false;
+    w_.iteration.set_scale(scales(path_, tables).q);
+    if (!count_() || w_.iteration.full_step(path_, 0) != StepResult::ok) return false;
     if (w_.iteration.damping() == 1 && w_.iteration.remaining() < close) return true;
   }
   return false;

@@ -17,9 +17,9 @@ namespace extremal {
 class Descent {
  public:
   /// `count` is called for each factorisation and says whether there may be more.
-  Descent(const Problem& problem, Workspace& workspace, std::function<bool()> count);
+  Descent(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count);
 
-  /// Leaves the path in the workspace near an extremal on its elements. False if it does not arrive there, or
+  /// Takes the path near an extremal on its elements. False if it does not arrive there, or
   /// if the action is not even convex over one element.
   bool run(const ElementTables& tables);
 
@@ -32,6 +32,7 @@ class Descent {
   bool shorten(double slope, double before, double longest);
 
   const Problem& problem_;
+  Path& path_;
   Workspace& w_;
   std::function<bool()> count_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> factors_;  ///< of the pivot blocks of nodes 1 … N − 1

@@ -85,8 +85,8 @@ bool Search::from_motion(const Guess& motion, double duration) {
   if (!place(fill, homotopy_degree)) return false;
   launched_ = true;
   EndHomotopy homotopy(
-      problem_, w_, [this] { return refinement_.count_step(); }, missed,
-      scales(w_.path, refinement_.tables()).q);
+      problem_, path_, w_, [this] { return refinement_.count_step(); }, missed,
+      scales(path_, refinement_.tables()).q);
   if (!homotopy.follow(refinement_.tables(), distance)) return false;
   refinement_.rebind();
   return found("homotopy in the ends from a motion");
@@ -101,7 +101,7 @@ bool Search::from_motions() {
   refinement_.allow(std::min(allowance_, options_.max_iterations - outcome_.iterations));
   const std::size_t n = problem_.coordinates();
   const double frequency = std::max(1.0, w_.frequency.phase()) / given.value;
-  const std::vector<double> extent = extents(w_.path, negligible_extent[0]);
+  const std::vector<double> extent = extents(path_, negligible_extent[0]);
   const std::span<const double> from = std::span(ends_).first(n);
   const auto count = [this] { return refinement_.count_step(); };
   for (unsigned seed = 0; seed < most_motions && !refinement_.exhausted(); ++seed) {

@@ -39,8 +39,8 @@ int Search::first_elements(const Frequency& frequency) {
 
 void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree) {
   refinement_.open(mesh, degree);
-  start_path(*guess_, ends_, refinement_.tables(), w_.path);
-  bend_path(problem_, bend, refinement_.tables(), w_.path);
+  start_path(*guess_, ends_, refinement_.tables(), path_);
+  bend_path(problem_, bend, refinement_.tables(), path_);
 }
 
 /// Puts the guess on a mesh that follows the frequency along it. The default guess is moved aside until L
@@ -51,7 +51,7 @@ bool Search::begin() {
   for (unsigned seed = 0; seed <= most_bends; ++seed) {
     bend_ = {0.1 * seed, seed};
     start(mesh_, bend_);
-    measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), w_.path, w_.frequency);
+    measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
     if (w_.frequency.finite()) break;
     if (guess_->guess.given() || seed == most_bends) return false;
   }
@@ -78,7 +78,7 @@ bool Search::follow_motion() {
   const std::size_t elements = (wanted + lanes) / lanes * lanes;
   const bool many = wanted >= least_followed && wanted <= most_followed;
   const bool collides = w_.frequency.grading(guess_floor) > collision;
-  if (!many && !(collides && elements < static_cast<std::size_t>(w_.path.elements()))) return false;
+  if (!many && !(collides && elements < static_cast<std::size_t>(path_.elements()))) return false;
   mesh_.resize(elements + 1);
   for (std::size_t k = 0; k <= elements; ++k) mesh_[k] = tau[k * samples / elements];
   start(mesh_, bend_, followed_degree);
@@ -94,13 +94,13 @@ bool Search::resolve_guess() {
   const int samples = static_cast<int>(guess_->guess.tau.size());
   for (int pass = 0; pass < most_passes; ++pass) {
     const ElementTables& tables = refinement_.tables();
-    const int degree = w_.path.degree(), elements = w_.path.elements();
-    w_.resolution.measure(w_.path, tables);
+    const int degree = path_.degree(), elements = path_.elements();
+    w_.resolution.measure(path_, tables);
     const Resolution::Error error = w_.resolution.at(degree);
-    const Scales size = scales(w_.path, tables);
+    const Scales size = scales(path_, tables);
     const Resolution::Error aim{goal * size.q, slope_goal * goal * size.v};
     if ((error.q <= aim.q && error.v <= aim.v) || elements * degree >= samples) break;
-    measure_frequency(problem_, w_.iteration.action(), tables, w_.path, w_.frequency);
+    measure_frequency(problem_, w_.iteration.action(), tables, path_, w_.frequency);
     if (const int wanted = first_elements(w_.frequency); w_.frequency.finite() && wanted > elements) {
       mesh_ = w_.frequency.mesh(wanted, guess_floor);
       start(mesh_, bend_, degree);
@@ -108,7 +108,7 @@ bool Search::resolve_guess() {
       continue;
     }
     const Plan finer =
-        w_.planner.plan(w_.resolution, w_.path.mesh(), tables,
+        w_.planner.plan(w_.resolution, path_.mesh(), tables,
                         {aim, aim, degree, degree, highest_guess_degree, most_first_elements, guess_cut});
     if (finer.degree == 0 || (finer.mesh.empty() && finer.degree == degree)) break;
     if (!finer.mesh.empty()) mesh_ = finer.mesh;
@@ -119,11 +119,11 @@ bool Search::resolve_guess() {
 }
 
 bool Search::place(const std::function<void(const ElementTables&, Path&)>& fill, int degree) {
-  fill(open(uniform_mesh(2 * lanes), Refinement::first_degree), w_.path);
-  measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), w_.path, w_.frequency);
+  fill(open(uniform_mesh(2 * lanes), Refinement::first_degree), path_);
+  measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
   const int elements = first_elements(w_.frequency);
   if (!w_.frequency.finite() || elements > most_launched) return false;
-  fill(open(w_.frequency.mesh(elements, guess_floor), degree), w_.path);
+  fill(open(w_.frequency.mesh(elements, guess_floor), degree), path_);
   return true;
 }
 

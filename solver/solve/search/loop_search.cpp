@@ -31,18 +31,18 @@ bool LoopSearch::pursue(const Problem& problem, Search& search, Loops& loops, co
   const unsigned seed = loops.count++;
   loops.draw(seed);
   const ElementTables& coarse = search.open(uniform_mesh(2 * lanes), Refinement::first_degree);
-  loops.settle(w_.iteration.action(), coarse, w_.path);
+  loops.settle(w_.iteration.action(), coarse, search.path());
   if (!search.place([&](const ElementTables& tables, Path& path) { loops.fill(tables, path); })) return false;
   if (seed % 2) {
-    DeflatedNewton bounded(problem, w_, [&] { return search.count_step(); });
+    DeflatedNewton bounded(problem, search.path(), w_, [&] { return search.count_step(); });
     if (!bounded.run(search.tables(), {})) return false;
   }
   return search.settle(search.tables(), strategy);
 }
 
-/// The orbit of which the workspace holds a segment.
-const ElementTables& LoopSearch::reconstruct_orbit(const Segment& segment) {
-  const Trajectory part = trajectory_of(w_.path);
+/// The orbit of which a path is a segment becomes the path of the whole search.
+const ElementTables& LoopSearch::reconstruct_orbit(const Segment& segment, const Path& path) {
+  const Trajectory part = trajectory_of(path);
   const double T = part.duration();
   const auto n = static_cast<std::size_t>(part.coordinates);
   std::vector<double> mesh;
@@ -50,14 +50,15 @@ const ElementTables& LoopSearch::reconstruct_orbit(const Segment& segment) {
     for (int e = 0; e < part.elements(); ++e) mesh.push_back((k + part.times[e] / T) / segment.parts);
   mesh.push_back(1);
   const ElementTables& tables = whole_.open(mesh, part.degree);
-  w_.path.set_duration(segment.parts * T);
+  Path& whole = whole_.path();
+  whole.set_duration(segment.parts * T);
   const std::size_t size = (part.degree + 1) * n;
   Eigen::MatrixXd moved = Eigen::Map<const Eigen::MatrixXd>(part.nodes.data(), part.coordinates,
                                                             std::ssize(part.nodes) / part.coordinates);
   for (int k = 0; k < segment.parts; ++k, moved = segment.map.r * moved)
     for (int e = 0; e < part.elements(); ++e)
-      w_.path.set_element(k * part.elements() + e, moved.data() + e * size);
-  w_.path.load_ends();
+      whole.set_element(k * part.elements() + e, moved.data() + e * size);
+  whole.load_ends();
   return tables;
 }
 
@@ -80,7 +81,7 @@ bool LoopSearch::next() {
   Part& part = *parts_[static_cast<std::size_t>(tries_[1]) % parts_.size()];
   if (!pursue(part.segment.problem, part.search, part.loops, from_symmetric_loop)) return false;
   whole_.renew(share);
-  const ElementTables& tables = reconstruct_orbit(part.segment);
+  const ElementTables& tables = reconstruct_orbit(part.segment, part.search.path());
   return whole_.settle(tables, from_symmetric_loop);
 }
 

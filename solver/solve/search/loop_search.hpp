@@ -22,7 +22,8 @@ class LoopSearch {
   /// Not for a problem that is not periodic.
   bool usable() const { return loops_.usable(); }
 
-  /// From the next loop; whether that leads to an extremal of the problem, which is then in the workspace.
+  /// From the next loop; whether that leads to an extremal of the problem, which is then the path of the
+  /// whole search.
   bool next();
   /// That it led to an orbit, perhaps a known one: more of its kind are then tried.
   void credit() { ++orbits_[symmetric_]; }
@@ -38,7 +39,7 @@ class LoopSearch {
           loops(segment.problem, whole) {}
   };
   bool pursue(const Problem& problem, Search& search, Loops& loops, const char* strategy);
-  const ElementTables& reconstruct_orbit(const Segment& segment);
+  const ElementTables& reconstruct_orbit(const Segment& segment, const Path& part);
 
   const Problem& problem_;
   const SolveOptions& options_;

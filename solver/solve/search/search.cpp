@@ -32,28 +32,32 @@ Search::Search(const Problem& problem, const SolveOptions& options, Workspace& w
       guess_(&problem),
       options_(options),
       w_(workspace),
-      refinement_(problem, options, workspace, outcome_) {}
+      refinement_(problem, options, workspace, outcome_) {
+  std::swap(path_, w_.spare);
+}
+
+Search::~Search() { std::swap(path_, w_.spare); }
 
 /// An equilibrium has every period.
 bool Search::collapsed() const {
-  return extent_ > 0 && scales(w_.path, refinement_.tables()).range <= Refinement::at_rest * extent_;
+  return extent_ > 0 && scales(path_, refinement_.tables()).range <= Refinement::at_rest * extent_;
 }
 
-/// Pursues the path in the workspace.
+/// Pursues the path.
 Refinement::Result Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
   outcome_.elsewhere = strategy != from_guess;
-  run_external_solver(options_.method, problem_, refinement_.tables(), w_.path,
+  run_external_solver(options_.method, problem_, refinement_.tables(), path_,
                       [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
-  const bool far = ran_away(problem_, magnitude_, scales(w_.path, refinement_.tables()).magnitude);
+  const bool far = ran_away(problem_, magnitude_, scales(path_, refinement_.tables()).magnitude);
   if (result == Refinement::Result::converged && far && problem_.periodic) {
     outcome_.message = "the orbit ran away to where forces vanish";
     result = Refinement::Result::failed;
   } else if (result == Refinement::Result::converged && outcome_.elsewhere &&
              (far || !refinement_.holds_on_other_elements())) {
-    unheld_ = w_.path;
+    unheld_ = path_;
     result = Refinement::Result::failed;
   }
   outcome_.elsewhere = outcome_.elsewhere || far;
@@ -66,12 +70,24 @@ Refinement::Result Search::pursue(const char* strategy) {
   doubtful_ = converged ? !refinement_.confirmed() : refinement_.suspicious();
   // What closes on itself has no ends to be conjugate.
   const auto doubted = problem_.periodic ? Refinement::Result::failed : Refinement::Result::unreachable;
-  return converged && doubtful_ ? doubted : result;
+  if (converged && doubtful_) return doubted;
+  return converged && acceptance_ ? accepted() : result;
+}
+
+/// Whether the path that meets the tolerance is an extremal: if not, another guess may lead to one.
+Refinement::Result Search::accepted() {
+  outcome_.status = Status::converged;
+  const Acceptance::Verdict verdict = acceptance_->judge(outcome_);
+  if (verdict == Acceptance::Verdict::accepted) return Refinement::Result::converged;
+  outcome_.status = Status::not_converged;
+  refinement_.rebind();
+  return verdict == Acceptance::Verdict::refused ? Refinement::Result::failed
+                                                 : Refinement::Result::unreachable;
 }
 
 bool Search::found(const char* strategy) {
   if (refinement_.exhausted()) return false;
-  meet_ends(problem_, w_.path);
+  meet_ends(problem_, path_);
   return pursue(strategy) == Refinement::Result::converged;
 }
 
@@ -81,7 +97,7 @@ bool Search::by_descent(const std::vector<double>& mesh) {
   start(mesh, bend_);
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   int steps = refinement_.steps_left() / 2;  // others may need fewer
-  Descent descent(problem_, w_, [&] { return refinement_.count_step() && --steps > 0; });
+  Descent descent(problem_, path_, w_, [&] { return refinement_.count_step() && --steps > 0; });
   return descent.run(refinement_.tables()) && found("minimisation in windows");
 }
 
@@ -91,10 +107,10 @@ bool Search::through_other_durations() {
     return false;
   const auto count = [this] { return refinement_.count_step(); };
   start(mesh_, bend_, homotopy_degree);
-  DurationHomotopy homotopy(problem_, w_, count);
-  for (const double duration : natural_durations(problem_, w_, refinement_.tables())) {
+  DurationHomotopy homotopy(problem_, path_, w_, count);
+  for (const double duration : natural_durations(problem_, path_, w_, refinement_.tables())) {
     start(mesh_, bend_, homotopy_degree);
-    w_.path.set_duration(duration);
+    path_.set_duration(duration);
     continued_ = true;
     if (!homotopy.follow(refinement_.tables())) continue;
     refinement_.rebind();
@@ -179,27 +195,28 @@ bool Search::from_other_guesses() {
 bool Search::prepare() {
   outcome_.message = "the action is not finite along the guess";
   if (!begin()) return false;
-  const Scales size = scales(w_.path, refinement_.tables());
+  const Scales size = scales(path_, refinement_.tables());
   magnitude_ = size.magnitude;
   if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
-  const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * w_.path.elements();
+  const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * path_.elements();
   allowance_ = std::min(
       {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
   refinement_.allow(allowance_);
   return true;
 }
 
-Outcome Search::run_near_guess() {
+const Outcome& Search::run_near_guess() {
   if (!prepare()) return outcome_;
-  extent_ = scales(w_.path, refinement_.tables()).range;
+  extent_ = scales(path_, refinement_.tables()).range;
   const Refinement::Result result = pursue(from_guess);
   outcome_.hidden = result == Refinement::Result::unreachable && !doubtful_;
   if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
   return outcome_;
 }
 
-Outcome Search::run() {
+const Outcome& Search::run(Acceptance* acceptance) {
   if (!prepare()) return outcome_;
+  acceptance_ = acceptance;
   Refinement::Result result = pursue(from_guess);
   const bool doubtful = doubtful_;
   if (result == Refinement::Result::failed) {
@@ -221,7 +238,7 @@ Outcome Search::run() {
             "guess or another duration";
       }
       // Where ends are conjugate, elements tell different members of a family.
-      if (unheld_) std::swap(w_.path, *unheld_);
+      if (unheld_) std::swap(path_, *unheld_);
     }
   }
   if (result == Refinement::Result::converged) outcome_.status = Status::converged;
@@ -231,6 +248,7 @@ Outcome Search::run() {
         "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "
         "family of them; move an end or the duration";
   }
+  acceptance_ = nullptr;
   return outcome_;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "solve/accept/acceptance.hpp"
 #include "solve/adapt/refinement.hpp"
 #include "solve/guess/first_path.hpp"
 
@@ -15,13 +16,20 @@ namespace extremal {
 class Search {
  public:
   Search(const Problem& problem, const SolveOptions& options, Workspace& workspace);
-  Outcome run();
-  /// The same from the guess only; an extremal far from it is none.
-  Outcome run_near_guess();
+  ~Search();
+  Search(const Search&) = delete;
+  Search& operator=(const Search&) = delete;
 
-  /// An empty path into the workspace, to be filled by the caller and settled.
+  /// To a path that meets the tolerance and that `acceptance`, where it is given, accepts. What it gives back
+  /// is the search's own.
+  const Outcome& run(Acceptance* acceptance = nullptr);
+  /// The same from the guess only, accepted by nobody; an extremal far from it is none.
+  const Outcome& run_near_guess();
+
+  /// Makes path() an empty path, to be filled by the caller and settled.
   const ElementTables& open(const std::vector<double>& mesh, int degree);
-  /// Pursues the path in the workspace, on elements of `tables`; whether an extremal was found.
+  Path& path() { return path_; }
+  /// Pursues path(), on elements of `tables`; whether an extremal was found.
   bool settle(const ElementTables& tables, const char* strategy);
   /// Puts the path that `fill` fills on elements that follow it; false if it comes too near a singularity.
   bool place(const std::function<void(const ElementTables& tables, Path& path)>& fill,
@@ -35,6 +43,7 @@ class Search {
   bool count_step() { return refinement_.count_step(); }
   bool exhausted() const { return refinement_.exhausted(); }
   const Outcome& outcome() const { return outcome_; }
+  Outcome& outcome() { return outcome_; }
   const std::vector<double>& ends() const { return ends_; }
   const std::vector<double>& mesh() const { return mesh_; }
 
@@ -50,6 +59,7 @@ class Search {
   bool resolve_guess();
   Refinement::Result pursue(const char* strategy);
   bool collapsed() const;
+  Refinement::Result accepted();
   bool found(const char* strategy);
   bool from_other_guesses();
   bool through_other_durations();
@@ -65,6 +75,8 @@ class Search {
   const SolveOptions& options_;
   Workspace& w_;
   Outcome outcome_;
+  Path& path_ = outcome_.path;
+  Acceptance* acceptance_ = nullptr;
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
   double magnitude_ = 0;        ///< of the guess

@@ -59,13 +59,12 @@ Arc arc_of(unsigned seed, const std::vector<double>& ends) {
 
 }  // namespace
 
-Several::Several(const Problem& problem, const SolveOptions& options, Workspace& workspace,
-                 SecondVariation& variation)
+Several::Several(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem),
       options_(options),
       w_(workspace),
-      variation_(variation),
       search_(problem, options, workspace),
+      path_(search_.path()),
       loops_(problem, options, workspace, search_) {}
 
 /// Whether an orbit is one of a shorter period, run through several times. One that a symmetry of L closes
@@ -75,64 +74,63 @@ bool Several::repeats(const Solution& candidate) const {
   const ClosingMap map = closing_map(problem_);
   const int segments = segments_to_close(map);
   if (segments == 0) return false;
-  const double size = scales(w_.path, *w_.final_tables).q;
+  const double size = scales(path_, *search_.outcome().tables).q;
   const int parts = repetitions(candidate.trajectory, map, segments, told_apart(candidate, size));
   return parts == 0 || segments % parts != 0;
 }
 
-/// The number of the extremal in the workspace, which is added if it is new; -1 if it is none.
+/// The number of the extremal that the search found, which is added if it is new; -1 if it is none.
 int Several::keep() {
-  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
   Solution candidate;
-  candidate.trajectory = trajectory_of(w_.path);
+  candidate.trajectory = trajectory_of(path_);
   candidate.error_estimate = search_.outcome().error;
-  const auto known = [&](auto same) {
-    const auto it = std::find_if(found_.begin(), found_.end(), same);
-    return static_cast<std::size_t>(it - found_.begin());
-  };
-  std::size_t number =
-      known([&](const Solution& other) { return same_path(candidate, other, options_.tolerance, scale_); });
-  if (number < found_.size()) return static_cast<int>(number);
-  candidate = finish(problem_, options_, search_.outcome(), w_, variation_);
-  candidate.seconds_solve = seconds;
+  const int number =
+      find([&](const Solution& other) { return same_path(candidate, other, options_.tolerance, scale_); });
+  if (number >= 0) return number;
+  candidate = accept(problem_, options_, search_.outcome(), w_);
   analysing_ += candidate.seconds_analyse;
-  if (!candidate.converged()) return -1;
+  return candidate.converged() ? add(std::move(candidate)) : -1;
+}
+
+/// The same for a solution that was accepted.
+int Several::add(Solution candidate) {
+  candidate.seconds_solve = std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
   if (repeats(candidate)) {
     if (!repeating_) repeating_ = std::move(candidate);
     return -1;
   }
   const bool closed = problem_.periodic && problem_.lagrangian->structure().autonomous;
-  number = known([&](const Solution& other) {
+  const int number = find([&](const Solution& other) {
     return closed ? same_orbit(candidate, other, options_.tolerance)
                   : same_continuum(candidate, other, options_.tolerance);
   });
-  if (number < found_.size()) return static_cast<int>(number);
+  if (number >= 0) return number;
   found_.push_back(std::move(candidate));
   followed_.emplace_back(families_, 0);
   search_.renew(patience);
   in_vain_ = 0;
-  return static_cast<int>(number);
+  return static_cast<int>(found_.size()) - 1;
 }
 
 int Several::settle(const ElementTables& tables, const char* strategy) {
-  meet_ends(problem_, w_.path);
+  meet_ends(problem_, path_);
   return search_.settle(tables, strategy) ? keep() : -1;
 }
 
 /// The largest |q| along the guess, or 1 where that is zero.
 double Several::size_of_guess() {
   const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
-  start_path(problem_, search_.ends(), tables, w_.path);
-  const double size = scales(w_.path, tables).magnitude;
+  start_path(problem_, search_.ends(), tables, path_);
+  const double size = scales(path_, tables).magnitude;
   return size > 0 ? size : 1;
 }
 
 /// Again from the guess as long as that leads to another.
 void Several::deflate() {
-  DeflatedNewton newton(problem_, w_, [this] { return search_.count_step(); });
+  DeflatedNewton newton(problem_, path_, w_, [this] { return search_.count_step(); });
   while (wanted()) {
     const ElementTables& tables = search_.open(search_.mesh(), family_degree);
-    start_path(problem_, search_.ends(), tables, w_.path);
+    start_path(problem_, search_.ends(), tables, path_);
     const std::size_t before = found_.size();
     if (!newton.run(tables, found_)) return;
     settle(tables, "deflated newton from the guess");
@@ -156,8 +154,8 @@ void Several::guess() {
 void Several::bend() {
   const Bend bend = bend_of(seed_);
   const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
-  start_path(problem_, moved_ends(problem_, search_.ends(), bend.size, seed_), tables, w_.path);
-  bend_path(problem_, bend, tables, w_.path);
+  start_path(problem_, moved_ends(problem_, search_.ends(), bend.size, seed_), tables, path_);
+  bend_path(problem_, bend, tables, path_);
   settle(tables, "newton from the guess plus smooth noise");
 }
 
@@ -173,10 +171,10 @@ double Several::natural_duration(Arc arc, const ElementTables& tables) {
   std::vector<double> slope(2 * octaves * steps + 1, 0);
   for (double side : {-1, 1}) {
     arc.excess = excess + side * small;
-    arc_path(arc, search_.ends(), tables, w_.path);
+    arc_path(arc, search_.ends(), tables, path_);
     for (std::size_t k = 0; k < slope.size(); ++k) {
-      w_.path.set_duration(duration(static_cast<double>(k)));
-      w_.iteration.action().evaluate_plain(w_.path);
+      path_.set_duration(duration(static_cast<double>(k)));
+      w_.iteration.action().evaluate_plain(path_);
       slope[k] += side * w_.iteration.action().action();
     }
   }
@@ -196,44 +194,44 @@ void Several::wind() {
   const ElementTables& tables = search_.open(mesh, family_degree);
   const bool autonomous = problem_.lagrangian->structure().autonomous;
   const double duration = autonomous ? natural_duration(arc, tables) : problem_.duration.value;
-  EndHomotopy ends(problem_, w_, count, arc_path(arc, search_.ends(), tables, w_.path), 1);
-  w_.path.set_duration(duration);
+  EndHomotopy ends(problem_, path_, w_, count, arc_path(arc, search_.ends(), tables, path_), 1);
+  path_.set_duration(duration);
   if (!ends.follow(tables, 1)) return;
-  meet_ends(problem_, w_.path);
-  DurationHomotopy durations(problem_, w_, count);
+  meet_ends(problem_, path_);
+  DurationHomotopy durations(problem_, path_, w_, count);
   if (problem_.duration.free || !autonomous || durations.follow(tables)) settle(tables, strategy);
 }
 
-/// Puts a solution on the elements of a family into the workspace.
+/// Makes the path a solution, on the elements of a family.
 void Several::load(const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   const std::size_t n = trajectory.coordinates;
   const ElementTables& tables = w_.levels.at(family_degree);
   std::vector<double> mesh;
   for (double t : trajectory.times) mesh.push_back(t / trajectory.duration());
-  w_.path.reset(tables, mesh, trajectory.duration());
+  path_.reset(tables, mesh, trajectory.duration());
   std::vector<double> q((family_degree + 1) * n), v(n);
   for (int k = 0; k < trajectory.elements(); ++k) {
     const double from = trajectory.times[k], h = trajectory.times[k + 1] - from;
     for (int j = 0; j <= family_degree; ++j)
       trajectory.at(std::min(from + tables.scheme().lobatto[j] * h, trajectory.duration()),
                     {q.data() + j * n, n}, v);
-    w_.path.set_element(k, q.data());
+    path_.set_element(k, q.data());
   }
-  w_.path.load_ends();
+  path_.load_ends();
 }
 
 /// The family number 0 is that of other durations, the next those of other values in each row of the boundary
-/// relation. From the extremal in the workspace; null if it cannot be left.
+/// relation. From the extremal that the path is; null if it cannot be left.
 std::unique_ptr<ExtremalFamily> Several::leave(int family, bool onward) {
   const auto count = [this] { return search_.count_step(); };
   const ElementTables& tables = w_.levels.at(family_degree);
   if (family == 0) {
-    auto curve = std::make_unique<DurationHomotopy>(problem_, w_, count);
+    auto curve = std::make_unique<DurationHomotopy>(problem_, path_, w_, count);
     if (curve->leave(tables, onward)) return curve;
   } else {
-    const double extent = scales(w_.path, tables).q;
-    auto curve = std::make_unique<EndHomotopy>(problem_, w_, count,
+    const double extent = scales(path_, tables).q;
+    auto curve = std::make_unique<EndHomotopy>(problem_, path_, w_, count,
                                                unit_displacement(problem_.boundary, family - 1), extent);
     if (curve->leave(tables, onward)) return curve;
   }
@@ -277,11 +275,15 @@ bool Several::wanted() const {
 std::vector<Solution> Several::run(int most) {
   most_ = most;
   start_ = Clock::now();
-  const Outcome first = search_.run();
+  Acceptance acceptance(problem_, options_, w_);
+  const Outcome& first = search_.run(&acceptance);
+  const bool converged = first.status == Status::converged;
+  Solution solution = acceptance.result(first);
+  analysing_ = acceptance.seconds();
   families_ = 1 + (problem_.periodic ? 0 : std::min(problem_.boundary.rows, most_rows));
-  const bool begun = first.status == Status::converged && keep() >= 0;
+  const bool begun = converged && add(solution) >= 0;
   std::optional<Solution> failed;
-  if (!begun) failed = repeating_ ? *repeating_ : finish(problem_, options_, first, w_, variation_);
+  if (!begun) failed = repeating_ ? std::move(*repeating_) : std::move(solution);
   if (!begun && !loops_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
   if (begun) deflate();

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "solve/accept/finish.hpp"
+#include "solve/accept/acceptance.hpp"
 #include "solve/search/loop_search.hpp"
 #include "solve/search/search.hpp"
 
@@ -23,16 +24,22 @@ class ExtremalFamily;
 /// run through several times, is left out.
 class Several {
  public:
-  Several(const Problem& problem, const SolveOptions& options, Workspace& workspace,
-          SecondVariation& variation);
+  Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);
 
   /// At most so many, sorted by action; the first one's message tells if there are fewer. Where there is
   /// none, one that has not converged.
   std::vector<Solution> run(int most);
 
  private:
+  /// The number of the extremal that is the `same`; -1 if there is none.
+  template <class Same>
+  int find(const Same& same) const {
+    const auto it = std::find_if(found_.begin(), found_.end(), same);
+    return it == found_.end() ? -1 : static_cast<int>(it - found_.begin());
+  }
   bool wanted() const;
   int keep();
+  int add(Solution candidate);
   int settle(const ElementTables& tables, const char* strategy);
   double size_of_guess();
   void deflate();
@@ -49,8 +56,8 @@ class Several {
   const Problem& problem_;
   const SolveOptions& options_;
   Workspace& w_;
-  SecondVariation& variation_;
   Search search_;
+  Path& path_;  ///< of the search
   LoopSearch loops_;
   std::vector<Solution> found_;
   std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times

@@ -1,4 +1,4 @@
-#include "solve/accept/other_quadrature.hpp"
+#include "solve/accept/quadrature_check.hpp"
 
 #include <fmt/format.h>
 
@@ -63,21 +63,21 @@ void refuse(Solution& solution, const char* what, double much, double tolerance,
 
 }  // namespace
 
-OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, const Solution& solution,
-                             Workspace& w) {
-  const Scales size = scales(w.path, *outcome.tables);
+QuadratureCheck check_quadrature(const Problem& problem, const Path& path, const Outcome& outcome,
+                                 const Solution& solution, Workspace& w) {
+  const Scales size = scales(path, *outcome.tables);
   const bool factored = solution.nullity.has_value(), at_rest = size.range < size.q || size.q == 0;
   if (!factored || at_rest) return {};
   w.iteration.set_scale(size.q);
   AlignedDoubles explained;
-  if (outcome.recovered) w.recovery.misplaced(w.path, explained);
+  if (outcome.recovered) w.recovery.misplaced(path, explained);
   const auto moved = [&](double error) {
     if (!problem.periodic)
-      w.iteration.model().set_null_below(largest_null_eigenvalue(size.magnitude, error, w.path));
-    return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), w.path, explained);
+      w.iteration.model().set_null_below(largest_null_eigenvalue(size.magnitude, error, path));
+    return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), path, explained);
   };
-  OtherPoints others;
-  others.moved = moved(outcome.error);
+  QuadratureCheck check;
+  check.moved = moved(outcome.error);
   const QuadraticModel& model = w.iteration.model();
   const bool orbit = problem.periodic || outcome.reduction;  // or a part of one: they come in families
   if (!orbit && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
@@ -85,64 +85,64 @@ OtherPoints try_other_points(const Problem& problem, const Outcome& outcome, con
     // be soft: weak forces tell, if to the last digit. Where forces vanish nothing does.
     const int family = symmetries_about(problem, solution.trajectory);
     if (model.left_out() > family) {
-      others.moved = std::max(others.moved, moved(0));
-      others.told_apart = model.left_out() <= family && others.moved <= outcome.tolerance;
+      check.moved = std::max(check.moved, moved(0));
+      check.told_apart = model.left_out() <= family && check.moved <= outcome.tolerance;
     }
   }
-  others.turned = size.v > 0 ? w.iteration.steepness(w.path) / size.v : 0;
-  others.kicked = kick(w.iteration.action(), solution);
-  return others;
+  check.turned = size.v > 0 ? w.iteration.steepness(path) / size.v : 0;
+  check.kicked = kick(w.iteration.action(), solution);
+  return check;
 }
 
-bool OtherPoints::missed(const SolveOptions& options, const Outcome& outcome) const {
+bool QuadratureCheck::missed(const SolveOptions& options, const Outcome& outcome) const {
   return moved > outcome.tolerance || turned > most_turned * options.tolerance;
 }
 
-double residual_under_others(const Problem& problem, const Outcome& outcome, Workspace& w) {
+double residual_under_finer(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w) {
   w.iteration.action().substitute(*problem.lagrangian, w.levels.finer(outcome.tables->scheme()));
-  return w.iteration.residual_at(w.path);
+  return w.iteration.residual_at(path);
 }
 
-bool polish(Workspace& w) {
+bool polish(Path& path, NewtonIteration& newton) {
   constexpr int most_steps = 5;
-  if (!w.iteration.extended() && !w.iteration.extend()) return false;
+  if (!newton.extended() && !newton.extend()) return false;
   double before = INFINITY;
   for (int step = 0; step < most_steps; ++step) {
-    if (w.iteration.full_step(w.path, 0) != StepResult::ok) return false;
-    if (!(w.iteration.norm() < 0.5 * before)) break;
-    before = w.iteration.norm();
+    if (newton.full_step(path, 0) != StepResult::ok) return false;
+    if (!(newton.norm() < 0.5 * before)) break;
+    before = newton.norm();
   }
   return true;
 }
 
-void judge_by_other_points(const OtherPoints& others, const SolveOptions& options, const Outcome& outcome,
-                           Solution& solution) {
-  if (!others.told_apart)
+void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options, const Outcome& outcome,
+                      Solution& solution) {
+  if (!check.told_apart)
     return refuse(solution, Status::conjugate_ends,
                   "the second variation is singular along the path found, though no symmetry makes it so: "
                   "forces vanish along it, or the ends are conjugate, with a family of extremals; move an "
                   "end or the duration, or try a better guess");
-  if (others.unlike)
+  if (check.unlike)
     return refuse(solution, Status::not_converged,
                   "forces along the orbit lack the symmetries of its guess; try another guess");
-  if (!std::isfinite(others.moved))
+  if (!std::isfinite(check.moved))
     return refuse(solution, Status::not_converged,
                   "with other points in each element the action is not finite: the path runs through a "
                   "singularity of L; try another guess");
-  if (!options.scheme && !(others.turned <= most_turned * options.tolerance))
-    return refuse(solution, "velocities", others.turned, options.tolerance,
+  if (!options.scheme && !(check.turned <= most_turned * options.tolerance))
+    return refuse(solution, "velocities", check.turned, options.tolerance,
                   "the path turns sharply, and roundoff is amplified");
-  if (!options.scheme && !(others.kicked <= momentum_tolerances * options.tolerance))
-    return refuse(solution, "the momenta at the ends", others.kicked, options.tolerance,
+  if (!options.scheme && !(check.kicked <= momentum_tolerances * options.tolerance))
+    return refuse(solution, "the momenta at the ends", check.kicked, options.tolerance,
                   "forces rise within the first element or the last");
-  if (others.moved <= honest * solution.error_estimate) return;
-  solution.error_estimate = others.moved;
-  if (options.elements > 0 || others.moved <= outcome.tolerance) return;
+  if (check.moved <= honest * solution.error_estimate) return;
+  solution.error_estimate = check.moved;
+  if (options.elements > 0 || check.moved <= outcome.tolerance) return;
   refuse(solution, Status::not_converged,
          fmt::format("with other points in each element the path moves by {:.1e}, {:.0f} times what the "
                      "tolerance {:.1e} allows: they see other forces, or amplify roundoff; try another "
                      "tolerance",
-                     others.moved, others.moved / outcome.tolerance, options.tolerance));
+                     check.moved, check.moved / outcome.tolerance, options.tolerance));
 }
 
 }  // namespace extremal
