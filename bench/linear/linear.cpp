@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "linear/chain.hpp"
-#include "linear/cyclic.hpp"
 #include "linear/sparse.hpp"
 #include "machine/simd.hpp"
 
@@ -103,23 +102,6 @@ Times sparse_times(const Chain& a) {
   return {factor, solve};
 }
 
-Times cyclic_times(const Chain& a) {
-  Cyclic cyclic;
-  cyclic.resize(a.blocks(), a.size());
-  const int nn = a.size() * a.size();
-  for (int k = 0; k < a.blocks(); ++k) {
-    std::copy_n(a.diagonal(k), nn, cyclic.diagonal(k));
-    std::copy_n(a.lower(std::min(k, a.blocks() - 2)), nn, cyclic.lower(k));
-  }
-  std::vector<double> b(a.order(), 1.0), x = b;
-  const double factor = median([&] { cyclic.factor(); });
-  const double solve = median([&] {
-    std::copy(b.begin(), b.end(), x.begin());
-    cyclic.solve(x.data(), 1);
-  });
-  return {factor, solve};
-}
-
 #ifdef EXTREMAL_HAS_LAPACK
 Times banded_times(const Chain& a) {
   const int n = a.size(), order = a.order(), band = 2 * n - 1, stride = 3 * band + 1, one = 1;
@@ -152,8 +134,8 @@ std::string cell(const Times& t) { return fmt::format("{:.0f} + {:.0f}", 1e6 * t
 
 void large_table() {
   fmt::print("1000 blocks, microseconds: factor + solve of one right-hand side\n\n");
-  fmt::print("| b | chain | chosen pivots, refined | cyclic | CHOLMOD LDLt | LAPACK banded LU |\n");
-  fmt::print("| --- | --- | --- | --- | --- | --- |\n");
+  fmt::print("| b | chain | chosen pivots, refined | CHOLMOD LDLt | LAPACK banded LU |\n");
+  fmt::print("| --- | --- | --- | --- | --- |\n");
   for (int n : {1, 2, 3, 6, 12, 18, 36}) {
     Chain a, singular;
     fill(a, 1000, n);
@@ -163,8 +145,8 @@ void large_table() {
 #ifdef EXTREMAL_HAS_LAPACK
     banded = cell(banded_times(a));
 #endif
-    fmt::print("| {} | {} | {} | {} | {} | {} |\n", n, cell(chain_times(a)), cell(chain_times(singular)),
-               cell(cyclic_times(a)), cell(sparse_times(a)), banded);
+    fmt::print("| {} | {} | {} | {} | {} |\n", n, cell(chain_times(a)), cell(chain_times(singular)),
+               cell(sparse_times(a)), banded);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <vector>
 
-#include "solve/continuation.hpp"
+#include "solve/branch/continuation.hpp"
 
 namespace bench {
 

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "machine/simd.hpp"
-#include "solve/ends.hpp"
-#include "solve/iteration.hpp"
-#include "solve/levels.hpp"
-#include "solve/node_system.hpp"
-#include "solve/resolution.hpp"
-#include "solve/start.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/mesh/resolution.hpp"
+#include "solve/newton/iteration.hpp"
+#include "solve/newton/node_system.hpp"
 #include "study/study.hpp"
 
 namespace bench {

@@ -10,8 +10,8 @@
 #include "machine/aligned.hpp"
 
 /// \file The symmetric block-tridiagonal matrix of the nodes between elements, its factorisation with
-/// inertia, and solves with many right-hand sides. Bordered and cyclic systems are solved with it by
-/// their Schur complement (border.hpp, cyclic.hpp).
+/// inertia, and solves with many right-hand sides. Bordered systems are solved with it by their
+/// Schur complement (border.hpp).
 
 namespace extremal {
 

@@ -97,10 +97,11 @@ std::string stability_text(const Solution& solution) {
   return text + fmt::format("; largest modulus {:.9g}", std::abs(floquet.multipliers.front()));
 }
 
-/// Widths of the columns, of at least `least` characters.
-std::vector<std::size_t> widths(const Table& table, std::size_t least) {
+/// Widths of the columns, in characters.
+std::vector<std::size_t> widths(const Table& table) {
   std::vector<std::size_t> widest;
-  for (const Table::Heading& heading : table.head) widest.push_back(std::max(least, length(heading.text)));
+  for (const Table::Heading& heading : table.head)
+    widest.push_back(std::max<std::size_t>(1, length(heading.text)));
   for (const std::vector<std::string>& row : table.rows) {
     if (row.size() != table.head.size()) {
       throw std::invalid_argument(
@@ -124,26 +125,6 @@ std::string plain_row(const Table& table, const std::vector<std::string>& cells,
     line += (c == 0 ? "" : "  ") + padded(cells[c], widest[c], table.head[c].align);
   }
   return line.erase(line.find_last_not_of(' ') + 1) + "\n";
-}
-
-std::string markdown_row(const Table& table, const std::vector<std::string>& cells,
-                         const std::vector<std::size_t>& widest) {
-  std::string line = "|";
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    line += " " + padded(cells[c], widest[c], table.head[c].align) + " |";
-  }
-  return line + "\n";
-}
-
-/// A bar in a cell would end it.
-Table without_bars(Table table) {
-  const auto escape = [](std::string& text) {
-    for (std::size_t k = text.find('|'); k != std::string::npos; k = text.find('|', k + 2))
-      text.insert(k, "\\");
-  };
-  for (Table::Heading& heading : table.head) escape(heading.text);
-  for (std::vector<std::string>& row : table.rows) std::for_each(row.begin(), row.end(), escape);
-  return table;
 }
 
 /// A row for each solution of a search.
@@ -210,22 +191,9 @@ std::string duration_text(double seconds) {
 }
 
 std::string plain_text(const Table& table) {
-  const std::vector<std::size_t> widest = widths(table, 1);
+  const std::vector<std::size_t> widest = widths(table);
   std::string text = plain_row(table, headings(table), widest);
   for (const std::vector<std::string>& row : table.rows) text += plain_row(table, row, widest);
-  return text;
-}
-
-std::string markdown(const Table& given) {
-  const Table table = without_bars(given);
-  const std::vector<std::size_t> widest = widths(table, 4);
-  std::string text = markdown_row(table, headings(table), widest) + "|";
-  for (std::size_t c = 0; c < widest.size(); ++c) {
-    const bool right = table.head[c].align == Table::Align::right;
-    text += " " + std::string(widest[c] - (right ? 1 : 0), '-') + (right ? ": |" : " |");
-  }
-  text += "\n";
-  for (const std::vector<std::string>& row : table.rows) text += markdown_row(table, row, widest);
   return text;
 }
 

@@ -27,9 +27,7 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
-/// Columns aligned, two spaces between them. Both throw std::invalid_argument for a row of another length.
+/// Columns aligned, two spaces between them. Throws std::invalid_argument for a row of another length.
 std::string plain_text(const Table& table);
-/// The same as a Markdown table that is also aligned to be read as it stands.
-std::string markdown(const Table& table);
 
 }  // namespace extremal

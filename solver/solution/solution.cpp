@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "action/path.hpp"
 #include "action/rule.hpp"
 #include "solution/element_point.hpp"
 
@@ -58,6 +59,23 @@ void Trajectory::in_element(int element, double tau, std::span<double> q, std::s
   std::array<double, max_degree + 1> value, derivative;
   lobatto_basis_at(degree, tau, value.data(), slopes.empty() ? derivative.data() : nullptr);
   element_point(*this, element, {value.data(), derivative.data()}, q.data(), v.data(), 1);
+}
+
+Trajectory trajectory_of(const Path& path) {
+  Trajectory t;
+  t.coordinates = path.coordinates();
+  t.degree = path.degree();
+  for (double tau : path.mesh()) t.times.push_back(tau * path.duration());
+  for (double length : path.lengths()) t.lengths.push_back(length * path.duration());
+  const std::size_t size = static_cast<std::size_t>(path.degree() + 1) * path.coordinates();
+  t.nodes.resize(path.elements() * size);
+  t.slopes.resize(path.elements() * size);
+  const Basis& basis = lobatto_nodal_basis(path.degree());
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, t.nodes.data() + k * size);
+    path.element_slopes(k, basis.derivative, t.slopes.data() + k * size);
+  }
+  return t;
 }
 
 }  // namespace extremal

@@ -14,6 +14,8 @@
 
 namespace extremal {
 
+class Path;
+
 enum class Status {
   converged,
   not_converged,
@@ -55,6 +57,9 @@ struct Trajectory {
   /// The same where tau of an element has passed, which may be told better than t.
   void in_element(int element, double tau, std::span<double> q, std::span<double> v) const;
 };
+
+/// The trajectory of a path, to the last digit.
+Trajectory trajectory_of(const Path& path);
 
 /// One step of the iteration, for the history.
 struct Iteration {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "solve/distinct.hpp"
-#include "solve/finish.hpp"
-#include "solve/pinned.hpp"
-#include "solve/search.hpp"
-#include "solve/several.hpp"
-#include "solve/unfold.hpp"
+#include "solve/accept/acceptance.hpp"
+#include "solve/adapt/pinned.hpp"
+#include "solve/periodic/reconstruct_orbit.hpp"
+#include "solve/search/distinct.hpp"
+#include "solve/search/search.hpp"
+#include "solve/search/several.hpp"
 
 namespace extremal {
 
@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The problem, guessed by what solves it.
+/// The problem with a solution as its guess.
 Problem guessed_by(const Problem& problem, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   const std::size_t n = problem.coordinates();
@@ -37,13 +37,17 @@ Problem guessed_by(const Problem& problem, const Solution& solution) {
   return result;
 }
 
-/// Newton's method on the part of an orbit that its symmetries leave to be found; and the whole.
+/// Newton's method on the part of an orbit that its symmetries leave to be found, continued to the whole.
 Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Workspace& w) {
-  Outcome outcome = Search(reduction.part, options, w).run_near_guess();
+  Search search(reduction.part, options, w);
+  search.run_near_guess();
+  Outcome outcome = search.take();
   if (outcome.status != Status::converged) return outcome;
   outcome.reduction = &reduction;
   outcome.message += fmt::format(" on 1/{} of the orbit, which symmetries continue", reduction.parts());
-  unfold(reduction, w.path, *outcome.tables, w.whole);
+  std::swap(outcome.part, outcome.path);
+  std::swap(outcome.path, w.spare_whole);
+  reconstruct_orbit(reduction, outcome.part, *outcome.tables, outcome.path);
   return outcome;
 }
 
@@ -51,7 +55,6 @@ Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Work
 
 struct Solver::Memory {
   Workspace workspace;
-  SecondVariation variation;
 };
 
 Solver::Solver() : memory_(std::make_unique<Memory>()) {}
@@ -70,28 +73,35 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.push_back(step);
     if (options.progress) options.progress(step);
   };
-  const auto finished = [&](const Problem& solved, const Outcome& outcome) {
+  const auto completed = [&](Solution solution) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    Solution solution = finish(solved, options, outcome, w, memory_->variation);
-    solution.history = history;
-    solution.seconds_solve = seconds;
+    solution.history = std::move(history);
+    solution.seconds_solve = seconds - solution.seconds_analyse;
     return solution;
   };
-  if (options.scheme) return finished(problem, PinnedSolve(problem, recording, w).run());
+  const auto judged = [&](const Problem& solved, const Outcome& outcome) {
+    return outcome.status == Status::converged ? accept(solved, options, outcome, w)
+                                               : explain_failure(solved, options, outcome, w);
+  };
+  if (options.scheme) return completed(judged(problem, PinnedSolve(problem, recording, w).run()));
   int spent = 0;
   if (const Reduction* reduction = problem.reduction.get()) {
-    const Outcome outcome = solve_part(*reduction, recording, w);
-    // What hides an extremal on its part does so on the whole.
-    if (outcome.hidden) return finished(reduction->part, outcome);
+    Outcome outcome = solve_part(*reduction, recording, w);
+    // If roundoff hides an extremal on its part, so it does on the whole.
+    if (outcome.hidden) return completed(judged(reduction->part, outcome));
     if (outcome.status == Status::converged) {
-      Solution solution = finished(problem, outcome);
-      if (solution.converged()) return solution;
+      Solution solution = judged(problem, outcome);
+      std::swap(outcome.part, w.spare);
+      std::swap(outcome.path, w.spare_whole);
+      if (solution.converged()) return completed(std::move(solution));
     }
     spent = outcome.iterations;
   }
-  Outcome outcome = Search(problem, recording, w).run();
-  outcome.iterations += spent;
-  return finished(problem, outcome);
+  Acceptance acceptance(problem, options, w);
+  Search search(problem, recording, w);
+  Solution solution = acceptance.result(search.run(&acceptance));
+  solution.iterations += spent;
+  return completed(std::move(solution));
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
@@ -100,7 +110,7 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   SolveOptions adaptive = options;
   adaptive.scheme.reset();
   adaptive.elements = 0;
-  std::vector<Solution> found = Several(problem, adaptive, w, memory_->variation).run(most);
+  std::vector<Solution> found = Several(problem, adaptive, w).run(most);
   if (!options.scheme || !found.front().converged()) return found;
   std::vector<Solution> discrete;
   for (const Solution& guess : found) {

@@ -1,38 +1,15 @@
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "action/scheme.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
+#include "solve/adapt/options.hpp"
 
 /// \file The front door: a problem in, an extremal out.
 
 namespace extremal {
-
-/// What leads from a guess to where Newton's method ends it.
-enum class Method {
-  newton,  ///< itself
-  ceres,   ///< least squares of δS_h by Levenberg and Marquardt's method (Ceres Solver)
-  ipopt,   ///< δS_h = 0 as constraints of an interior point method with a filter line search (Ipopt)
-};
-
-/// Its name, "newton", "ceres" or "ipopt".
-const char* name(Method method);
-/// Whether this build has it.
-bool available(Method method);
-
-struct SolveOptions {
-  double tolerance = 1e-9;       ///< of q(t), relative to the largest range of a coordinate
-  std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
-  int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
-  Method method = Method::newton;
-  int max_iterations = 8000;  ///< Newton steps in all, restarts from other guesses included
-  std::function<void(const Iteration&)> progress;
-};
 
 /// Keeps memory between solves, nothing else. Not for two threads at once.
 class Solver {

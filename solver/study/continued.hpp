@@ -3,7 +3,7 @@
 #include <string>
 
 #include "scene/scene.hpp"
-#include "solve/diagram.hpp"
+#include "solve/branch/diagram.hpp"
 #include "system/formula.hpp"
 
 /// \file [continuation]: a scene's family of problems, and the branch of its extremals.

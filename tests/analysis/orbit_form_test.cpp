@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "analysis/independent.hpp"
+#include "solve/periodic/stability.hpp"
 #include "solve/scenes.hpp"
-#include "solve/stability.hpp"
 
 /// \file Indices of iterates and eigenvectors of multipliers.
 

@@ -18,10 +18,6 @@ std::size_t characters(const std::string& text) {
   return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
 }
 
-TEST(Files, FitIntoAHead) {
-  for (const fs::path& file : all_sources()) EXPECT_LE(lines(file).size(), 350u) << file << " holds too much";
-}
-
 TEST(Files, HaveShortCleanLines) {
   for (const fs::path& file : all_sources()) {
     int number = 0;

@@ -66,22 +66,36 @@ inline std::vector<Include> includes(const fs::path& path) {
   return result;
 }
 
-/// solver/layers.txt: the folders in their order, and what each may include besides itself.
+/// solver/layers.txt: folders, "solve", and their rooms, "solve/mesh", in their order, and what each may
+/// include besides itself.
 struct Layers {
   std::vector<std::string> order;
   std::map<std::string, std::set<std::string>> allowed;
+
+  /// Whether a file that stands in `from` may include one that stands in `to`.
+  bool allow(const std::string& from, const std::string& to) const {
+    if (from == to) return true;
+    const std::string folder = folder_of(from), other = folder_of(to);
+    if (folder != other) return allowed.at(folder).contains(other);
+    return from == folder || allowed.at(from).contains(to);
+  }
+  static std::string folder_of(const std::string& place) { return place.substr(0, place.find('/')); }
 };
 
 inline Layers layers() {
   Layers result;
+  std::string folder;
   for (const std::string& line : lines(root() / "solver/layers.txt")) {
     const auto colon = line.find(':');
     if (line.starts_with("#") || colon == std::string::npos) continue;
-    const std::string folder = line.substr(0, colon);
-    result.order.push_back(folder);
+    const auto start = line.find_first_not_of(' ');
+    const std::string name = line.substr(start, colon - start);
+    if (start == 0) folder = name;
+    const std::string prefix = start == 0 ? "" : folder + "/";
+    result.order.push_back(prefix + name);
     std::istringstream rest(line.substr(colon + 1));
-    std::set<std::string>& allowed = result.allowed[folder];
-    for (std::string other; rest >> other;) allowed.insert(other);
+    std::set<std::string>& allowed = result.allowed[prefix + name];
+    for (std::string other; rest >> other;) allowed.insert(prefix + other);
   }
   return result;
 }

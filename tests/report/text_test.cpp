@@ -130,21 +130,6 @@ TEST(Table, PlainTextIsAligned) {
             "dop853    44 µs   1e-8\n");
 }
 
-TEST(Table, MarkdownIsAligned) {
-  EXPECT_EQ(markdown(small_table()),
-            "| method  |   time | error |\n"
-            "| ------- | -----: | ----: |\n"
-            "| lobatto | 8.1 µs | 3e-10 |\n"
-            "| dop853  |  44 µs |  1e-8 |\n");
-}
-
-TEST(Table, MarkdownEscapesBars) {
-  EXPECT_EQ(markdown({.head = {{"a|b", Table::Align::left}}, .rows = {{"||"}}}),
-            "| a\\|b |\n"
-            "| ---- |\n"
-            "| \\|\\| |\n");
-}
-
 TEST(Table, NoBlanksAtTheEndOfALine) {
   EXPECT_EQ(plain_text({.head = {{"a"}, {"long heading", Table::Align::left}}, .rows = {{"1", "x"}}}),
             "a  long heading\n"
@@ -154,13 +139,11 @@ TEST(Table, NoBlanksAtTheEndOfALine) {
 TEST(Table, RefusesARowOfAnotherLength) {
   Table table = small_table();
   table.rows[1].pop_back();
-  for (const auto& write : {plain_text, markdown}) {
-    try {
-      write(table);
-      ADD_FAILURE() << "not refused";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_STREQ(error.what(), "a row has 2 cells under 3 headings");
-    }
+  try {
+    plain_text(table);
+    ADD_FAILURE() << "not refused";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "a row has 2 cells under 3 headings");
   }
 }
 

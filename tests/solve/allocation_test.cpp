@@ -1,10 +1,10 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "solve/ends.hpp"
-#include "solve/iteration.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
-#include "solve/start.hpp"
+#include "solve/newton/iteration.hpp"
 
 /// \file A Newton iteration takes nothing from the heap once its memory stands.
 

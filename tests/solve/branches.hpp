@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solve/diagram.hpp"
+#include "solve/branch/diagram.hpp"
 #include "solve/laws.hpp"
 
 /// \file Branches of extremals: followed to their end, and what is on them.

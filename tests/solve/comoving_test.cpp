@@ -1,11 +1,11 @@
-#include "solve/comoving.hpp"
+#include "solve/homotopy/comoving.hpp"
 
 #include <numbers>
 
 #include "machine/simd.hpp"
+#include "solve/adapt/workspace.hpp"
 #include "solve/laws.hpp"
-#include "solve/mesh.hpp"
-#include "solve/workspace.hpp"
+#include "solve/mesh/mesh.hpp"
 
 /// \file Changes of a path that take its mesh along.
 

@@ -1,10 +1,10 @@
-#include "solve/descent.hpp"
+#include "solve/search/descent.hpp"
 
 #include <numbers>
 
-#include "solve/ends.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
-#include "solve/start.hpp"
 
 /// \file Minimisation in windows: downhill where the action is convex, to a saddle where it is not.
 
@@ -13,15 +13,16 @@ namespace {
 
 using std::numbers::pi;
 
-/// A workspace with the guess of a problem on `elements` equal elements of degree 4.
+/// The guess of a problem on `elements` equal elements of degree 4.
 struct Begun {
   Begun(const Problem& problem, int elements) {
     w.levels.bind(problem.lagrangian);
     tables = &w.levels.at(4);
     w.iteration.reset(problem, *tables, elements);
-    w.path.reset(*tables, uniform_mesh(elements), problem.duration.value);
-    start_path(problem, starting_ends(problem), *tables, w.path);
+    path.reset(*tables, uniform_mesh(elements), problem.duration.value);
+    start_path(problem, starting_ends(problem), *tables, path);
   }
+  Path path;
   Workspace w;
   const ElementTables* tables = nullptr;
 };
@@ -38,7 +39,7 @@ TEST(Descent, ActionFallsAtEveryStep) {
   const Problem problem = convex(60);
   Begun begun(problem, 16);
   std::vector<double> actions;
-  Descent descent(problem, begun.w, [&] {
+  Descent descent(problem, begun.path, begun.w, [&] {
     actions.push_back(begun.w.iteration.action().action());
     return true;
   });
@@ -54,12 +55,12 @@ TEST(Descent, ArrivesAtASaddle) {
   const Problem problem = guessed(fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 20),
                                   [](double tau) { return Values{0.5 - tau}; });
   Begun begun(problem, 40);
-  Descent descent(problem, begun.w, [] { return true; });
+  Descent descent(problem, begun.path, begun.w, [] { return true; });
   ASSERT_TRUE(descent.run(*begun.tables));
   const double slope = (0.3 - 0.5 * std::cos(20.0)) / std::sin(20.0);
   for (int k = 0; k <= 40; ++k) {
     const double t = 0.5 * k;
-    EXPECT_NEAR(begun.w.path.node(k)[0], 0.5 * std::cos(t) + slope * std::sin(t), 1e-4);
+    EXPECT_NEAR(begun.path.node(k)[0], 0.5 * std::cos(t) + slope * std::sin(t), 1e-4);
   }
 }
 
@@ -67,7 +68,7 @@ TEST(Descent, ArrivesAtASaddle) {
 TEST(Descent, NeedsElementsWithinAWindow) {
   const Problem problem = fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 20);
   Begun begun(problem, 4);
-  Descent descent(problem, begun.w, [] { return true; });
+  Descent descent(problem, begun.path, begun.w, [] { return true; });
   EXPECT_FALSE(descent.run(*begun.tables));
 }
 
@@ -75,7 +76,7 @@ TEST(Descent, StopsWhenToldTo) {
   const Problem problem = convex(60);
   Begun begun(problem, 16);
   int left = 5;
-  Descent descent(problem, begun.w, [&] { return --left > 0; });
+  Descent descent(problem, begun.path, begun.w, [&] { return --left > 0; });
   EXPECT_FALSE(descent.run(*begun.tables));
   EXPECT_EQ(left, 0);
 }

@@ -1,8 +1,8 @@
-#include "solve/ends.hpp"
+#include "solve/newton/ends.hpp"
 
 #include "machine/simd.hpp"
 #include "solve/laws.hpp"
-#include "solve/levels.hpp"
+#include "solve/mesh/levels.hpp"
 
 /// \file Ends stay on the boundary relation, however far steps lead on the way.
 

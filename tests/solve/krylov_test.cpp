@@ -1,13 +1,13 @@
-#include "solve/krylov.hpp"
+#include "solve/newton/krylov.hpp"
 
 #include <fstream>
 #include <random>
 
-#include "solve/ends.hpp"
-#include "solve/iteration.hpp"
-#include "solve/levels.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/newton/iteration.hpp"
 #include "solve/scenes.hpp"
-#include "solve/start.hpp"
 
 /// \file Steps of the second variation at one path from factors of another.
 

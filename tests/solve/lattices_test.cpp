@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "rivals/verify.hpp"
-#include "solve/diagram.hpp"
+#include "solve/branch/diagram.hpp"
 #include "solve/scenes.hpp"
 
 /// \file Periodic motions of chains: normal modes that grow, and one that stays where it is.

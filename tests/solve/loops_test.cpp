@@ -4,10 +4,10 @@
 
 #include "problem/closing.hpp"
 #include "rivals/verify.hpp"
-#include "solve/loop.hpp"
-#include "solve/repetition.hpp"
+#include "solve/guess/loop.hpp"
+#include "solve/periodic/repetition.hpp"
+#include "solve/periodic/segment.hpp"
 #include "solve/scenes.hpp"
-#include "solve/segment.hpp"
 
 /// \file Periodic orbits from random loops: each verified by integration, none twice, none that repeats
 /// itself; those that are known among them.

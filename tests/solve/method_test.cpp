@@ -1,11 +1,11 @@
 #include <fstream>
 #include <random>
 
-#include "solve/displacement.hpp"
-#include "solve/ends.hpp"
-#include "solve/levels.hpp"
+#include "solve/external/displacement.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/mesh/levels.hpp"
 #include "solve/scenes.hpp"
-#include "solve/start.hpp"
 
 /// \file Solvers of other libraries lead to the extremals that Newton's method finds.
 

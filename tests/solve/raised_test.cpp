@@ -1,11 +1,11 @@
-#include "solve/raised_model.hpp"
+#include "solve/newton/raised_model.hpp"
 
-#include "solve/converge.hpp"
-#include "solve/ends.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
-#include "solve/levels.hpp"
-#include "solve/mesh.hpp"
-#include "solve/start.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/mesh/mesh.hpp"
+#include "solve/newton/converge.hpp"
 
 /// \file Steps of elements of high degree from factors of low ones.
 

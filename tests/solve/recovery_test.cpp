@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "solve/finish.hpp"
 #include "solve/laws.hpp"
 #include "solve/scenes.hpp"
 

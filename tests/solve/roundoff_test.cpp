@@ -1,5 +1,5 @@
-#include "solve/iteration.hpp"
-#include "solve/levels.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/newton/iteration.hpp"
 #include "solve/published.hpp"
 #include "solve/scenes.hpp"
 

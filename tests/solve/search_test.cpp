@@ -2,9 +2,9 @@
 #include <random>
 
 #include "rivals/verify.hpp"
-#include "solve/mesh.hpp"
+#include "solve/adapt/refinement.hpp"
+#include "solve/mesh/mesh.hpp"
 #include "solve/motions.hpp"
-#include "solve/refinement.hpp"
 #include "study/study.hpp"
 
 /// \file Extremals from poor guesses: found, verified by integration, the same each time, at bounded cost.

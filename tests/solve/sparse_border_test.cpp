@@ -1,4 +1,4 @@
-#include "solve/sparse_border.hpp"
+#include "solve/newton/sparse_border.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,224 @@
+#include "solve/accept/acceptance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "solve/accept/conditions.hpp"
+#include "solve/accept/conjugate_ends.hpp"
+#include "solve/accept/limits.hpp"
+#include "solve/accept/minimality.hpp"
+#include "solve/accept/quadrature_check.hpp"
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
+#include "solve/periodic/reconstruct_orbit.hpp"
+#include "solve/periodic/stability.hpp"
+
+namespace extremal {
+
+using namespace limits::acceptance;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Momenta, residual, index and nullity from one evaluation at the path, on the iteration's elements.
+void read_equations(const Problem& problem, const Path& path, const Outcome& outcome, NewtonIteration& newton,
+                    Solution& solution) {
+  const bool factored = newton.factor(path);
+  const DiscreteAction& action = newton.action();
+  solution.action = action.action();
+  solution.momentum_start.resize(problem.coordinates());
+  solution.momentum_end.resize(problem.coordinates());
+  for (int a = 0; a < problem.coordinates(); ++a) {
+    solution.momentum_start[a] = -action.start_gradient()[a];
+    solution.momentum_end[a] = action.end_gradient()[a];
+  }
+  const double momentum = action.momentum_scale();
+  solution.residual = newton.residual() / (momentum > 0 ? momentum : 1);
+  if (!factored) return;
+  const double size = scales(path, *outcome.tables).q;
+  const Inertia inertia = newton.model().inertia(zero_eigenvalue_along(size, outcome.error, path.elements()));
+  solution.morse_index = inertia.negative;
+  solution.nullity = inertia.zero;
+  solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
+}
+
+void read_path(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
+               Solution& solution) {
+  w.iteration.reset(problem, *outcome.tables, path.elements());
+  const bool raised = outcome.recovered && recover(problem, path, w, w.raised);
+  solution.trajectory = trajectory_of(raised ? w.raised : path);
+  read_equations(problem, path, outcome, w.iteration, solution);
+}
+
+/// A path as it was judged, with its survey where L does not depend on t.
+struct Examined {
+  Solution solution;
+  std::optional<Survey> survey = {};
+  bool hopeless = false;
+
+  void refuse(const Refusal& refusal) {
+    solution.status = refusal.status;
+    solution.message = refusal.message;
+    hopeless = refusal.hopeless;
+  }
+};
+
+/// Reads a solution off a path, and refuses it where equations or elements fail.
+Examined examine(const Problem& problem, const SolveOptions& options, const Path& path,
+                 const Outcome& outcome, Workspace& w) {
+  Examined result;
+  Solution& solution = result.solution;
+  solution.status = outcome.status;
+  solution.message = outcome.message;
+  solution.error_estimate = outcome.error;
+  solution.degree = path.degree();
+  const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
+  solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
+  read_path(problem, path, outcome, w, solution);
+  if (const auto fails = equations_fail(problem, options, path, *outcome.tables, w.iteration, solution)) {
+    result.refuse(*fails);
+    return result;
+  }
+  result.survey = observe_energy(*problem.lagrangian, solution);
+  if (const auto fails =
+          elements_fail(problem, options, outcome, path, result.survey, w.iteration.action(), solution))
+    result.refuse(*fails);
+  return result;
+}
+
+/// The path after more of Newton's method, where a finer quadrature moves it by more than the tolerance: that
+/// may be roundoff. Nothing if it is not moved, or cannot be improved.
+std::optional<Path> polished(const SolveOptions& options, const Outcome& outcome, const Path& path,
+                             const QuadratureCheck& check, Workspace& w) {
+  if (options.scheme || !check.missed(options, outcome)) return std::nullopt;
+  Path better = path;
+  if (!polish(better, w.iteration)) return std::nullopt;
+  return better;
+}
+
+/// The quadrature check of an orbit by its part: along the whole it would amplify roundoff more.
+struct Part {
+  QuadratureCheck check;
+  double residual = 0;             ///< under the finer quadrature
+  std::optional<Path> whole = {};  ///< if the part was polished
+};
+
+Part examine_part(const SolveOptions& options, const Outcome& outcome, Workspace& w) {
+  const Problem& problem = outcome.reduction->part;
+  Solution solution;
+  Part result;
+  read_path(problem, outcome.part, outcome, w, solution);
+  result.check = check_quadrature(problem, outcome.part, outcome, solution, w);
+  const std::optional<Path> better = polished(options, outcome, outcome.part, result.check, w);
+  const Path& path = better ? *better : outcome.part;
+  if (better) {
+    read_path(problem, path, outcome, w, solution);
+    result.check = check_quadrature(problem, path, outcome, solution, w);
+    reconstruct_orbit(*outcome.reduction, path, *outcome.tables, result.whole.emplace());
+  }
+  result.residual = residual_under_finer(problem, path, outcome, w);
+  return result;
+}
+
+/// All but minimality, stability and conjugate ends; `path` becomes the path if it was polished.
+Examined examine_all(const Problem& problem, const SolveOptions& options, const Outcome& outcome,
+                     Workspace& w, std::optional<Path>& path, QuadratureCheck& check) {
+  std::optional<Part> part;
+  if (outcome.reduction) part = examine_part(options, outcome, w);
+  if (part) path = std::move(part->whole);
+  Examined found = examine(problem, options, path ? *path : outcome.path, outcome, w);
+  if (!found.solution.converged()) return found;
+  if (part) {
+    check = part->check;
+    const double roundoff = momentum_roundoff * w.iteration.action().momentum_scale();
+    check.unlike = !(residual_under_finer(problem, path ? *path : outcome.path, outcome, w) <=
+                     residual_growth * part->residual + roundoff);
+  } else {
+    check = check_quadrature(problem, outcome.path, outcome, found.solution, w);
+    path = polished(options, outcome, outcome.path, check, w);
+    if (path) {
+      found = examine(problem, options, *path, outcome, w);
+      if (found.solution.converged()) check = check_quadrature(problem, *path, outcome, found.solution, w);
+    }
+  }
+  const double range = found.survey ? *std::max_element(found.survey->p.begin(), found.survey->p.end())
+                                    : w.iteration.action().momentum_scale();
+  check.kicked = check.kicked > 0 ? check.kicked / range : 0;
+  return found;
+}
+
+/// A solution that is refused has no path.
+Solution without_path(const Solution& solution) {
+  Solution refused;
+  refused.status = solution.status;
+  refused.message = solution.message;
+  return refused;
+}
+
+/// A solution, or why there is none and whether another guess would help.
+struct Judged {
+  Solution solution;
+  bool hopeless;
+};
+
+Judged judged(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
+  const auto start = Clock::now();
+  QuadratureCheck check;
+  std::optional<Path> better;
+  Examined examined = examine_all(problem, options, found, w, better, check);
+  Solution& solution = examined.solution;
+  const Path& path = better ? *better : found.path;
+  if (solution.converged()) {
+    const double distance = read_minimality(problem, options, w.variation, solution);
+    read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
+    judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
+  }
+  if (solution.converged()) judge_quadrature(check, options, found, solution);
+  const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
+  if (!solution.converged()) solution = without_path(solution);
+  solution.strategy = found.strategy;
+  if (options.method != Method::newton)
+    solution.strategy += fmt::format(", led by {}", description(options.method));
+  solution.iterations = found.iterations;
+  w.iteration.forget();
+  solution.seconds_analyse = seconds_since(start);
+  return {std::move(solution), examined.hopeless || conjugate};
+}
+
+}  // namespace
+
+Solution accept(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
+  return judged(problem, options, found, w).solution;
+}
+
+Acceptance::Acceptance(const Problem& problem, const SolveOptions& options, Workspace& workspace)
+    : problem_(problem), options_(options), w_(workspace) {}
+
+Acceptance::Verdict Acceptance::judge(const Outcome& found) {
+  auto [solution, hopeless] = judged(problem_, options_, found, w_);
+  seconds_ += solution.seconds_analyse;
+  const bool accepted = solution.converged();
+  if (accepted || !solution_) solution_ = std::move(solution);
+  return accepted ? Verdict::accepted : hopeless ? Verdict::hopeless : Verdict::refused;
+}
+
+Solution Acceptance::result(const Outcome& last) {
+  if (!solution_) {
+    Solution failed = explain_failure(problem_, options_, last, w_);
+    seconds_ += failed.seconds_analyse;
+    return failed;
+  }
+  solution_->iterations = last.iterations;
+  solution_->seconds_analyse = seconds_;
+  return *std::exchange(solution_, std::nullopt);
+}
+
+}  // namespace extremal

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "solve/adapt/outcome.hpp"
+#include "solve/adapt/workspace.hpp"
+
+/// \file Whether a path is an extremal, and its properties.
+
+namespace extremal {
+
+/// The solution that a converged path is: momenta, index, energy, windows, multipliers; or one that has not
+/// converged, with the reason why the path is refused. Its history and the time until the path was found are
+/// the caller's. The path stays as it is; the workspace is memory.
+Solution accept(const Problem& problem, const SolveOptions& options, const Outcome& found,
+                Workspace& workspace);
+
+/// Why a solve found nothing, judged by its last path.
+Solution explain_failure(const Problem& problem, const SolveOptions& options, const Outcome& last,
+                         Workspace& workspace);
+
+/// The paths of one solve, judged as they are found. A path that is refused is not the end: others may
+/// follow.
+class Acceptance {
+ public:
+  Acceptance(const Problem& problem, const SolveOptions& options, Workspace& workspace);
+
+  enum class Verdict {
+    accepted,
+    refused,
+    hopeless,  ///< and other guesses do not help
+  };
+  Verdict judge(const Outcome& found);
+
+  /// The solution that was accepted; else the first that was refused; else why the last path failed.
+  Solution result(const Outcome& last);
+  double seconds() const { return seconds_; }  ///< spent so far
+
+ private:
+  const Problem& problem_;
+  const SolveOptions& options_;
+  Workspace& w_;
+  std::optional<Solution> solution_;
+  double seconds_ = 0;
+};
+
+}  // namespace extremal

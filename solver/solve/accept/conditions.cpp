@@ -1,0 +1,116 @@
+#include "solve/accept/conditions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/accept/limits.hpp"
+#include "solve/mesh/conservation.hpp"
+#include "solve/mesh/resolution.hpp"
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/residual_test.hpp"
+
+namespace extremal {
+
+using namespace limits::conditions;
+
+namespace {
+
+/// Where atoms overlap, forces are so strong that steps are roundoff while δS is not.
+bool balanced(const Solution& solution, const Path& path, const NewtonIteration& newton) {
+  const double roundoff = strong_force_roundoff * newton.stiffness() * size_at_start(path);
+  return solution.residual <= largest_residual || newton.residual() <= roundoff;
+}
+
+/// A duration that runs away can look like convergence.
+bool closed(const Problem& problem, const SolveOptions& options, const Path& path,
+            const ElementTables& tables, NewtonIteration& newton) {
+  const ClosingEquation* closing = newton.closing(path);
+  if (!closing) return true;
+  const double slope = newton.action().slope_duration();
+  const double size = closing->row.empty() ? std::abs(slope) + std::abs(closing->value)
+                                           : std::max(1.0, scales(path, tables).magnitude);
+  const double value = closing->row.empty() ? slope + closing->value : closing->value;
+  const double allowed =
+      std::max(closing_tolerances * (options.elements > 0 ? 0 : options.tolerance), least_closing);
+  const double duration = path.duration();
+  return std::abs(value) <= allowed * size && duration > 0 &&
+         duration < longest_duration * problem.duration.value;
+}
+
+/// The residual of the natural conditions must be within the error that momenta may have: where forces hardly
+/// change momenta, that may be far below them. Steps of closed paths have no part along a family of orbits,
+/// nor have other steps along null directions: there only the forces that an error of q makes may be left.
+bool within_momenta(const Problem& problem, const Survey& survey, double tolerance, int nullity,
+                    const Path& path, const DiscreteAction& action) {
+  const double range = *std::max_element(survey.p.begin(), survey.p.end());
+  if (nullity > 0 && !problem.periodic) {
+    const double error = tolerance * *std::max_element(survey.q.begin(), survey.q.end());
+    return natural_residual(problem, action, path, error) <=
+           std::max(momentum_tolerances * tolerance * range, unit_roundoff * action.momentum_scale());
+  }
+  const double part = problem.periodic ? held_tolerances : momentum_tolerances;
+  return natural_residual(problem, action, path) <=
+         std::max(part * tolerance * range, momentum_roundoff * action.momentum_scale());
+}
+
+}  // namespace
+
+std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions& options, const Path& path,
+                                      const ElementTables& tables, NewtonIteration& newton,
+                                      const Solution& solution) {
+  if (!std::isfinite(solution.action) || !std::isfinite(solution.residual))
+    return Refusal{Status::not_converged, "the path runs through a singularity of L; try another guess"};
+  if (!balanced(solution, path, newton))
+    return Refusal{
+        Status::not_converged,
+        fmt::format("a residual of {:.1e} of the largest momentum is left: forces are too strong for "
+                    "what they move; try another guess",
+                    solution.residual)};
+  if (!closed(problem, options, path, tables, newton))
+    return Refusal{Status::no_solution_near,
+                   "the duration ran away: no extremal near the guess meets what closes it"};
+  return std::nullopt;
+}
+
+std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions& options,
+                                     const Outcome& outcome, const Path& path,
+                                     const std::optional<Survey>& found, const DiscreteAction& action,
+                                     Solution& solution) {
+  const double estimate = solution.error_estimate;
+  const int nullity = solution.nullity.value_or(0);
+  if (found) solution.error_estimate = error_behind_drift(*found, solution.trajectory, estimate);
+  const bool raised = solution.error_estimate > estimate;
+  const bool conserved =
+      !found || options.scheme || conserves_energy(*found, solution.trajectory, options.tolerance);
+  if (!conserved || (raised && options.elements == 0 && solution.error_estimate > outcome.tolerance))
+    return Refusal{
+        Status::not_converged,
+        fmt::format(
+            "the energy drifts by {:.1e}, more than the tolerance {:.1e} explains: between the points "
+            "of its elements the path passes a singularity or a kink that they do not resolve; try "
+            "another tolerance",
+            *solution.energy_drift, options.tolerance)};
+  if (found && problem.ends.free > 0 && !options.scheme &&
+      !within_momenta(problem, *found, options.tolerance, nullity, path, action))
+    return Refusal{
+        Status::not_converged,
+        fmt::format(
+            "a residual of {:.1e} of the largest momentum is left, more than momenta change by within "
+            "the tolerance {:.1e}: forces all but vanish along the path, and there may be no extremal "
+            "near; try another guess",
+            solution.residual, options.tolerance),
+        // Orbits near rest: the smaller the next one is, the more roundoff hides of its residual.
+        problem.periodic};
+  // Far away, where forces vanish, equations that have no solution leave hardly a residual.
+  if (outcome.elsewhere && !problem.periodic && nullity > 0)
+    return Refusal{
+        Status::conjugate_ends,
+        "away from the guess a path was found along which the second variation is singular: the ends "
+        "may be conjugate, with a family of extremals, or forces vanish along it; move an end or "
+        "the duration, or try a better guess"};
+  return std::nullopt;
+}
+
+}  // namespace extremal

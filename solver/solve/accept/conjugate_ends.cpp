@@ -1,0 +1,74 @@
+#include "solve/accept/conjugate_ends.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/windows.hpp"
+#include "solve/accept/limits.hpp"
+#include "solve/newton/converge.hpp"
+
+namespace extremal {
+
+using namespace limits::conjugate_ends;
+
+namespace {
+
+bool fixed(const Problem& problem) { return problem.ends.free == 0 && !problem.duration.free; }
+
+/// By how much the nodes move when elements get a higher degree; infinite if Newton's method then fails.
+double moved_by_finer_elements(const Problem& problem, const Path& path, Workspace& w, double goal) {
+  const int degree = std::min(path.degree() + finer, max_degree);
+  const ElementTables& tables = w.levels.at(degree);
+  w.other.interpolate_from(path, tables, w.levels.raise(path.degree(), degree));
+  w.iteration.reset(problem, tables, w.other.elements());
+  if (!converge(w.iteration, w.other, tables, {goal, steps}, {}).reached) return INFINITY;
+  double moved = 0;
+  for (std::size_t k = 0; k < path.nodes().size(); ++k)
+    moved = std::max(moved, std::abs(w.other.nodes()[k] - path.nodes()[k]));
+  return moved;
+}
+
+void refuse(Solution& solution, Status status, std::string message) {
+  solution.status = status;
+  solution.message = std::move(message);
+}
+
+}  // namespace
+
+void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, const Path& path,
+                          const ElementTables& tables, double distance, Workspace& w, Solution& solution) {
+  const double T = solution.duration(), size = scales(path, tables).q;
+  // Where conjugate times are many, one of them is never far.
+  if (!fixed(problem) || distance > near * T / (1.0 + solution.conjugate_times.size())) return;
+  const double known = size > 0 ? solution.error_estimate / size : 0;
+  if (distance <= T * std::clamp(known, least_distance, largest_distance))
+    return refuse(
+        solution, Status::conjugate_ends,
+        fmt::format("the ends are conjugate: at {:.1e} from T = {:.10g}, within the error, a Jacobi "
+                    "field vanishes at both; there is no extremal or a family of them; move an end or "
+                    "the duration",
+                    distance, T));
+  const double moved =
+      size > 0 && !options.scheme ? moved_by_finer_elements(problem, path, w, 0.1 * options.tolerance) : 0;
+  const double amplified = moved + roundoff * T / distance * size;
+  solution.error_estimate += amplified;
+  const double allowed = options.elements > 0 ? INFINITY : options.tolerance * size;
+  if (amplified > 0.1 * allowed && !(solution.error_estimate <= allowed))
+    refuse(
+        solution, Status::not_converged,
+        fmt::format("the ends are nearly conjugate: at {:.1e} from T = {:.10g} a Jacobi field vanishes at "
+                    "both, which amplifies errors beyond the tolerance {:.1e}; loosen or tighten it, or move "
+                    "an end or the duration",
+                    distance, T, options.tolerance));
+}
+
+bool failed_at_conjugate_ends(const Problem& problem, const Trajectory& last, SecondVariation& memory) {
+  if (!fixed(problem) || problem.coordinates() > SecondVariation::most_to_find_all) return false;
+  if (last.elements() > most_elements) return false;
+  if (!memory.assemble(problem.lagrangian, last)) return false;
+  return minimality(memory).distance <= suspicious * last.duration();
+}
+
+}  // namespace extremal

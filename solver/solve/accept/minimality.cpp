@@ -1,0 +1,73 @@
+#include "solve/accept/minimality.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/bounds.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// L = ½ q'ᵀMq' − V(q, t), M constant.
+bool is_natural(const Structure& s) { return s.quadratic && s.velocity_free && s.gyroscopic.empty(); }
+
+/// The longest window that the bound of M⁻¹V'' allows, also of the discrete action in use.
+double longest_window(const Problem& problem, const SolveOptions& options, const Solution& solution) {
+  const double unit = 1 / std::sqrt(*problem.curvature), pi = std::numbers::pi;
+  if (!std::isfinite(unit)) return unit;
+  if (!options.scheme) return unit * std::min(pi, window_bound(lobatto(solution.degree), 1));
+  const double elements = pi * unit / solution.duration() * solution.trajectory.elements();
+  const int whole = static_cast<int>(std::clamp(elements, 1.0, 1e9));
+  return unit * std::min(pi, window_bound(*options.scheme, whole));
+}
+
+/// Morse's theorem: with fixed ends the index is the number of conjugate times. These are found on pieces
+/// that resolve Jacobi fields, which elements that resolve the path need not. Of pinned elements it is their
+/// own.
+void count_conjugate_times(const Problem& problem, const SolveOptions& options, Solution& solution) {
+  if (problem.ends.free > 0 || options.elements > 0 || solution.nullity != 0) return;
+  solution.morse_index = static_cast<int>(solution.conjugate_times.size());
+  solution.minimizing = solution.morse_index == 0;
+}
+
+}  // namespace
+
+double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
+                       Solution& solution) {
+  if (problem.coordinates() > SecondVariation::most_coordinates) {
+    solution.message +=
+        fmt::format("; windows are only found for up to {} coordinates", SecondVariation::most_coordinates);
+    return INFINITY;
+  }
+  if (!memory.assemble(problem.lagrangian, solution.trajectory)) {
+    solution.message += memory.too_many()
+                            ? "; windows are not found: Jacobi fields vary too fast for its elements"
+                            : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
+    return INFINITY;
+  }
+  const bool bounded = problem.curvature && is_natural(problem.lagrangian->structure());
+  Minimality found =
+      bounded ? minimality(memory, longest_window(problem, options, solution)) : minimality(memory);
+  // A bound that the trajectory itself refutes proves nothing.
+  const bool refuted = bounded && !found.within_longest;
+  if (refuted) found = minimality(memory);
+  solution.windows = std::move(found.windows);
+  // T as the sum of the elements' lengths may differ by roundoff.
+  if (!solution.windows.empty()) solution.windows.back()[1] = solution.duration();
+  solution.conjugate_times_known = found.conjugate_times.has_value();
+  if (found.conjugate_times) {
+    solution.conjugate_times = *std::move(found.conjugate_times);
+    count_conjugate_times(problem, options, solution);
+  } else {
+    solution.message += fmt::format("; conjugate times are only found for up to {} coordinates",
+                                    SecondVariation::most_to_find_all);
+  }
+  solution.certificate = bounded && !refuted ? Certificate::global : Certificate::sampled;
+  return found.distance;
+}
+
+}  // namespace extremal

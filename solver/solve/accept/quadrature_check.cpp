@@ -1,0 +1,144 @@
+#include "solve/accept/quadrature_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/accept/limits.hpp"
+#include "solve/mesh/conservation.hpp"
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
+
+namespace extremal {
+
+using namespace limits::quadrature_check;
+
+namespace {
+
+/// Symmetries of the problem, found about a path and nearer to the origin: at some of those points forces
+/// count.
+int symmetries_about(const Problem& problem, const Trajectory& found) {
+  const std::size_t n = problem.coordinates();
+  Problem about = problem;
+  about.guess = {};
+  about.guess.q.resize((guess_points + 1) * n);
+  std::vector<double> v(n);
+  for (int i = 0; i <= guess_points; ++i) {
+    about.guess.tau.push_back(static_cast<double>(i) / guess_points);
+    found.at(about.guess.tau.back() * found.duration(), {about.guess.q.data() + i * n, n}, v);
+  }
+  const SymmetrySearch search{most_coordinates,
+                              {1, 0.25, 0.0625, 1 / 64.0, 1 / 256.0, 1 / 1024.0, 1 / 4096.0}};
+  return static_cast<int>(continuous_symmetries(about, search).size());
+}
+
+/// By how much momenta at the ends of a solution are others where the action was evaluated last.
+double kick(const DiscreteAction& action, const Solution& solution) {
+  double largest = 0;
+  for (std::size_t a = 0; a < solution.momentum_start.size(); ++a)
+    largest = std::max({largest, std::abs(action.start_gradient()[a] + solution.momentum_start[a]),
+                        std::abs(action.end_gradient()[a] - solution.momentum_end[a])});
+  return largest > momentum_roundoff * action.momentum_scale() ? largest : 0;
+}
+
+void refuse(Solution& solution, Status status, std::string message) {
+  solution.status = status;
+  solution.message = std::move(message);
+}
+
+/// Refuses a solution of which `what`, relative to its range, is more than a tolerance allows.
+void refuse(Solution& solution, const char* what, double much, double tolerance, const char* why) {
+  refuse(solution, Status::not_converged,
+         fmt::format("with other points in each element {} differ by {:.1e} of their range, more than the "
+                     "tolerance {:.1e} allows: {}; try another tolerance",
+                     what, much, tolerance, why));
+}
+
+}  // namespace
+
+QuadratureCheck check_quadrature(const Problem& problem, const Path& path, const Outcome& outcome,
+                                 const Solution& solution, Workspace& w) {
+  const Scales size = scales(path, *outcome.tables);
+  const bool factored = solution.nullity.has_value(), at_rest = size.range < size.q || size.q == 0;
+  if (!factored || at_rest) return {};
+  w.iteration.set_scale(size.q);
+  AlignedDoubles explained;
+  if (outcome.recovered) w.recovery.misplaced(path, explained);
+  const auto moved = [&](double error) {
+    if (!problem.periodic)
+      w.iteration.model().set_null_below(largest_null_eigenvalue(size.magnitude, error, path));
+    return size.q * w.iteration.step_under(w.levels.finer(outcome.tables->scheme()), path, explained);
+  };
+  QuadratureCheck check;
+  check.moved = moved(outcome.error);
+  const QuadraticModel& model = w.iteration.model();
+  const bool orbit = problem.periodic || outcome.reduction;  // or a part of one: they come in families
+  if (!orbit && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
+    // Directions that are null because symmetries move the ends belong to a family of extremals. Others may
+    // be soft: weak forces fix the path, if to the last digit. Where forces vanish nothing does.
+    const int family = symmetries_about(problem, solution.trajectory);
+    if (model.left_out() > family) {
+      check.moved = std::max(check.moved, moved(0));
+      check.isolated = model.left_out() <= family && check.moved <= outcome.tolerance;
+    }
+  }
+  check.turned = size.v > 0 ? w.iteration.steepness(path) / size.v : 0;
+  check.kicked = kick(w.iteration.action(), solution);
+  return check;
+}
+
+bool QuadratureCheck::missed(const SolveOptions& options, const Outcome& outcome) const {
+  return moved > outcome.tolerance || turned > most_turned * options.tolerance;
+}
+
+double residual_under_finer(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w) {
+  w.iteration.action().substitute(*problem.lagrangian, w.levels.finer(outcome.tables->scheme()));
+  return w.iteration.residual_at(path);
+}
+
+bool polish(Path& path, NewtonIteration& newton) {
+  if (!newton.extended() && !newton.extend()) return false;
+  constexpr int most_steps = 5;
+  double before = INFINITY;
+  NewtonPolicy to_roundoff{most_steps, Progress::arrived, [](int) { return Factors::anew; },
+                           [&](StepResult step, int) {
+                             if (step != StepResult::ok) return Progress::failed;
+                             const double last = std::exchange(before, newton.norm());
+                             return before < 0.5 * last ? Progress::more : Progress::arrived;
+                           }};
+  return newton_loop(NewtonSteps{newton, path}, to_roundoff) == Progress::arrived;
+}
+
+void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options, const Outcome& outcome,
+                      Solution& solution) {
+  if (!check.isolated)
+    return refuse(solution, Status::conjugate_ends,
+                  "the second variation is singular along the path found, though no symmetry makes it so: "
+                  "forces vanish along it, or the ends are conjugate, with a family of extremals; move an "
+                  "end or the duration, or try a better guess");
+  if (check.unlike)
+    return refuse(solution, Status::not_converged,
+                  "forces along the orbit lack the symmetries of its guess; try another guess");
+  if (!std::isfinite(check.moved))
+    return refuse(solution, Status::not_converged,
+                  "with other points in each element the action is not finite: the path runs through a "
+                  "singularity of L; try another guess");
+  if (!options.scheme && !(check.turned <= most_turned * options.tolerance))
+    return refuse(solution, "velocities", check.turned, options.tolerance,
+                  "the path turns sharply, and roundoff is amplified");
+  if (!options.scheme && !(check.kicked <= momentum_tolerances * options.tolerance))
+    return refuse(solution, "the momenta at the ends", check.kicked, options.tolerance,
+                  "forces rise within the first element or the last");
+  if (check.moved <= honest * solution.error_estimate) return;
+  solution.error_estimate = check.moved;
+  if (options.elements > 0 || check.moved <= outcome.tolerance) return;
+  refuse(solution, Status::not_converged,
+         fmt::format("with other points in each element the path moves by {:.1e}, {:.0f} times what the "
+                     "tolerance {:.1e} allows: they see other forces, or amplify roundoff; try another "
+                     "tolerance",
+                     check.moved, check.moved / outcome.tolerance, options.tolerance));
+}
+
+}  // namespace extremal

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "action/scheme.hpp"
+#include "solution/solution.hpp"
+#include "solve/external/method.hpp"
+
+/// \file Options of a solve.
+
+namespace extremal {
+
+struct SolveOptions {
+  double tolerance = 1e-9;       ///< of q(t), relative to the largest range of a coordinate
+  std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
+  int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
+  Method method = Method::newton;
+  int max_iterations = 8000;  ///< Newton steps in all, restarts from other guesses included
+  std::function<void(const Iteration&)> progress;
+};
+
+}  // namespace extremal

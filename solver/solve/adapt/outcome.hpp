@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "problem/reduction.hpp"
+#include "solve/adapt/options.hpp"
+#include "solve/newton/iteration.hpp"
+
+/// \file The result of a stage: a path with its error and its status.
+
+namespace extremal {
+
+struct Outcome {
+  Path path;                              ///< where it has got to
+  const ElementTables* tables = nullptr;  ///< of its elements
+  Status status = Status::not_converged;
+  std::string message;
+  const char* strategy = "newton from the guess";
+  /// Reached in another way than by Newton's method from the guess, or far from it.
+  bool elsewhere = false;
+  /// Only polynomials of higher degree (recovery.hpp) have velocities within the tolerance.
+  bool recovered = false;
+  double error = 0;      ///< of q, absolute
+  double tolerance = 0;  ///< absolute
+  int iterations = 0;
+  bool hidden = false;  ///< an extremal is near, but roundoff is more than the tolerance
+  /// Where symmetries left a part of an orbit to be found: the part, of which `path` is the whole.
+  Path part;
+  const Reduction* reduction = nullptr;
+
+  /// Counts a step of an iteration along the path and reports it to options.progress.
+  void record(const NewtonIteration& newton, const SolveOptions& options);
+};
+
+}  // namespace extremal

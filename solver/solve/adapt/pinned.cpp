@@ -1,0 +1,240 @@
+#include "solve/adapt/pinned.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "machine/simd.hpp"
+#include "solve/adapt/limits.hpp"
+#include "solve/external/external_solver.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/mesh/conservation.hpp"
+
+namespace extremal {
+
+using namespace limits::pinned;
+
+PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace)
+    : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme) {}
+
+void PinnedSolve::bind(int points) {
+  w_.pinned_scheme = std::make_unique<SchemeTables>(scheme_, points);
+  w_.pinned.bind(*w_.pinned_scheme, *problem_.lagrangian);
+}
+
+/// Newton's method on elements of `tables`, at its end where steps need pivoting and cost more than that many
+/// steps without.
+NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, double goal, int most_steps) {
+  const double step = path.batches() * batch_cost(tables, path.degree());
+  const double most = std::max(most_cost, most_steps * step);
+  double cost = 0;
+  const NewtonReport report = converge(w_.iteration, path, tables, {goal, most_steps}, [&] {
+    if (&tables == &w_.pinned) outcome_.record(w_.iteration, options_);
+    cost += step * w_.iteration.burden();
+    return cost < most;
+  });
+  cost_ += cost;
+  return report;
+}
+
+/// Each phase of a periodic path is nearly as good as the others. Of those that are stationary the next is
+/// found, perhaps not to many digits.
+NewtonReport PinnedSolve::converge_to_roundoff() {
+  const auto run = [&] {
+    return run_newton(w_.pinned, path_, least_correction, std::min(steps, options_.max_iterations));
+  };
+  if (!problem_.periodic) return run();
+  const auto stationary = [&] {
+    const double residual = w_.iteration.residual_at(path_);
+    return residual <= stationary_residual * w_.iteration.action().momentum_scale();
+  };
+  saved_ = path_;
+  NewtonReport report = run();
+  if (report.reached && stationary()) return report;
+  for (const bool from_orbit : {true, false}) {
+    if (from_orbit && !report.reached) continue;
+    if (!from_orbit) {
+      path_.copy_values(saved_);
+      path_.load_ends();
+    }
+    w_.iteration.free_phase(true);
+    report = run();
+    if (report.reached || stationary()) break;
+  }
+  report.reached = report.reached || stationary();
+  return report;
+}
+
+/// Newton from the guess, or from the path there is, to roundoff.
+bool PinnedSolve::solve_discrete(int elements) {
+  const std::vector<double> ends = starting_ends(problem_);
+  std::vector<double> mesh(elements + 1);
+  for (int k = 0; k <= elements; ++k) mesh[k] = static_cast<double>(k) / elements;
+  bool again = false;
+  for (int points = scheme_.points;; points = std::min(points < 8 ? points + 2 : points + 4, most_points)) {
+    bind(points);
+    w_.iteration.reset(problem_, w_.pinned, elements);
+    for (unsigned seed = 0; !again && seed <= most_bends; ++seed) {
+      path_.reset(w_.pinned, mesh, problem_.duration.value);
+      start_path(problem_, ends, w_.pinned, path_);
+      bend_path(problem_, {seed * 0.1, seed}, w_.pinned, path_);
+      w_.iteration.action().evaluate_plain(path_);
+      if (w_.iteration.action().finite() || problem_.guess.given()) break;
+    }
+    if (!again) {
+      magnitude_ = scales(path_, w_.pinned).magnitude;
+      run_external_solver(options_.method, problem_, w_.pinned, path_,
+                          [this] { return ++outcome_.iterations < options_.max_iterations; });
+    }
+    ResidualTest test;
+    const NewtonReport report = converge_to_roundoff();
+    outcome_.message = report.failure;
+    if (!report.reached) return false;
+    w_.iteration.residual_at(path_);
+    if (!test.passed(problem_, w_.iteration, path_)) {
+      outcome_.message = test.message();
+      return false;
+    }
+    again = true;
+    const bool more = scheme_.quadrature == Quadrature::exact && points < most_points;
+    if (!more || quadrature_is_exact()) return true;
+  }
+}
+
+/// Whether two more points leave S_h as it is.
+bool PinnedSolve::quadrature_is_exact() {
+  w_.iteration.action().evaluate_plain(path_);
+  const double action = w_.iteration.action().action();
+  const int points = std::min(w_.pinned_scheme->points + 2, most_points);
+  const SchemeTables finer(scheme_, points);
+  ElementTables tables;
+  tables.bind(finer, *problem_.lagrangian);
+  DiscreteAction check;
+  check.reset(*problem_.lagrangian, tables, path_.elements(), false);
+  check.evaluate_plain(path_);
+  return std::abs(check.action() - action) <= 1e-15 * std::abs(action);
+}
+
+/// Whether the companion's energy drifts no more than its elements explain.
+bool PinnedSolve::holds_energy(const Resolution::Error& left_out) {
+  if (!problem_.lagrangian->structure().autonomous) return true;
+  const Trajectory companion = trajectory_of(w_.other);
+  const Survey found = survey(*problem_.lagrangian, companion);
+  return found.finite && conserves_energy(found, companion, left_out);
+}
+
+/// Largest distance of the path from the extremal of elements of higher degree on the same mesh, or of halved
+/// elements where there is no higher degree, started from it; the companion's own truncation is added, and
+/// its movement under a finer quadrature. Infinite if it does not converge or does not hold its
+/// energy.
+double PinnedSolve::distance_to_companion() {
+  const int n = problem_.coordinates();
+  const bool halved = scheme_.degree + 3 > max_degree;
+  const int degree = halved ? scheme_.degree : std::max(scheme_.degree + 3, 6);
+  const ElementTables& tables = w_.levels.at(degree);
+  if (halved)
+    w_.other.split_from(path_, tables, w_.levels.halve(degree));
+  else
+    w_.other.interpolate_from(path_, tables, w_.levels.raise(path_.degree(), degree));
+  const Path start = w_.other;
+  w_.iteration.reset(problem_, tables, w_.other.elements());
+  const NewtonReport report = run_newton(tables, w_.other, 1e-12, companion_steps);
+  if (!report.reached) return INFINITY;
+  w_.resolution.measure(w_.other, tables);
+  const Scales size = scales(w_.other, tables);
+  const double range = size.q;
+  w_.iteration.set_scale(range);
+  const double unseen = w_.iteration.step_under(w_.levels.finer(tables.scheme()), w_.other);
+  const Resolution::Error left_out = w_.resolution.at(degree);
+  if (!std::isfinite(unseen) || !holds_energy(left_out)) return INFINITY;
+  double distance =
+      std::max(left_out.q + (report.remaining + unseen) * range, unit_roundoff * size.magnitude);
+  std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
+  for (int k = 0; k < start.elements(); ++k) {
+    start.element(k, a.data());
+    w_.other.element(k, b.data());
+    for (std::size_t i = 0; i < a.size(); ++i) distance = std::max(distance, std::abs(a[i] - b[i]));
+  }
+  return distance;
+}
+
+/// How many times more elements the tolerance needs, as the error falls by its order.
+double PinnedSolve::wanted_growth() const {
+  return std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order());
+}
+
+/// Elements.
+int PinnedSolve::most_affordable() {
+  bind(scheme_.points);
+  return static_cast<int>(
+      std::min<double>(most_elements, most_lanes * most_cost / batch_cost(w_.pinned, scheme_.degree)));
+}
+
+Outcome PinnedSolve::run() {
+  outcome_.message = "the action is not finite along the guess";
+  int elements = options_.elements > 0 ? options_.elements : 16;
+  const int most = most_affordable();
+  double before = INFINITY, expected = 0;  // errors: the last, and the expected one
+  double least = INFINITY;
+  int of_least = elements;
+  for (;; before = outcome_.error) {
+    if (!solve_discrete(elements)) {
+      if (options_.elements > 0 || elements >= 256 || cost_ > most_cost) break;
+      elements *= 4;
+      continue;
+    }
+    const Scales size = scales(path_, w_.pinned);
+    outcome_.error = distance_to_companion();
+    outcome_.tolerance = options_.tolerance * size.q;
+    outcome_.tables = &w_.pinned;
+    if (!std::isfinite(outcome_.error)) {
+      if (options_.elements == 0 && elements < most && cost_ < most_cost) {
+        elements *= 2;
+        continue;
+      }
+      if (options_.elements == 0) {
+        outcome_.message = fmt::format(
+            "no extremal that holds its energy was found near that of {} elements with others of higher "
+            "degree; try another tolerance or guess, or let the program choose the scheme",
+            elements);
+        break;
+      }
+      // No better extremal is near: the discrete one may be an artefact of the mesh.
+      outcome_.error = size.q;
+    }
+    if (options_.elements > 0 || outcome_.error <= outcome_.tolerance) {
+      outcome_.status = Status::converged;
+      outcome_.message = "converged";
+      outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
+      break;
+    }
+    const double noise = std::max(amplified_roundoff * size.q, at_roundoff * size.magnitude);
+    if (outcome_.error < stagnation * least) {
+      least = outcome_.error;
+      of_least = elements;
+    }
+    const bool futile = cost_ > most_cost && elements > futile_growth * of_least && least < resolved * size.q;
+    if (futile || (outcome_.error > stagnation * before && outcome_.error < noise)) {
+      outcome_.message = fmt::format("roundoff hides the tolerance {:.1e} from {} elements on; loosen it",
+                                     options_.tolerance, elements);
+      break;
+    }
+    // An error that falls as expected gives the number of elements needed; else the next number.
+    const bool regular = outcome_.error > regular_fall * expected && outcome_.error < expected / regular_fall;
+    const double growth = wanted_growth();
+    if (elements * (regular ? growth : std::min(growth, most_growth)) > most) {
+      outcome_.message =
+          fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
+                      scheme_.name, most, options_.tolerance);
+      break;
+    }
+    const double factor = std::clamp(growth, 1.1, most_growth);
+    expected = outcome_.error * std::pow(factor, -order());
+    elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * factor)));
+  }
+  return std::move(outcome_);
+}
+
+}  // namespace extremal

@@ -1,0 +1,283 @@
+#include "solve/branch/branch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "machine/simd.hpp"
+#include "solve/branch/limits.hpp"
+#include "solve/newton/ends.hpp"
+
+namespace extremal {
+
+using namespace limits::branch;
+
+namespace {
+
+void add_scaled(std::vector<double>& to, double factor, std::span<const double> a,
+                std::span<const double> b) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] += factor * (a[k] - b[k]);
+}
+
+}  // namespace
+
+Branch::Branch(const ProblemFamily& family, Path& path, Workspace& workspace)
+    : family_(family),
+      path_(path),
+      w_(workspace),
+      problem_(family.problem),
+      unit_(std::abs(family.to - family.from)) {
+  if (by_duration()) problem_.duration = {.value = 0, .free = true, .energy = 0, .where = {}};
+}
+
+bool Branch::set_coordinate(double coordinate) {
+  if (by_duration()) {
+    if (!(coordinate > 0)) return false;
+    path_.set_duration(coordinate);
+    if (!tables_ || tables_->scheme().degree != path_.degree()) bind();
+    return true;
+  }
+  std::optional<Problem> problem = family_.at(coordinate);
+  if (!problem) return false;
+  problem_ = std::move(*problem);
+  coordinate_ = coordinate;
+  fit_path(problem_);
+  bind();
+  return true;
+}
+
+void Branch::bind() {
+  w_.levels.bind(problem_.lagrangian);
+  tables_ = &w_.levels.at(path_.degree());
+  w_.iteration.reset(problem_, *tables_, path_.elements());
+  if (folds_ == true) w_.iteration.model().set_null_below(0);
+  factored_ = false;
+}
+
+/// Ends, and a duration that is given, are the problem's exactly.
+void Branch::fit_path(const Problem& problem) {
+  if (!problem.duration.free) path_.set_duration(problem.duration.value);
+  meet_ends(problem, path_);
+}
+
+bool Branch::apply(const Move& move, double factor) {
+  const double duration = path_.duration() + factor * move.step.duration;
+  if (!(duration > 0)) return false;
+  const double coordinate = this->coordinate() + factor * move.parameter;
+  path_.add(move.step.nodes, move.step.inner, factor);
+  if (!by_duration()) path_.set_duration(duration);
+  path_.load_ends();
+  const std::vector<double> before = ends();
+  if (!set_coordinate(coordinate)) return false;
+  ends_ = ends();
+  for (std::size_t e = 0; e < ends_.size(); ++e) ends_[e] -= before[e];
+  stretch_ = by_duration() ? 0 : path_.duration() - duration;
+  return true;
+}
+
+/// q(0), q(T).
+std::vector<double> Branch::ends() const {
+  const int n = path_.coordinates();
+  std::vector<double> both(path_.node(0), path_.node(0) + n);
+  both.insert(both.end(), path_.node(path_.elements()), path_.node(path_.elements()) + n);
+  return both;
+}
+
+double Branch::drift(const Move& tangent) const {
+  const std::size_t n = ends_.size() / 2, last = tangent.step.nodes.size() - n;
+  double sum = 0;
+  for (std::size_t a = 0; a < n; ++a)
+    sum += weight(0) * tangent.step.nodes[a] * ends_[a] +
+           weight(path_.elements()) * tangent.step.nodes[last + a] * ends_[n + a];
+  return sum / (units_.extent * units_.extent * static_cast<double>(n)) +
+         tangent.step.duration * stretch_ / (units_.duration * units_.duration);
+}
+
+bool Branch::linearise(Factors factors) {
+  if (factors == Factors::anew) {
+    inertia_.reset();
+    measure_phases(problem_, path_, tables_->scheme(), true, phases_);
+    w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
+  }
+  const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter();
+  const double length = solved ? dot(direction, direction) : 0;
+  return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
+}
+
+bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  if (factors == Factors::anew)
+    factored_ = model.evaluate(action, path_, closing);
+  else
+    model.evaluate_gradient(action, path_);
+  defined_ = action.finite();
+  if (!factored_ || !defined_) return false;
+  note_action();
+  return true;
+}
+
+void Branch::note_action() {
+  const DiscreteAction& action = w_.iteration.action();
+  action_ = action.action();
+  energy_ = -action.slope_duration();
+  momenta_.assign(action.start_gradient().begin(), action.start_gradient().end());
+  for (double& p : momenta_) p = -p;
+  momenta_.insert(momenta_.end(), action.end_gradient().begin(), action.end_gradient().end());
+}
+
+bool Branch::linearise_duration(Factors factors) {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  if (!evaluate(&closing_, factors)) return false;
+  const bool anew = factors == Factors::anew, by_energy = closing_.row.empty();
+  if (anew) energy_unit_ = energy_unit(action, path_.duration());
+  closing_.value = by_energy ? energy_ : 0;
+  solve_with_duration(model, action, closing_, correction);
+  if (anew) {
+    closing_.value = by_energy ? energy_ + energy_unit_ : -units_.extent;
+    solve_with_duration(model, action, closing_, direction);
+    direction.add(correction, -1);
+  }
+  along_ = by_energy ? energy_unit_ : energy_change(direction);
+  off_ = by_energy
+             ? 0
+             : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
+  action_slope_ = -energy_ * direction.parameter;
+  return true;
+}
+
+/// Of E = −∂S/∂T, to first order.
+double Branch::energy_change(const Move& move) const {
+  const NodeEquations& nodes = w_.iteration.action().nodes;
+  return -std::inner_product(move.step.nodes.begin(), move.step.nodes.end(), nodes.border.begin(),
+                             nodes.corner * move.parameter);
+}
+
+/// Where the energy has an extremum along the branch, the equations that it closes are singular. So are those
+/// that a displacement of the ends closes, where they do not move.
+std::vector<double> Branch::closing_row(const Move& onward) const {
+  if (!by_duration() || tables_->unknowns() > most_dense_unknowns) return {};
+  const std::size_t n = path_.coordinates(), last = onward.step.nodes.size() - n;
+  std::vector<double> row(onward.step.nodes.begin(), onward.step.nodes.begin() + n);
+  row.insert(row.end(), onward.step.nodes.begin() + last, onward.step.nodes.end());
+  const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
+  if (!(length > std::abs(energy_change(onward)) / energy_unit_ * units_.extent)) return {};
+  for (double& x : row) x /= length;
+  return row;
+}
+
+/// H δx = −∂g/∂p, and the equation that closes a free duration with it, by gradients beside the path with the
+/// factors there are. Ends that depend on p move along a line.
+bool Branch::linearise_parameter() {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  ClosingEquation equation;
+  const ClosingEquation* closing = closing_equation(problem_, path_, equation);
+  if (!evaluate(closing, Factors::anew)) return false;
+  model.solve(action, closing, correction.step);
+  if (!folds_) folds_ = model.left_out() == 0;
+  correction.parameter = 0;
+  closing_sign_ = 1;
+  if (closing) {
+    equation.value -= 1 + std::abs(equation.value);
+    model.solve(action, closing, direction.step);
+    closing_sign_ = direction.step.duration - correction.step.duration < 0 ? -1 : 1;
+  }
+  Move before;
+  const double by = small * unit_;
+  const double after_action = solve_beside(by, direction), before_action = solve_beside(-by, before);
+  defined_ = std::isfinite(after_action) && std::isfinite(before_action);
+  if (!defined_) return false;
+  direction.add(before, -1);
+  direction.scale(1 / (2 * by));
+  direction.parameter = 1;
+  action_slope_ = (after_action - before_action) / (2 * by);
+  if (problem_.duration.free) action_slope_ -= energy_ * direction.step.duration;
+  return true;
+}
+
+/// The step from the path, as it would lie in the problem beside, to that problem's extremal. Returns the
+/// action there; NaN if there is no such problem.
+double Branch::solve_beside(double by, Move& move) {
+  const std::optional<Problem> problem = family_.at(coordinate_ + by);
+  if (!problem) return NAN;
+  beside_.bind(problem->lagrangian);
+  DiscreteAction& action = w_.iteration.action();
+  at_ = path_;
+  fit_path(*problem);
+  action.substitute(*problem->lagrangian, beside_.at(path_.degree()));
+  w_.iteration.model().evaluate_gradient(action, path_);
+  ClosingEquation equation;
+  w_.iteration.model().solve(action, closing_equation(*problem, path_, equation), move.step);
+  add_scaled(move.step.nodes, 1, path_.nodes(), at_.nodes());
+  move.step.duration += path_.duration() - at_.duration();
+  move.parameter = by;
+  action.substitute(*problem_.lagrangian, *tables_);
+  path_.copy_values(at_);
+  path_.load_ends();
+  return action.finite() ? action.action() : NAN;
+}
+
+double Branch::varied() const { return family_.varied == Varied::energy ? energy_ : coordinate(); }
+
+double Branch::change(bool along) const {
+  if (family_.varied == Varied::energy) return along ? along_ : off_;
+  return along ? direction.parameter : correction.parameter;
+}
+
+const Inertia& Branch::inertia() const {
+  if (!inertia_) inertia_ = w_.iteration.model().inertia(threshold_);
+  return *inertia_;
+}
+
+void Branch::respond(const Move& onward, Move& response) {
+  const std::size_t n = path_.coordinates(), count = path_.elements() + 1;
+  std::vector<double> load(count * n);
+  for (std::size_t k = 1; k + 1 < count; ++k)
+    for (std::size_t a = 0; a < n; ++a) {
+      const double tau = path_.mesh()[k], weight = path_.mesh()[k + 1] - path_.mesh()[k - 1];
+      load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
+    }
+  ClosingEquation equation;
+  const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, path_, equation);
+  w_.iteration.second_variation()->respond(w_.iteration.action(), closing, load, response.step);
+  response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
+  response.add(direction, -dot(onward, response) / dot(onward, direction));
+}
+
+int Branch::orientation(double onward) const {
+  const bool negative = (inertia().negative % 2 != 0) != (onward * direction.parameter * closing_sign_ < 0);
+  return negative ? -1 : 1;
+}
+
+/// Of node k in the mean over τ.
+double Branch::weight(int k) const {
+  const std::span<const double> mesh = path_.mesh();
+  return 0.5 * (mesh[std::min(k + 1, path_.elements())] - mesh[std::max(k - 1, 0)]);
+}
+
+double Branch::dot(const Move& a, const Move& b) const {
+  const std::size_t n = path_.coordinates();
+  double sum = 0;
+  for (int k = 0; k <= path_.elements(); ++k) {
+    double product = 0;
+    for (std::size_t i = k * n; i < (k + 1) * n; ++i) product += a.step.nodes[i] * b.step.nodes[i];
+    sum += weight(k) * product;
+  }
+  const double unit = by_duration() ? units_.duration : unit_;
+  return sum / (units_.extent * units_.extent * static_cast<double>(n)) +
+         a.step.duration * b.step.duration / (units_.duration * units_.duration) +
+         a.parameter * b.parameter / (unit * unit);
+}
+
+double Branch::largest(const Move& move) const {
+  double most = 0;
+  for (const double x : move.step.nodes) most = std::max(most, std::abs(x));
+  const double unit = by_duration() ? units_.duration : unit_;
+  return std::max({most / units_.extent, std::abs(move.step.duration) / units_.duration,
+                   std::abs(move.parameter) / unit});
+}
+
+}  // namespace extremal

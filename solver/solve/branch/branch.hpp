@@ -1,0 +1,126 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "action/rule.hpp"
+#include "solve/adapt/workspace.hpp"
+#include "solve/homotopy/curve.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
+
+/// \file The equations of a branch of extremals, linearised at one path of it.
+
+namespace extremal {
+
+/// The number that varies along a branch.
+enum class Varied { duration, energy, parameter };
+
+/// Problems that differ in one number.
+struct ProblemFamily {
+  Problem problem;  ///< where it begins
+  Varied varied = Varied::duration;
+  double from = 0, to = 1;  ///< the number there, and where the branch is to lead
+  /// The problem with this value of a parameter, if it has one; for Varied::parameter. Its boundary relation
+  /// has the same coefficients, its ends, duration and energy may differ.
+  std::function<std::optional<Problem>(double)> at = {};
+};
+
+/// Curves through a path: with x the path, δS = 0 and the equation that closes a free duration leave of (x,
+/// T) one direction where the duration or the energy varies, and of (x, T, p) one where a parameter p does.
+class Branch : public ExtremalCurve {
+ public:
+  Branch(const ProblemFamily& family, Path& path, Workspace& workspace);
+
+  /// Takes over the path as it is, on elements of its degree, with this value of the coordinate.
+  bool set_coordinate(double coordinate);
+  /// Binds the equations to the path after its elements changed.
+  void bind();
+  /// The coordinate that Move::parameter changes: the parameter, or the duration.
+  double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
+  /// Moves path and coordinate; false if there is no problem there.
+  bool apply(const Move& move, double factor) override;
+  /// Scalar product of a tangent with the nonlinear part of the last apply(): ends and durations that do not
+  /// depend linearly on the parameter.
+  double drift(const Move& tangent) const override;
+
+  /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
+  /// With the factors of the path that was linearised before, the direction stays that of there.
+  bool linearise(Factors factors = Factors::anew) override;
+  /// Whether there are factors of a path in the same problem and on the same elements.
+  bool factored() const { return factored_; }
+  /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
+  bool defined() const { return defined_; }
+  /// Over (q(0), q(T)): a displacement of the ends that had better close the equations near the path that was
+  /// linearised at last, whose tangent is given. Empty: the energy does.
+  std::vector<double> closing_row(const Move& onward) const;
+  void close_by(const std::vector<double>& row) { closing_.row = row; }
+  /// The response of the equations linearised last, with the tangent `onward` as their last row, to a load
+  /// without any symmetry: the nearer to a branch point, the longer, and along the branch that crosses.
+  void respond(const Move& onward, Move& response);
+
+  /// Of the path that was linearised.
+  double action() const { return action_; }
+  double energy() const { return energy_; }
+  /// −∂S/∂q(0), then ∂S/∂q(T).
+  std::span<const double> momenta() const { return momenta_; }
+  /// The number that varies.
+  double varied() const override;
+  /// By how much a move makes it greater, correction and direction apart.
+  double change(bool along) const override;
+  /// The sign of the determinant of the equations with the tangent `onward`·direction as their last row: it
+  /// changes where branches cross, but not at folds.
+  int orientation(double onward) const;
+  /// Of the second variation, duration and parameter held; eigenvalues within `threshold` of zero are null.
+  void set_null_threshold(double threshold) { threshold_ = threshold; }
+  const Inertia& inertia() const;
+
+  /// ∂S/∂s along onward·direction from the derivatives of the action: −E ∂T/∂s + ∂S/∂p ∂p/∂s.
+  double action_slope() const { return action_slope_; }
+
+  const Problem& problem() const { return problem_; }
+  const ElementTables& tables() const { return *tables_; }
+  /// Mean over τ, by the nodes, relative to an extent of the path; durations relative to another, parameters
+  /// to the distance wanted.
+  double dot(const Move& a, const Move& b) const override;
+  /// The most that a node is moved, which short elements hide in the mean.
+  double largest(const Move& move) const;
+  struct Units {
+    double extent = 1, duration = 1;
+  };
+  void set_units(const Units& units) { units_ = units; }
+
+ private:
+  bool by_duration() const { return family_.varied != Varied::parameter; }
+  bool linearise_duration(Factors factors);
+  bool linearise_parameter();
+  bool evaluate(const ClosingEquation* closing, Factors factors);
+  double energy_change(const Move& move) const;
+  double solve_beside(double by, Move& move);
+  void fit_path(const Problem& problem);
+  void note_action();
+  std::vector<double> ends() const;
+  double weight(int k) const;
+
+  const ProblemFamily& family_;
+  Path& path_;
+  Workspace& w_;
+  Problem problem_;
+  Levels beside_;
+  const ElementTables* tables_ = nullptr;
+  double coordinate_ = 0, unit_, threshold_ = zero_eigenvalue;
+  bool defined_ = true, factored_ = false;
+  std::optional<bool> folds_;  ///< its null directions are those of folds, not of a degenerate family
+  Units units_;
+  ClosingEquation closing_;     ///< where the duration or the energy varies
+  double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction
+  double action_ = 0, energy_ = 0, energy_unit_ = 1, action_slope_ = 0;
+  int closing_sign_ = 1;
+  mutable std::optional<Inertia> inertia_;  ///< of the last linearisation, once asked for
+  Path at_;
+  PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
+  std::vector<double> momenta_;
+  std::vector<double> ends_;  ///< nonlinear part of the last apply(), 2n
+  double stretch_ = 0;        ///< and the duration
+};
+
+}  // namespace extremal

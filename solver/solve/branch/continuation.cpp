@@ -1,0 +1,214 @@
+#include "solve/branch/continuation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/branch/limits.hpp"
+#include "solve/search/search.hpp"
+
+namespace extremal {
+
+using namespace limits::continuation;
+
+namespace {
+
+double grading(const Path& path) {
+  const std::span<const double> mesh = path.mesh();
+  double shortest = 1, longest = 0;
+  for (int k = 0; k < path.elements(); ++k) {
+    shortest = std::min(shortest, mesh[k + 1] - mesh[k]);
+    longest = std::max(longest, mesh[k + 1] - mesh[k]);
+  }
+  return longest / shortest;
+}
+
+double growth(const Tracker& tracker) {
+  const double cosine = tracker.cosine();
+  const double growth = cosine > straight ? growth_if_straight : cosine > bent ? growth_if_bent : growth_else;
+  return tracker.factorisations() > many_factorisations ? std::min(growth, growth_if_many) : growth;
+}
+
+/// The action a little onward and back against the integral of its derivative, by Simpson's rule; nearer by
+/// where that is not exact enough. Infinite where neither is known.
+double action_difference(Tracker& tracker) {
+  const BranchState at = tracker.state;
+  // −E T alone may be large: S vanishes for small swings.
+  const double size = std::max({std::abs(at.action), std::abs(at.action_rate), at.energy_time});
+  const Branch& branch = tracker.branch();
+  double least = INFINITY;
+  for (const double by : probes) {
+    double action[2], rate[2];
+    bool there = size > 0;
+    for (int side = 0; side < 2 && there; ++side) {
+      there = tracker.reach(at, side ? by : -by, true);
+      const BranchState& here = tracker.state;
+      action[side] = here.action;
+      rate[side] = here.action_rate * branch.dot(tracker.tangent(), tracker.tangent()) /
+                   branch.dot(tracker.tangent(), here.tangent);
+    }
+    if (!there) continue;
+    const double found = (action[1] - action[0]) / (2 * by);
+    const double expected = (rate[0] + 4 * at.action_rate + rate[1]) / 6;
+    least = std::min(least, std::abs(found - expected) / size);
+    if (least < exact) break;
+  }
+  tracker.state = at;
+  return least;
+}
+
+}  // namespace
+
+Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
+    : family_(std::move(family)), options_(std::move(options)), tracker_(family_, options_.solve.tolerance) {}
+
+Continuation::Continuation(ProblemFamily family, ContinuationOptions options, BranchStart start, int side)
+    : family_(std::move(family)),
+      options_(std::move(options)),
+      tracker_(family_, options_.solve.tolerance),
+      start_(std::move(start)),
+      side_(side) {}
+
+bool Continuation::stop(BranchEnd end, std::string message) {
+  end_ = end;
+  message_ = std::move(message);
+  return false;
+}
+
+void Continuation::add(FoundPoint found) {
+  worst_momentum_ = std::max(worst_momentum_, found.point.momentum_difference);
+  found_.push_back(std::move(found));
+}
+
+bool Continuation::advance() {
+  if (end_ != BranchEnd::none && found_.empty()) return false;
+  if (!std::exchange(started_, true) && !begin()) return false;
+  if (count_ == options_.points) {
+    found_.clear();
+    return stop(BranchEnd::points, fmt::format("{} points have been found; ask for more", count_));
+  }
+  while (found_.empty())
+    if (end_ != BranchEnd::none || !step()) return false;
+  last_ = std::move(found_.front());
+  found_.pop_front();
+  ++count_;
+  return true;
+}
+
+bool Continuation::begin() {
+  longest_ = std::clamp(coverage / options_.points, least_longest, most_longest);
+  length_ = std::min(first_length, longest_);
+  if (!(start_ ? begin_from_start() : begin_from_solve())) return false;
+  tracker_.measure_anew();
+  add({read_point(tracker_, PointKind::regular)});
+  first_ = tracker_.state;
+  check_action();
+  return true;
+}
+
+/// The extremal that a solve finds, with the branch's tangent there.
+bool Continuation::begin_from_solve() {
+  tracker_.workspace().levels.bind(family_.problem.lagrangian);
+  SolveOptions adaptive = options_.solve;
+  adaptive.scheme.reset();
+  adaptive.elements = 0;
+  Search search(family_.problem, adaptive, tracker_.workspace());
+  const Outcome& outcome = search.run();
+  if (outcome.status != Status::converged)
+    return stop(BranchEnd::not_started, "no extremal to begin with: " + outcome.message);
+  double at_rest = 0;
+  for (const double x : family_.problem.guess.q) at_rest = std::max(at_rest, rest * std::abs(x));
+  const double coordinate = family_.varied == Varied::parameter ? family_.from : outcome.path.duration();
+  if (!tracker_.begin(std::move(search.path()), coordinate, at_rest))
+    return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
+  BranchState& state = tracker_.state;
+  if (state.rate * (family_.to - family_.from) < 0) state.scale(-1);
+  return true;
+}
+
+/// Along the response of the equations next to where they are singular: it has little of the branch that is
+/// crossed, and across it that branch does not go far.
+bool Continuation::begin_from_start() {
+  const BranchStart start = *std::exchange(start_, std::nullopt);
+  if (tracker_.begin(start.path, start.coordinate, start.units, rest * start.units.extent)) {
+    Branch& branch = tracker_.branch();
+    const BranchState& state = tracker_.state;
+    BranchState from = state;
+    branch.respond(state.tangent, from.tangent);
+    from.tangent.scale(side_ / std::sqrt(branch.dot(from.tangent, from.tangent)));
+    // The number varies with the square of the length, perhaps fast: not past the value wanted at once.
+    double past = 0;
+    for (double length = first_departure; length > least_departure; length *= shorter_departure) {
+      if (!tracker_.reach(from, length)) continue;
+      if ((state.varied - family_.to) * (from.varied - family_.to) > 0) return true;
+      past = length;
+    }
+    if (past > 0 && tracker_.reach(from, past)) return true;
+  }
+  return stop(BranchEnd::not_started, "no other branch was found where the equations are singular");
+}
+
+/// The next step that succeeds, with all that is found on it: a shorter one where the value that the branch
+/// is to lead to is passed and not found.
+bool Continuation::step() {
+  BranchState& state = tracker_.state;
+  std::swap(state, from_);
+  for (;; length_ *= shortening) {
+    if (length_ < least_length) return give_up(from_);
+    if (tracker_.reach_smoothly(from_, length_)) break;
+  }
+  const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
+  tracker_.measure_anew();
+  tracker_.predict(from_, length);
+  length_ = std::min(length_, tracker_.predictable_length());
+  BranchPoint next = read_point(tracker_, PointKind::regular);
+  state.doubling_tests_before = from_.doubling_tests;
+  if (++steps_ % unchecked == 0) check_action();
+  std::swap(state, to_);
+  StepEvents events =
+      locate_events(tracker_, {family_, first_, options_.other_branches}, {from_, to_, length});
+  std::swap(state, events.missed ? from_ : to_);
+  if (events.missed) {
+    length_ = shortening * length;
+    tracker_.fail(StepFailure::rough);
+    return step();
+  }
+  for (FoundPoint& found : events.points) add(std::move(found));
+  if (events.end != BranchEnd::none)
+    stop(events.end, std::move(events.message));
+  else
+    add({std::move(next)});
+  return !found_.empty();
+}
+
+void Continuation::check_action() {
+  const double difference = action_difference(tracker_);
+  if (difference < INFINITY) worst_action_slope_ = std::max(worst_action_slope_, difference);
+}
+
+bool Continuation::give_up(const BranchState& from) {
+  const double varied = from.varied, graded = grading(from.path);
+  StepFailure failure = tracker_.failure();
+  if (failure == StepFailure::rough && graded > singular_grading) failure = StepFailure::crowded;
+  switch (failure) {
+    case StepFailure::crowded:
+      return stop(
+          BranchEnd::collision,
+          fmt::format("at {:.8g} the path, whose shortest element is {:.0e} of its longest, needs ever "
+                      "more of them: it comes near a singularity; loosen the tolerance",
+                      varied, 1 / graded));
+    case StepFailure::no_problem:
+      return stop(BranchEnd::limit,
+                  fmt::format("at {:.8g} the branch cannot be followed: beyond, there is no such problem, or "
+                              "L is not finite",
+                              varied));
+    default:
+      return stop(
+          BranchEnd::too_short,
+          fmt::format("at {:.8g} the branch cannot be followed in steps of {:.0e}", varied, least_length));
+  }
+}
+
+}  // namespace extremal

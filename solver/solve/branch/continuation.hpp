@@ -1,0 +1,79 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "solve/adapt/options.hpp"
+#include "solve/branch/events.hpp"
+
+/// \file A branch of extremals, point by point.
+
+namespace extremal {
+
+struct ContinuationOptions {
+  SolveOptions solve = {};      ///< of the first point; each point meets its tolerance
+  int points = 50;              ///< at most, folds and branch points included
+  bool other_branches = false;  ///< keep where other branches begin
+};
+
+/// Extremals of a family of problems, from the one that a solve finds to where the family is to lead, past
+/// folds, by pseudo-arclength (see Tracker). Steps grow while Newton's method converges fast and the branch
+/// bends little. Found to 1e-11 of the distance wanted: folds, where the derivative of the number that varies
+/// changes its sign; branch points, where the orientation of the equations does (Branch::orientation) and
+/// their response to a load has no bound; period doublings of periodic orbits, where a multiplier passes −1.
+/// Two folds or two doublings on one step are found where its ends predict them.
+///
+///     Continuation branch(family, options);
+///     while (branch.advance()) use(branch.point());
+class Continuation {
+ public:
+  Continuation(ProblemFamily family, ContinuationOptions options);
+  /// The branch that crosses another one near a start, one way (side = 1) or the other (−1). The family is
+  /// that of its orbits: after a period doubling, that of twice the period.
+  Continuation(ProblemFamily family, ContinuationOptions options, BranchStart start, int side);
+
+  /// To the next point. False where the branch has ended.
+  bool advance();
+  const BranchPoint& point() const { return last_.point; }
+  /// Where another branch begins at the point, if options.other_branches are wanted.
+  const std::optional<BranchStart>& start() const { return last_.start; }
+
+  BranchEnd end() const { return end_; }
+  /// Why it ended, with numbers.
+  const std::string& message() const { return message_; }
+  /// Largest |∂S/∂s − (−E ∂T/∂s + ∂S/∂p ∂p/∂s)| so far, relative to |S| or |E T| by the length of the path:
+  /// at every few points differences of the action, that of Newton's method, are compared with its
+  /// derivatives.
+  double worst_action_slope() const { return worst_action_slope_; }
+  /// Largest BranchPoint::momentum_difference so far.
+  double worst_momentum() const { return worst_momentum_; }
+
+ private:
+  bool begin();
+  bool begin_from_solve();
+  bool begin_from_start();
+  bool step();
+  void check_action();
+  void add(FoundPoint found);
+  bool stop(BranchEnd end, std::string message);
+  bool give_up(const BranchState& from);
+
+  ProblemFamily family_;
+  ContinuationOptions options_;
+  Tracker tracker_;
+  std::optional<BranchStart> start_;  ///< the branch begins there
+  int side_ = 1;
+  BranchState first_;
+  BranchState from_, to_;  ///< of the last step, whose memory the next one uses
+  double length_ = 0, longest_ = 0;
+  int count_ = 0, steps_ = 0;
+  bool started_ = false;
+  double worst_action_slope_ = 0, worst_momentum_ = 0;
+  std::deque<FoundPoint> found_;
+  FoundPoint last_;
+  BranchEnd end_ = BranchEnd::none;
+  std::string message_ = "the branch has not been followed";
+};
+
+}  // namespace extremal

@@ -1,0 +1,73 @@
+#include "solve/branch/diagram.hpp"
+
+#include <utility>
+
+#include "solve/periodic/doubled_orbit.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// The family of the orbits run through twice.
+ProblemFamily doubled(const ProblemFamily& family) {
+  ProblemFamily twice = family;
+  twice.problem = doubled(family.problem);
+  if (family.varied == Varied::duration) {
+    twice.from *= 2;
+    twice.to *= 2;
+  }
+  if (family.at)
+    twice.at = [at = family.at](double parameter) -> std::optional<Problem> {
+      const std::optional<Problem> problem = at(parameter);
+      if (!problem) return std::nullopt;
+      return doubled(*problem);
+    };
+  return twice;
+}
+
+}  // namespace
+
+Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
+    : family_(std::move(family)), options_(std::move(options)) {
+  current_.emplace(family_, options_);
+  branches_.emplace_back();
+}
+
+bool Diagram::advance() {
+  while (!current_->advance()) {
+    note();
+    if (!begin_next()) return false;
+  }
+  note();
+  point_ = current_->point();
+  point_.branch = static_cast<int>(branches_.size()) - 1;
+  ++branches_.back().points;
+  if (const std::optional<BranchStart>& start = current_->start()) {
+    waiting_.push_back({count_, *start, 1});
+    if (start->kind == PointKind::branch) waiting_.push_back({count_, *start, -1});
+  }
+  ++count_;
+  return true;
+}
+
+void Diagram::note() {
+  BranchRecord& record = branches_.back();
+  record.end = current_->end();
+  record.message = current_->message();
+  record.worst_action_slope = current_->worst_action_slope();
+  record.worst_momentum = current_->worst_momentum();
+}
+
+bool Diagram::begin_next() {
+  if (waiting_.empty()) return false;
+  Waiting next = std::move(waiting_.front());
+  waiting_.pop_front();
+  ContinuationOptions options = options_;
+  options.other_branches = false;
+  const bool twice = next.start.kind == PointKind::period_doubling;
+  current_.emplace(twice ? doubled(family_) : family_, options, std::move(next.start), next.side);
+  branches_.push_back({.origin = next.origin});
+  return true;
+}
+
+}  // namespace extremal

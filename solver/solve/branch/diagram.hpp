@@ -1,0 +1,55 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solve/branch/continuation.hpp"
+
+/// \file A branch of extremals with those that bifurcate from it.
+
+namespace extremal {
+
+/// One branch as a whole.
+struct BranchRecord {
+  std::optional<int> origin = {};  ///< number of the point, among all, that it begins next to; first: none
+  BranchEnd end = BranchEnd::none;
+  std::string message = {};  ///< why it ended
+  int points = 0;
+  double worst_action_slope = 0, worst_momentum = 0;  ///< see Continuation
+};
+
+/// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches
+/// cross, one way and the other; where a period doubles, the orbits of twice the period. Each has as many
+/// points as the options allow.
+class Diagram {
+ public:
+  Diagram(ProblemFamily family, ContinuationOptions options);
+
+  /// To the next point. False where all branches have ended.
+  bool advance();
+  const BranchPoint& point() const { return point_; }
+
+  /// In the order of BranchPoint::branch, those that have begun or could not.
+  const std::vector<BranchRecord>& branches() const { return branches_; }
+
+ private:
+  struct Waiting {
+    int origin;
+    BranchStart start;
+    int side;
+  };
+  bool begin_next();
+  void note();
+
+  ProblemFamily family_;
+  ContinuationOptions options_;
+  std::optional<Continuation> current_;
+  std::deque<Waiting> waiting_;
+  std::vector<BranchRecord> branches_;
+  BranchPoint point_;
+  int count_ = 0;
+};
+
+}  // namespace extremal

@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/branch/events.hpp"
+#include "solve/branch/limits.hpp"
+#include "solve/branch/root.hpp"
+#include "solve/mesh/roundoff.hpp"
+
+namespace extremal {
+
+using namespace limits::event_location;
+
+namespace {
+
+/// Mean over τ of the product of two paths, each less its mean, by the nodes.
+double swing(const Path& a, const Path& b) {
+  const std::size_t n = a.coordinates(), count = a.elements() + 1;
+  const std::vector<double> other = interpolated(b.nodes(), n, b.mesh(), a.mesh());
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double product = 0, mean = 0, other_mean = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double weight = 0.5 * (a.mesh()[std::min(k + 1, count - 1)] - a.mesh()[k > 0 ? k - 1 : 0]);
+      const double x = a.nodes()[k * n + i], y = other[k * n + i];
+      product += weight * x * y;
+      mean += weight * x;
+      other_mean += weight * y;
+    }
+    sum += product - mean * other_mean;
+  }
+  return sum;
+}
+
+/// To a value between those before and after: exactly, or, where Newton's method does not land there, nearly.
+double find_value(Tracker& tracker, const ProblemFamily& family, const BranchState& from, double value,
+                  const Sample& near, const Sample& far) {
+  const double distance = std::abs(family.to - family.from), reach = far.at - near.at;
+  const auto search = [&](double enough) {
+    return root(
+        tracker, from, {near.at, near.value - value}, {far.at, far.value - value}, std::nullopt,
+        [&] { return tracker.state.varied - value; },
+        [&](double off, double change) {
+          return std::abs(off) <= std::max(enough * distance, 8 * unit_roundoff * std::abs(value)) ||
+                 change <= 2 * unit_roundoff * reach;
+        });
+  };
+  // The number as a parabola, level at a fold: v(σ) = before + slope σ + bend σ².
+  const double slope = near.at == 0 ? from.rate : 0, off = value - near.value;
+  const double bend = ((far.value - near.value) / reach - slope) / reach;
+  const double guess = 2 * off / (slope + std::copysign(std::sqrt(slope * slope + 4 * bend * off), off));
+  if (guess >= 0 && guess <= reach && tracker.reach(from, near.at + guess, false, &value) &&
+      tracker.turned_little()) {
+    const double landed = near.at + guess + tracker.landed();
+    if (landed >= near.at && landed <= far.at) return landed;
+  }
+  const double at = search(near_value);
+  return std::isfinite(at) && tracker.land(value) ? at : search(at_value);
+}
+
+/// Where periodic orbits have all but shrunk to a point: beyond, they would be the same ones half a period
+/// later.
+double find_rest(Tracker& tracker, const BranchState& from, const BranchState& to, double length) {
+  const Problem& problem = tracker.branch().problem();
+  if (!problem.periodic || !problem.lagrangian->structure().autonomous) return NAN;
+  const double size = swing(from.path, from.path), after = swing(to.path, from.path) / size;
+  if (!(after < 0)) return NAN;
+  return root(
+      tracker, from, {0, 1 - nearly_rest}, {length, after - nearly_rest}, std::nullopt,
+      [&] { return swing(tracker.state.path, from.path) / size - nearly_rest; },
+      [](double off, double) { return std::abs(off) <= rest_located * nearly_rest; });
+}
+
+/// Whether a state is the first of the branch, passed in the same direction.
+bool is_first(const BranchState& state, const BranchState& first) {
+  const auto equal = [](double a, double b) {
+    return std::abs(a - b) <= same * std::max(std::abs(a), std::abs(b));
+  };
+  return state.rate * first.rate > 0 && equal(state.action, first.action) &&
+         equal(state.coordinate, first.coordinate) && state.orientation == first.orientation &&
+         equal(state.path.duration(), first.path.duration());
+}
+
+/// Folds, branch points and period doublings on a step, and the number that varies at its ends and where it
+/// turns back.
+struct SpecialPoints {
+  std::vector<Event> events;
+  std::vector<Sample> extremes;
+};
+
+SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
+  SpecialPoints result;
+  std::vector<Event> folds = find_folds(tracker, search, step);
+  result.extremes.push_back({0, step.from.varied});
+  for (const Event& fold : folds) result.extremes.push_back({fold.at, fold.found.point.parameter});
+  result.extremes.push_back({step.length, step.to.varied});
+  std::vector<Event> crossings = find_branch_points(tracker, search, step);
+  // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
+  std::erase_if(folds, [&](const Event& fold) {
+    return std::ranges::any_of(crossings, [&](const Event& crossing) {
+      return std::abs(crossing.at - fold.at) <= one * step.length;
+    });
+  });
+  for (std::vector<Event>* events : {&folds, &crossings})
+    std::ranges::move(*events, std::back_inserter(result.events));
+  std::ranges::move(find_doublings(tracker, search, step), std::back_inserter(result.events));
+  return result;
+}
+
+/// The end of the branch, where it is on a step.
+struct End {
+  double at = NAN;
+  BranchEnd kind = BranchEnd::none;
+  std::string message = {};
+  std::optional<BranchPoint> last = {};
+  bool missed = false;
+};
+
+bool passes(const ProblemFamily& family, double value, double a, double b) {
+  return (a - value) * (b - value) <= 0 && std::abs(a - value) > located * std::abs(family.to - family.from);
+}
+
+/// The value that the branch is to lead to, its first point again, or rest.
+End find_end(Tracker& tracker, const EventSearch& search, const BranchStep& step,
+             const std::vector<Sample>& extremes) {
+  const ProblemFamily& family = search.family;
+  bool missed = false;
+  const auto find = [&](double value, const auto& wanted) {
+    for (std::size_t k = 1; k < extremes.size(); ++k) {
+      if (!passes(family, value, extremes[k - 1].value, extremes[k].value)) continue;
+      const double at = find_value(tracker, family, step.from, value, extremes[k - 1], extremes[k]);
+      if (std::isfinite(at) && wanted()) return at;
+      missed = true;
+    }
+    return double(NAN);
+  };
+  if (const double at = find(family.to, [] { return true; }); std::isfinite(at))
+    return {at, BranchEnd::target, fmt::format("the branch leads to {:.12g}", family.to),
+            read_point(tracker, PointKind::regular)};
+  if (missed) return {.missed = true};
+  const BranchState& state = tracker.state;
+  if (const double at = find(search.first.varied, [&] { return is_first(state, search.first); });
+      std::isfinite(at))
+    return {at, BranchEnd::closed, "the branch is closed: it came back to its first point"};
+  if (const double at = find_rest(tracker, step.from, step.to, step.length); std::isfinite(at))
+    return {at, BranchEnd::rest,
+            fmt::format("at {:.8g} the orbits shrink onto an equilibrium, with the period {:.8g}",
+                        state.varied, state.path.duration()),
+            read_point(tracker, PointKind::regular)};
+  return {};
+}
+
+}  // namespace
+
+StepEvents locate_events(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
+  const auto& [start, to, length] = step;
+  const bool may_end = passes(search.family, search.family.to, start.varied, to.varied) ||
+                       passes(search.family, search.first.varied, start.varied, to.varied);
+  std::optional<BranchState> aimed;
+  if (may_fold(step) || may_double(step) || branches_cross(start, to) || may_end)
+    aimed = tracker.with_cubic(step);
+  const BranchStep along{aimed ? *aimed : start, to, length};
+  auto [events, extremes] = find_special_points(tracker, search, along);
+  End end = find_end(tracker, search, along, extremes);
+  if (end.missed) return {.missed = true};
+  if (end.kind != BranchEnd::none)
+    std::erase_if(events, [&](const Event& event) { return event.at > end.at; });
+  if (end.last) events.push_back({end.at, {std::move(*end.last)}});
+  std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.at < b.at; });
+  StepEvents result{.end = end.kind, .message = std::move(end.message)};
+  for (Event& event : events) result.points.push_back(std::move(event.found));
+  return result;
+}
+
+}  // namespace extremal

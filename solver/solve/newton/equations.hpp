@@ -1,0 +1,78 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solve/newton/model.hpp"
+
+namespace extremal {
+
+/// δS_h = 0 under the boundary relation in all unknowns at once, nothing condensed: gradient and sparse
+/// Hessian. Unknowns are numbered: nodes 1 … N − 1, then the free unknowns of the ends,
+/// then the inner ones element by element. The duration, where it is free, is not among them.
+class Equations {
+ public:
+  void reset(const Problem& problem, const ElementTables& tables, int elements);
+
+  int unknowns() const { return unknowns_; }
+  /// Those of nodes and ends, which are numbered first.
+  int nodal() const { return (elements_ - 1) * n_ + ends_->free; }
+  /// Places of the Hessian's entries, in one triangle or the other; those that share a place add up.
+  const std::vector<int>& rows() const { return rows_; }
+  const std::vector<int>& columns() const { return columns_; }
+
+  /// Gradient at a path and, unless `entries` is empty, the Hessian's entries. Values that are not finite
+  /// show in `action` (see DiscreteAction::finite).
+  void evaluate(DiscreteAction& action, const Path& path, std::span<double> entries);
+
+  const std::vector<double>& gradient() const { return gradient_; }
+  /// ∂S/∂T; its derivatives by the unknowns, empty where T is fixed, and by T.
+  double slope_duration() const { return slope_; }
+  const std::vector<double>& by_duration() const { return by_duration_; }
+  double corner() const { return corner_; }
+  /// The time that belongs to each unknown, roughly: a gradient by it is a force.
+  void share_time(const Path& path, std::span<double> to) const;
+  /// A row over (q(0), q(T)), 2n, in the unknowns.
+  void express_row(std::span<const double> row, std::vector<double>& to) const;
+  /// A direction at the nodes, (N + 1) × n, in the unknowns; only nodal() of them differ from zero.
+  void express_direction(std::span<const double> direction, std::span<double> to) const;
+  /// The step of a path in which the unknowns change by x, T as it is.
+  void expand(std::span<const double> x, Step& step) const;
+
+  /// In place of the gradient that was evaluated last, another: add_gradient() for each batch of elements,
+  /// over their local unknowns in lanes.
+  void clear_gradient();
+  void add_gradient(int batch, const double* gradient);
+  /// Or a load on the nodes, (N + 1) × n, that on the ends left out.
+  void load(std::span<const double> nodes);
+  void set_slope_duration(double slope) { slope_ = slope; }
+
+ private:
+  /// A share of an unknown: local unknowns at the ends may be combinations of free ones, or none.
+  struct Share {
+    int unknown;
+    double factor;
+  };
+  struct Source {
+    int group;  ///< entry × lane in the batch of the element
+    double factor;
+  };
+  std::span<const Share> shares(int element, int local) const;
+  void number_ends();
+  void list_entries();
+  void spread(std::vector<double>& to, int first, int last, const double* batch) const;
+
+  const ElementTables* tables_ = nullptr;
+  const EndMap* ends_ = nullptr;
+  int lanes_ = simd_lanes();
+  int n_ = 0, elements_ = 0, inner_ = 0, unknowns_ = 0;
+  std::vector<Share> all_, end_shares_;
+  std::vector<int> end_start_;
+  std::vector<int> rows_, columns_;
+  std::vector<int> source_start_;  ///< of each element
+  std::vector<Source> sources_;
+  std::vector<double> gradient_, by_duration_;
+  double corner_ = 0, slope_ = 0;
+};
+
+}  // namespace extremal

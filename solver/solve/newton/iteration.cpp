@@ -1,0 +1,272 @@
+#include "solve/newton/iteration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "solve/newton/ends.hpp"
+#include "solve/newton/krylov.hpp"
+#include "solve/newton/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::iteration;
+
+namespace {
+
+/// Largest |x|, or NaN if one is not finite, which the sum remembers and a maximum would not.
+double largest(std::span<const double> x) {
+  double part[8] = {}, sum[8] = {};
+  std::size_t i = 0;
+  for (; i + 8 <= x.size(); i += 8)
+    for (int k = 0; k < 8; ++k) {
+      const double size = std::abs(x[i + k]);
+      part[k] = size > part[k] ? size : part[k];
+      sum[k] += size;
+    }
+  for (; i < x.size(); ++i) {
+    part[0] = std::max(part[0], std::abs(x[i]));
+    sum[0] += std::abs(x[i]);
+  }
+  const double total = std::accumulate(sum, sum + 8, 0.0);
+  return std::isfinite(total) ? *std::max_element(part, part + 8) : NAN;
+}
+
+}  // namespace
+
+const ClosingEquation* closing_equation(const Problem& problem, const Path& path, ClosingEquation& equation) {
+  const Duration& duration = problem.duration;
+  if (!duration.free) return nullptr;
+  const std::size_t n = problem.coordinates();
+  if (duration.energy) {
+    equation.row.clear();
+    equation.value = *duration.energy;
+  } else {
+    equation.row.resize(2 * n);
+    equation.value = duration.where({path.node(0), n}, {path.node(path.elements()), n}, equation.row);
+  }
+  return &equation;
+}
+
+void NewtonIteration::reset(const Problem& problem, const ElementTables& tables, int elements,
+                            const ElementTables* low) {
+  problem_ = &problem;
+  tables_ = &tables;
+  const bool sparse = tables.unknowns() > most_dense_unknowns;
+  action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
+  norm_ = contraction_ = noise_ = 0;
+  damping_ = predicted_ = 1;
+  count_ = 0;
+  phase_free_ = false;
+  held_.clear();
+  if (!sparse) {
+    if (!condensed_) condensed_ = make_condensed_model();
+    use(*condensed_);
+    model_->reset(problem, tables, elements);
+  } else if (low && tables.scheme().degree >= low->scheme().degree && RaisedModel::suits(tables)) {
+    use_low(*low, elements);
+  } else {
+    use_sparse(elements);
+  }
+}
+
+void NewtonIteration::forget() {
+  curvature_ = largest_curvature_ = noise_ = 0;
+  extended_ = refined_ = false;
+  action_.extend(false);
+}
+
+bool NewtonIteration::extend() {
+  if (refined_ || model_ != condensed_.get()) return false;
+  noise_ = 0;
+  refined_ = extended_;
+  extended_ = true;
+  action_.extend(true);
+  return true;
+}
+
+void NewtonIteration::use_low(const ElementTables& low, int elements) {
+  if (!low_) low_.emplace();
+  use(*low_);
+  low_->reset(*problem_, low, elements);
+  if (tables_ == &low) return;
+  if (!raised_ || &raised_->low_tables() != &low) raised_.emplace(*low_, low);
+  model_ = &*raised_;
+  exact_ = nullptr;
+  raised_->reset(*problem_, *tables_, elements);
+}
+
+void NewtonIteration::use_sparse(int elements) {
+  if (!sparse_) sparse_.emplace();
+  use(*sparse_);
+  sparse_->reset(*problem_, *tables_, elements);
+}
+
+/// The correction from the gradient that was evaluated last; NaN if it is not finite. Another correction
+/// makes up for steps that are not refined.
+double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine) {
+  if (!action_.finite()) return NAN;
+  model_->set_refining(refine);
+  model_->solve(action_, closing(path), step);
+  model_->set_refining(true);
+  if (refined_ && action_.extended()) refine_by_krylov(action_, *model_, path, closing(path), step);
+  return length(path, step);
+}
+
+/// The largest part of a step, q by the scale; NaN if one is not finite.
+double NewtonIteration::length(const Path& path, const Step& step) const {
+  const double nodes = largest(step.nodes), inner = largest(step.inner);
+  if (std::isnan(nodes) || std::isnan(inner)) return NAN;
+  double size = std::max(nodes, inner) / (scale_ > 0 ? scale_ : 1);
+  if (problem_->duration.free) size = std::max(size, std::abs(step.duration) / path.duration());
+  return std::isfinite(size) ? size : NAN;
+}
+
+bool NewtonIteration::leaves_duration(const Path& path, const Step& step) const {
+  return !problem_->duration.free || path.duration() + step.duration > 0;
+}
+
+void NewtonIteration::apply(Path& path, const Step& step, double factor) {
+  path.add(step.nodes, step.inner, factor);
+  keep_ends(problem_->ends, path);
+  if (problem_->duration.free) path.set_duration(path.duration() + factor * step.duration);
+  path.load_ends();
+}
+
+bool NewtonIteration::factor_quickly(const Path& path) {
+  measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
+  if (!held_.empty()) phases_.add(held_);
+  model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
+  return model_->evaluate(action_, path, closing(path)) && action_.finite();
+}
+
+/// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
+/// element, all unknowns are factored at once with pivoting, if they are not too many.
+bool NewtonIteration::factor(const Path& path) {
+  const bool done = factor_quickly(path);
+  if (done && action_.nodes.pivot_ratio > breakdown) return true;
+  const bool condensed = model_ == condensed_.get();
+  if (!action_.finite() || !(condensed || approximate())) return false;
+  if (condensed && path.elements() * std::pow(tables_->unknowns(), 3) > most_pivoted_work) return false;
+  use_sparse(path.elements());
+  model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
+  return model_->evaluate(action_, path, closing(path));
+}
+
+/// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
+/// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
+StepResult NewtonIteration::full_step(Path& path, double enough, double least_damping) {
+  ++count_;
+  trials_ = 0;
+  if (!factor(path)) return action_.finite() ? StepResult::singular : StepResult::not_finite;
+  if (scale_ == 0)
+    scale_ = solve_for_step(path, step_);  // a path without extent: its first step is the scale
+  const double step = solve_for_step(path, step_);
+  if (std::isnan(step)) return StepResult::singular;
+  undamped_ = step;
+  if (step == 0) {
+    norm_ = contraction_ = remaining_ = 0;
+    damping_ = 1;
+    return StepResult::ok;
+  }
+  const double expected = approximate() ? 0 : largest_curvature_ * step;
+  if (expected > 0 && std::max(worst_surprise * expected, least_curvature * step) * step <= enough &&
+      leaves_duration(path, step_)) {
+    contraction_ = surprise * expected;
+    norm_ = remaining_ = contraction_ * step;
+    damping_ = predicted_ = 1;
+    if (std::isnan(solve_for_step(path, step_, true))) return StepResult::singular;
+    apply(path, step_, 1);
+    return StepResult::ok;
+  }
+  double factor = predicted_;
+  saved_.copy_values(path);
+  for (;; factor /= 2) {
+    if (factor < least_damping) {
+      path.load_ends();
+      if (step < loudest && step <= quiet * measure_noise(path)) {
+        apply(path, step_, 1);
+        norm_ = remaining_ = noise_;
+        contraction_ = damping_ = predicted_ = 1;
+        return StepResult::ok;
+      }
+      noise_ = 0;
+      model_->evaluate_gradient(action_, path);
+      return StepResult::stalled;
+    }
+    apply(path, step_, factor);
+    ++trials_;
+    const bool positive = path.duration() > 0;
+    if (positive) model_->evaluate_gradient(action_, path);
+    const double simplified = positive ? solve_for_step(path, simplified_) : NAN;
+    if (approximate() && !(simplified <= worst_approximate * step) && !(step < roundoff_step)) {
+      path.copy_values(saved_);
+      use_sparse(path.elements());
+      return full_step(path, enough, least_damping);
+    }
+    const bool small = step < std::max(roundoff_step, quiet * noise_);
+    if (positive && (simplified <= (1 - factor / 4) * step || small)) {
+      contraction_ = simplified / step;
+      damping_ = factor;
+      norm_ = simplified;
+      break;
+    }
+    path.copy_values(saved_);
+  }
+  if (damping_ == 1 && !approximate()) {
+    curvature_ = contraction_ / step;
+    if (norm_ > roundoff_step) largest_curvature_ = std::max(largest_curvature_, curvature_);
+  }
+  predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
+  remaining_ = norm_;
+  if (damping_ == 1 && contraction_ < worth_taking && leaves_duration(path, simplified_)) {
+    apply(path, simplified_, 1);
+    remaining_ = norm_ * contraction_;
+  }
+  return StepResult::ok;
+}
+
+/// Inverse iteration from the step, which has most of that direction already.
+bool NewtonIteration::hold_softest(const Path& path) {
+  if (model_ != condensed_.get()) return false;
+  held_.clear();
+  if (!factor(path) || std::isnan(solve_for_step(path, step_))) return false;
+  const std::size_t n = path.coordinates(), elements = path.elements();
+  const std::span<const double> mesh = path.mesh();
+  const auto weigh = [&](std::vector<double> x) {
+    for (std::size_t k = 0; k <= elements; ++k)
+      for (std::size_t a = 0; a < n; ++a)
+        x[k * n + a] *= 0.5 * (mesh[std::min(k + 1, elements)] - mesh[std::max<std::size_t>(k, 1) - 1]);
+    return x;
+  };
+  action_.nodes.gradient = weigh(step_.nodes);
+  action_.nodes.border_gradient = action_.nodes.border_part = 0;
+  action_.nodes.end_parts.clear();
+  ClosingEquation closed;
+  if (const ClosingEquation* equation = closing(path)) closed.row = equation->row;
+  model_->solve(action_, problem_->duration.free ? &closed : nullptr, step_);
+  held_ = weigh(step_.nodes);
+  predicted_ = 1;
+  return std::isfinite(largest(held_));
+}
+
+void NewtonIteration::release() {
+  held_.clear();
+  predicted_ = 1;
+}
+
+StepResult NewtonIteration::chord_step(Path& path) {
+  const double before = norm_;
+  model_->evaluate_gradient(action_, path);
+  ++count_;
+  const double norm = solve_for_step(path, step_);
+  if (std::isnan(norm) || !leaves_duration(path, step_)) return StepResult::not_finite;
+  norm_ = norm;
+  contraction_ = before > 0 ? norm_ / before : 0;
+  if (norm_ > roundoff_step) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);
+  remaining_ = norm_ * std::min(contraction_, 1.0);
+  apply(path, step_, 1);
+  return StepResult::ok;
+}
+
+}  // namespace extremal

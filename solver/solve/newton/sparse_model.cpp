@@ -1,0 +1,67 @@
+#include "solve/newton/sparse_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace extremal {
+
+void SparseModel::reset(const Problem& problem, const ElementTables& tables, int elements) {
+  equations_.reset(problem, tables, elements);
+  std::vector<int> rows = equations_.rows(), columns = equations_.columns();
+  // For the unit vectors of the border.
+  for (std::vector<int>* places : {&rows, &columns}) {
+    places->resize(places->size() + equations_.nodal());
+    std::iota(places->end() - equations_.nodal(), places->end(), 0);
+  }
+  matrix_.pattern(equations_.unknowns(), rows, columns);
+  phases_ = nullptr;
+}
+
+void SparseModel::hold_phases() {
+  const int count = phases_ ? phases_->count : 0;
+  Eigen::MatrixXd held = Eigen::MatrixXd::Zero(equations_.unknowns(), count);
+  for (int j = 0; j < count; ++j)
+    equations_.express_direction(phases_->direction(j), {held.col(j).data(), std::size_t(held.rows())});
+  border_.hold(std::move(held));
+}
+
+bool SparseModel::evaluate(DiscreteAction& action, const Path& path, const ClosingEquation*) {
+  const std::span<double> entries(matrix_.values(), equations_.rows().size());
+  equations_.evaluate(action, path, entries);
+  if (!action.finite()) return false;
+  hold_phases();
+  double largest = 0;
+  for (const double value : entries) largest = std::max(largest, std::abs(value));
+  double* const pins = matrix_.values() + entries.size();
+  std::fill_n(pins, equations_.nodal(), 0.0);
+  for (const int u : border_.pinned()) pins[u] += largest;
+  if (!matrix_.factor()) return false;
+  border_.factor(matrix_, largest, equations_.by_duration());
+  return true;
+}
+
+void SparseModel::evaluate_gradient(DiscreteAction& action, const Path& path) {
+  equations_.evaluate(action, path, {});
+}
+
+void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, Step& step) {
+  right_.resize(equations_.unknowns());
+  std::transform(equations_.gradient().begin(), equations_.gradient().end(), right_.begin(),
+                 [](double g) { return -g; });
+  const bool own_row = closing && !closing->row.empty();
+  if (own_row) equations_.express_row(closing->row, row_);
+  const double value = !closing ? 0 : own_row ? closing->value : equations_.slope_duration() + closing->value;
+  step.duration = border_.solve(matrix_, right_, own_row ? row_ : equations_.by_duration(),
+                                own_row ? 0 : equations_.corner(), -value, refining_);
+  equations_.expand(right_, step);
+}
+
+void SparseModel::respond(DiscreteAction& action, const ClosingEquation* closing,
+                          std::span<const double> load, Step& step) {
+  equations_.load(load);
+  const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
+  solve(action, closing ? &homogeneous : nullptr, step);
+}
+
+}  // namespace extremal

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linear/sparse.hpp"
+#include "solve/newton/equations.hpp"
+#include "solve/newton/sparse_border.hpp"
+
+namespace extremal {
+
+/// All unknowns at once in a sparse matrix: many coordinates, few of them coupled.
+class SparseModel final : public SecondVariationModel {
+ public:
+  void reset(const Problem& problem, const ElementTables& tables, int elements) override;
+  bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;
+  void evaluate_gradient(DiscreteAction& action, const Path& path) override;
+  void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
+  void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
+               Step& step) override;
+  Inertia inertia(double) override { return border_.inertia(matrix_); }
+
+  Equations& equations() { return equations_; }
+
+ private:
+  void hold_phases();
+
+  Equations equations_;
+  SparseSymmetric matrix_;
+  SparseBorder border_;
+  std::vector<double> row_, right_;
+};
+
+}  // namespace extremal

@@ -1,0 +1,22 @@
+#include "solve/newton/zero_eigenvalue.hpp"
+
+#include <algorithm>
+
+#include "solve/mesh/roundoff.hpp"
+#include "solve/newton/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::zero_eigenvalue;
+
+double zero_eigenvalue_along(double size, double error, int elements) {
+  if (!(size > 0)) return zero_eigenvalue;
+  return std::clamp(change * error / (size * elements), zero_eigenvalue, largest_zero);
+}
+
+double largest_null_eigenvalue(double magnitude, double error, const Path& path) {
+  const double roundoff = roundings_an_element * unit_roundoff * path.elements();
+  return std::clamp(magnitude > 0 ? change * error / magnitude : 0, roundoff, zero_eigenvalue);
+}
+
+}  // namespace extremal

@@ -1,0 +1,118 @@
+#include "solve/periodic/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "analysis/orbit_form.hpp"
+#include "linear/dense.hpp"
+#include "problem/closing.hpp"
+#include "solve/periodic/repetition.hpp"
+
+namespace extremal {
+
+namespace {
+
+void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Floquet& floquet) {
+  const auto form = OrbitForm::make(variation, orbit.map);
+  if (!form) return;
+  for (const std::complex<double>& value : floquet.multipliers) {
+    const Eigen::VectorXcd vector = form->eigenvector(value);
+    floquet.vectors.emplace_back(vector.begin(), vector.end());
+  }
+}
+
+/// R, empty for the identity.
+Eigen::MatrixXd map_of(const Problem& problem) {
+  const ClosingMap map = closing_map(problem);
+  return map.r.isIdentity(0) ? Eigen::MatrixXd{} : map.r;
+}
+
+/// Columns: the generators about `centre`, in units of `size`, G by columns and then c, orthonormal.
+Eigen::MatrixXd generators(const std::vector<Generator>& symmetries, const Eigen::VectorXd& centre,
+                           double size) {
+  const auto n = centre.size();
+  Eigen::MatrixXd columns(n * n + n, std::ssize(symmetries));
+  for (Eigen::Index s = 0; s < columns.cols(); ++s) {
+    const Generator& symmetry = symmetries[s];
+    const Eigen::Map<const Eigen::MatrixXd> transposed(symmetry.matrix.data(), n, n);
+    const Eigen::MatrixXd g = transposed.transpose();
+    columns.col(s) << size * g.reshaped(),
+        g * centre + Eigen::Map<const Eigen::VectorXd>(symmetry.shift.data(), n);
+  }
+  return orthonormal(columns);
+}
+
+/// How many symmetries move the orbit, and not only along itself: one that does not, as a rotation of a
+/// centre of mass that rests at the origin, has no multipliers 1 of its own.
+int moving_symmetries(const Problem& problem, const Trajectory& orbit) {
+  constexpr double dependent = 1e-8, at_rest = 1e-9;  // the square of a sine; of the distance from the origin
+  const Eigen::Index n = problem.coordinates(), points = std::ssize(orbit.times),
+                     count = std::ssize(problem.symmetries);
+  if (count == 0) return 0;
+  Eigen::MatrixXd q(n, points), fields(points * n, count + 1);
+  for (Eigen::Index p = 0; p < points; ++p)
+    orbit.at(orbit.times[p], {&q(0, p), &q(0, p) + n}, {&fields(p * n, count), &fields(p * n, count) + n});
+  const Eigen::VectorXd centre = q.rowwise().mean();
+  q.colwise() -= centre;
+  const double extent = std::max(q.cwiseAbs().maxCoeff(), at_rest * centre.norm()),
+               size = extent > 0 ? extent : 1;
+  const Eigen::MatrixXd columns = generators(problem.symmetries, centre, size);
+  for (Eigen::Index s = 0; s < count; ++s)
+    fields.col(s).reshaped(n, points) =
+        ((columns.col(s).head(n * n).reshaped(n, n) * q / size).colwise() + columns.col(s).tail(n)) /
+        std::sqrt(points);
+  fields.col(count).normalize();
+  if (!problem.lagrangian->structure().autonomous) fields.col(count).setZero();
+  const bool shifts = fields.col(count).norm() > 0;
+  const Eigen::VectorXd squares = symmetric_eigenvalues(fields.transpose() * fields);
+  return static_cast<int>((squares.array() > dependent).count()) - shifts;
+}
+
+}  // namespace
+
+double distinct_distance(const Solution& solution, double size) {
+  constexpr double distinct = 1e-6;
+  return std::max(10 * solution.error_estimate, distinct * size);
+}
+
+ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, double relative_error) {
+  return {.map = map_of(problem),
+          .relative_error = relative_error,
+          .autonomous = problem.lagrangian->structure().autonomous,
+          .symmetries = moving_symmetries(problem, trajectory)};
+}
+
+void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
+                    bool vectors) {
+  if (!problem.periodic) return;
+  const double distinct = distinct_distance(solution, size);
+  if (const ClosingMap map = closing_map(problem); map.identity() && size > 0)
+    if (const int parts = repetitions(solution.trajectory, map, 1, distinct); parts > 0)
+      solution.minimal_period = solution.duration() / parts;
+  if (problem.coordinates() > most_coordinates_for_multipliers) {
+    solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
+                                    most_coordinates_for_multipliers);
+  } else if (variation.count() == 0) {
+    solution.message += "; nor are multipliers found";
+  } else {
+    const double error = size > 0 ? solution.error_estimate / size : 0;
+    const ClosedOrbit orbit = closed_orbit(problem, solution.trajectory, error);
+    solution.floquet = floquet(variation, orbit);
+    if (!solution.floquet) solution.message += "; multipliers are too large for numbers";
+    if (solution.floquet && vectors) add_vectors(variation, orbit, *solution.floquet);
+  }
+}
+
+std::vector<int> iterate_indices(const Problem& problem, const Solution& solution, int most) {
+  if (!problem.periodic || most < 0)
+    throw std::invalid_argument(fmt::format("indices of {} iterates; need a periodic problem", most));
+  SecondVariation variation;
+  if (!variation.assemble(problem.lagrangian, solution.trajectory)) return {};
+  const auto form = OrbitForm::make(variation, map_of(problem));
+  return form ? form->iterates(most) : std::vector<int>{};
+}
+
+}  // namespace extremal

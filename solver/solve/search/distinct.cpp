@@ -1,0 +1,99 @@
+#include "solve/search/distinct.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "solve/mesh/roundoff.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Errors are estimates; they and the tolerance may be exceeded by this factor.
+constexpr double margin = 10;
+/// Of the size of the problem: a path smaller than this is at rest.
+constexpr double rest = 1e-3;
+
+/// Largest range of a coordinate over the nodes, or its largest absolute value where that is negligible.
+double extent(const Trajectory& trajectory) {
+  const std::size_t n = trajectory.coordinates;
+  double most = 0, magnitude = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    double low = INFINITY, high = -INFINITY;
+    for (std::size_t k = a; k < trajectory.nodes.size(); k += n) {
+      low = std::min(low, trajectory.nodes[k]);
+      high = std::max(high, trajectory.nodes[k]);
+    }
+    most = std::max(most, high - low);
+    magnitude = std::max({magnitude, std::abs(low), std::abs(high)});
+  }
+  return most > 1e-12 * magnitude ? most : magnitude;
+}
+
+/// Whether b is nowhere further than `allowed` from a, at the ends of a's elements and twice in between.
+bool near(const Trajectory& a, const Trajectory& b, double allowed) {
+  const std::size_t n = a.coordinates;
+  std::vector<double> here(n), there(n), v(n);
+  const double stretch = b.duration() / a.duration();
+  for (int k = 0; k < a.elements(); ++k)
+    for (int part = 0; part < 3; ++part) {
+      const double t = a.times[k] + part * (a.times[k + 1] - a.times[k]) / 3;
+      a.at(t, here, v);
+      b.at(std::min(t * stretch, b.duration()), there, v);
+      for (std::size_t i = 0; i < n; ++i)
+        if (!(std::abs(here[i] - there[i]) <= allowed)) return false;
+    }
+  return true;
+}
+
+bool agree(double a, double b, double size, double tolerance) {
+  return std::abs(a - b) <= margin * tolerance * size;
+}
+
+/// |p||q| at the ends, which the action is of the order of even where it vanishes.
+double action_size(const Solution& a) {
+  double momentum = 0;
+  for (const auto* p : {&a.momentum_start, &a.momentum_end})
+    for (double x : *p) momentum = std::max(momentum, std::abs(x));
+  return std::abs(a.action) + momentum * extent(a.trajectory);
+}
+
+}  // namespace
+
+bool same_path(const Solution& a, const Solution& b, double tolerance, double scale) {
+  const double size = std::max({extent(a.trajectory), extent(b.trajectory), rest * scale});
+  const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
+  const double relative = size > 0 ? allowed / size : tolerance;
+  if (std::abs(a.duration() - b.duration()) > relative * a.duration()) return false;
+  return near(a.trajectory, b.trajectory, allowed) && near(b.trajectory, a.trajectory, allowed);
+}
+
+bool same_continuum(const Solution& a, const Solution& b, double tolerance) {
+  const bool continuum = a.nullity.value_or(0) > 0 && a.nullity == b.nullity;
+  return continuum && a.morse_index == b.morse_index && same_orbit(a, b, tolerance);
+}
+
+bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
+  const double size = std::max(extent(a.trajectory), extent(b.trajectory));
+  const double error = size > 0 ? (a.error_estimate + b.error_estimate) / size + tolerance : tolerance;
+  const double energy = 2 * std::numbers::pi * action_size(a) / a.duration();
+  if (a.energy && b.energy && !agree(*a.energy, *b.energy, energy, error)) return false;
+  return agree(a.duration(), b.duration(), a.duration(), error) &&
+         agree(a.action, b.action, std::max(action_size(a), action_size(b)), error);
+}
+
+bool same_discrete(const Solution& a, const Solution& b) {
+  const double size = std::max(extent(a.trajectory), extent(b.trajectory));
+  return a.trajectory.nodes.size() == b.trajectory.nodes.size() &&
+         agree(a.duration(), b.duration(), a.duration(), amplified_roundoff) &&
+         near(a.trajectory, b.trajectory, margin * amplified_roundoff * size);
+}
+
+void sort_by_action(std::vector<Solution>& solutions) {
+  std::stable_sort(solutions.begin(), solutions.end(),
+                   [](const Solution& a, const Solution& b) { return a.action < b.action; });
+}
+
+}  // namespace extremal

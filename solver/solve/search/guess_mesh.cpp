@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cmath>
+
+#include "machine/simd.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/search/search.hpp"
+
+/// \file Elements for a guess.
+
+namespace extremal {
+
+namespace {
+
+/// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.
+constexpr double longest_element = 2.0;
+/// Elements follow a guess to this, relative to its range, a motion to between these by the tolerance; they
+/// follow velocities to so many times that, and become at most so many at a time.
+constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
+constexpr double guess_floor = 0.25;
+constexpr int most_passes = 10, highest_guess_degree = 12;
+/// Elements of a first mesh, at least; whole batches are taken.
+constexpr int least_first_elements = 4;
+/// Samples of a motion, elements that follow it, and their degree.
+constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
+constexpr int kept_degree = 7;
+/// A path of chance that needs more elements than this comes too near a singularity.
+constexpr int most_launched = 128;
+/// A singularity is near where elements differ so much.
+constexpr double collision = 100;
+/// A mesh whose elements differ less than this is not worth starting again for.
+constexpr double mild_grading = 3;
+/// Tries to move the default guess to where L is finite.
+constexpr unsigned most_bends = 8;
+
+/// So many elements at least.
+int whole_batches(double elements) {
+  return simd_lanes() * static_cast<int>(std::ceil(elements / simd_lanes()));
+}
+
+}  // namespace
+
+int Search::first_elements(const Frequency& frequency) {
+  const double wanted =
+      std::clamp<double>(frequency.phase() / longest_element, least_first_elements, most_first_elements);
+  return whole_batches(wanted);
+}
+
+void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree) {
+  refinement_.open(mesh, degree);
+  start_path(*guess_, ends_, refinement_.tables(), path_);
+  bend_path(problem_, bend, refinement_.tables(), path_);
+}
+
+/// Puts the guess on a mesh that follows the frequency along it. The default guess is moved aside until L
+/// is finite on it.
+Search::GuessKind Search::begin() {
+  ends_ = starting_ends(*guess_);
+  mesh_ = uniform_mesh(whole_batches(least_first_elements));
+  for (unsigned seed = 0; seed <= most_bends; ++seed) {
+    bend_ = {0.1 * seed, seed};
+    start(mesh_, bend_);
+    measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
+    if (w_.frequency.finite()) break;
+    if (guess_->guess.given() || seed == most_bends) return GuessKind::undefined;
+  }
+  int elements = first_elements(w_.frequency);
+  const double floor = guess_->guess.given() ? guess_floor : 1.0;
+  // A sketch of an orbit may pass a collision; elements for it serve no other path.
+  const bool colliding = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
+                         w_.frequency.grading(floor) > collision;
+  if (colliding) elements = most_launched;
+  if (elements > path_.elements() || w_.frequency.grading(floor) >= mild_grading) {
+    mesh_ = w_.frequency.mesh(elements, floor);
+    start(mesh_, bend_);
+  }
+  if (guess_->guess.motion && !mesh_of_motion()) resolve_guess();
+  return colliding ? GuessKind::colliding : GuessKind::usable;
+}
+
+/// A motion that took its integrator so many steps passes one encounter after the other, which elements would
+/// find one by one: each of them covers as many steps. So they do beside a collision, where the frequency
+/// asks for more. False elsewhere.
+bool Search::mesh_of_motion() {
+  const std::vector<double>& tau = guess_->guess.tau;
+  const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
+  const std::size_t elements = (wanted / simd_lanes() + 1) * simd_lanes();
+  const bool many = wanted >= least_kept && wanted <= most_kept;
+  const bool collides = w_.frequency.grading(guess_floor) > collision;
+  if (!many && !(collides && elements < static_cast<std::size_t>(path_.elements()))) return false;
+  mesh_.resize(elements + 1);
+  for (std::size_t k = 0; k <= elements; ++k) mesh_[k] = tau[k * samples / elements];
+  start(mesh_, bend_, kept_degree);
+  if (many) refinement_.keep_mesh();
+  return true;
+}
+
+/// Elements that resolve a good guess; false if those there were do.
+bool Search::resolve_guess() {
+  bool finer_found = false;
+  const double goal =
+      guess_->guess.motion ? std::clamp(options_.tolerance, best_guess_goal, guess_goal) : guess_goal;
+  const int samples = static_cast<int>(guess_->guess.tau.size());
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const ElementTables& tables = refinement_.tables();
+    const int degree = path_.degree(), elements = path_.elements();
+    w_.resolution.measure(path_, tables);
+    const Resolution::Error error = w_.resolution.at(degree);
+    const Scales size = scales(path_, tables);
+    const Resolution::Error aim{goal * size.q, slope_goal * goal * size.v};
+    if ((error.q <= aim.q && error.v <= aim.v) || elements * degree >= samples) break;
+    measure_frequency(problem_, w_.iteration.action(), tables, path_, w_.frequency);
+    if (const int wanted = first_elements(w_.frequency); w_.frequency.finite() && wanted > elements) {
+      mesh_ = w_.frequency.mesh(wanted, guess_floor);
+      start(mesh_, bend_, degree);
+      finer_found = true;
+      continue;
+    }
+    const Plan finer =
+        w_.planner.plan(w_.resolution, path_.mesh(), tables,
+                        {aim, aim, degree, degree, highest_guess_degree, most_first_elements, guess_cut});
+    if (finer.degree == 0 || (finer.mesh.empty() && finer.degree == degree)) break;
+    if (!finer.mesh.empty()) mesh_ = finer.mesh;
+    start(mesh_, bend_, finer.degree);
+    finer_found = true;
+  }
+  return finer_found;
+}
+
+bool Search::open_fitting(const std::function<void(const ElementTables&, Path&)>& fill, int degree) {
+  fill(open(uniform_mesh(sketch_elements), Refinement::first_degree), path_);
+  measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
+  const int elements = first_elements(w_.frequency);
+  if (!w_.frequency.finite() || elements > most_launched) return false;
+  fill(open(w_.frequency.mesh(elements, guess_floor), degree), path_);
+  return true;
+}
+
+}  // namespace extremal

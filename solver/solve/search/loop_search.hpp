@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solve/guess/loop.hpp"
+#include "solve/periodic/segment.hpp"
+#include "solve/search/search.hpp"
+
+/// \file Periodic orbits from random loops.
+
+namespace extremal {
+
+/// Loops in turn: without symmetry, and with one that is drawn at random. The latter are solved for on a
+/// segment alone, where few unknowns are left and Newton's method comes to rest more often, and the orbit
+/// that the symmetry makes of it is the start for the whole. Every other loop is first led by steps of
+/// bounded length, whether or not they lower anything: these find saddles that damped steps do not come to.
+class LoopSearch {
+ public:
+  /// `whole` is the search for the problem itself, which has run.
+  LoopSearch(const Problem& problem, const SolveOptions& options, Workspace& workspace, Search& whole);
+  /// Not for a problem that is not periodic.
+  bool usable() const { return loops_.usable(); }
+
+  /// From the next loop; whether that leads to an extremal of the problem, which is then the path of the
+  /// whole search.
+  bool next();
+  /// That it led to an orbit, perhaps a known one: more of its kind are then tried.
+  void credit() { ++orbits_[symmetric_]; }
+
+ private:
+  struct Part {
+    Segment segment;
+    Search search;
+    Loops loops;
+    Part(Segment drawn, const Problem& whole, const SolveOptions& options, Workspace& workspace)
+        : segment(std::move(drawn)),
+          search(segment.problem, options, workspace),
+          loops(segment.problem, whole) {}
+  };
+  bool pursue(const Problem& problem, Search& search, Loops& loops, const char* strategy);
+  const ElementTables& reconstruct_orbit(const Segment& segment, const Path& part);
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  Workspace& w_;
+  Search& whole_;
+  Loops loops_;
+  SegmentSource source_;
+  bool more_ = true;  ///< symmetries
+  std::vector<std::unique_ptr<Part>> parts_;
+  unsigned turn_ = 0;
+  bool symmetric_ = false;                 ///< the last loop
+  double tries_[2] = {}, orbits_[2] = {};  ///< without symmetry and with one
+};
+
+}  // namespace extremal

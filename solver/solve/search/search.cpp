@@ -1,0 +1,259 @@
+#include "solve/search/search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/external/external_solver.hpp"
+#include "solve/homotopy/duration_homotopy.hpp"
+#include "solve/newton/ends.hpp"
+#include "solve/search/descent.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Newton steps from guesses, and those times unknowns of the first mesh: their cost.
+constexpr int most_steps = 4000;
+constexpr double most_work = 1e7;
+constexpr double least_steps = 100;
+/// Starts with noise that are cheaper than other durations are; and at most.
+constexpr unsigned first_noises = 8, most_noises = 10000, collision_noises = 100;
+/// Of the guess's extent, in turn.
+constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
+
+constexpr const char* from_guess = "newton from the guess";
+
+}  // namespace
+
+Search::Search(const Problem& problem, const SolveOptions& options, Workspace& workspace)
+    : problem_(problem),
+      guess_(&problem),
+      options_(options),
+      w_(workspace),
+      refinement_(problem, options, workspace, outcome_) {
+  std::swap(path_, w_.spare);
+}
+
+Search::~Search() { std::swap(path_, w_.spare); }
+
+/// An equilibrium has every period.
+bool Search::collapsed() const {
+  return extent_ > 0 && scales(path_, refinement_.tables()).range <= Refinement::at_rest * extent_;
+}
+
+/// Pursues the path.
+Search::Pursuit Search::pursue(const char* strategy) {
+  outcome_.strategy = strategy;
+  outcome_.elsewhere = strategy != from_guess;
+  run_external_solver(options_.method, problem_, refinement_.tables(), path_,
+                      [this] { return refinement_.count_step(); });
+  Refinement::Result result = refinement_.pursue();
+  // A path far from the guess may be wild, and resolved by accident only.
+  const bool far = ran_away(problem_, magnitude_, scales(path_, refinement_.tables()).magnitude);
+  if (result == Refinement::Result::converged && far && problem_.periodic) {
+    outcome_.message = "the orbit ran away to where forces vanish";
+    result = Refinement::Result::failed;
+  } else if (result == Refinement::Result::converged && outcome_.elsewhere &&
+             (far || !refinement_.holds_on_other_elements())) {
+    unheld_ = path_;
+    result = Refinement::Result::failed;
+  }
+  outcome_.elsewhere = outcome_.elsewhere || far;
+  if (collapsed()) {
+    outcome_.message = "the orbit shrank to a point of equilibrium";
+    met_.insert(Met::equilibrium);
+    result = Refinement::Result::failed;
+  }
+  const bool converged = result == Refinement::Result::converged;
+  const bool doubtful = converged ? !refinement_.confirmed() : refinement_.suspicious();
+  // A closed orbit has no ends to be conjugate.
+  const auto doubted = problem_.periodic ? Refinement::Result::failed : Refinement::Result::unreachable;
+  if (converged && doubtful) return {doubted, doubtful};
+  return {converged && acceptance_ ? accepted() : result, doubtful};
+}
+
+/// Whether the path that meets the tolerance is an extremal: if not, another guess may lead to one.
+Refinement::Result Search::accepted() {
+  outcome_.status = Status::converged;
+  const Acceptance::Verdict verdict = acceptance_->judge(outcome_);
+  if (verdict == Acceptance::Verdict::accepted) return Refinement::Result::converged;
+  outcome_.status = Status::not_converged;
+  refinement_.rebind();
+  return verdict == Acceptance::Verdict::refused ? Refinement::Result::failed
+                                                 : Refinement::Result::unreachable;
+}
+
+bool Search::found(const char* strategy) {
+  if (refinement_.exhausted()) return false;
+  meet_ends(problem_, path_);
+  return pursue(strategy).result == Refinement::Result::converged;
+}
+
+/// Downhill in windows.
+bool Search::by_descent(const std::vector<double>& mesh) {
+  if (refinement_.exhausted()) return false;
+  start(mesh, bend_);
+  if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
+  int steps = refinement_.steps_left() / 2;  // others may need fewer
+  Descent descent(problem_, path_, w_, [&] { return refinement_.count_step() && --steps > 0; });
+  return descent.run(refinement_.tables()) && found("minimisation in windows");
+}
+
+/// From durations in which the guess is nearly a motion, through extremals of all durations between.
+bool Search::through_other_durations() {
+  if (refinement_.exhausted() || problem_.duration.free || !problem_.lagrangian->structure().autonomous)
+    return false;
+  const auto count = [this] { return refinement_.count_step(); };
+  start(mesh_, bend_, homotopy_degree);
+  DurationHomotopy homotopy(problem_, path_, w_, count);
+  for (const double duration : natural_durations(problem_, path_, w_, refinement_.tables())) {
+    start(mesh_, bend_, homotopy_degree);
+    path_.set_duration(duration);
+    met_.insert(Met::other_durations);
+    if (!homotopy.trace(refinement_.tables())) continue;
+    refinement_.rebind();
+    if (found("homotopy in the duration")) return true;
+  }
+  return false;
+}
+
+/// A guess that asks for more elements than there may be would ask again.
+bool Search::from_finer_elements() {
+  const std::vector<double> finer = halved(mesh_);
+  if (finer.size() > most_first_elements + 1) return false;
+  start(finer, bend_);
+  return found("newton from the guess on finer elements") || by_descent(finer);
+}
+
+bool Search::from_noise(unsigned tries) {
+  for (const unsigned last = seed_ + tries; seed_ < last && !refinement_.exhausted(); ++seed_) {
+    const Bend bend{noise_sizes[seed_ % std::size(noise_sizes)], seed_};
+    const auto fill = [&](const ElementTables& tables, Path& path) {
+      start_path(*guess_, ends_, tables, path);
+      bend_path(problem_, bend, tables, path);
+    };
+    if (!problem_.periodic) start(mesh_, bend);
+    if (problem_.periodic && !open_fitting(fill)) {
+      refinement_.count_step();
+      continue;
+    }
+    met_.insert(Met::noise);
+    if (found("newton from the guess plus smooth noise")) return true;
+  }
+  return false;
+}
+
+/// The default guess, where the user's fails.
+bool Search::from_line() {
+  if (!problem_.guess.given() || problem_.periodic || problem_.duration.free) return false;
+  Problem line = problem_;
+  line.guess = {};
+  guess_ = &line;
+  const bool result =
+      begin() != GuessKind::undefined && (found("newton from the straight line") || by_descent(mesh_));
+  guess_ = &problem_;
+  return result;
+}
+
+const ElementTables& Search::open(const std::vector<double>& mesh, int degree) {
+  refinement_.open(mesh, degree);
+  return refinement_.tables();
+}
+
+bool Search::refine(const ElementTables& tables, const char* strategy) {
+  refinement_.take(tables);
+  const bool result = found(strategy);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
+void Search::be_like(const Search& other) {
+  magnitude_ = other.magnitude_;
+  extent_ = other.extent_;
+  allowance_ = other.allowance_;
+}
+
+void Search::renew(double share) { refinement_.allow(static_cast<int>(share * allowance_), share); }
+
+/// Cheapest first; but where the user has given a guess, paths near it before noise.
+bool Search::from_other_guesses(GuessKind guess) {
+  if (guess == GuessKind::colliding && from_noise(collision_noises)) return true;
+  if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
+      found("newton from the guess on finer elements"))
+    return true;
+  if (by_descent(mesh_) || from_finer_elements()) return true;
+  if (!problem_.guess.given() && from_noise(first_noises)) return true;
+  if (through_other_durations() || from_line()) return true;
+  begin();
+  if (from_noise(most_noises)) return true;
+  begin();
+  return from_motions();
+}
+
+/// Puts the guess on elements, and bounds the effort.
+Search::GuessKind Search::prepare() {
+  outcome_.message = "the action is not finite along the guess";
+  const GuessKind guess = begin();
+  if (guess == GuessKind::undefined) return guess;
+  const Scales size = scales(path_, refinement_.tables());
+  magnitude_ = size.magnitude;
+  if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
+  const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * path_.elements();
+  allowance_ = std::min(
+      {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
+  refinement_.allow(allowance_);
+  return guess;
+}
+
+const Outcome& Search::run_near_guess() {
+  if (prepare() == GuessKind::undefined) return outcome_;
+  extent_ = scales(path_, refinement_.tables()).range;
+  const auto [result, doubtful] = pursue(from_guess);
+  outcome_.hidden = result == Refinement::Result::unreachable && !doubtful;
+  if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
+  return outcome_;
+}
+
+const Outcome& Search::run(Acceptance* acceptance) {
+  const GuessKind guess = prepare();
+  if (guess == GuessKind::undefined) return outcome_;
+  acceptance_ = acceptance;
+  auto [result, doubtful] = pursue(from_guess);
+  if (result == Refinement::Result::failed) {
+    const std::string failure = outcome_.message;
+    if (guess == GuessKind::colliding) refinement_.allow(allowance_);
+    if (from_other_guesses(guess)) {
+      result = Refinement::Result::converged;
+    } else {
+      outcome_.status = Status::iteration_limit;
+      outcome_.message = fmt::format(
+          "{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or a shorter "
+          "duration",
+          outcome_.iterations, failure,
+          met_.contains(Met::other_durations) ? ", through other durations" : "",
+          met_.contains(Met::noise) ? ", from smooth noise" : "",
+          met_.contains(Met::motions) ? ", from motions that miss the end" : "");
+      if (met_.contains(Met::equilibrium)) {
+        outcome_.status = Status::no_solution_near;
+        outcome_.message =
+            "the orbit shrank to a point of equilibrium from the guess and from others; try a larger "
+            "guess or another duration";
+      }
+      // Where ends are conjugate, different elements find different members of a family.
+      if (unheld_) std::swap(path_, *unheld_);
+    }
+  }
+  if (result == Refinement::Result::converged) outcome_.status = Status::converged;
+  if (result != Refinement::Result::converged && doubtful && !problem_.periodic) {
+    outcome_.status = Status::conjugate_ends;
+    outcome_.message =
+        "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "
+        "family of them; move an end or the duration";
+  }
+  acceptance_ = nullptr;
+  return outcome_;
+}
+
+}  // namespace extremal

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "solve/accept/acceptance.hpp"
+#include "solve/adapt/refinement.hpp"
+#include "solve/guess/first_path.hpp"
+
+/// \file Where Newton's method starts from: the guess, and other paths where the guess fails.
+
+namespace extremal {
+
+/// Starting paths in turn, cheapest first, each pursued to the tolerance, within a bounded number of steps.
+class Search {
+ public:
+  Search(const Problem& problem, const SolveOptions& options, Workspace& workspace);
+  ~Search();
+  Search(const Search&) = delete;
+  Search& operator=(const Search&) = delete;
+
+  /// To a path that meets the tolerance and that `acceptance`, if given, accepts. The outcome stays the
+  /// search's own until it is taken.
+  const Outcome& run(Acceptance* acceptance = nullptr);
+  /// The same from the guess only and without acceptance; a path far from the guess is a failure.
+  const Outcome& run_near_guess();
+  Outcome take() { return std::move(outcome_); }
+
+  /// Makes path() an empty path, to be filled by the caller and refined.
+  const ElementTables& open(const std::vector<double>& mesh, int degree);
+  Path& path() { return path_; }
+  /// Pursues path(), on elements of `tables`; whether an extremal was found.
+  bool refine(const ElementTables& tables, const char* strategy);
+  /// Puts the path that `fill` fills on elements that resolve it; false if it comes too near a singularity.
+  bool open_fitting(const std::function<void(const ElementTables& tables, Path& path)>& fill,
+                    int degree = Refinement::first_degree);
+  const ElementTables& tables() const { return refinement_.tables(); }
+  /// Elements of a random path whose frequency is measured.
+  static constexpr int sketch_elements = 16;
+  /// Sizes of paths and effort are those of another search.
+  void be_like(const Search& other);
+  /// Effort that further paths may take together, in shares of that of one solve.
+  void renew(double share = 1);
+  /// Counts a step that the caller takes; false if there may be no more.
+  bool count_step() { return refinement_.count_step(); }
+  bool exhausted() const { return refinement_.exhausted(); }
+  const Outcome& outcome() const { return outcome_; }
+  const std::vector<double>& ends() const { return ends_; }
+  const std::vector<double>& mesh() const { return mesh_; }
+
+ private:
+  enum class GuessKind {
+    usable,
+    colliding,  ///< comes too near a singularity
+    undefined,  ///< L is not finite along it
+  };
+  struct Pursuit {
+    Refinement::Result result;
+    bool doubtful;  ///< the equations were nearly singular
+  };
+  /// Routes tried and ends met, for the message.
+  enum class Met { other_durations, noise, motions, equilibrium };
+  static constexpr int most_first_elements = 1 << 12;
+  /// Coarse elements may not resolve a family of extremals as it grows.
+  static constexpr int homotopy_degree = 8;
+  static int first_elements(const Frequency& frequency);
+  void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
+  GuessKind prepare();
+  GuessKind begin();
+  bool mesh_of_motion();
+  bool resolve_guess();
+  Pursuit pursue(const char* strategy);
+  bool collapsed() const;
+  Refinement::Result accepted();
+  bool found(const char* strategy);
+  bool from_other_guesses(GuessKind guess);
+  bool through_other_durations();
+  bool by_descent(const std::vector<double>& mesh);
+  bool from_finer_elements();
+  bool from_line();
+  bool from_motions();
+  bool from_motion(const Guess& motion, double duration);
+  bool from_noise(unsigned tries);
+
+  const Problem& problem_;
+  const Problem* guess_;  ///< whose guess is started from
+  const SolveOptions& options_;
+  Workspace& w_;
+  Outcome outcome_;
+  Path& path_ = outcome_.path;
+  Acceptance* acceptance_ = nullptr;
+  Refinement refinement_;
+  std::vector<double> ends_, mesh_;
+  double magnitude_ = 0;        ///< of the guess
+  double extent_ = 0;           ///< of the guess, of a periodic problem
+  int allowance_ = 0;           ///< of Newton steps
+  Bend bend_;                   ///< of the default guess, where L is not finite on it
+  std::optional<Path> unheld_;  ///< found on some elements, but not on others
+  unsigned seed_ = 0;
+  std::set<Met> met_;
+};
+
+}  // namespace extremal

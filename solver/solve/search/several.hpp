@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "solve/accept/acceptance.hpp"
+#include "solve/search/loop_search.hpp"
+#include "solve/search/search.hpp"
+
+/// \file Several extremals of one problem.
+
+namespace extremal {
+
+class Homotopy;
+
+/// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
+/// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
+/// that other durations and other ends make of it, which come past more of the problem's. The search
+/// ends after as many steps as one solve may take without a new one. For a periodic problem, random loops
+/// that close as it asks take the place of arcs, and an orbit that closes after part of the time, so that it
+/// is run through several times, is left out.
+class Several {
+ public:
+  Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);
+
+  /// At most so many, sorted by action; the first one's message says if there are fewer. Where there is
+  /// none, one that has not converged.
+  std::vector<Solution> run(int most);
+
+ private:
+  /// The number of the extremal that is the `same`; -1 if there is none.
+  template <class Same>
+  int find(const Same& same) const {
+    const auto it = std::find_if(found_.begin(), found_.end(), same);
+    return it == found_.end() ? -1 : static_cast<int>(it - found_.begin());
+  }
+  bool wanted() const;
+  int keep();
+  int add(Solution candidate);
+  int refine_and_keep(const ElementTables& tables, const char* strategy);
+  double size_of_guess();
+  void deflate();
+  void guess();
+  void bend();
+  bool repeats(const Solution& candidate) const;
+  void wind();
+  double natural_duration(Arc arc, const ElementTables& tables);
+  bool trace_families();
+  void trace_family(std::size_t solution, int family);
+  std::unique_ptr<Homotopy> leave(int family, bool onward);
+  void load(const Solution& solution);
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  Workspace& w_;
+  Search search_;
+  Path& path_;  ///< of the search
+  LoopSearch loops_;
+  std::vector<Solution> found_;
+  std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times
+  double scale_ = 1;                   ///< size of the problem
+  int most_ = 1;
+  int in_vain_ = 0;    ///< guesses since the last find
+  unsigned seed_ = 0;  ///< of the next guess
+  int families_ = 0;
+  std::vector<std::vector<char>> traced_;  ///< for each extremal, whether each family of it was
+  std::chrono::steady_clock::time_point start_;
+  double analysing_ = 0;  ///< seconds
+};
+
+}  // namespace extremal
