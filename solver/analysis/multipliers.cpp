@@ -177,17 +177,17 @@ class Collection {
 
 }  // namespace
 
-std::vector<double> doubling_gaps(const Floquet& floquet) {
-  std::vector<double> gaps;
+std::vector<double> doubling_tests(const Floquet& floquet) {
+  std::vector<double> tests;
   bool first_of_two = false;  // of a pair at −1
   for (const Complex& value : floquet.multipliers) {
     const double x = value.real(), y = value.imag();
-    if (y > 0 && std::abs(std::norm(value) - 1) < same_modulus) gaps.push_back(2 + 2 * x);
-    if (y == 0 && std::abs(x) > 1) gaps.push_back((1 + x) * (1 + 1 / x) / std::abs(x));
-    if (value == -1.0 && (first_of_two = !first_of_two)) gaps.push_back(0);
+    if (y > 0 && std::abs(std::norm(value) - 1) < same_modulus) tests.push_back(2 + 2 * x);
+    if (y == 0 && std::abs(x) > 1) tests.push_back((1 + x) * (1 + 1 / x) / std::abs(x));
+    if (value == -1.0 && (first_of_two = !first_of_two)) tests.push_back(0);
   }
-  std::sort(gaps.begin(), gaps.end());
-  return gaps;
+  std::sort(tests.begin(), tests.end());
+  return tests;
 }
 
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {

@@ -27,6 +27,6 @@ std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrb
 
 /// λ + 1/λ + 2 of every pair on the unit circle or real, divided by |λ| >= 1; ascending. One changes its sign
 /// where its pair passes −1. Pairs at 1 are left out.
-std::vector<double> doubling_gaps(const Floquet& floquet);
+std::vector<double> doubling_tests(const Floquet& floquet);
 
 }  // namespace extremal

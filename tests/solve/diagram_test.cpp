@@ -32,7 +32,7 @@ struct Followed {
 };
 
 Followed follow_branches(const ProblemFamily& family, double tolerance, int points) {
-  Diagram diagram(family, {.solve = within(tolerance), .points = points, .seeds = true});
+  Diagram diagram(family, {.solve = within(tolerance), .points = points, .other_branches = true});
   Followed followed;
   while (diagram.advance()) followed.points.push_back(diagram.point());
   followed.branches = diagram.branches();

@@ -74,7 +74,7 @@ Problem near_to(const Trajectory& path, Problem problem, double period) {
 void expect_halo(const Study& study, const nlohmann::json& orbit) {
   ProblemFamily family = study.continuation->family;
   family.to = period_of(orbit);
-  Diagram diagram(family, {.solve = within(1e-11), .points = 60, .seeds = true});
+  Diagram diagram(family, {.solve = within(1e-11), .points = 60, .other_branches = true});
   double least = INFINITY;
   int sides = 0;
   BranchPoint last;
@@ -107,7 +107,7 @@ TEST(Families, HalosAboutL2) {
 /// ones next to one of the nearest points.
 TEST(Families, HalosAboutL1) {
   const Study study = family_scene("lyapunov-family");
-  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 90, .seeds = true});
+  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 90, .other_branches = true});
   std::vector<BranchPoint> halos[2];
   while (diagram.advance())
     if (const int branch = diagram.point().branch; branch == 1 || branch == 2)
@@ -142,7 +142,8 @@ TEST(Families, AxialOrbitsJoinTwoFamilies) {
     if (vertical.point().kind == PointKind::branch) joined = vertical.point().solution.duration();
   const Study study = family_scene("lyapunov-family");
   for (const double tolerance : {1e-9, 1e-11}) {
-    Diagram diagram(study.continuation->family, {.solve = within(tolerance), .points = 30, .seeds = true});
+    Diagram diagram(study.continuation->family,
+                    {.solve = within(tolerance), .points = 30, .other_branches = true});
     std::vector<double> crossings[5];
     while (diagram.advance()) {
       const BranchPoint& point = diagram.point();
@@ -212,7 +213,7 @@ TEST(Families, StraightOrbitsOfHenonAndHeiles) {
 /// Every orbit that begins at one of those points leads on to the energy wanted.
 TEST(Families, OrbitsThatBeginAtStraightOnes) {
   const Study study = family_scene("henon-heiles-line-family");
-  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 40, .seeds = true});
+  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 40, .other_branches = true});
   while (diagram.advance()) {
     const BranchPoint& point = diagram.point();
     if (point.branch == 0) continue;

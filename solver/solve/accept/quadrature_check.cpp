@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
@@ -104,15 +105,16 @@ double residual_under_finer(const Problem& problem, const Path& path, const Outc
 }
 
 bool polish(Path& path, NewtonIteration& newton) {
-  constexpr int most_steps = 5;
   if (!newton.extended() && !newton.extend()) return false;
+  constexpr int most_steps = 5;
   double before = INFINITY;
-  for (int step = 0; step < most_steps; ++step) {
-    if (newton.full_step(path, 0) != StepResult::ok) return false;
-    if (!(newton.norm() < 0.5 * before)) break;
-    before = newton.norm();
-  }
-  return true;
+  NewtonPolicy to_roundoff{most_steps, Progress::arrived, [](int) { return Factors::anew; },
+                           [&](StepResult step, int) {
+                             if (step != StepResult::ok) return Progress::failed;
+                             const double last = std::exchange(before, newton.norm());
+                             return before < 0.5 * last ? Progress::more : Progress::arrived;
+                           }};
+  return newton_loop(NewtonSteps{newton, path}, to_roundoff) == Progress::arrived;
 }
 
 void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options, const Outcome& outcome,

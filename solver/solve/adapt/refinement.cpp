@@ -271,9 +271,9 @@ Refinement::Attempt Refinement::follow(NewtonReport newton) {
       result = judge(newton, aim, nodes);
     }
     if (result == Attempt::converged) {
-      const Attempt settled = settle(newton);
-      if (settled == Attempt::refine) worst_ = INFINITY;
-      return settled;
+      const Attempt satisfied = satisfy_natural_conditions(newton);
+      if (satisfied == Attempt::refine) worst_ = INFINITY;
+      return satisfied;
     }
     if (result != Attempt::refine) return result;
   }

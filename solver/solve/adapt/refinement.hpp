@@ -96,7 +96,7 @@ class Refinement {
   void refine();
   void record();
   double phase_force() const;
-  Attempt settle(const NewtonReport& report);
+  Attempt satisfy_natural_conditions(const NewtonReport& report);
   std::string hidden(double amplified) const;
   double step_cost() const;
 

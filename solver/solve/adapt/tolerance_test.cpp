@@ -24,8 +24,8 @@ constexpr double rest = 1e-12;
 constexpr double much_less = 0.25;
 /// Of roundoff that was measured.
 constexpr double certain = 3;
-/// Steps that end what Newton's method began.
-constexpr int most_polish = 3;
+/// Steps for the natural conditions, after Newton's method has converged.
+constexpr int most_natural_steps = 4;
 /// They use the factors there are as long as they contract so much.
 constexpr double worst_chord = 0.5;
 
@@ -80,7 +80,7 @@ double Refinement::phase_force() const {
 /// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows:
 /// it tells better than what was expected to remain.
 /// A residual that was left within the tolerance becomes roundoff in a few.
-Refinement::Attempt Refinement::settle(const NewtonReport& report) {
+Refinement::Attempt Refinement::satisfy_natural_conditions(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
   const double phase = problem_.periodic ? phase_force() : 0;
   NewtonIteration& newton = w_.iteration;
@@ -88,20 +88,24 @@ Refinement::Attempt Refinement::settle(const NewtonReport& report) {
   if (!problem_.periodic)
     newton.model().set_null_below(largest_null_eigenvalue(scales_.magnitude, left_out_, path_));
   bool passed = false;
-  for (int step = 0; step <= most_polish; ++step) {
-    const bool again = step == 0 || newton.contraction() <= worst_chord;
-    const StepResult result = again ? newton.chord_step(path_) : newton.full_step(path_, 0);
+  const auto factors = [&](int k) {
+    return k == 0 || newton.contraction() <= worst_chord ? Factors::before : Factors::anew;
+  };
+  const auto take = [&](StepResult step, int k) {
     record();
-    passed = result == StepResult::ok && test_.passed(problem_, newton, path_, phase);
-    if (passed && newton.norm() <= options_.tolerance) {
-      outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
-      return Attempt::converged;
-    }
-    // What is left was told before the step; the first may follow one that was damped.
+    passed = step == StepResult::ok && test_.passed(problem_, newton, path_, phase);
+    if (passed && newton.norm() <= options_.tolerance) return Progress::arrived;
+    // The residual was measured before the step; the first may follow one that was damped.
     const double allowed = std::min(10 * options_.tolerance, loosest_newton);
-    if (result != StepResult::ok || (step > 0 && test_.share() > allowed) || exhausted()) break;
+    const bool hopeless = step != StepResult::ok || (k > 0 && test_.share() > allowed);
+    return hopeless || exhausted() ? Progress::failed : Progress::more;
+  };
+  NewtonPolicy policy{most_natural_steps, Progress::failed, factors, take};
+  if (newton_loop(NewtonSteps{newton, path_}, policy) == Progress::arrived) {
+    outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
+    return Attempt::converged;
   }
-  if (passed && newton.extend()) return settle(report);
+  if (passed && newton.extend()) return satisfy_natural_conditions(report);
   outcome_.message = passed ? hidden(newton.norm()) : test_.message();
   if (passed) return Attempt::unreachable;
   // What holds the phase is an error of the elements if it falls with them.

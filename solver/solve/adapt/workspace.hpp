@@ -23,7 +23,8 @@ struct Workspace {
   Planner planner;
   Frequency frequency;
   SecondVariation variation;
-  Path other, raised;          ///< while a path moves to other elements
+  Path other, raised;  ///< while a path moves to other elements
+  Scratch scratch;
   Path spare;                  ///< memory of the next Outcome
   std::vector<double> before;  ///< mesh nodes when the present elements were opened
   std::unique_ptr<SchemeTables> pinned_scheme;

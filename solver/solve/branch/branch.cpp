@@ -250,7 +250,7 @@ void Branch::respond(const Move& onward, Move& response) {
     }
   ClosingEquation equation;
   const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, path_, equation);
-  w_.iteration.model().respond(w_.iteration.action(), closing, load, response.step);
+  w_.iteration.second_variation()->respond(w_.iteration.action(), closing, load, response.step);
   response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
   response.add(direction, -dot(onward, response) / dot(onward, direction));
 }

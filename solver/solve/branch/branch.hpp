@@ -4,7 +4,8 @@
 #include <optional>
 
 #include "action/rule.hpp"
-#include "solve/homotopy/family.hpp"
+#include "solve/adapt/workspace.hpp"
+#include "solve/homotopy/curve.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 
 /// \file The equations of a branch of extremals, linearised at one path of it.
@@ -26,7 +27,7 @@ struct ProblemFamily {
 
 /// Curves through a path: with x the path, δS = 0 and what closes a free duration leave of (x,
 /// T) one direction where the duration or the energy varies, and of (x, T, p) one where a parameter p does.
-class Branch {
+class Branch : public ExtremalCurve {
  public:
   Branch(const ProblemFamily& family, Path& path, Workspace& workspace);
 
@@ -37,18 +38,16 @@ class Branch {
   /// What Move::parameter changes: the parameter, or the duration.
   double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
   /// Moves path and coordinate; false if there is no problem there.
-  bool apply(const Move& move, double factor);
+  bool apply(const Move& move, double factor) override;
   /// Scalar product of a tangent with what the last apply() moved besides: ends and durations that do not
   /// depend linearly on the parameter.
-  double drift(const Move& tangent) const;
+  double drift(const Move& tangent) const override;
 
   /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
   /// With the factors of the path that was linearised before, the direction stays that of there.
-  enum class Factors { anew, before };
-  bool linearise(Factors factors = Factors::anew);
+  bool linearise(Factors factors = Factors::anew) override;
   /// Whether there are factors of a path in the same problem and on the same elements.
   bool factored() const { return factored_; }
-  Move correction, direction;
   /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
   bool defined() const { return defined_; }
   /// Over (q(0), q(T)): a displacement of the ends that had better close the equations near the path that was
@@ -66,9 +65,9 @@ class Branch {
   /// −∂S/∂q(0), then ∂S/∂q(T).
   std::span<const double> momenta() const { return momenta_; }
   /// The number that varies.
-  double varied() const;
+  double varied() const override;
   /// By how much a move makes it greater, correction and direction apart.
-  double change(bool along) const;
+  double change(bool along) const override;
   /// The sign of the determinant of the equations with the tangent `onward`·direction as their last row: it
   /// changes where branches cross, but not at folds.
   int orientation(double onward) const;
@@ -83,7 +82,7 @@ class Branch {
   const ElementTables& tables() const { return *tables_; }
   /// Mean over τ, by the nodes, relative to an extent of the path; durations relative to another, parameters
   /// to the distance wanted.
-  double dot(const Move& a, const Move& b) const;
+  double dot(const Move& a, const Move& b) const override;
   /// The most that a node is moved, which short elements hide in the mean.
   double largest(const Move& move) const;
   struct Units {

@@ -1,5 +1,4 @@
 #include "solve/branch/continuation.hpp"
-#include "solve/mesh/roundoff.hpp"
 
 #include <fmt/format.h>
 
@@ -7,29 +6,32 @@
 #include <cmath>
 #include <utility>
 
+#include "solve/search/search.hpp"
+
 namespace extremal {
 
 namespace {
 
-/// Lengths are relative, as Branch::dot measures them.
-constexpr double least_length = 1e-6;
-/// A step is refused where corrections shrink less than this or are longer than this part of it; the next try
-/// is so much of it.
-constexpr double contraction = 0.5, longest_correction = 0.5, shortening = 0.4;
-/// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
-/// singularity: they may grow so much before they shrink.
-constexpr double small_correction = 0.05, slowest = 4;
-constexpr int most_corrections = 8, most_resolutions = 4;
-/// Steps whose last corrections take more factors are too long.
-constexpr int many_factors = 4;
-/// Corrections are carried on no further than this.
-constexpr double least_goal = 10 * least_correction;
-/// Corrections are carried on to this share of the tolerance.
-constexpr double unfinished = 0.01;
-/// The unit of lengths is no smaller than this share of the largest path so far.
-constexpr double least_extent = 0.3;
-/// The action is held against its derivatives at one point of so many.
+/// Lengths are relative, as Branch::dot measures them. The longest step is one of which so many make up the
+/// distance wanted where as many points are allowed.
+constexpr double first_length = 0.02, least_length = 1e-6, least_longest = 0.1, most_longest = 0.4;
+constexpr double coverage = 4;
+/// The next try after a step that failed is so much of it.
+constexpr double shortening = 0.4;
+/// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, else it
+/// shrinks; it shrinks, too, after corrections that took more factorisations.
+constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.95, growth_if_bent = 1.3,
+                 growth_else = 0.8;
+constexpr int many_factorisations = 4;
+constexpr double growth_if_many = 0.7;
+/// Of the size of the guess: a path smaller than this is at rest.
+constexpr double rest = 1e-9;
+/// The first step onto a branch that crosses another; at least; and the next try.
+constexpr double first_departure = 0.05, least_departure = 1e-4, shorter_departure = 0.7;
+/// The action is compared with its derivatives at one point of so many, over half the lengths in turn until
+/// the difference is so small.
 constexpr int unchecked = 8;
+constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
 
 /// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
 constexpr double singular_grading = 100;
@@ -43,36 +45,61 @@ double grading(const Path& path) {
   return longest / shortest;
 }
 
-}  // namespace
-
-const char* name(PointKind kind) {
-  switch (kind) {
-    case PointKind::fold:
-      return "fold";
-    case PointKind::branch:
-      return "branch";
-    case PointKind::period_doubling:
-      return "period-doubling";
-    case PointKind::regular:
-      break;
-  }
-  return "regular";
+double growth(const Tracker& tracker) {
+  const double cosine = tracker.cosine();
+  const double growth = cosine > straight ? growth_if_straight : cosine > bent ? growth_if_bent : growth_else;
+  return tracker.factorisations() > many_factorisations ? std::min(growth, growth_if_many) : growth;
 }
 
-Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
-    : family_(std::move(family)), options_(std::move(options)), branch_(family_, path_, w_) {}
+/// The action a little onward and back against the integral of its derivative, by Simpson's rule; nearer by
+/// where that is not exact enough. Infinite where neither is known.
+double action_difference(Tracker& tracker) {
+  const BranchState at = tracker.state;
+  // −E T alone may be large: S vanishes for small swings.
+  const double size = std::max({std::abs(at.action), std::abs(at.action_rate), at.energy_time});
+  const Branch& branch = tracker.branch();
+  double least = INFINITY;
+  for (const double by : probes) {
+    double action[2], rate[2];
+    bool there = size > 0;
+    for (int side = 0; side < 2 && there; ++side) {
+      there = tracker.reach(at, side ? by : -by, true);
+      const BranchState& here = tracker.state;
+      action[side] = here.action;
+      rate[side] = here.action_rate * branch.dot(tracker.tangent(), tracker.tangent()) /
+                   branch.dot(tracker.tangent(), here.tangent);
+    }
+    if (!there) continue;
+    const double found = (action[1] - action[0]) / (2 * by);
+    const double expected = (rate[0] + 4 * at.action_rate + rate[1]) / 6;
+    least = std::min(least, std::abs(found - expected) / size);
+    if (least < exact) break;
+  }
+  tracker.state = at;
+  return least;
+}
 
-Continuation::Continuation(ProblemFamily family, ContinuationOptions options, Seed seed, int side)
+}  // namespace
+
+Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
+    : family_(std::move(family)), options_(std::move(options)), tracker_(family_, options_.solve.tolerance) {}
+
+Continuation::Continuation(ProblemFamily family, ContinuationOptions options, BranchStart start, int side)
     : family_(std::move(family)),
       options_(std::move(options)),
-      branch_(family_, path_, w_),
-      seed_(std::move(seed)),
+      tracker_(family_, options_.solve.tolerance),
+      start_(std::move(start)),
       side_(side) {}
 
 bool Continuation::stop(BranchEnd end, std::string message) {
   end_ = end;
   message_ = std::move(message);
   return false;
+}
+
+void Continuation::add(FoundPoint found) {
+  worst_momentum_ = std::max(worst_momentum_, found.point.momentum_difference);
+  found_.push_back(std::move(found));
 }
 
 bool Continuation::advance() {
@@ -90,143 +117,109 @@ bool Continuation::advance() {
   return true;
 }
 
-/// Newton's method across the tangent; or to where what varies has the value `landing`. A gradient costs a
-/// quarter of what factors do: those there are, while the problem stays what it is, serve as long as they
-/// lead to the goal soon.
-bool Continuation::correct(double length, const double* landing) {
-  const double enough = std::max(unfinished * options_.solve.tolerance, least_goal);
-  const double goal = landing ? least_goal : enough;
-  double before = INFINITY, way_before = INFINITY, curvature = INFINITY, found = INFINITY;
-  bool anew = true, newton = true;  // factors of this path; of that before, where the last move began
-  refusal_ = Refusal::rough;
-  factors_ = 0;
-  for (int k = 0; k < most_corrections; ++k) {
-    if (!branch_.linearise(anew ? Branch::Factors::anew : Branch::Factors::before)) {
-      if (!branch_.defined()) refusal_ = Refusal::no_problem;
-      return false;
-    }
-    const Move& direction = branch_.direction;
-    Move& move = branch_.correction;
-    const double along = landing ? branch_.change(true) : branch_.dot(tangent_, direction);
-    const double off = landing ? branch_.varied() + branch_.change(false) - *landing
-                               : branch_.dot(tangent_, move) + branch_.drift(tangent_);
-    if (along == 0) return false;
-    move.add(direction, -off / along);
-    if (landing) landed_ += branch_.dot(tangent_, move);
-    const double way = std::sqrt(branch_.dot(move, move)), size = branch_.largest(move);
-    const double rate = k > 0 ? size / before : 1;
-    factors_ += anew;
-    const bool noise = anew && size < amplified_roundoff && rate > 0.3;
-    // Factors of before may hide what those of this path find: it is held against what such found last.
-    const double growth = way / (anew ? std::exchange(found, way) : way_before);
-    const double fastest = way > small_correction * length ? contraction : slowest;
-    if (!noise && (!(way <= longest_correction * length) || growth > fastest)) return false;
-    if (!branch_.apply(move, 1)) {
-      refusal_ = Refusal::no_problem;
-      return false;
-    }
-    if (k > 0 && newton) curvature = rate / before;
-    // What is left after a step of Newton's method, and by how much a step with its factors, which are off by
-    // all of the last move and not by half of it, shrinks that.
-    const double left = size * (anew ? curvature * size : newton ? 2 * rate : rate);
-    const double shrinking = anew ? 2 * curvature * size : left / size;
-    if (noise || left <= goal) return true;
-    newton = anew;
-    anew = !branch_.factored() || (k > 0 && !(left * shrinking * shrinking <= goal));
-    before = size;
-    way_before = way;
-  }
-  return before <= enough;
-}
-
-void Continuation::Stand::scale(double factor) {
-  tangent.scale(factor);
-  rate *= factor;
-  action_rate *= factor;
-  if (factor < 0) orientation = -orientation;
-}
-
-/// The next tangent, onward, and what there is to know of the place.
-bool Continuation::turn(bool first) {
-  if (!branch_.linearise()) {
-    refusal_ = branch_.defined() ? Refusal::rough : Refusal::no_problem;
-    return false;
-  }
-  refusal_ = Refusal::rough;
-  // A path with nothing left to correct: a long correction is the roundoff of nearly singular factors.
-  if (!first && branch_.dot(branch_.correction, branch_.correction) > 1) return false;
-  const double length = std::sqrt(branch_.dot(branch_.direction, branch_.direction));
-  const double along = first ? 1 : branch_.dot(tangent_, branch_.direction);
-  const double onward = std::copysign(1 / length, along);
-  cosine_ = first ? 1 : std::abs(along) / (length * std::sqrt(branch_.dot(tangent_, tangent_)));
-  here_.path = path_;
-  here_.coordinate = branch_.coordinate();
-  here_.varied = branch_.varied();
-  here_.action = branch_.action();
-  here_.tangent = branch_.direction;
-  here_.tangent.scale(onward);
-  here_.row = branch_.closing_row(here_.tangent);
-  here_.rate = onward * branch_.change(true);
-  here_.turning = here_.bend = here_.twist = {};
-  here_.action_rate = onward * branch_.action_slope();
-  here_.energy_time = std::abs(branch_.energy() * path_.duration());
-  here_.orientation = branch_.orientation(onward);
-  here_.index = branch_.inertia().negative;
+bool Continuation::begin() {
+  longest_ = std::clamp(coverage / options_.points, least_longest, most_longest);
+  length_ = std::min(first_length, longest_);
+  if (!(start_ ? begin_from_start() : begin_from_solve())) return false;
+  tracker_.measure_anew();
+  add({read_point(tracker_, PointKind::regular)});
+  first_ = tracker_.state;
+  check_action();
   return true;
 }
 
-/// Lengths from here on in units of the path that is here, or of a share of the largest before: a path that
-/// shrinks to nothing is passed.
-void Continuation::measure_anew() {
-  const double extent = sizes().q;
-  largest_extent_ = std::max(largest_extent_, extent);
-  const double unit = std::max(extent, least_extent * largest_extent_);
-  here_.units = {unit > 0 ? unit : 1, path_.duration()};
-  branch_.set_units(here_.units);
-  here_.scale(1 / std::sqrt(branch_.dot(here_.tangent, here_.tangent)));
+/// The extremal that a solve finds, with the branch's tangent there.
+bool Continuation::begin_from_solve() {
+  tracker_.workspace().levels.bind(family_.problem.lagrangian);
+  SolveOptions adaptive = options_.solve;
+  adaptive.scheme.reset();
+  adaptive.elements = 0;
+  Search search(family_.problem, adaptive, tracker_.workspace());
+  const Outcome& outcome = search.run();
+  if (outcome.status != Status::converged)
+    return stop(BranchEnd::not_started, "no extremal to begin with: " + outcome.message);
+  double at_rest = 0;
+  for (const double x : family_.problem.guess.q) at_rest = std::max(at_rest, rest * std::abs(x));
+  const double coordinate = family_.varied == Varied::parameter ? family_.from : outcome.path.duration();
+  if (!tracker_.begin(std::move(search.path()), coordinate, at_rest))
+    return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
+  BranchState& state = tracker_.state;
+  if (state.rate * (family_.to - family_.from) < 0) state.scale(-1);
+  return true;
 }
 
-/// So far along the tangent from a place, and back onto the branch, or to where what varies has the value
-/// `landing`; on elements that meet the tolerance, or on those of the place. False if that fails.
-bool Continuation::go(const Stand& from, double length, bool same_elements, const double* landing) {
-  path_ = from.path;
-  tangent_ = from.tangent;
-  here_.units = from.units;
-  branch_.set_units(from.units);
-  landed_ = 0;
-  refusal_ = Refusal::no_problem;
-  if (!branch_.place(from.coordinate)) return false;
-  branch_.bind();
-  branch_.close_by(from.row);
-  if (!branch_.apply(from.ahead(length), 1) || !correct(std::abs(length), landing)) return false;
-  for (int k = 0; k < most_resolutions && !same_elements; ++k) {
-    const Elements elements = resolve();
-    if (elements == Elements::too_many) {
-      refusal_ = Refusal::crowded;
-      return false;
+/// Along the response of the equations next to where they are singular: it has little of the branch that is
+/// crossed, and across it that branch does not go far.
+bool Continuation::begin_from_start() {
+  const BranchStart start = *std::exchange(start_, std::nullopt);
+  if (tracker_.begin(start.path, start.coordinate, start.units, rest * start.units.extent)) {
+    Branch& branch = tracker_.branch();
+    const BranchState& state = tracker_.state;
+    BranchState from = state;
+    branch.respond(state.tangent, from.tangent);
+    from.tangent.scale(side_ / std::sqrt(branch.dot(from.tangent, from.tangent)));
+    // The number varies with the square of the length, perhaps fast: not past the value wanted at once.
+    double past = 0;
+    for (double length = first_departure; length > least_departure; length *= shorter_departure) {
+      if (!tracker_.reach(from, length)) continue;
+      if ((state.varied - family_.to) * (from.varied - family_.to) > 0) return true;
+      past = length;
     }
-    if (elements == Elements::fine) break;
-    if (!correct(std::abs(length), landing)) return false;
+    if (past > 0 && tracker_.reach(from, past)) return true;
   }
-  return turn();
+  return stop(BranchEnd::not_started, "no other branch was found where the equations are singular");
 }
 
-/// The same, and onto no other branch that is near.
-bool Continuation::stays(const Stand& from, double length, bool same_elements) {
-  return go(from, length, same_elements) && cosine_ > sharpest_turn;
+/// The next step that succeeds, with all that is found on it: a shorter one where the value that the branch
+/// is to lead to is passed and not found.
+bool Continuation::step() {
+  BranchState& state = tracker_.state;
+  std::swap(state, from_);
+  for (;; length_ *= shortening) {
+    if (length_ < least_length) return give_up(from_);
+    if (tracker_.reach_smoothly(from_, length_)) break;
+  }
+  const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
+  tracker_.measure_anew();
+  tracker_.predict(from_, length);
+  length_ = std::min(length_, tracker_.predictable_length());
+  BranchPoint next = read_point(tracker_, PointKind::regular);
+  state.doubling_tests_before = from_.doubling_tests;
+  if (++steps_ % unchecked == 0) check_action();
+  std::swap(state, to_);
+  StepEvents events =
+      locate_events(tracker_, {family_, first_, options_.other_branches}, {from_, to_, length});
+  std::swap(state, events.missed ? from_ : to_);
+  if (events.missed) {
+    length_ = shortening * length;
+    tracker_.fail(StepFailure::rough);
+    return step();
+  }
+  for (FoundPoint& found : events.points) add(std::move(found));
+  if (events.end != BranchEnd::none)
+    stop(events.end, std::move(events.message));
+  else
+    add({std::move(next)});
+  return !found_.empty();
 }
 
-bool Continuation::give_up(const Stand& from) {
+void Continuation::check_action() {
+  const double difference = action_difference(tracker_);
+  if (difference < INFINITY) worst_action_slope_ = std::max(worst_action_slope_, difference);
+}
+
+bool Continuation::give_up(const BranchState& from) {
   const double varied = from.varied, graded = grading(from.path);
-  if (refusal_ == Refusal::rough && graded > singular_grading) refusal_ = Refusal::crowded;
-  switch (refusal_) {
-    case Refusal::crowded:
+  StepFailure failure = tracker_.failure();
+  if (failure == StepFailure::rough && graded > singular_grading) failure = StepFailure::crowded;
+  switch (failure) {
+    case StepFailure::crowded:
       return stop(
           BranchEnd::collision,
           fmt::format("at {:.8g} the path, whose shortest element is {:.0e} of its longest, needs ever "
                       "more of them: it comes near a singularity; loosen the tolerance",
                       varied, 1 / graded));
-    case Refusal::no_problem:
+    case StepFailure::no_problem:
       return stop(BranchEnd::limit,
                   fmt::format("at {:.8g} the branch cannot be followed: beyond, there is no such problem, or "
                               "L is not finite",
@@ -236,35 +229,6 @@ bool Continuation::give_up(const Stand& from) {
           BranchEnd::too_short,
           fmt::format("at {:.8g} the branch cannot be followed in steps of {:.0e}", varied, least_length));
   }
-}
-
-/// The next step that succeeds, with all that is met on it: a shorter one where the value that the branch is
-/// to lead to is passed and not found.
-bool Continuation::step() {
-  std::swap(here_, from_);
-  for (;; length_ *= shortening) {
-    if (length_ < least_length) return give_up(from_);
-    if (stays(from_, length_)) break;
-  }
-  const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.95 ? 1.3 : 0.8;
-  const double passed = std::exchange(
-      length_, std::min(longest_, length_ * (factors_ > many_factors ? std::min(growth, 0.7) : growth)));
-  measure_anew();
-  curve(from_, passed);
-  length_ = std::min(length_, foreseen());
-  BranchPoint next = read(PointKind::regular);
-  here_.gaps_before = from_.gaps;
-  if (++steps_ % unchecked == 0) check_action();
-  std::swap(here_, to_);
-  const bool met = meet(from_, to_, passed);
-  std::swap(here_, met ? to_ : from_);
-  if (!met) {
-    length_ = shortening * passed;
-    refusal_ = Refusal::rough;
-    return step();
-  }
-  if (end_ == BranchEnd::none) found_.push_back({std::move(next)});
-  return !found_.empty();
 }
 
 }  // namespace extremal

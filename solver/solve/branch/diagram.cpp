@@ -42,9 +42,9 @@ bool Diagram::advance() {
   point_ = current_->point();
   point_.branch = static_cast<int>(branches_.size()) - 1;
   ++branches_.back().points;
-  if (const std::optional<Seed>& seed = current_->seed()) {
-    waiting_.push_back({count_, *seed, 1});
-    if (seed->kind == PointKind::branch) waiting_.push_back({count_, *seed, -1});
+  if (const std::optional<BranchStart>& start = current_->start()) {
+    waiting_.push_back({count_, *start, 1});
+    if (start->kind == PointKind::branch) waiting_.push_back({count_, *start, -1});
   }
   ++count_;
   return true;
@@ -63,9 +63,9 @@ bool Diagram::follow_next() {
   Waiting next = std::move(waiting_.front());
   waiting_.pop_front();
   ContinuationOptions options = options_;
-  options.seeds = false;
-  const bool twice = next.seed.kind == PointKind::period_doubling;
-  current_.emplace(twice ? doubled(family_) : family_, options, std::move(next.seed), next.side);
+  options.other_branches = false;
+  const bool twice = next.start.kind == PointKind::period_doubling;
+  current_.emplace(twice ? doubled(family_) : family_, options, std::move(next.start), next.side);
   branches_.push_back({.origin = next.origin});
   return true;
 }

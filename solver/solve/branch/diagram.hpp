@@ -20,9 +20,9 @@ struct BranchRecord {
   double worst_action_slope = 0, worst_momentum = 0;  ///< see Continuation
 };
 
-/// The branch of a family, and, if options.seeds, each that bifurcates from it: where branches cross, one way
-/// and the other; where a period doubles, the orbits of twice the period. Each has as many points as the
-/// options allow.
+/// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches
+/// cross, one way and the other; where a period doubles, the orbits of twice the period. Each has as many
+/// points as the options allow.
 class Diagram {
  public:
   Diagram(ProblemFamily family, ContinuationOptions options);
@@ -37,7 +37,7 @@ class Diagram {
  private:
   struct Waiting {
     int origin;
-    Seed seed;
+    BranchStart start;
     int side;
   };
   bool follow_next();

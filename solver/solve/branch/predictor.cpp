@@ -2,16 +2,16 @@
 #include <cmath>
 #include <utility>
 
-#include "solve/branch/continuation.hpp"
+#include "solve/branch/tracker.hpp"
 
-/// \file How a branch goes on from a place, as tangents and other places tell.
+/// \file How a branch continues from a state, by its tangents and other states.
 
 namespace extremal {
 
 namespace {
 
-/// A step is begun no longer than the branch is foreseen to turn by so much, the tangent of an angle.
-constexpr double foreseen_turn = 0.4;
+/// A step is begun no longer than the branch is predicted to turn by so much, the tangent of an angle.
+constexpr double predicted_turn = 0.4;
 
 /// The values of a path as a step from zero.
 Step values_of(const Path& path) {
@@ -27,8 +27,7 @@ bool same_elements(const Path& a, const Path& b) {
 
 }  // namespace
 
-/// From the place, so far along the tangent.
-Move Continuation::Stand::ahead(double length) const {
+Move BranchState::predicted(double length) const {
   Move move = tangent;
   move.scale(length);
   if (bend.step.nodes.empty()) return move;
@@ -37,49 +36,49 @@ Move Continuation::Stand::ahead(double length) const {
   return move;
 }
 
-/// Tangents t here, at the place before and at the one before that give, as divided differences D and S over
-/// the ways ℓ between them, t(σ) = t + σD + σ(σ + ℓ)S, and the branch as its integral. Places tell less: they
-/// may differ by a shift of time that no correction takes back, and would pass it on enlarged.
-void Continuation::curve(const Stand& before, double length) {
-  const Move tangent = carried(before.tangent, before.path);
+/// Tangents t here, at the state before and at the one before that give, as divided differences D and S over
+/// the ways ℓ between them, t(σ) = t + σD + σ(σ + ℓ)S, and the branch as its integral. Differences of paths
+/// are not used: they may differ by a shift of time that no correction takes back, and would enlarge it.
+void Tracker::predict(const BranchState& before, double length) {
+  const Move tangent = transferred(before.tangent, before.path);
   const double unit = std::sqrt(branch_.dot(tangent, tangent));  // of lengths before
-  here_.back = unit * length;
-  Move& turning = here_.turning = here_.tangent;
-  turning.add(tangent, -1 / branch_.dot(here_.tangent, tangent));
-  turning.scale(1 / here_.back);
-  here_.bend = turning;
+  state.back = unit * length;
+  Move& turning = state.turning = state.tangent;
+  turning.add(tangent, -1 / branch_.dot(state.tangent, tangent));
+  turning.scale(1 / state.back);
+  state.bend = turning;
   if (!before.turning.step.nodes.empty()) {
-    Move& twist = here_.twist = turning;
-    twist.add(carried(before.turning, before.path), -1 / (unit * unit));
-    twist.add(here_.tangent, -branch_.dot(here_.tangent, twist));
-    twist.scale(1 / (here_.back + unit * before.back));
-    here_.bend.add(twist, here_.back);
+    Move& twist = state.twist = turning;
+    twist.add(transferred(before.turning, before.path), -1 / (unit * unit));
+    twist.add(state.tangent, -branch_.dot(state.tangent, twist));
+    twist.scale(1 / (state.back + unit * before.back));
+    state.bend.add(twist, state.back);
     twist.scale(1.0 / 3);
   }
-  here_.bend.scale(0.5);
+  state.bend.scale(0.5);
 }
 
-/// How far on the tangent turns by no more than foreseen_turn, at most |2σ bend + 3σ² twist|.
-double Continuation::foreseen() const {
+/// The tangent turns by at most |2σ bend + 3σ² twist|.
+double Tracker::predictable_length() const {
   const auto size = [&](const Move& move) {
     return move.step.nodes.empty() ? 0 : std::sqrt(branch_.dot(move, move));
   };
-  const double bend = size(here_.bend), twist = size(here_.twist);
-  return foreseen_turn / (bend + std::sqrt(bend * bend + 3 * twist * foreseen_turn));
+  const double bend = size(state.bend), twist = size(state.twist);
+  return predicted_turn / (bend + std::sqrt(bend * bend + 3 * twist * predicted_turn));
 }
 
-/// A place from which the step to another one is foreseen as the cubic through both, with their tangents:
-/// with ℓ the length of the step and y(σ) what the branch deviates from the tangent t, y(ℓ) = Y and y'(ℓ) = Z
-/// give y = σ²(3Y/ℓ − Z)/ℓ + σ³(Z − 2Y/ℓ)/ℓ².
-Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, double length) {
-  Stand result = from;
+/// With ℓ the length of the step and y(σ) the deviation of the branch from the tangent t, y(ℓ) = Y and
+/// y'(ℓ) = Z give y = σ²(3Y/ℓ − Z)/ℓ + σ³(Z − 2Y/ℓ)/ℓ².
+BranchState Tracker::with_cubic(const BranchStep& step) {
+  const auto& [from, to, length] = step;
+  BranchState result = from;
   path_ = from.path;
   branch_.set_units(from.units);
   if (!branch_.place(from.coordinate)) return result;
-  Move off = way_to(to);
+  Move off = difference_to(to);
   off.add(from.tangent, -length);
   off.scale(1 / (length * length));
-  Move slope = carried(to.tangent, to.path);
+  Move slope = transferred(to.tangent, to.path);
   slope.scale(1 / (branch_.dot(from.tangent, slope) * length));
   slope.add(from.tangent, -1 / length);
   result.bend = off;
@@ -91,8 +90,8 @@ Continuation::Stand Continuation::aimed(const Stand& from, const Stand& to, doub
   return result;
 }
 
-/// A move of another path on the elements that there are.
-Move Continuation::carried(const Move& move, const Path& from) {
+/// A move of another path on the elements of this one.
+Move Tracker::transferred(const Move& move, const Path& from) {
   if (move.step.nodes.empty() || same_elements(from, path_)) return move;
   Path whole;
   whole.reset(w_.levels.at(from.degree()), from.mesh(), from.duration());
@@ -106,8 +105,8 @@ Move Continuation::carried(const Move& move, const Path& from) {
   return result;
 }
 
-/// From the path to another place's, on the elements of the path.
-Move Continuation::way_to(const Stand& to) {
+/// From the path to that of another state, on the elements of the path.
+Move Tracker::difference_to(const BranchState& to) {
   w_.other = to.path;
   if (!same_elements(to.path, path_)) w_.other.resample_from(to.path, branch_.tables(), path_.mesh());
   Move way{values_of(w_.other), to.coordinate - branch_.coordinate()};

@@ -2,62 +2,83 @@
 #include <cmath>
 
 #include "solution/observe.hpp"
-#include "solve/branch/continuation.hpp"
+#include "solve/branch/branch_point.hpp"
 #include "solve/periodic/stability.hpp"
 
-/// \file What there is to know of a place on a branch.
+/// \file All that is known of a state on a branch.
 
 namespace extremal {
 
-BranchPoint Continuation::read(PointKind kind) {
-  BranchPoint point;
-  point.parameter = here_.varied;
-  point.kind = kind;
-  const Problem& problem = branch_.problem();
-  Solution& solution = point.solution;
-  solution.status = Status::converged;
-  solution.message = "converged";
-  solution.strategy = "continuation";
-  solution.trajectory = trajectory_of(here_.path);
-  solution.degree = here_.path.degree();
-  solution.action = here_.action;
-  solution.error_estimate = error_;
-  solution.morse_index = branch_.inertia().negative;
-  solution.nullity = branch_.inertia().zero;
-  observe_energy(*problem.lagrangian, solution);
-  read_momenta(solution);
-  if (!problem.periodic) return point;
-  if (problem.coordinates() <= most_coordinates_for_multipliers)
-    w_.variation.assemble(problem.lagrangian, solution.trajectory, condensed());
-  read_stability(problem, w_.variation, sizes().q, solution, false);
-  here_.gaps = solution.floquet ? doubling_gaps(*solution.floquet) : std::vector<double>{NAN};
-  return point;
-}
+namespace {
 
-/// p = ∂L/∂q' of the trajectory against the derivatives of the action.
-void Continuation::read_momenta(Solution& solution) {
-  const std::size_t n = solution.trajectory.coordinates;
-  const std::span<const double> momenta = branch_.momenta();
-  solution.momentum_start.assign(momenta.begin(), momenta.begin() + n);
-  solution.momentum_end.assign(momenta.begin() + n, momenta.end());
+/// The mean along the path is ∫p·q' dt by the range of q: momenta are small at both ends of a swing between
+/// points of rest.
+double momentum_difference(Tracker& tracker, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
-  // ∫p·q' dt by the range of q: momenta are small at both ends of a swing between points of rest.
+  const std::size_t n = trajectory.coordinates;
   const double swept = std::abs(solution.action + solution.energy.value_or(0) * solution.duration());
-  const double range = sizes().range;
+  const double range = tracker.sizes().range;
   double worst = 0, largest = range > 0 ? swept / range : 0;
   for (const bool end : {false, true}) {
     const double t = end ? solution.duration() : 0;
     const std::size_t first = end ? trajectory.nodes.size() - n : 0;
     const PointValues at =
-        evaluate_at(*branch_.problem().lagrangian, {trajectory.nodes.data() + first, n},
-                    {trajectory.slopes.data() + first, n}, t, Order::gradient, momentum_memory_);
+        evaluate_at(*tracker.branch().problem().lagrangian, {trajectory.nodes.data() + first, n},
+                    {trajectory.slopes.data() + first, n}, t, Order::gradient, tracker.workspace().scratch);
     const std::vector<double>& action = end ? solution.momentum_end : solution.momentum_start;
     for (std::size_t a = 0; a < n; ++a) {
       worst = std::max(worst, std::abs(at.dv[a] - action[a]));
       largest = std::max(largest, std::abs(action[a]));
     }
   }
-  if (largest > 0) worst_momentum_ = std::max(worst_momentum_, worst / largest);
+  return largest > 0 ? worst / largest : 0;
+}
+
+}  // namespace
+
+const char* name(PointKind kind) {
+  switch (kind) {
+    case PointKind::fold:
+      return "fold";
+    case PointKind::branch:
+      return "branch";
+    case PointKind::period_doubling:
+      return "period-doubling";
+    case PointKind::regular:
+      break;
+  }
+  return "regular";
+}
+
+BranchPoint read_point(Tracker& tracker, PointKind kind) {
+  BranchState& state = tracker.state;
+  const Branch& branch = tracker.branch();
+  const Problem& problem = branch.problem();
+  BranchPoint point;
+  point.parameter = state.varied;
+  point.kind = kind;
+  Solution& solution = point.solution;
+  solution.status = Status::converged;
+  solution.message = "converged";
+  solution.strategy = "continuation";
+  solution.trajectory = trajectory_of(state.path);
+  solution.degree = state.path.degree();
+  solution.action = state.action;
+  solution.error_estimate = tracker.error();
+  solution.morse_index = branch.inertia().negative;
+  solution.nullity = branch.inertia().zero;
+  observe_energy(*problem.lagrangian, solution);
+  const auto middle = branch.momenta().begin() + problem.coordinates();
+  solution.momentum_start.assign(branch.momenta().begin(), middle);
+  solution.momentum_end.assign(middle, branch.momenta().end());
+  point.momentum_difference = momentum_difference(tracker, solution);
+  if (!problem.periodic) return point;
+  SecondVariation& variation = tracker.workspace().variation;
+  if (problem.coordinates() <= most_coordinates_for_multipliers)
+    variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed());
+  read_stability(problem, variation, tracker.sizes().q, solution, false);
+  state.doubling_tests = solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN};
+  return point;
 }
 
 }  // namespace extremal

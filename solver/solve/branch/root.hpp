@@ -6,21 +6,26 @@
 #include <utility>
 #include <vector>
 
-#include "solve/branch/continuation.hpp"
+#include "solve/branch/tracker.hpp"
 
-/// \file Places on a step where a test is zero, or of another sign than at both ends.
+/// \file States on a step where a test is zero, or of another sign than at both ends.
 
 namespace extremal {
 
-/// What is met on a step is located to this, relative to the distance wanted.
-inline constexpr double located = 1e-11;
+/// Of a test on a step: how far along the tangent, and its value.
+struct Sample {
+  double at, value;
+};
 
-/// A test that is zero counts as positive: of two steps that meet there one sees it.
+/// Events are located to this, relative to the distance wanted, and to so much of the tangent.
+inline constexpr double located = 1e-11, located_length = 1e-8;
+
+/// A test that is zero counts as positive: of two steps that end there one finds it.
 inline bool changes_sign(double a, double b) { return (a < 0) != (b < 0) && std::isfinite(a + b); }
 
-/// Where the parabola through three readings is zero, between two of opposite signs: the chord where they are
+/// Where the parabola through three samples is zero, between two of opposite signs: the chord where they are
 /// all that there is.
-inline double parabola_root(const Reading& a, const Reading& b, const std::optional<Reading>& third) {
+inline double parabola_root(const Sample& a, const Sample& b, const std::optional<Sample>& third) {
   const double reach = b.at - a.at, slope = (b.value - a.value) / reach;
   const double off = third ? third->at - a.at : 0;
   const double bend = third ? ((third->value - a.value) / off - slope) / (off - reach) : 0;
@@ -31,17 +36,23 @@ inline double parabola_root(const Reading& a, const Reading& b, const std::optio
                                                                             : a.at - a.value / slope;
 }
 
-/// Where along the tangent test(), read at the place, is zero: by parabolas through the ends of the interval
-/// and the reading before, or a third one that is known (Muller 1956). To where done(value, next change)
-/// holds. NaN where the branch cannot be followed.
+/// Whether a change of the length moves the tracker's state by no more than events are located to.
+inline bool is_located(const Tracker& tracker, const ProblemFamily& family, double change) {
+  return std::abs(change * tracker.state.rate) <= located * std::abs(family.to - family.from) &&
+         std::abs(change) <= located_length;
+}
+
+/// How far along the tangent test(), read at the tracker's state, is zero: by parabolas through the ends of
+/// the interval and the sample before, or a third one that is known (Muller 1956). To where done(value, next
+/// change) holds. NaN where the branch cannot be followed.
 template <class Test, class Done>
-double Continuation::root(const Stand& from, Reading low, Reading high, std::optional<Reading> third,
-                          const Test& test, const Done& done) {
+double root(Tracker& tracker, const BranchState& from, Sample low, Sample high, std::optional<Sample> third,
+            const Test& test, const Done& done) {
   constexpr int most_trials = 60, most_parabolas = 8;
   double at = parabola_root(low, high, third);
   for (int k = 0; k < most_trials; ++k) {
-    if (!go(from, at)) return NAN;
-    const Reading here = {at, test()};
+    if (!tracker.reach(from, at)) return NAN;
+    const Sample here = {at, test()};
     if (!std::isfinite(here.value)) return NAN;
     third = std::exchange(here.value * high.value > 0 ? high : low, here);
     const double next =
@@ -55,34 +66,35 @@ double Continuation::root(const Stand& from, Reading low, Reading high, std::opt
   return NAN;
 }
 
-/// Folds and the like, at each of which use() is called: between places of opposite signs. `beside` them
-/// the test is known, or foreseen.
+/// All zeros of a test between samples of opposite signs; use(at) is called at each. `beside`: a sample that
+/// is known or predicted.
 template <class Test, class Use>
-void Continuation::find_roots(const Stand& from, const std::vector<Reading>& places,
-                              std::optional<Reading> beside, const Test& test, const Use& use) {
-  for (std::size_t k = 1; k < places.size(); ++k) {
-    if (!changes_sign(places[k - 1].value, places[k].value)) continue;
-    const std::optional<Reading> third =
-        places.size() == 2 ? beside : places[k + 1 < places.size() ? k + 1 : k - 2];
-    const double at = root(from, places[k - 1], places[k], third, test,
-                           [this](double, double change) { return settled(change); });
+void find_roots(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
+                const std::vector<Sample>& samples, std::optional<Sample> beside, const Test& test,
+                const Use& use) {
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    if (!changes_sign(samples[k - 1].value, samples[k].value)) continue;
+    const std::optional<Sample> third =
+        samples.size() == 2 ? beside : samples[k + 1 < samples.size() ? k + 1 : k - 2];
+    const double at = root(tracker, from, samples[k - 1], samples[k], third, test,
+                           [&](double, double change) { return is_located(tracker, family, change); });
     if (std::isfinite(at)) use(at);
   }
 }
 
-/// A place where test() has not the sign that it has at both ends, on the way to its least size: from `at`,
-/// by parabolas through three places. Nothing where they say that it keeps off zero.
+/// A sample of a test whose sign differs from that at both ends, on the way to its least size: from `at`, by
+/// parabolas through three samples. Nothing where they predict that it keeps off zero.
 template <class Test>
-std::optional<Reading> Continuation::dip(const Stand& from, const Reading& low, const Reading& high,
-                                         double at, const Test& test) {
+std::optional<Sample> dip(Tracker& tracker, const BranchState& from, const Sample& low, const Sample& high,
+                          double at, const Test& test) {
   constexpr int most_trials = 12;
   constexpr double clear = 0.5, near = 1e-3;
   const double sign = std::copysign(1.0, low.value), length = high.at - low.at;
-  Reading left = low, right = high;
-  std::optional<Reading> middle;
+  Sample left = low, right = high;
+  std::optional<Sample> middle;
   for (int k = 0; k < most_trials; ++k) {
-    if (!go(from, at)) return std::nullopt;
-    Reading next = {at, test()};
+    if (!tracker.reach(from, at)) return std::nullopt;
+    Sample next = {at, test()};
     if (std::isnan(next.value)) return std::nullopt;
     if (sign * next.value < 0) return next;
     if (!middle) {

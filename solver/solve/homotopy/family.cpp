@@ -31,41 +31,62 @@ constexpr double unresolved = 1e-5, resolved = 1e-7;
 constexpr int most_elements = 256;
 constexpr double strongest_cut = 4;
 
+/// Corrections that shrink: each is shorter than `longest`, and than a part of the one before.
+struct ShrinkingSteps {
+  ExtremalCurve& curve;
+  int most_steps;
+  double longest, enough, before = INFINITY;
+
+  static Factors factors(int) { return Factors::anew; }
+  Progress take(bool solved, int) {
+    if (!solved) return Progress::failed;
+    const double size = std::sqrt(curve.dot(curve.correction, curve.correction));
+    if (!(size < contraction * before && size < longest) || !curve.apply(curve.correction, 1))
+      return Progress::failed;
+    before = size;
+    return size < enough ? Progress::arrived : Progress::more;
+  }
+  static Progress exhausted() { return Progress::failed; }
+};
+
+/// Steps of bounded length from a path that need not be near: the bound doubles where corrections shrink, and
+/// is halved where they grow.
+struct BoundedSteps {
+  ExtremalCurve& curve;
+  int most_steps;
+  double longest, enough, bound = longest, before = INFINITY;
+
+  static Factors factors(int) { return Factors::anew; }
+  Progress take(bool solved, int) {
+    if (!solved) return Progress::failed;
+    const double size = std::sqrt(curve.dot(curve.correction, curve.correction));
+    bound = size < before ? std::min(2 * bound, longest) : 0.5 * bound;
+    before = size;
+    if (!curve.apply(curve.correction, std::min(1.0, bound / size))) return Progress::failed;
+    return size < enough ? Progress::arrived : Progress::more;
+  }
+  static Progress exhausted() { return Progress::failed; }
+};
+
 }  // namespace
-
-void Move::scale(double factor) {
-  for (double& x : step.nodes) x *= factor;
-  for (double& x : step.inner) x *= factor;
-  for (double& x : times) x *= factor;
-  step.duration *= factor;
-  parameter *= factor;
-}
-
-void Move::add(const Move& other, double factor) {
-  for (std::size_t k = 0; k < step.nodes.size(); ++k) step.nodes[k] += factor * other.step.nodes[k];
-  for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] += factor * other.step.inner[k];
-  for (std::size_t k = 0; k < times.size(); ++k) times[k] += factor * other.times[k];
-  step.duration += factor * other.step.duration;
-  parameter += factor * other.parameter;
-}
 
 ExtremalFamily::ExtremalFamily(Path& path, Workspace& workspace, std::function<bool()> count, double unit)
     : path_(path), w_(workspace), count_(std::move(count)), unit_(unit) {}
 
-bool ExtremalFamily::linearise() {
+bool ExtremalFamily::linearise(Factors) {
   if (++steps_ > most_steps_) return false;
   if (!count_()) {
     steps_ = most_steps_;
     return false;
   }
-  if (!solve_linearised(correction_, direction_)) return false;
-  for (Move* move : {&correction_, &direction_}) {
+  if (!solve_linearised(correction, direction)) return false;
+  for (Move* move : {&correction, &direction}) {
     move->times.clear();
     if (!std::isfinite(dot(*move, *move))) return false;
     comoving_.take_along(path_, scale_, move->step, move->times);
   }
-  const double length = dot(direction_, direction_);
-  return std::isfinite(dot(correction_, correction_)) && std::isfinite(length) && length > 0;
+  const double length = dot(direction, direction);
+  return std::isfinite(dot(correction, correction)) && std::isfinite(length) && length > 0;
 }
 
 double ExtremalFamily::dot(const Move& a, const Move& b) const {
@@ -108,16 +129,8 @@ bool ExtremalFamily::begin(const ElementTables& tables, int most_steps) {
 }
 
 bool ExtremalFamily::approach() {
-  double longest = largest_approach, before = INFINITY;
-  for (int k = 0; k < most_approaches && linearise(); ++k) {
-    correction_.add(direction_, -dot(direction_, correction_) / dot(direction_, direction_));
-    const double size = std::sqrt(dot(correction_, correction_));
-    longest = size < before ? std::min(2 * longest, largest_approach) : 0.5 * longest;
-    before = size;
-    if (!apply(correction_, std::min(1.0, longest / size))) return false;
-    if (size < close_to_curve) return true;
-  }
-  return false;
+  BoundedSteps policy{*this, most_approaches, largest_approach, close_to_curve};
+  return newton_loop(BorderedSteps{*this, {}}, policy) == Progress::arrived;
 }
 
 bool ExtremalFamily::set_out() {
@@ -128,47 +141,30 @@ bool ExtremalFamily::set_out() {
 
 /// Newton's method across the tangent.
 bool ExtremalFamily::correct() {
-  double before = INFINITY;
-  for (int k = 0; k < most_corrections && linearise(); ++k) {
-    const double along = dot(tangent_, direction_);
-    if (along == 0) return false;
-    correction_.add(direction_, -dot(tangent_, correction_) / along);
-    const double size = std::sqrt(dot(correction_, correction_));
-    const bool short_enough =
-        size < contraction * before && size < std::max(longest_correction * length_, on_curve);
-    if (!short_enough || !apply(correction_, 1)) return false;
-    if (size < std::min(on_curve, corrected * length_)) return true;
-    before = size;
-  }
-  return false;
+  ShrinkingSteps policy{*this, most_corrections, std::max(longest_correction * length_, on_curve),
+                        std::min(on_curve, corrected * length_)};
+  return newton_loop(BorderedSteps{*this, {.tangent = &tangent_}}, policy) == Progress::arrived;
 }
 
 /// The next tangent, onward.
 bool ExtremalFamily::turn() {
   const bool first = tangent_.step.nodes.empty();
-  const double length = std::sqrt(dot(direction_, direction_));
-  const double along = first ? onward(direction_) : dot(tangent_, direction_);
-  next_ = direction_;
-  next_.scale(std::copysign(1 / length, along));
-  cosine_ = first ? 1 : std::abs(along) / (length * std::sqrt(dot(tangent_, tangent_)));
+  const TangentScale tangent =
+      tangent_scale(*this, first ? nullptr : &tangent_, first ? onward(direction) : 0);
+  next_ = direction;
+  next_.scale(tangent.scale);
+  cosine_ = tangent.cosine;
   return cosine_ > sharpest_turn;
 }
 
 /// Goes to where the parameter is zero, which the last step has passed, if that is near; else the next step
 /// becomes shorter.
 bool ExtremalFamily::land(double from) {
+  constexpr double wanted = 0;
   const double passed = parameter();
-  double allowed = farthest_landing;
-  for (int k = 0; k < most_landings && linearise(); ++k) {
-    correction_.add(direction_, (-parameter() - correction_.parameter) / direction_.parameter);
-    const double size = std::sqrt(dot(correction_, correction_));
-    if (!(size <= allowed) || !apply(correction_, 1)) break;
-    if (size < landed) {
-      set_parameter(0);
-      return true;
-    }
-    allowed = contraction * size;
-  }
+  ShrinkingSteps policy{*this, most_landings, farthest_landing, landed};
+  if (newton_loop(BorderedSteps{*this, {.value = &wanted}}, policy) == Progress::arrived)
+    return set_parameter(wanted);
   length_ *= std::clamp(from / (from - passed), 0.1, 0.9);
   return false;
 }

@@ -4,29 +4,18 @@
 
 #include "solve/adapt/workspace.hpp"
 #include "solve/homotopy/comoving.hpp"
+#include "solve/homotopy/curve.hpp"
 
-/// \file Curves of extremals: one parameter of a problem varies.
+/// \file A curve of extremals, followed to where an extremal belongs to the problem.
 
 namespace extremal {
 
-/// A change of the path and of the parameter.
-struct Move {
-  Step step;
-  double parameter = 0;
-  std::vector<double> times = {};  ///< by which the mesh nodes move, in τ; empty: they stay
-  void add(const Move& other, double factor);
-  void scale(double factor);
-};
-
-/// Extremals of which one parameter varies, along which a path is led, followed past folds by
-/// pseudo-arclength (Keller, Numerical solution of bifurcation and nonlinear eigenvalue problems, 1977). The
-/// parameter is zero where an extremal belongs to the problem.
-class ExtremalFamily {
+/// A path is taken along a curve of extremals, past folds, by pseudo-arclength. The parameter is zero where
+/// an extremal belongs to the problem.
+class ExtremalFamily : public ExtremalCurve {
  public:
-  virtual ~ExtremalFamily() = default;
-
-  /// Takes the path onward to where the parameter
-  /// is zero again: nearly an extremal of the problem then. False where the family does not come there.
+  /// Takes the path onward to where the parameter is zero again: nearly an extremal of the problem then.
+  /// False where the family does not come there.
   bool reach();
   /// Back to where the last reach() passed zero, after the workspace was used for something else.
   void resume();
@@ -36,8 +25,7 @@ class ExtremalFamily {
   /// parameter that counts as much as the extent of the path.
   ExtremalFamily(Path& path, Workspace& workspace, std::function<bool()> count, double unit);
 
-  /// All solutions of the linearised equations at the path: correction_ + α·direction_. False where they
-  /// cannot be solved.
+  /// See ExtremalCurve::linearise().
   virtual bool solve_linearised(Move& correction, Move& direction) = 0;
   virtual const Problem& problem() const = 0;
   virtual double parameter() const = 0;
@@ -55,22 +43,22 @@ class ExtremalFamily {
 
   /// To be called with the path that the family begins near or on.
   bool begin(const ElementTables& tables, int most_steps);
-  /// From a path nearby onto the family: the shortest correction each time (Gauss-Newton), regular also where
-  /// the problem with the parameter fixed is singular.
+  /// From a path nearby onto the family, by the shortest correction each time.
   bool approach();
   /// The tangent at the first point.
   bool set_out();
 
  private:
-  bool linearise();
+  bool linearise(Factors factors = Factors::anew) override;
+  double dot(const Move& a, const Move& b) const override;
+  bool apply(const Move& move, double factor) override;
+  double varied() const override { return parameter(); }
   bool correct();
   Move ahead() const;
   bool turn();
   bool land(double from);
   void polish();
   bool resolve();
-  double dot(const Move& a, const Move& b) const;
-  bool apply(const Move& move, double factor);
   void restore();
 
   std::function<bool()> count_;
@@ -79,7 +67,6 @@ class ExtremalFamily {
   int most_steps_ = 0, steps_ = 0,
       refusals_ = 0;  ///< linearisations; steps refused since the last that was not
   Comoving comoving_;
-  Move correction_, direction_;
   Move tangent_, next_;     ///< of length one
   Move previous_;           ///< tangent before, on the same elements
   double last_length_ = 0;  ///< from there; 0 if there is none

@@ -5,7 +5,7 @@ namespace extremal {
 
 namespace {
 
-class CondensedModel final : public QuadraticModel {
+class CondensedModel final : public SecondVariationModel {
  public:
   void reset(const Problem& problem, const ElementTables& tables, int elements) override {
     phases_ = nullptr;
@@ -62,6 +62,6 @@ class CondensedModel final : public QuadraticModel {
 
 }  // namespace
 
-std::unique_ptr<QuadraticModel> make_condensed_model() { return std::make_unique<CondensedModel>(); }
+std::unique_ptr<SecondVariationModel> make_condensed_model() { return std::make_unique<CondensedModel>(); }
 
 }  // namespace extremal

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace extremal {
 
@@ -45,36 +46,67 @@ bool contracts(const NewtonIteration& newton) {
   return newton.damping() == 1 && newton.contraction() < chord_contraction;
 }
 
+/// To the goal, or to roundoff: chord steps as long as they contract.
+class ToGoal {
+ public:
+  ToGoal(NewtonIteration& newton, const Path& path, const ElementTables& tables, const NewtonGoal& goal,
+         const std::function<bool()>& on_step)
+      : most_steps(goal.steps),
+        newton_(newton),
+        path_(path),
+        tables_(tables),
+        goal_(goal),
+        on_step_(on_step),
+        chord_(goal.reuse) {}
+
+  const int most_steps;
+  NewtonReport report;
+
+  Factors factors(int) {
+    if (!chord_) newton_.set_scale(scales(path_, tables_).q);
+    before_ = newton_.norm();
+    return chord_ ? Factors::before : Factors::anew;
+  }
+
+  Progress take(StepResult step, int) {
+    ++report.steps;
+    const bool more = !on_step_ || on_step_();
+    if (step == StepResult::stalled && more && newton_.extended() &&
+        newton_.undamped() < stalled_by_factors && newton_.extend()) {
+      chord_ = false;
+      return Progress::more;
+    }
+    if (step != StepResult::ok) return fail(describe(step));
+    if (arrived(newton_, goal_, chord_, before_, report)) return Progress::arrived;
+    if (!more) return fail(spent);
+    chord_ = contracts(newton_);
+    return Progress::more;
+  }
+
+  Progress exhausted() { return fail(fmt::format("{} Newton steps did not converge", report.steps)); }
+
+ private:
+  Progress fail(std::string reason) {
+    report.failure = std::move(reason);
+    return Progress::failed;
+  }
+
+  NewtonIteration& newton_;
+  const Path& path_;
+  const ElementTables& tables_;
+  const NewtonGoal& goal_;
+  const std::function<bool()>& on_step_;
+  bool chord_;
+  double before_ = 0;  ///< the last correction
+};
+
 }  // namespace
 
 NewtonReport converge(NewtonIteration& newton, Path& path, const ElementTables& tables,
                       const NewtonGoal& goal, const std::function<bool()>& on_step) {
-  NewtonReport report;
-  bool chord = goal.reuse;
-  while (report.steps < goal.steps) {
-    if (!chord) newton.set_scale(scales(path, tables).q);
-    const double before = newton.norm();
-    const StepResult result = chord ? newton.chord_step(path) : newton.full_step(path, goal.remaining);
-    ++report.steps;
-    const bool more = !on_step || on_step();
-    if (result == StepResult::stalled && more && newton.extended() &&
-        newton.undamped() < stalled_by_factors && newton.extend()) {
-      chord = false;
-      continue;
-    }
-    if (result != StepResult::ok) {
-      report.failure = describe(result);
-      return report;
-    }
-    if (arrived(newton, goal, chord, before, report)) return report;
-    if (!more) {
-      report.failure = spent;
-      return report;
-    }
-    chord = contracts(newton);
-  }
-  report.failure = fmt::format("{} Newton steps did not converge", report.steps);
-  return report;
+  ToGoal policy(newton, path, tables, goal, on_step);
+  newton_loop(NewtonSteps{newton, path, goal.remaining}, policy);
+  return std::move(policy.report);
 }
 
 NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& tables,

@@ -75,7 +75,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   held_.clear();
   if (!sparse) {
     if (!condensed_) condensed_ = make_condensed_model();
-    model_ = condensed_.get();
+    use(*condensed_);
     model_->reset(problem, tables, elements);
   } else if (low && tables.scheme().degree >= low->scheme().degree && RaisedModel::suits(tables)) {
     use_low(*low, elements);
@@ -101,17 +101,18 @@ bool NewtonIteration::extend() {
 
 void NewtonIteration::use_low(const ElementTables& low, int elements) {
   if (!low_) low_.emplace();
-  model_ = &*low_;
+  use(*low_);
   low_->reset(*problem_, low, elements);
   if (tables_ == &low) return;
   if (!raised_ || &raised_->low_tables() != &low) raised_.emplace(*low_, low);
   model_ = &*raised_;
+  exact_ = nullptr;
   raised_->reset(*problem_, *tables_, elements);
 }
 
 void NewtonIteration::use_sparse(int elements) {
   if (!sparse_) sparse_.emplace();
-  model_ = &*sparse_;
+  use(*sparse_);
   sparse_->reset(*problem_, *tables_, elements);
 }
 

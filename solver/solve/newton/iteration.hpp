@@ -9,6 +9,7 @@
 #include "action/path.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
+#include "solve/newton/newton_loop.hpp"
 #include "solve/newton/raised_model.hpp"
 
 /// \file Newton's method for δS_h = 0 on one discretisation: full steps damped by natural monotonicity,
@@ -107,6 +108,8 @@ class NewtonIteration {
   const DiscreteAction* condensed() const { return model_ == condensed_.get() ? &action_ : nullptr; }
   /// The second variation that was factored last.
   QuadraticModel& model() { return *model_; }
+  /// The same; null where steps come from factors of a lower degree.
+  SecondVariationModel* second_variation() { return exact_; }
   /// The largest component of δS under the boundary relation, where the action was evaluated last.
   double residual() const;
   /// The same at `path`.
@@ -119,10 +122,11 @@ class NewtonIteration {
   const ClosingEquation* closing(const Path& path) { return closing_equation(*problem_, path, closing_); }
 
  private:
+  void use(SecondVariationModel& model) { model_ = exact_ = &model; }
   void use_low(const ElementTables& low, int elements);
   void use_sparse(int elements);
   /// Whether model() is not the second variation itself.
-  bool approximate() const { return raised_ && model_ == &*raised_; }
+  bool approximate() const { return exact_ == nullptr; }
   double solve_for_step(const Path& path, Step& step, bool refine = false);
   double length(const Path& path, const Step& step) const;
   /// Whether the whole step leaves a positive duration.
@@ -134,10 +138,11 @@ class NewtonIteration {
   const Problem* problem_ = nullptr;
   const ElementTables* tables_ = nullptr;
   DiscreteAction action_;
-  std::unique_ptr<QuadraticModel> condensed_;
+  std::unique_ptr<SecondVariationModel> condensed_;
   std::optional<SparseModel> sparse_, low_;
   std::optional<RaisedModel> raised_;
   QuadraticModel* model_ = nullptr;
+  SecondVariationModel* exact_ = nullptr;  ///< the same, or null
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
@@ -151,6 +156,17 @@ class NewtonIteration {
   double largest_curvature_ = 0;
   int count_ = 0;
   int trials_ = 0;  ///< dampings that the last full step tried
+};
+
+/// δS_h = 0 on one discretisation, for newton_loop(): steps are tested, and taken, by the iteration itself.
+struct NewtonSteps {
+  NewtonIteration& newton;
+  Path& path;
+  double enough = 0;  ///< see full_step()
+
+  StepResult solve(Factors factors) {
+    return factors == Factors::anew ? newton.full_step(path, enough) : newton.chord_step(path);
+  }
 };
 
 }  // namespace extremal

@@ -27,7 +27,8 @@ struct Step {
   double duration = 0;
 };
 
-/// Second variation under the boundary relation, factored; `closing` is null where T is fixed. Keeps memory.
+/// The second variation under the boundary relation, or an approximation of it, factored; `closing` is null
+/// where T is fixed. Keeps memory.
 class QuadraticModel {
  public:
   virtual ~QuadraticModel() = default;
@@ -40,11 +41,6 @@ class QuadraticModel {
   virtual void evaluate_gradient(DiscreteAction& action, const Path& path) = 0;
   /// The step from the gradient that was evaluated last.
   virtual void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) = 0;
-  /// The step that a load on the nodes between elements, (N + 1) × n, would cause: with K the second
-  /// variation and what closes the duration, K·step = load. Loads on the ends are left out. The gradient is
-  /// evaluated anew after it.
-  virtual void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
-                       Step& step) = 0;
   /// Directions that evaluate() and solve() hold from now until reset(); null for none.
   void set_phases(const PhaseConditions* phases) { phases_ = phases; }
   /// From now until reset() steps have nothing along directions whose eigenvalue is so small, relative, or
@@ -63,7 +59,17 @@ class QuadraticModel {
   const PhaseConditions* phases_ = nullptr;
 };
 
+/// The second variation itself.
+class SecondVariationModel : public QuadraticModel {
+ public:
+  /// The step that a load on the nodes between elements, (N + 1) × n, would cause: with K the second
+  /// variation and what closes the duration, K·step = load. Loads on the ends are left out. The gradient is
+  /// evaluated anew after it.
+  virtual void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
+                       Step& step) = 0;
+};
+
 /// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.
-std::unique_ptr<QuadraticModel> make_condensed_model();
+std::unique_ptr<SecondVariationModel> make_condensed_model();
 
 }  // namespace extremal

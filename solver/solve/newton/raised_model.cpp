@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <stdexcept>
 
 #include "action/rule.hpp"
 #include "machine/simd.hpp"
@@ -118,10 +117,6 @@ Inertia RaisedModel::inertia(double threshold) {
   const int per_sign = elements_ * (inner_ - low_inner_);
   for (double m : mass_) (m > 0 ? result.positive : result.negative) += per_sign;
   return result;
-}
-
-void RaisedModel::respond(DiscreteAction&, const ClosingEquation*, std::span<const double>, Step&) {
-  throw std::logic_error("a model of the second variation was asked for its response");
 }
 
 }  // namespace extremal

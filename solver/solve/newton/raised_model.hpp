@@ -25,9 +25,6 @@ class RaisedModel final : public QuadraticModel {
   bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;
   void evaluate_gradient(DiscreteAction& action, const Path& path) override;
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
-  /// Throws std::logic_error: a model does not tell where the second variation is singular.
-  void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
-               Step& step) override;
   /// Of the model; the second variation itself may differ.
   Inertia inertia(double threshold) override;
 

@@ -10,7 +10,7 @@
 namespace extremal {
 
 /// All unknowns at once in a sparse matrix: many coordinates, few of them coupled.
-class SparseModel final : public QuadraticModel {
+class SparseModel final : public SecondVariationModel {
  public:
   void reset(const Problem& problem, const ElementTables& tables, int elements) override;
   bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int most_steps = 40;
 /// Of a step, and where plain Newton takes over; root mean square by the extent of the path.
-constexpr double longest = 0.5, settled = 0.02;
+constexpr double longest = 0.5, short_step = 0.02;
 /// A path this much larger than at first has run away.
 constexpr double runaway = 1e3;
 
@@ -55,31 +55,36 @@ double DeflatedNewton::stretch(const Step& step) {
   return slope == 1 ? INFINITY : 1 / (1 - slope);
 }
 
+/// To where the plain step is short.
 bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution>& known) {
   place(known);
   w_.iteration.reset(problem_, tables, path_.elements());
-  QuadraticModel& model = w_.iteration.model();
-  DiscreteAction& action = w_.iteration.action();
   const double first = scale_ = scales(path_, tables).q;
   if (scale_ == 0) scale_ = 1;
-  for (int k = 0; k < most_steps && count_(); ++k) {
-    if (!w_.iteration.factor_quickly(path_)) return false;
-    model.solve(action, w_.iteration.closing(path_), step_);
+  const auto take = [&](bool solved, int) {
+    if (!solved) return Progress::failed;
     const double duration = path_.duration();
     const double size = std::hypot(std::sqrt(dot(step_.nodes, step_.nodes)), step_.duration / duration);
-    if (!std::isfinite(size)) return false;
-    if (size == 0) return true;
+    if (!std::isfinite(size)) return Progress::failed;
+    if (size == 0) return Progress::arrived;
     const double factor = stretch(step_), allowed = longest / size;
-    if (std::abs(factor) * size < settled && size < settled) return true;
+    if (std::abs(factor) * size < short_step && size < short_step) return Progress::arrived;
     const double taken = std::clamp(factor, -allowed, allowed);
-    if (!(duration + taken * step_.duration > 0)) return false;
+    if (!(duration + taken * step_.duration > 0)) return Progress::failed;
     path_.add(step_.nodes, step_.inner, taken);
     if (step_.duration != 0) path_.set_duration(duration + taken * step_.duration);
     path_.load_ends();
     scale_ = std::max(scale_, scales(path_, tables).q);
-    if (first > 0 && scale_ > runaway * first) return false;
-  }
-  return false;
+    return first > 0 && scale_ > runaway * first ? Progress::failed : Progress::more;
+  };
+  NewtonPolicy policy{most_steps, Progress::failed, [](int) { return Factors::anew; }, take};
+  return newton_loop(*this, policy) == Progress::arrived;
+}
+
+bool DeflatedNewton::solve(Factors) {
+  if (!count_() || !w_.iteration.factor_quickly(path_)) return false;
+  w_.iteration.model().solve(w_.iteration.action(), w_.iteration.closing(path_), step_);
+  return true;
 }
 
 }  // namespace extremal

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solve/branch/tracker.hpp"
+
+/// \file Points of a branch, and what is found on a step.
+
+namespace extremal {
+
+/// What a point of a branch is: `fold` where the number that varies turns back, `branch` where another branch
+/// crosses, `period_doubling` where one of twice the period begins.
+enum class PointKind { regular, fold, branch, period_doubling };
+
+/// "regular", "fold", "branch", "period-doubling".
+const char* name(PointKind kind);
+
+struct BranchPoint {
+  double parameter = 0;  ///< the number that varies
+  PointKind kind = PointKind::regular;
+  int branch = 0;     ///< which of several, see Diagram
+  Solution solution;  ///< without windows
+  /// Of the momenta from the derivatives of the action against ∂L/∂q' at the ends of the trajectory, the
+  /// most, relative to the largest there or the mean along the path.
+  double momentum_difference = 0;
+};
+
+/// A path next to where another branch begins.
+struct BranchStart {
+  PointKind kind;     ///< branch or period_doubling
+  Path path;          ///< after a period doubling that of the orbit run through twice
+  double coordinate;  ///< see Branch
+  Branch::Units units;
+};
+
+/// A point, and where another branch begins at it.
+struct FoundPoint {
+  BranchPoint point;
+  std::optional<BranchStart> start = {};
+};
+
+/// A point on a step, and how far along the tangent.
+struct Event {
+  double at;
+  FoundPoint found;
+};
+
+/// What is looked for on the steps of a branch.
+struct EventSearch {
+  const ProblemFamily& family;
+  const BranchState& first;  ///< of the branch
+  bool starts = false;       ///< where other branches begin
+};
+
+/// The point at the tracker's state. Sets the doubling tests of the state.
+BranchPoint read_point(Tracker& tracker, PointKind kind);
+
+/// Tests of the tracker's state, by multipliers as they are, however near to −1: zero where a period doubles.
+/// NaN if they are not known.
+std::vector<double> read_doubling_tests(Tracker& tracker);
+
+/// Folds on a step.
+std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step);
+/// Points where branches cross.
+std::vector<Event> find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step);
+/// Points where a period doubles.
+std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, const BranchStep& step);
+
+/// Whether there may be any on a step, as its ends show.
+bool may_fold(const BranchStep& step);
+bool may_double(const BranchStep& step);
+/// A change of the index alone is a fold of the duration, or of the number that varies.
+bool branches_cross(const BranchState& a, const BranchState& b);
+
+/// A place next to a point at which another branch begins, if it is asked for.
+std::optional<BranchStart> branch_start(Tracker& tracker, const EventSearch& search, PointKind kind,
+                                        const BranchState& from, double at);
+
+}  // namespace extremal

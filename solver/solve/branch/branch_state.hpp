@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "solve/branch/branch.hpp"
+
+/// \file A state on a branch: a path with its tangent, and all that the next step needs.
+
+namespace extremal {
+
+struct BranchState {
+  Path path;
+  Branch::Units units;  ///< lengths are measured in
+  double coordinate = 0, varied = 0, action = 0;
+  Move tangent;             ///< of length one
+  Move bend, twist;         ///< of the branch off it, by σ² and σ³; empty if not known
+  Move turning;             ///< of the tangent since the state before, by the way back to it; may be empty
+  double back = 0;          ///< that way
+  std::vector<double> row;  ///< see Branch::closing_row
+  double rate = 0;          ///< ∂varied/∂s along the tangent
+  double action_rate = 0;   ///< ∂S/∂s as its derivatives give it
+  double energy_time = 0;   ///< |E T|
+  int orientation = 1, index = 0;
+  /// Of the multipliers; see doubling_tests(). Those of the state before.
+  std::vector<double> doubling_tests, doubling_tests_before;
+
+  void scale(double factor);
+  /// From the state, so far along the tangent.
+  Move predicted(double length) const;
+};
+
+/// A step that succeeded.
+struct BranchStep {
+  const BranchState &from, &to;
+  double length;  ///< along the tangent
+};
+
+}  // namespace extremal

@@ -1,0 +1,53 @@
+#include "solve/branch/chord_steps.hpp"
+
+#include <utility>
+
+#include "solve/mesh/roundoff.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// A step is refused where corrections shrink less than this, or are longer than this part of it.
+constexpr double contraction = 0.5, longest_correction = 0.5;
+/// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
+/// singularity: they may grow so much before they shrink.
+constexpr double small_correction = 0.05, slowest = 4;
+/// Roundoff shrinks less than this from one correction to the next.
+constexpr double stagnation = 0.3;
+
+}  // namespace
+
+Progress ChordSteps::take(bool solved, int k) {
+  if (!solved) {
+    left_problem_ = !branch_.defined();
+    return Progress::failed;
+  }
+  const Move& move = branch_.correction;
+  along_ += branch_.dot(tangent_, move);
+  const double way = std::sqrt(branch_.dot(move, move)), size = branch_.largest(move);
+  const double rate = k > 0 ? size / before_ : 1;
+  factorisations_ += anew_;
+  const bool noise = anew_ && size < amplified_roundoff && rate > stagnation;
+  // Factors of before may hide what those of this path find: it is held against what such found last.
+  const double growth = way / (anew_ ? std::exchange(way_of_newton_, way) : way_before_);
+  const double fastest = way > small_correction * length_ ? contraction : slowest;
+  if (!noise && (!(way <= longest_correction * length_) || growth > fastest)) return Progress::failed;
+  if (!branch_.apply(move, 1)) {
+    left_problem_ = true;
+    return Progress::failed;
+  }
+  if (k > 0 && newton_) curvature_ = rate / before_;
+  // What is left after a step of Newton's method, and by how much a step with its factors, which are off by
+  // all of the last move and not by half of it, shrinks that.
+  const double left = size * (anew_ ? curvature_ * size : newton_ ? 2 * rate : rate);
+  const double shrinking = anew_ ? 2 * curvature_ * size : left / size;
+  if (noise || left <= goal_) return Progress::arrived;
+  newton_ = anew_;
+  anew_ = !branch_.factored() || (k > 0 && !(left * shrinking * shrinking <= goal_));
+  before_ = size;
+  way_before_ = way;
+  return Progress::more;
+}
+
+}  // namespace extremal

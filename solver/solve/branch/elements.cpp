@@ -1,0 +1,93 @@
+#include "solve/branch/tracker.hpp"
+#include "solve/mesh/roundoff.hpp"
+
+/// \file Elements along a branch.
+
+namespace extremal {
+
+namespace {
+
+/// Elements are planned for the first share of the tolerance; on the mesh there is, the second will do.
+constexpr double spare = 0.1, tolerated = 0.7;
+constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
+/// Elements follow the path from point to point: where it becomes smooth they become longer again.
+constexpr double strongest_cut = 16, strongest_growth = 2;
+/// Elements whose error is below this share of the tolerance are more than needed; others are taken instead
+/// if they have no more nodes than this share.
+constexpr double lavish = 1e-4, worth_changing = 0.7;
+/// What q' may err by, in tolerances of its range.
+constexpr double slope_tolerances = 10;
+
+/// In tolerances.
+double excess(const Resolution::Error& error, const Scales& size, double tolerance) {
+  return std::max(error.q / size.q, 1 / slope_tolerances * error.v / size.v) / tolerance;
+}
+
+}  // namespace
+
+/// Elements that meet the tolerance, and not many more than that takes.
+Tracker::Fit Tracker::fit_elements() {
+  const ElementTables& tables = branch_.tables();
+  const Scales size = sizes();
+  w_.resolution.measure(path_, tables);
+  const Resolution::Error error = w_.resolution.at(path_.degree());
+  error_ = error.q + unit_roundoff * size.magnitude * std::sqrt(path_.elements() * path_.degree());
+  branch_.set_null_threshold(zero_eigenvalue_along(size.q, error_, path_.elements()));
+  const double missed = size.q > 0 ? excess(error, size, tolerance_) : 0;
+  if (missed <= 1 && (missed == 0 || missed > lavish)) return Fit::fine;
+  const Plan plan = plan_for(size);
+  const bool fewer =
+      plan.degree * plan.mesh.size() < worth_changing * path_.degree() * (path_.elements() + 1);
+  if (missed <= 1 && (plan.mesh.empty() || !fewer)) return Fit::fine;
+  if (plan.degree == 0) return Fit::too_many;
+  change_elements(plan);
+  return Fit::changed;
+}
+
+/// Elements for the path that was measured.
+Plan Tracker::plan_for(const Scales& size) {
+  const auto aim = [&](double share) {
+    return Resolution::Error{share * size.q, slope_tolerances * share * size.v};
+  };
+  return w_.planner.plan(w_.resolution, path_.mesh(), branch_.tables(),
+                         {.aim = aim(spare * tolerance_),
+                          .tolerated = aim(tolerated * tolerance_),
+                          .raised_degree = std::min(path_.degree() + 1, highest_degree),
+                          .least_degree = least_degree,
+                          .highest_degree = highest_degree,
+                          .most_elements = most_elements,
+                          .strongest_cut = strongest_cut,
+                          .strongest_growth = strongest_growth});
+}
+
+/// The path and the tangent on other elements.
+void Tracker::change_elements(const Plan& plan) {
+  const std::vector<double> before(path_.mesh().begin(), path_.mesh().end());
+  const std::vector<double>& mesh = plan.mesh.empty() ? before : plan.mesh;
+  w_.other.resample_from(path_, w_.levels.at(plan.degree), mesh);
+  if (!tangent_.step.nodes.empty())
+    tangent_.step.nodes = interpolated(tangent_.step.nodes, path_.coordinates(), before, mesh);
+  std::swap(path_, w_.other);
+  branch_.bind();
+}
+
+std::optional<BranchState> Tracker::resolved_for(const BranchState& from, const Move& response) {
+  if (!return_to(from)) return std::nullopt;
+  const double length = std::sqrt(branch_.dot(response, response));
+  path_.add(response.step.nodes, response.step.inner, 1 / length);
+  path_.load_ends();
+  const Scales size = scales(path_, branch_.tables());
+  w_.resolution.measure(path_, branch_.tables());
+  if (excess(w_.resolution.at(path_.degree()), size, tolerance_) <= 1) return std::nullopt;
+  const Plan plan = plan_for(size);
+  if (plan.degree == 0) return std::nullopt;
+  path_ = from.path;
+  change_elements(plan);
+  if (!correct(1, nullptr) || !update_tangent()) return std::nullopt;
+  state.units = from.units;
+  state.bend = transferred(from.bend, from.path);
+  state.twist = transferred(from.twist, from.path);
+  return state;
+}
+
+}  // namespace extremal

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solve/branch/branch_point.hpp"
+
+/// \file All that is found on one step along a branch.
+
+namespace extremal {
+
+/// Why a branch ended.
+enum class BranchEnd {
+  none,         ///< it goes on
+  not_started,  ///< no extremal to begin with
+  target,       ///< it led where it was to lead
+  points,       ///< as many points as were asked for
+  closed,       ///< it came back to its first point
+  rest,         ///< its orbits shrink onto an equilibrium
+  collision,    ///< the path needs ever more elements
+  limit,        ///< there is no problem beyond, or L is not finite there
+  too_short,    ///< steps became too short
+};
+
+/// Points on a step in their order, the regular one at its end left out, and whether the branch ends there.
+struct StepEvents {
+  std::vector<FoundPoint> points = {};
+  BranchEnd end = BranchEnd::none;
+  std::string message = {};
+  bool missed = false;  ///< the value that the branch is to lead to was passed, and is not found
+};
+
+/// Leaves the tracker at another state.
+StepEvents locate_events(Tracker& tracker, const EventSearch& search, const BranchStep& step);
+
+}  // namespace extremal

@@ -1,0 +1,50 @@
+#include "solve/branch/branch_point.hpp"
+#include "solve/branch/root.hpp"
+
+/// \file Points of a step where the number that varies turns back.
+
+namespace extremal {
+
+namespace {
+
+/// Of the derivative of the number that varies, as the parabola has it whose values at both ends of the step
+/// and whose integral are known: its extremum between, and its value in the middle.
+struct Rates {
+  Sample extremum, middle;
+};
+
+Rates rates_on(const BranchStep& step) {
+  const auto& [from, to, length] = step;
+  const double first = from.rate, last = to.rate * to.back / length;
+  const double mean = (to.varied - from.varied) / length;
+  const double slope = 6 * mean - 4 * first - 2 * last, bend = 3 * (first + last - 2 * mean);
+  const double at = -slope / (2 * bend);
+  const bool between = at > 0 && at < 1;
+  return {between ? Sample{at * length, first + 0.5 * slope * at} : Sample{0, first},
+          {0.5 * length, first + 0.5 * slope + 0.25 * bend}};
+}
+
+}  // namespace
+
+bool may_fold(const BranchStep& step) {
+  const double first = step.from.rate;
+  return first * step.to.rate < 0 || first * rates_on(step).extremum.value < 0;
+}
+
+/// |∂varied/∂s| times the distance from a fold bounds the error of the number there.
+std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
+  const auto& [from, to, length] = step;
+  std::vector<Sample> samples = {{0, from.rate}, {length, to.rate * to.back / length}};
+  const auto rate = [&] { return tracker.state.rate; };
+  const auto [extremum, middle] = rates_on(step);
+  if (from.rate * to.rate > 0 && from.rate * extremum.value < 0)
+    if (const auto between = dip(tracker, from, samples[0], samples[1], extremum.at, rate))
+      samples.insert(samples.begin() + 1, *between);
+  std::vector<Event> found;
+  find_roots(tracker, search.family, from, samples, middle, rate, [&](double at) {
+    found.push_back({at, {read_point(tracker, PointKind::fold)}});
+  });
+  return found;
+}
+
+}  // namespace extremal

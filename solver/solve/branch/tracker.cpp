@@ -1,0 +1,135 @@
+#include "solve/branch/tracker.hpp"
+
+#include <utility>
+
+#include "solve/branch/chord_steps.hpp"
+#include "solve/mesh/roundoff.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Corrections are carried on to this share of the tolerance, and no further than this.
+constexpr double unfinished = 0.01, least_goal = 10 * least_correction;
+constexpr int most_resolutions = 4;
+/// The unit of lengths is no smaller than this share of the largest path so far.
+constexpr double least_extent = 0.3;
+
+}  // namespace
+
+void BranchState::scale(double factor) {
+  tangent.scale(factor);
+  rate *= factor;
+  action_rate *= factor;
+  if (factor < 0) orientation = -orientation;
+}
+
+Tracker::Tracker(const ProblemFamily& family, double tolerance)
+    : family_(family), tolerance_(tolerance), branch_(family, path_, w_) {}
+
+bool Tracker::begin(Path path, double coordinate, double rest) {
+  rest_ = rest;
+  std::swap(path_, path);
+  return branch_.place(coordinate) && fit_elements() != Fit::too_many && update_tangent(true);
+}
+
+bool Tracker::begin(const Path& path, double coordinate, const Branch::Units& units, double rest) {
+  rest_ = rest;
+  path_ = path;
+  branch_.set_units(units);
+  state.units = units;
+  if (!branch_.place(coordinate)) return false;
+  branch_.bind();
+  return update_tangent(true);
+}
+
+/// The path, its units and its equations are those of a state again.
+bool Tracker::return_to(const BranchState& from) {
+  path_ = from.path;
+  tangent_ = from.tangent;
+  branch_.set_units(from.units);
+  if (!branch_.place(from.coordinate)) return false;
+  branch_.bind();
+  branch_.close_by(from.row);
+  return true;
+}
+
+bool Tracker::reach(const BranchState& from, double length, bool same_elements, const double* landing) {
+  state.units = from.units;
+  landed_ = 0;
+  failure_ = StepFailure::no_problem;
+  if (!return_to(from)) return false;
+  if (!branch_.apply(from.predicted(length), 1) || !correct(std::abs(length), landing)) return false;
+  for (int k = 0; k < most_resolutions && !same_elements; ++k) {
+    const Fit fit = fit_elements();
+    if (fit == Fit::too_many) {
+      failure_ = StepFailure::crowded;
+      return false;
+    }
+    if (fit == Fit::fine) break;
+    if (!correct(std::abs(length), landing)) return false;
+  }
+  return update_tangent();
+}
+
+bool Tracker::reach_smoothly(const BranchState& from, double length, bool same_elements) {
+  return reach(from, length, same_elements) && turned_little();
+}
+
+bool Tracker::land(double value) { return correct(1, &value) && update_tangent(); }
+
+/// Newton's method across the tangent; or to where the number that varies has the value `landing`.
+bool Tracker::correct(double length, const double* landing) {
+  const double enough = std::max(unfinished * tolerance_, least_goal);
+  ChordSteps policy(branch_, tangent_, length, landing ? least_goal : enough, enough);
+  const CurveBorder border{.tangent = &tangent_, .value = landing};
+  const Progress progress = newton_loop(BorderedSteps{branch_, border}, policy);
+  factorisations_ = policy.factorisations();
+  if (landing) landed_ += policy.along();
+  failure_ = policy.left_problem() ? StepFailure::no_problem : StepFailure::rough;
+  return progress == Progress::arrived;
+}
+
+/// The next tangent, onward, and the state there.
+bool Tracker::update_tangent(bool first) {
+  if (!branch_.linearise()) {
+    failure_ = branch_.defined() ? StepFailure::rough : StepFailure::no_problem;
+    return false;
+  }
+  failure_ = StepFailure::rough;
+  // A path with nothing left to correct: a long correction is the roundoff of nearly singular factors.
+  if (!first && branch_.dot(branch_.correction, branch_.correction) > 1) return false;
+  const auto [onward, cosine] = tangent_scale(branch_, first ? nullptr : &tangent_, 1);
+  cosine_ = cosine;
+  state.path = path_;
+  state.coordinate = branch_.coordinate();
+  state.varied = branch_.varied();
+  state.action = branch_.action();
+  state.tangent = branch_.direction;
+  state.tangent.scale(onward);
+  state.row = branch_.closing_row(state.tangent);
+  state.rate = onward * branch_.change(true);
+  state.turning = state.bend = state.twist = {};
+  state.action_rate = onward * branch_.action_slope();
+  state.energy_time = std::abs(branch_.energy() * path_.duration());
+  state.orientation = branch_.orientation(onward);
+  state.index = branch_.inertia().negative;
+  return true;
+}
+
+void Tracker::measure_anew() {
+  const double extent = sizes().q;
+  largest_extent_ = std::max(largest_extent_, extent);
+  const double unit = std::max(extent, least_extent * largest_extent_);
+  state.units = {unit > 0 ? unit : 1, path_.duration()};
+  branch_.set_units(state.units);
+  state.scale(1 / std::sqrt(branch_.dot(state.tangent, state.tangent)));
+}
+
+Scales Tracker::sizes() const {
+  Scales size = scales(path_, branch_.tables());
+  if (size.q <= rest_) size.q = 0;
+  return size;
+}
+
+}  // namespace extremal

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "solve/branch/branch_state.hpp"
+
+/// \file From one state on a branch to others: predictor, corrector, elements.
+
+namespace extremal {
+
+/// Why a step failed.
+enum class StepFailure {
+  none,
+  no_problem,  ///< there is no such problem, or L is not finite
+  crowded,     ///< the path needs too many elements
+  rough,       ///< corrections do not shrink, or the branch turns too much
+};
+
+/// Steps of pseudo-arclength (Keller 1977): along the cubic that the last tangents predict, then Newton's
+/// method across the tangent, on elements that meet the tolerance.
+class Tracker {
+ public:
+  Tracker(const ProblemFamily& family, double tolerance);
+
+  /// Of the path that was reached last.
+  BranchState state;
+
+  /// Begins at a path, on elements that meet the tolerance; `rest`: paths whose extent is less are at rest.
+  bool begin(Path path, double coordinate, double rest);
+  /// Begins next to where branches meet, on the elements that there are, in these units of length.
+  bool begin(const Path& path, double coordinate, const Branch::Units& units, double rest);
+
+  /// So far along the tangent from a state, and back onto the branch; with `landing` to where the number that
+  /// varies has that value. On elements that meet the tolerance, or on those of the state. False if it fails.
+  bool reach(const BranchState& from, double length, bool same_elements = false,
+             const double* landing = nullptr);
+  /// The same, and onto no other branch that is near.
+  bool reach_smoothly(const BranchState& from, double length, bool same_elements = false);
+  /// From the path to where the number that varies has a value near its own.
+  bool land(double value);
+  /// The state, measured anew in lengths of its own path, or in a share of the largest before: a path that
+  /// shrinks to nothing is passed.
+  void measure_anew();
+
+  /// The predictor of the state, from the state before, so far back.
+  void predict(const BranchState& before, double length);
+  /// How far the tangent is predicted to turn by no more than a step may.
+  double predictable_length() const;
+  /// A state from which the step to another one is predicted as the cubic through both, with their tangents.
+  BranchState with_cubic(const BranchStep& step);
+  /// A state on elements that resolve also the way to a branch that crosses there; nothing if its own do.
+  std::optional<BranchState> resolved_for(const BranchState& from, const Move& response);
+
+  Branch& branch() { return branch_; }
+  const Branch& branch() const { return branch_; }
+  /// Sizes of the path, that of a path at rest zero.
+  Scales sizes() const;
+  /// The elements of the path, for second variations exact to 1e-6 of the tolerance.
+  Condensed condensed() const {
+    return {w_.iteration.condensed(), std::min(0.1 * std::sqrt(tolerance_), 1e-3)};
+  }
+  Workspace& workspace() { return w_; }
+  const Move& tangent() const { return tangent_; }
+
+  double error() const { return error_; }    ///< of q, absolute
+  double cosine() const { return cosine_; }  ///< of the angle by which the last step turned
+  bool turned_little() const { return cosine_ > sharpest_turn; }
+  int factorisations() const { return factorisations_; }  ///< of the last corrections
+  double landed() const { return landed_; }               ///< how far beyond reach()'s length
+  StepFailure failure() const { return failure_; }
+  void fail(StepFailure failure) { failure_ = failure; }
+
+ private:
+  static constexpr double sharpest_turn = 0.9;
+  enum class Fit { fine, changed, too_many };
+  bool correct(double length, const double* landing);
+  bool update_tangent(bool first = false);
+  Fit fit_elements();
+  Plan plan_for(const Scales& size);
+  void change_elements(const Plan& plan);
+  Move transferred(const Move& move, const Path& from);
+  Move difference_to(const BranchState& to);
+  bool return_to(const BranchState& from);
+
+  const ProblemFamily& family_;
+  const double tolerance_;
+  Workspace w_;
+  Path path_;  ///< that is corrected
+  Branch branch_;
+  Move tangent_;               ///< that the path is corrected across
+  double largest_extent_ = 0;  ///< of paths so far
+  double rest_ = 0;
+  double cosine_ = 1, error_ = 0, landed_ = 0;
+  int factorisations_ = 0;
+  StepFailure failure_ = StepFailure::none;
+};
+
+}  // namespace extremal
