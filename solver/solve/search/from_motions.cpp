@@ -83,7 +83,7 @@ bool Search::from_motion(const Guess& motion, double duration) {
     start_path(launched, ends, tables, path);
   };
   if (!place(fill, homotopy_degree)) return false;
-  launched_ = true;
+  met_.insert(Met::motions);
   EndHomotopy homotopy(
       problem_, path_, w_, [this] { return refinement_.count_step(); }, missed,
       scales(path_, refinement_.tables()).q);

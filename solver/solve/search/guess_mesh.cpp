@@ -44,8 +44,8 @@ void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree
 }
 
 /// Puts the guess on a mesh that follows the frequency along it. The default guess is moved aside until L
-/// is finite on it; false if it never is.
-bool Search::begin() {
+/// is finite on it.
+Search::GuessKind Search::begin() {
   ends_ = starting_ends(*guess_);
   mesh_ = uniform_mesh(lanes);
   for (unsigned seed = 0; seed <= most_bends; ++seed) {
@@ -53,20 +53,20 @@ bool Search::begin() {
     start(mesh_, bend_);
     measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
     if (w_.frequency.finite()) break;
-    if (guess_->guess.given() || seed == most_bends) return false;
+    if (guess_->guess.given() || seed == most_bends) return GuessKind::undefined;
   }
   int elements = first_elements(w_.frequency);
   const double floor = guess_->guess.given() ? guess_floor : 1.0;
   // A sketch of an orbit may pass a collision; elements that follow it there serve no other path.
-  colliding_ = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
-               w_.frequency.grading(floor) > collision;
-  if (colliding_) elements = most_launched;
+  const bool colliding = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
+                         w_.frequency.grading(floor) > collision;
+  if (colliding) elements = most_launched;
   if (elements > lanes || w_.frequency.grading(floor) >= mild_grading) {
     mesh_ = w_.frequency.mesh(elements, floor);
     start(mesh_, bend_);
   }
   if (guess_->guess.motion && !follow_motion()) resolve_guess();
-  return true;
+  return colliding ? GuessKind::colliding : GuessKind::usable;
 }
 
 /// A motion that took its integrator so many steps passes one encounter after the other, which elements would

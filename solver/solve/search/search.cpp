@@ -44,7 +44,7 @@ bool Search::collapsed() const {
 }
 
 /// Pursues the path.
-Refinement::Result Search::pursue(const char* strategy) {
+Search::Pursuit Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
   outcome_.elsewhere = strategy != from_guess;
   run_external_solver(options_.method, problem_, refinement_.tables(), path_,
@@ -63,15 +63,15 @@ Refinement::Result Search::pursue(const char* strategy) {
   outcome_.elsewhere = outcome_.elsewhere || far;
   if (collapsed()) {
     outcome_.message = "the orbit shrank to a point of equilibrium";
-    shrank_ = true;
+    met_.insert(Met::equilibrium);
     result = Refinement::Result::failed;
   }
   const bool converged = result == Refinement::Result::converged;
-  doubtful_ = converged ? !refinement_.confirmed() : refinement_.suspicious();
+  const bool doubtful = converged ? !refinement_.confirmed() : refinement_.suspicious();
   // What closes on itself has no ends to be conjugate.
   const auto doubted = problem_.periodic ? Refinement::Result::failed : Refinement::Result::unreachable;
-  if (converged && doubtful_) return doubted;
-  return converged && acceptance_ ? accepted() : result;
+  if (converged && doubtful) return {doubted, doubtful};
+  return {converged && acceptance_ ? accepted() : result, doubtful};
 }
 
 /// Whether the path that meets the tolerance is an extremal: if not, another guess may lead to one.
@@ -88,7 +88,7 @@ Refinement::Result Search::accepted() {
 bool Search::found(const char* strategy) {
   if (refinement_.exhausted()) return false;
   meet_ends(problem_, path_);
-  return pursue(strategy) == Refinement::Result::converged;
+  return pursue(strategy).result == Refinement::Result::converged;
 }
 
 /// Downhill in windows.
@@ -111,7 +111,7 @@ bool Search::through_other_durations() {
   for (const double duration : natural_durations(problem_, path_, w_, refinement_.tables())) {
     start(mesh_, bend_, homotopy_degree);
     path_.set_duration(duration);
-    continued_ = true;
+    met_.insert(Met::other_durations);
     if (!homotopy.follow(refinement_.tables())) continue;
     refinement_.rebind();
     if (found("homotopy in the duration")) return true;
@@ -139,7 +139,7 @@ bool Search::from_noise(unsigned tries) {
       refinement_.count_step();
       continue;
     }
-    bent_ = true;
+    met_.insert(Met::noise);
     if (found("newton from the guess plus smooth noise")) return true;
   }
   return false;
@@ -151,7 +151,8 @@ bool Search::from_line() {
   Problem line = problem_;
   line.guess = {};
   guess_ = &line;
-  const bool result = begin() && (found("newton from the straight line") || by_descent(mesh_));
+  const bool result =
+      begin() != GuessKind::undefined && (found("newton from the straight line") || by_descent(mesh_));
   guess_ = &problem_;
   return result;
 }
@@ -177,8 +178,8 @@ void Search::be_like(const Search& other) {
 void Search::renew(double share) { refinement_.allow(static_cast<int>(share * allowance_), share); }
 
 /// Cheapest first; but where the user has given a guess, what stays near it before noise.
-bool Search::from_other_guesses() {
-  if (colliding_ && from_noise(collision_noises)) return true;
+bool Search::from_other_guesses(GuessKind guess) {
+  if (guess == GuessKind::colliding && from_noise(collision_noises)) return true;
   if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
       found("newton from the guess on finer elements"))
     return true;
@@ -191,10 +192,11 @@ bool Search::from_other_guesses() {
   return from_motions();
 }
 
-/// Puts the guess on elements, and bounds what may follow; false if L is not finite along it.
-bool Search::prepare() {
+/// Puts the guess on elements, and bounds the effort.
+Search::GuessKind Search::prepare() {
   outcome_.message = "the action is not finite along the guess";
-  if (!begin()) return false;
+  const GuessKind guess = begin();
+  if (guess == GuessKind::undefined) return guess;
   const Scales size = scales(path_, refinement_.tables());
   magnitude_ = size.magnitude;
   if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
@@ -202,36 +204,38 @@ bool Search::prepare() {
   allowance_ = std::min(
       {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
   refinement_.allow(allowance_);
-  return true;
+  return guess;
 }
 
 const Outcome& Search::run_near_guess() {
-  if (!prepare()) return outcome_;
+  if (prepare() == GuessKind::undefined) return outcome_;
   extent_ = scales(path_, refinement_.tables()).range;
-  const Refinement::Result result = pursue(from_guess);
-  outcome_.hidden = result == Refinement::Result::unreachable && !doubtful_;
+  const auto [result, doubtful] = pursue(from_guess);
+  outcome_.hidden = result == Refinement::Result::unreachable && !doubtful;
   if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
   return outcome_;
 }
 
 const Outcome& Search::run(Acceptance* acceptance) {
-  if (!prepare()) return outcome_;
+  const GuessKind guess = prepare();
+  if (guess == GuessKind::undefined) return outcome_;
   acceptance_ = acceptance;
-  Refinement::Result result = pursue(from_guess);
-  const bool doubtful = doubtful_;
+  auto [result, doubtful] = pursue(from_guess);
   if (result == Refinement::Result::failed) {
     const std::string failure = outcome_.message;
-    if (colliding_) refinement_.allow(allowance_);
-    if (from_other_guesses()) {
+    if (guess == GuessKind::colliding) refinement_.allow(allowance_);
+    if (from_other_guesses(guess)) {
       result = Refinement::Result::converged;
     } else {
       outcome_.status = Status::iteration_limit;
       outcome_.message = fmt::format(
           "{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or a shorter "
           "duration",
-          outcome_.iterations, failure, continued_ ? ", through other durations" : "",
-          bent_ ? ", from smooth noise" : "", launched_ ? ", from motions that miss the end" : "");
-      if (shrank_) {
+          outcome_.iterations, failure,
+          met_.contains(Met::other_durations) ? ", through other durations" : "",
+          met_.contains(Met::noise) ? ", from smooth noise" : "",
+          met_.contains(Met::motions) ? ", from motions that miss the end" : "");
+      if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =
             "the orbit shrank to a point of equilibrium from the guess and from others; try a larger "

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "solve/accept/acceptance.hpp"
@@ -48,20 +49,31 @@ class Search {
   const std::vector<double>& mesh() const { return mesh_; }
 
  private:
+  enum class GuessKind {
+    usable,
+    colliding,  ///< comes too near a singularity
+    undefined,  ///< L is not finite along it
+  };
+  struct Pursuit {
+    Refinement::Result result;
+    bool doubtful;  ///< the equations were nearly singular
+  };
+  /// What the search has tried or come to, for its message.
+  enum class Met { other_durations, noise, motions, equilibrium };
   static constexpr int most_first_elements = 1 << 12;
   /// Coarse elements may not follow a family of extremals as it grows.
   static constexpr int homotopy_degree = 8;
   static int first_elements(const Frequency& frequency);
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
-  bool prepare();
-  bool begin();
+  GuessKind prepare();
+  GuessKind begin();
   bool follow_motion();
   bool resolve_guess();
-  Refinement::Result pursue(const char* strategy);
+  Pursuit pursue(const char* strategy);
   bool collapsed() const;
   Refinement::Result accepted();
   bool found(const char* strategy);
-  bool from_other_guesses();
+  bool from_other_guesses(GuessKind guess);
   bool through_other_durations();
   bool by_descent(const std::vector<double>& mesh);
   bool from_finer_elements();
@@ -85,12 +97,7 @@ class Search {
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others
   unsigned seed_ = 0;
-  bool colliding_ = false;  ///< a guess that comes too near a singularity
-  bool shrank_ = false;     ///< a path, to a point of equilibrium
-  bool continued_ = false;  ///< extremals of other durations were followed
-  bool bent_ = false;       ///< guesses were bent by noise
-  bool launched_ = false;   ///< motions were led to the end
-  bool doubtful_ = false;   ///< the equations of the last path were nearly singular
+  std::set<Met> met_;
 };
 
 }  // namespace extremal
