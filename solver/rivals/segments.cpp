@@ -215,10 +215,10 @@ bool Segments::evaluate(const Course& course, double tolerance, bool with_variat
   return right_.back().allFinite();
 }
 
-void Segments::factor() { staircase_.factor(blocks_); }
+void Segments::factor() { system_.factor(blocks_); }
 
 Segments::Correction Segments::correct() const {
-  const Staircase::Solution found = staircase_.solve(right_);
+  const AlmostBlockDiagonal::Solution found = system_.solve(right_);
   Correction step;
   step.finite = found.finite();
   step.states.resize(2 * n_, segments_);

@@ -5,9 +5,9 @@
 
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
+#include "rivals/almost_block_diagonal.hpp"
 #include "rivals/conditions.hpp"
 #include "rivals/convoy.hpp"
-#include "rivals/staircase.hpp"
 
 /// \file A motion in segments, each from a state of its own: the equations of single and multiple shooting.
 
@@ -68,8 +68,8 @@ class Segments {
   std::vector<int> later_;  ///< conditions that are not met by the start alone
   double scale_ = 1;
   Eigen::MatrixXd ends_;  ///< states at the end of each segment
-  Staircase::Blocks blocks_;
-  Staircase staircase_;
+  AlmostBlockDiagonal::Blocks blocks_;
+  AlmostBlockDiagonal system_;
   std::vector<Eigen::VectorXd> right_;
 };
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "rivals/chase.hpp"
 #include "rivals/conditions.hpp"
 #include "rivals/correction.hpp"
+#include "rivals/integration_check.hpp"
 
 namespace extremal {
 
@@ -62,11 +62,11 @@ std::string broken_numbers(const Problem& problem, const Trajectory& trajectory)
 class Verifier {
  public:
   Verifier(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options)
-      : problem_(problem), options_(options), chase_(problem, trajectory, options) {}
+      : problem_(problem), options_(options), check_(problem, trajectory, options) {}
 
   Verification run() {
-    std::string failure = chase_.sample();
-    if (failure.empty()) failure = chase_.run(result_);
+    std::string failure = check_.sample();
+    if (failure.empty()) failure = check_.run(result_);
     if (failure.empty()) failure = judge_defects();
     if (failure.empty()) failure = judge_ends();
     if (failure.empty()) failure = judge_distance();
@@ -85,7 +85,7 @@ class Verifier {
 
   std::string judge_ends() {
     const EndConditions conditions(problem_);
-    values_ = conditions.at(chase_.ends(), chase_.scales());
+    values_ = conditions.at(check_.ends(), check_.scales());
     if (!values_.finite) return "the conditions at the ends are not finite";
     for (int r = 0; r < conditions.rows(); ++r) {
       const double residual = std::abs(values_.residual[r]);
@@ -104,12 +104,12 @@ class Verifier {
   }
 
   std::string judge_distance() {
-    if (chase_.pieces().empty()) return {};
-    result_.orientation = orientation(chase_.pieces());
-    const Eigen::VectorXd change = correction(chase_.pieces(), values_, chase_.scales());
+    if (check_.pieces().empty()) return {};
+    result_.orientation = orientation(check_.pieces());
+    const Eigen::VectorXd change = correction(check_.pieces(), values_, check_.scales());
     if (change.size() == 0) return {};
-    const double largest = largest_change(chase_.pieces(), change);
-    result_.distance = largest * chase_.scales().q / chase_.allowed_q();
+    const double largest = largest_change(check_.pieces(), change);
+    result_.distance = largest * check_.scales().q / check_.allowed_q();
     if (!(*result_.distance <= options_.margin))
       return fmt::format("the extremal is {:.3g} tolerances away", *result_.distance);
     return {};
@@ -117,7 +117,7 @@ class Verifier {
 
   const Problem& problem_;
   const VerifyOptions& options_;
-  Chase chase_;
+  IntegrationCheck check_;
   Verification result_;
   EndConditions::Values values_;
 };

@@ -1,4 +1,4 @@
-# Each leads from guesses by a method of its own and may be left out.
+# Solvers of other libraries, each of which may be left out.
 # Debian's Ceres is a static library with instances of Eigen's templates, which allocate in another way under
 # the address sanitizer: the linker would mix both.
 if(EXTREMAL_SANITIZE MATCHES "address")

@@ -4,10 +4,10 @@
 #include <random>
 
 #include "motion/flow.hpp"
+#include "rivals/almost_block_diagonal.hpp"
 #include "rivals/convoy.hpp"
 #include "rivals/lane_flow.hpp"
 #include "rivals/problems.hpp"
-#include "rivals/staircase.hpp"
 
 namespace extremal {
 namespace {
@@ -130,12 +130,12 @@ TEST(Convoy, SaysWhatCannotBeIntegrated) {
   EXPECT_FALSE(convoy.run({legs.data(), 1}, 0, 1e-10, 3));
 }
 
-TEST(Staircase, AgainstADenseSystem) {
+TEST(AlmostBlockDiagonal, AgainstADenseSystem) {
   std::srand(7);
   for (const int count : {1, 2, 5}) {
     for (const int extra : {0, 1}) {
       constexpr int b = 4, y = 3;
-      Staircase::Blocks blocks;
+      AlmostBlockDiagonal::Blocks blocks;
       for (int k = 0; k < count; ++k) {
         // Growth along the chain, and decay.
         blocks.transition.push_back(10 * Eigen::MatrixXd::Random(b, k == 0 ? y : b));
@@ -164,9 +164,9 @@ TEST(Staircase, AgainstADenseSystem) {
       const Eigen::VectorXd expected = dense.fullPivLu().solve(right);
       for (const bool singular : {false, true}) {
         blocks.may_be_singular = singular;
-        Staircase staircase;
-        staircase.factor(blocks);
-        const Staircase::Solution found = staircase.solve(parts);
+        AlmostBlockDiagonal system;
+        system.factor(blocks);
+        const AlmostBlockDiagonal::Solution found = system.solve(parts);
         EXPECT_TRUE(found.finite());
         EXPECT_LT((found.first - expected.head(y)).norm(), 1e-10 * expected.norm());
         for (int k = 0; k < count; ++k)

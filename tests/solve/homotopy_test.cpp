@@ -66,7 +66,7 @@ TEST(DurationHomotopy, LeadsToTheDurationWanted) {
     const Problem problem = circle(4, wanted);
     Family begun(problem);
     begun.path.set_duration(4);
-    ASSERT_TRUE(DurationHomotopy(problem, begun.path, begun.w, [] { return true; }).follow(*begun.tables));
+    ASSERT_TRUE(DurationHomotopy(problem, begun.path, begun.w, [] { return true; }).trace(*begun.tables));
     EXPECT_EQ(begun.path.duration(), wanted);
     begun.w.iteration.reset(problem, *begun.tables, 8);
     begun.w.iteration.set_scale(1);
@@ -90,7 +90,7 @@ TEST(DurationHomotopy, TurnsAtAFold) {
     longest = std::max(longest, begun.path.duration());
     return ++steps < 200;
   };
-  EXPECT_FALSE(DurationHomotopy(problem, begun.path, begun.w, watch).follow(*begun.tables));
+  EXPECT_FALSE(DurationHomotopy(problem, begun.path, begun.w, watch).trace(*begun.tables));
   EXPECT_GT(longest, std::sqrt(3.513830719) - 0.1);
   EXPECT_LT(begun.path.duration(), 1.5);
 }
@@ -101,7 +101,7 @@ TEST(DurationHomotopy, StopsWhenToldTo) {
   begun.path.set_duration(4);
   int steps = 0;
   EXPECT_FALSE(
-      DurationHomotopy(problem, begun.path, begun.w, [&] { return ++steps < 5; }).follow(*begun.tables));
+      DurationHomotopy(problem, begun.path, begun.w, [&] { return ++steps < 5; }).trace(*begun.tables));
   EXPECT_EQ(steps, 5);
 }
 

@@ -15,7 +15,7 @@ namespace extremal {
 Solution accept(const Problem& problem, const SolveOptions& options, const Outcome& found,
                 Workspace& workspace);
 
-/// Why a solve found nothing, as far as its last path tells.
+/// Why a solve found nothing, judged by its last path.
 Solution explain_failure(const Problem& problem, const SolveOptions& options, const Outcome& last,
                          Workspace& workspace);
 
@@ -28,7 +28,7 @@ class Acceptance {
   enum class Verdict {
     accepted,
     refused,
-    hopeless,  ///< other guesses lead no further: ends are conjugate
+    hopeless,  ///< ends are conjugate: other guesses do not help
   };
   Verdict judge(const Outcome& found);
 

@@ -20,8 +20,8 @@ constexpr double largest_distance = 1e-5;
 constexpr double near = 1e-2;
 /// Of a path that did not converge, so near a conjugate time is no accident.
 constexpr double suspicious = 1e-6;
-/// A path that failed on more elements is not resolved: its second variation would take long and tell
-/// nothing.
+/// A path that failed on more elements is not resolved: its second variation would take long and be
+/// no measure.
 constexpr int most_elements = 512;
 /// Roundoff of the elements' lengths, half a rounding on average, which acts as one of T.
 constexpr double roundoff = unit_roundoff / 2;

@@ -3,7 +3,7 @@
 #include "analysis/windows.hpp"
 #include "solve/adapt/options.hpp"
 
-/// \file What the second variation with fixed ends along a solution tells of it.
+/// \file Windows and conjugate times of a solution, from its second variation with fixed ends.
 
 namespace extremal {
 

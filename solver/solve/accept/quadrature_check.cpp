@@ -20,7 +20,7 @@ constexpr double honest = 10;
 constexpr double most_turned = honest * momentum_tolerances;
 /// Symmetries of more take too long to find.
 constexpr int most_coordinates = 18;
-/// That tell where a path is.
+/// Points about which symmetries are looked for.
 constexpr int guess_points = 32;
 
 /// Symmetries of the problem, found about a path and nearer to the origin: at some of those points forces
@@ -83,11 +83,11 @@ QuadratureCheck check_quadrature(const Problem& problem, const Path& path, const
   const bool orbit = problem.periodic || outcome.reduction;  // or a part of one: they come in families
   if (!orbit && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
     // Directions that are null because symmetries move the ends belong to a family of extremals. Others may
-    // be soft: weak forces tell, if to the last digit. Where forces vanish nothing does.
+    // be soft: weak forces fix the path, if to the last digit. Where forces vanish nothing does.
     const int family = symmetries_about(problem, solution.trajectory);
     if (model.left_out() > family) {
       check.moved = std::max(check.moved, moved(0));
-      check.told_apart = model.left_out() <= family && check.moved <= outcome.tolerance;
+      check.isolated = model.left_out() <= family && check.moved <= outcome.tolerance;
     }
   }
   check.turned = size.v > 0 ? w.iteration.steepness(path) / size.v : 0;
@@ -119,7 +119,7 @@ bool polish(Path& path, NewtonIteration& newton) {
 
 void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options, const Outcome& outcome,
                       Solution& solution) {
-  if (!check.told_apart)
+  if (!check.isolated)
     return refuse(solution, Status::conjugate_ends,
                   "the second variation is singular along the path found, though no symmetry makes it so: "
                   "forces vanish along it, or the ends are conjugate, with a family of extremals; move an "

@@ -12,11 +12,11 @@
 namespace extremal {
 
 struct QuadratureCheck {
-  double moved = 0;        ///< q, absolute: to where the path is stationary under it, to first order
-  double turned = 0;       ///< q' there, relative to the range of velocities
-  double kicked = 0;       ///< momenta at its ends
-  bool unlike = false;     ///< the residual of the whole orbit exceeds that of its part
-  bool told_apart = true;  ///< from the paths beside it
+  double moved = 0;      ///< q, absolute: to where the path is stationary under it, to first order
+  double turned = 0;     ///< q' there, relative to the range of velocities
+  double kicked = 0;     ///< momenta at its ends
+  bool unlike = false;   ///< the residual of the whole orbit exceeds that of its part
+  bool isolated = true;  ///< no null direction is left without a symmetry
 
   /// Whether a path of the elements that the tolerance asked for is moved by more than that allows.
   bool missed(const SolveOptions& options, const Outcome& outcome) const;

@@ -123,12 +123,12 @@ bool PinnedSolve::solve_discrete(int elements) {
     }
     again = true;
     const bool more = scheme_.quadrature == Quadrature::exact && points < most_points;
-    if (!more || exact_quadrature_settled()) return true;
+    if (!more || quadrature_is_exact()) return true;
   }
 }
 
 /// Whether two more points leave S_h as it is.
-bool PinnedSolve::exact_quadrature_settled() {
+bool PinnedSolve::quadrature_is_exact() {
   w_.iteration.action().evaluate_plain(path_);
   const double action = w_.iteration.action().action();
   const int points = std::min(w_.pinned_scheme->points + 2, most_points);
@@ -245,7 +245,7 @@ Outcome PinnedSolve::run() {
                                      options_.tolerance, elements);
       break;
     }
-    // An error that falls as expected tells what is needed in the end; else what is next.
+    // An error that falls as expected gives the number of elements needed; else the next number.
     const bool regular = outcome_.error > regular_fall * expected && outcome_.error < expected / regular_fall;
     const double growth = wanted_growth();
     if (elements * (regular ? growth : std::min(growth, most_growth)) > most) {

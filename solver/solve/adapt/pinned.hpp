@@ -23,7 +23,7 @@ class PinnedSolve {
   NewtonReport run_newton(const ElementTables& tables, Path& path, double goal, int most_steps);
   NewtonReport converge_to_roundoff();
   bool solve_discrete(int elements);
-  bool exact_quadrature_settled();
+  bool quadrature_is_exact();
   bool holds_energy(const Resolution::Error& left_out);
   double distance_to_companion();
   double wanted_growth() const;

@@ -29,7 +29,7 @@ constexpr double filling = 0.1;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 constexpr double border_cost = 2;
 /// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
-/// harder to foresee than what is between.
+/// harder to predict than what is between.
 constexpr double planned_slopes = 6;
 
 }  // namespace
@@ -56,7 +56,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
 
 void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
-  followed_ = false;
+  mesh_kept_ = false;
   w_.iteration.forget();
   tables_ = &tables;
   rebind();
@@ -70,7 +70,7 @@ double Refinement::step_cost() const {
   const double n = path_.coordinates(), columns = problem_.ends.free + problem_.duration.free;
   const double cost = path_.batches() * batch_cost(*tables_, path_.degree()) +
                       border_cost * path_.elements() * n * n * columns;
-  return followed_ ? cost / followed_growth : cost;
+  return mesh_kept_ ? cost / extended_growth : cost;
 }
 
 Refinement::Result Refinement::pursue() {
@@ -81,7 +81,7 @@ Refinement::Result Refinement::pursue() {
   inertia_ = inertia();
   momentum_range_ = 0;
   held_ = INFINITY;
-  if (followed_) {
+  if (mesh_kept_) {
     w_.iteration.action().evaluate_plain(path_);
     measure_momenta();
     w_.iteration.extend();
@@ -90,7 +90,7 @@ Refinement::Result Refinement::pursue() {
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {
     // Truncation this small that finer elements do not reduce is roundoff.
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < amplified_roundoff;
-    // Nor do they help an orbit that has shrunk onto an equilibrium: no digits tell its range.
+    // Nor do they help an orbit that has shrunk onto an equilibrium: its range has no digits.
     const bool shrunk = may_shrink && scales(path_, *tables_).range <= at_rest * first_range;
     if (hopeless || shrunk || 2 * path_.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
@@ -122,7 +122,7 @@ bool Refinement::confirmed() {
   return report.reached && moved <= 10 * outcome_.error + loosest_newton * scales_.q;
 }
 
-/// Finer elements would not see what happens between the points of those there are, others may.
+/// Finer elements may miss the same forces between their points, others less so.
 bool Refinement::holds_on_other_elements() {
   const std::span<const double> mesh = path_.mesh();
   std::vector<double> other{0};
@@ -155,7 +155,7 @@ void Refinement::record() {
 /// Elements for an error of `aim`, relative; of degree 0 if it takes too many.
 Plan Refinement::plan(double aim) {
   // Other elements bend a path where they begin.
-  if (followed_) return {std::min(path_.degree() + 2, highest_degree), {}};
+  if (mesh_kept_) return {std::min(path_.degree() + 2, highest_degree), {}};
   const bool last = aim <= options_.tolerance;
   const auto error = [&](double share) {
     return Resolution::Error{share * scales_.q, last ? planned_slopes * share * scales_.v : INFINITY};
@@ -224,7 +224,7 @@ Refinement::Attempt Refinement::attempt() {
       approach(w_.iteration, path_, *tables_, {coarse_goal, steps_left(coarse_steps)}, saved_, on_step);
   if (newton.held) {
     const ElementTables* const coarse = tables_;
-    const Attempt result = follow(newton);
+    const Attempt result = refine_from(newton);
     if (result != Attempt::failed || exhausted()) return result;
     // Steps that fail on finer elements may succeed on the coarse ones, and are cheaper there.
     path_ = saved_;
@@ -233,15 +233,15 @@ Refinement::Attempt Refinement::attempt() {
     newton = converge(w_.iteration, path_, *coarse, {coarse_goal, steps_left(coarse_steps)}, on_step);
   }
   outcome_.message = newton.failure;
-  return newton.reached ? follow(newton) : Attempt::failed;
+  return newton.reached ? refine_from(newton) : Attempt::failed;
 }
 
 /// From a path that coarse elements know, to elements that meet the tolerance.
-Refinement::Attempt Refinement::follow(NewtonReport newton) {
+Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
   measure();
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {
-    const bool risen = followed_ && path_.degree() == highest_degree;
+    const bool risen = mesh_kept_ && path_.degree() == highest_degree;
     if (plans == most_plans || (plans > 0 && risen)) return Attempt::refine;
     // Finer elements than one more step makes use of would be wasted.
     NodeError nodes{w_.resolution.at(path_.degree()), 0, plans > 0};

@@ -13,7 +13,7 @@
 namespace extremal {
 
 /// From a path on coarse elements to an extremal that meets the tolerance. Newton on the coarse elements
-/// until the path is known to a few digits, which tells the degree that the tolerance needs; then elements of
+/// until the path is known to a few digits, which shows the degree that the tolerance needs; then elements of
 /// that degree, started a few digits off. Where no degree suffices, elements are halved.
 class Refinement {
  public:
@@ -43,7 +43,7 @@ class Refinement {
   void take(const ElementTables& tables);
   /// The path that was opened follows a motion through many encounters: its elements keep their ends, degrees
   /// rise before all are halved, and gradients are in extended precision.
-  void follow() { followed_ = true; }
+  void keep_mesh() { mesh_kept_ = true; }
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
   /// Counts a step that the caller takes; false if there may be no more.
@@ -57,7 +57,7 @@ class Refinement {
   /// False if steps from this path were so long that the second variation is nearly singular, and other
   /// elements find another path.
   bool confirmed();
-  /// Whether elements with other ends tell the same path within the tolerance; their difference is an error.
+  /// Whether elements with other ends give the same path within the tolerance; their difference is an error.
   bool holds_on_other_elements();
   /// Whether a step from this path was much longer than the path.
   bool suspicious() const;
@@ -66,7 +66,7 @@ class Refinement {
   enum class Attempt { converged, refine, failed, unreachable };
   static constexpr int highest_degree = 16;
   /// Extended precision takes longer: so many steps then count for one.
-  static constexpr double followed_growth = 5;
+  static constexpr double extended_growth = 5;
   /// Elements are planned for this share of the tolerance: one more round costs more than a higher degree.
   static constexpr double spare = 0.1;
   /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
@@ -79,7 +79,7 @@ class Refinement {
     bool from_converged = false;
   };
   Attempt attempt();
-  Attempt follow(NewtonReport newton);
+  Attempt refine_from(NewtonReport newton);
   Attempt judge(const NewtonReport& newton, double aim, const NodeError& nodes);
   void measure();
   void measure_momenta();
@@ -111,7 +111,7 @@ class Refinement {
   double cost_ = 0, first_cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
   bool varied_mass_ = false;    ///< with q
-  bool followed_ = false;       ///< see follow()
+  bool mesh_kept_ = false;      ///< see keep_mesh()
   double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
   double momentum_range_ = 0;   ///< when last known
   ResidualTest test_;

@@ -78,7 +78,7 @@ double Refinement::phase_force() const {
 
 /// One more step of a path whose ends are free: natural conditions ask more of momenta than q may need, and
 /// along directions that are nearly null its length is roundoff amplified, an error that nothing else shows:
-/// it tells better than what was expected to remain.
+/// it is a better measure than the remainder that was expected.
 /// A residual that was left within the tolerance becomes roundoff in a few.
 Refinement::Attempt Refinement::satisfy_natural_conditions(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
@@ -120,8 +120,8 @@ std::string Refinement::hidden(double amplified) const {
                      amplified, options_.tolerance);
 }
 
-/// What the momenta of a path make of its elements, which tell q but not q', if that is enough. The
-/// resolution is then that of the polynomials recovered.
+/// What the momenta of a path make of its elements, which have q within the tolerance but not q', if that is
+/// enough. The resolution is then that of the polynomials recovered.
 std::optional<Resolution::Error> Refinement::recovered(double q) {
   if (!recover(problem_, path_, w_, w_.raised)) return std::nullopt;
   const int degree = path_.degree();

@@ -31,7 +31,7 @@ Branch::Branch(const ProblemFamily& family, Path& path, Workspace& workspace)
   if (by_duration()) problem_.duration = {.value = 0, .free = true, .energy = 0, .where = {}};
 }
 
-bool Branch::place(double coordinate) {
+bool Branch::set_coordinate(double coordinate) {
   if (by_duration()) {
     if (!(coordinate > 0)) return false;
     path_.set_duration(coordinate);
@@ -69,7 +69,7 @@ bool Branch::apply(const Move& move, double factor) {
   if (!by_duration()) path_.set_duration(duration);
   path_.load_ends();
   const std::vector<double> before = ends();
-  if (!place(coordinate)) return false;
+  if (!set_coordinate(coordinate)) return false;
   ends_ = ends();
   for (std::size_t e = 0; e < ends_.size(); ++e) ends_[e] -= before[e];
   stretch_ = by_duration() ? 0 : path_.duration() - duration;

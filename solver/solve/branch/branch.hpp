@@ -32,8 +32,8 @@ class Branch : public ExtremalCurve {
   Branch(const ProblemFamily& family, Path& path, Workspace& workspace);
 
   /// Takes over the path as it is, on elements of its degree, with this value of the coordinate.
-  bool place(double coordinate);
-  /// The same after the elements changed.
+  bool set_coordinate(double coordinate);
+  /// Binds the equations to the path after its elements changed.
   void bind();
   /// What Move::parameter changes: the parameter, or the duration.
   double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
@@ -54,9 +54,8 @@ class Branch : public ExtremalCurve {
   /// linearised at last, whose tangent is given. Empty: the energy does.
   std::vector<double> closing_row(const Move& onward) const;
   void close_by(const std::vector<double>& row) { closing_.row = row; }
-  /// What the equations linearised last, with the tangent `onward` as their last row, answer to a load that
-  /// no symmetry of the path suggests: the nearer to where branches cross, the longer, and along the branch
-  /// that crosses.
+  /// The response of the equations linearised last, with the tangent `onward` as their last row, to a load
+  /// without any symmetry: the nearer to a branch point, the longer, and along the branch that crosses.
   void respond(const Move& onward, Move& response);
 
   /// Of the path that was linearised.
@@ -75,7 +74,7 @@ class Branch : public ExtremalCurve {
   void set_null_threshold(double threshold) { threshold_ = threshold; }
   const Inertia& inertia() const;
 
-  /// ∂S/∂s along onward·direction as the derivatives of the action tell it: −E ∂T/∂s + ∂S/∂p ∂p/∂s.
+  /// ∂S/∂s along onward·direction from the derivatives of the action: −E ∂T/∂s + ∂S/∂p ∂p/∂s.
   double action_slope() const { return action_slope_; }
 
   const Problem& problem() const { return problem_; }

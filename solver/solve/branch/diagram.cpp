@@ -36,7 +36,7 @@ Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
 bool Diagram::advance() {
   while (!current_->advance()) {
     note();
-    if (!follow_next()) return false;
+    if (!begin_next()) return false;
   }
   note();
   point_ = current_->point();
@@ -58,7 +58,7 @@ void Diagram::note() {
   record.worst_momentum = current_->worst_momentum();
 }
 
-bool Diagram::follow_next() {
+bool Diagram::begin_next() {
   if (waiting_.empty()) return false;
   Waiting next = std::move(waiting_.front());
   waiting_.pop_front();

@@ -40,7 +40,7 @@ class Diagram {
     BranchStart start;
     int side;
   };
-  bool follow_next();
+  bool begin_next();
   void note();
 
   ProblemFamily family_;

@@ -10,7 +10,7 @@ namespace {
 /// Elements are planned for the first share of the tolerance; on the mesh there is, the second will do.
 constexpr double spare = 0.1, tolerated = 0.7;
 constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
-/// Elements follow the path from point to point: where it becomes smooth they become longer again.
+/// Elements become longer again where the path becomes smooth from point to point.
 constexpr double strongest_cut = 16, strongest_growth = 2;
 /// Elements whose error is below this share of the tolerance are more than needed; others are taken instead
 /// if they have no more nodes than this share.

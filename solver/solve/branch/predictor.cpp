@@ -74,7 +74,7 @@ BranchState Tracker::with_cubic(const BranchStep& step) {
   BranchState result = from;
   path_ = from.path;
   branch_.set_units(from.units);
-  if (!branch_.place(from.coordinate)) return result;
+  if (!branch_.set_coordinate(from.coordinate)) return result;
   Move off = difference_to(to);
   off.add(from.tangent, -length);
   off.scale(1 / (length * length));

@@ -30,7 +30,7 @@ Tracker::Tracker(const ProblemFamily& family, double tolerance)
 bool Tracker::begin(Path path, double coordinate, double rest) {
   rest_ = rest;
   std::swap(path_, path);
-  return branch_.place(coordinate) && fit_elements() != Fit::too_many && update_tangent(true);
+  return branch_.set_coordinate(coordinate) && fit_elements() != Fit::too_many && update_tangent(true);
 }
 
 bool Tracker::begin(const Path& path, double coordinate, const Branch::Units& units, double rest) {
@@ -38,7 +38,7 @@ bool Tracker::begin(const Path& path, double coordinate, const Branch::Units& un
   path_ = path;
   branch_.set_units(units);
   state.units = units;
-  if (!branch_.place(coordinate)) return false;
+  if (!branch_.set_coordinate(coordinate)) return false;
   branch_.bind();
   return update_tangent(true);
 }
@@ -48,7 +48,7 @@ bool Tracker::return_to(const BranchState& from) {
   path_ = from.path;
   tangent_ = from.tangent;
   branch_.set_units(from.units);
-  if (!branch_.place(from.coordinate)) return false;
+  if (!branch_.set_coordinate(from.coordinate)) return false;
   branch_.bind();
   branch_.close_by(from.row);
   return true;

@@ -60,7 +60,7 @@ class Counter final : public ceres::IterationCallback {
   const std::function<bool()>& count_;
 };
 
-/// Ceres logs what we tell better; nothing may reach stderr.
+/// Nothing of Ceres' log may reach stderr.
 class Silence {
  public:
   Silence() { FLAGS_minloglevel = google::FATAL; }

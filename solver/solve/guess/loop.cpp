@@ -209,7 +209,7 @@ double Loops::reduced_action(DiscreteAction& action, const ElementTables& tables
   return 2 * std::sqrt(K * speed) + s1 - K / T + V * T;
 }
 
-double Loops::settle(DiscreteAction& action, const ElementTables& tables, Path& path) {
+double Loops::fit_size(DiscreteAction& action, const ElementTables& tables, Path& path) {
   const int steps = steps_an_octave * (scaled_ ? octaves_of_guess : most_octaves);
   const auto size_at = [](double k) { return std::pow(2.0, k / steps_an_octave); };
   double found = 0, nearest = INFINITY, x = NAN, y = NAN;

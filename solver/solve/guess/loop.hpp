@@ -62,7 +62,7 @@ class Loops {
   /// Size, and duration where that is free, at which the action is stationary against both: that of the path
   /// in `path`, which is filled in the course. Bodies under gravitation then obey the theorem of the virial.
   /// Where there is no such size near that of the guess, that of the guess.
-  double settle(DiscreteAction& action, const ElementTables& tables, Path& path);
+  double fit_size(DiscreteAction& action, const ElementTables& tables, Path& path);
 
  private:
   double reduced_action(DiscreteAction& action, const ElementTables& tables, Path& path, double size);

@@ -64,7 +64,7 @@ std::vector<double> natural_durations(const Problem& problem, Path& path, Worksp
 
 DurationHomotopy::DurationHomotopy(const Problem& problem, Path& path, Workspace& workspace,
                                    std::function<bool()> count)
-    : ExtremalFamily(path, workspace, std::move(count), problem.duration.value),
+    : Homotopy(path, workspace, std::move(count), problem.duration.value),
       problem_(problem),
       wanted_(problem.duration.value) {
   problem_.duration = {.value = wanted_, .free = true, .energy = 0, .where = {}};
@@ -100,14 +100,14 @@ double DurationHomotopy::onward(const Move& direction) const {
   return direction.parameter * (sense_ != 0 ? sense_ : -parameter());
 }
 
-bool DurationHomotopy::follow(const ElementTables& tables) {
+bool DurationHomotopy::trace(const ElementTables& tables) {
   sense_ = 0;
-  return begin(tables, most_steps_there) && approach() && set_out() && reach();
+  return begin(tables, most_steps_there) && approach() && find_tangent() && reach();
 }
 
 bool DurationHomotopy::leave(const ElementTables& tables, bool longer) {
   sense_ = longer ? 1 : -1;
-  return begin(tables, most_steps_on) && set_out();
+  return begin(tables, most_steps_on) && find_tangent();
 }
 
 }  // namespace extremal

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "solve/homotopy/family.hpp"
+#include "solve/homotopy/homotopy.hpp"
 
-/// \file Extremals of other durations lead to the one wanted.
+/// \file The extremal of a duration by continuation from those of others.
 
 namespace extremal {
 
@@ -18,13 +18,13 @@ std::vector<double> natural_durations(const Problem& problem, Path& path, Worksp
 /// The family of extremals of all durations, with the boundary relation given; the parameter is what the
 /// duration exceeds the wanted one by. For L = q'ᵀM q'/2 − V this is the homotopy in λ of q'ᵀM q'/2 − λV,
 /// λ = (duration/T)², from the straight line. The Lagrangian must not depend on t.
-class DurationHomotopy : public ExtremalFamily {
+class DurationHomotopy : public Homotopy {
  public:
   DurationHomotopy(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count);
 
   /// Takes the path with the duration it has onto the family, and along it to the problem's
-  /// duration: nearly an extremal then. False if it does not lead there.
-  bool follow(const ElementTables& tables);
+  /// duration: nearly an extremal then. False if it does not end there.
+  bool trace(const ElementTables& tables);
   /// From an extremal of the problem, to longer durations or to shorter ones. False if it cannot set out.
   bool leave(const ElementTables& tables, bool longer);
 

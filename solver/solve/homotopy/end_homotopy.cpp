@@ -20,7 +20,7 @@ std::vector<double> unit_displacement(const BoundaryRelation& relation, int row)
 
 EndHomotopy::EndHomotopy(const Problem& problem, Path& path, Workspace& workspace,
                          std::function<bool()> count, std::vector<double> displacement, double unit)
-    : ExtremalFamily(path, workspace, std::move(count), unit),
+    : Homotopy(path, workspace, std::move(count), unit),
       problem_(problem),
       ends_(std::move(displacement)),
       unit_(unit) {}
@@ -30,8 +30,8 @@ bool EndHomotopy::set_parameter(double value) {
   return true;
 }
 
-/// Along the nodes of the path; `inner` numbers stand for what moves with them.
-void EndHomotopy::place_displacement(std::size_t inner) {
+/// At the nodes of the path, with `inner` zeros for the unknowns that move with them.
+void EndHomotopy::sample_displacement(std::size_t inner) {
   const std::size_t n = problem_.coordinates();
   displacement_.inner.assign(inner, 0);
   displacement_.nodes.clear();
@@ -50,7 +50,7 @@ bool EndHomotopy::solve_linearised(Move& correction, Move& direction) {
   correction.parameter = 0;
   const double by = small * unit_;
   at_ = path_;
-  place_displacement(correction.step.inner.size());
+  sample_displacement(correction.step.inner.size());
   path_.add(displacement_.nodes, displacement_.inner, by);
   path_.load_ends();
   model.evaluate_gradient(action, path_);
@@ -68,16 +68,16 @@ bool EndHomotopy::solve_linearised(Move& correction, Move& direction) {
   return true;
 }
 
-bool EndHomotopy::follow(const ElementTables& tables, double parameter) {
+bool EndHomotopy::trace(const ElementTables& tables, double parameter) {
   sense_ = 0;
   parameter_ = parameter;
-  return begin(tables, most_steps_there) && approach() && set_out() && reach();
+  return begin(tables, most_steps_there) && approach() && find_tangent() && reach();
 }
 
 bool EndHomotopy::leave(const ElementTables& tables, bool along) {
   sense_ = along ? 1 : -1;
   parameter_ = 0;
-  return begin(tables, most_steps_on) && set_out();
+  return begin(tables, most_steps_on) && find_tangent();
 }
 
 }  // namespace extremal

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "solve/homotopy/family.hpp"
+#include "solve/homotopy/homotopy.hpp"
 
-/// \file Extremals with other ends lead to others with those wanted.
+/// \file Extremals by continuation from those with other ends.
 
 namespace extremal {
 
@@ -14,21 +14,21 @@ std::vector<double> unit_displacement(const BoundaryRelation& relation, int row)
 /// Extremals whose ends, moved back by the parameter times a displacement, satisfy the boundary relation.
 /// With one coordinate and fixed ends, one of which is displaced, all extremals of the problem lie on one
 /// such curve, which the velocity at the other end parametrises.
-class EndHomotopy : public ExtremalFamily {
+class EndHomotopy : public Homotopy {
  public:
   /// A displacement (2n) of which `unit` is about the extent of a path.
   EndHomotopy(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count,
               std::vector<double> displacement, double unit);
 
   /// Takes the path, whose ends are displaced by `parameter`, onto the family and along it to the
-  /// problem's ends. False if it does not lead there.
-  bool follow(const ElementTables& tables, double parameter);
+  /// problem's ends. False if it does not end there.
+  bool trace(const ElementTables& tables, double parameter);
   /// From an extremal of the problem along the displacement or against it. False if it cannot set out.
   bool leave(const ElementTables& tables, bool along);
 
  private:
   bool solve_linearised(Move& correction, Move& direction) override;
-  void place_displacement(std::size_t inner);
+  void sample_displacement(std::size_t inner);
   const Problem& problem() const override { return problem_; }
   double parameter() const override { return parameter_; }
   bool set_parameter(double value) override;

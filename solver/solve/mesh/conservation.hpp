@@ -3,8 +3,8 @@
 #include "solution/observe.hpp"
 #include "solve/mesh/resolution.hpp"
 
-/// \file What the elements do not see, a close passage, a kink or a layer between their points, shows as
-/// drift of the energy: errors δq and δp change it by no more than |q'|·δp + |∂L/∂q|·δq.
+/// \file A close passage, a kink or a layer between the points of the elements shows as drift of the energy:
+/// errors δq and δp change it by no more than |q'|·δp + |∂L/∂q|·δq.
 
 namespace extremal {
 

@@ -33,22 +33,22 @@ double batch_cost(const ElementTables& tables, int degree) {
   return 200 + assembly + elimination + 1.7 * n * n * n;
 }
 
-/// Distances to singularities; neighbours see each other's.
+/// Distances to singularities, bounded by those of neighbours.
 void Planner::locate(const Resolution& resolution) {
   degree_ = resolution.degree();
-  places_.clear();
+  decays_.clear();
   for (const Resolution::Tail& tail : resolution.tails()) {
     const double distance = 0.25 * tail.h * (1 / tail.fall - tail.fall);
     const double log_size =
         tail.size > 0 ? std::log(tail.size) - resolution.degree() * std::log(tail.fall) : -INFINITY;
-    places_.push_back({tail.h, distance, std::log(4 * distance), log_size});
+    decays_.push_back({tail.h, distance, std::log(4 * distance), log_size});
   }
   const auto limit = [&](std::size_t k, std::size_t neighbour) {
-    const double apart = 0.5 * (places_[k].h + places_[neighbour].h);
-    places_[k].distance = std::min(places_[k].distance, places_[neighbour].distance + apart);
+    const double apart = 0.5 * (decays_[k].h + decays_[neighbour].h);
+    decays_[k].distance = std::min(decays_[k].distance, decays_[neighbour].distance + apart);
   };
-  for (std::size_t k = 1; k < places_.size(); ++k) limit(k, k - 1);
-  for (std::size_t k = places_.size() - 1; k-- > 0;) limit(k, k + 1);
+  for (std::size_t k = 1; k < decays_.size(); ++k) limit(k, k - 1);
+  for (std::size_t k = decays_.size() - 1; k-- > 0;) limit(k, k + 1);
 }
 
 /// The slope at the end of an element of length h is (s+1)(s+2)/h times the coefficient.
@@ -59,21 +59,21 @@ Planner::Goal Planner::goal(int degree, const PlanLimits& limits) {
 /// h' with size·f'^(s+1) within the goal, h' >= 4 distance f'. Unless the limits allow it there are no fewer
 /// nodes an interval of time than now: those resolve the variations of the path too, whatever the path itself
 /// may need.
-double Planner::length(const Place& place, const Goal& goal, const PlanLimits& limits) const {
-  const double longest = limits.strongest_growth * place.h * goal.degree / degree_,
-               shortest = place.h / limits.strongest_cut;
-  if (std::isinf(place.log_size)) return longest;
-  const double log_fall = std::min((goal.log_q - place.log_size) / (goal.degree + 1),
-                                   (goal.log_v + place.log_reach - place.log_size) / goal.degree);
+double Planner::length(const ElementDecay& decay, const Goal& goal, const PlanLimits& limits) const {
+  const double longest = limits.strongest_growth * decay.h * goal.degree / degree_,
+               shortest = decay.h / limits.strongest_cut;
+  if (std::isinf(decay.log_size)) return longest;
+  const double log_fall = std::min((goal.log_q - decay.log_size) / (goal.degree + 1),
+                                   (goal.log_v + decay.log_reach - decay.log_size) / goal.degree);
   if (log_fall >= 0) return longest;
   const double fall = std::exp(log_fall);
-  return std::clamp(4 * place.distance * fall / (1 - fall * fall), shortest, longest);
+  return std::clamp(4 * decay.distance * fall / (1 - fall * fall), shortest, longest);
 }
 
 double Planner::elements(int degree, const PlanLimits& limits) const {
   double sum = 0;
   const Goal wanted = goal(degree, limits);
-  for (const Place& place : places_) sum += place.h / length(place, wanted, limits);
+  for (const ElementDecay& decay : decays_) sum += decay.h / length(decay, wanted, limits);
   return spare * sum;
 }
 
@@ -108,11 +108,11 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
   if (moved == 0) return best;
   density_.clear();
   const Goal wanted = goal(moved, limits);
-  for (std::size_t k = 0; k < places_.size(); ++k) {
-    const double density = 1 / length(places_[k], wanted, limits);
+  for (std::size_t k = 0; k < decays_.size(); ++k) {
+    const double density = 1 / length(decays_[k], wanted, limits);
     if (k == 0) density_.add(0, density);
     density_.add(0.5 * (mesh[k] + mesh[k + 1]), density);
-    if (k + 1 == places_.size()) density_.add(1, density);
+    if (k + 1 == decays_.size()) density_.add(1, density);
   }
   return {moved, density_.mesh(lanes * static_cast<int>(batches(count)), 0)};
 }

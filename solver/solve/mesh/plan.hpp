@@ -40,7 +40,7 @@ class Planner {
             const PlanLimits& limits);
 
  private:
-  struct Place {
+  struct ElementDecay {
     double h, distance, log_reach, log_size;  ///< log of the coefficients extrapolated to k = 0
   };
   /// Of the coefficient that elements of a degree leave out, at most: for q, and for q' by their length.
@@ -50,11 +50,11 @@ class Planner {
   };
   static Goal goal(int degree, const PlanLimits& limits);
   void locate(const Resolution& resolution);
-  double length(const Place& place, const Goal& goal, const PlanLimits& limits) const;
+  double length(const ElementDecay& decay, const Goal& goal, const PlanLimits& limits) const;
   double elements(int degree, const PlanLimits& limits) const;
 
   int degree_ = 0;  ///< of the elements that were measured
-  std::vector<Place> places_;
+  std::vector<ElementDecay> decays_;
   Density density_;
 };
 

@@ -111,7 +111,7 @@ void Resolution::measure(const Path& path, const ElementTables& tables) {
     }
     const int count = std::min(lanes, path.elements() - b * lanes);
     for (int lane = 0; lane < count; ++lane) {
-      // Coefficients at roundoff of the element's own extent tell nothing.
+      // Coefficients at roundoff of the element's own extent are no measure.
       if (std::max(last[lane], second[lane]) < noise * extent[lane]) last[lane] = second[lane] = 0;
       const double size = std::max(last[lane], second[lane]);
       const double least = size > 0 ? std::clamp(size / own[lane], fastest, fast) : fastest;

@@ -27,7 +27,7 @@ class CondensedModel final : public SecondVariationModel {
     action.expand_step(step.nodes, step.duration, step.inner);
   }
 
-  /// Inner unknowns follow the nodes, without what the gradient adds to them.
+  /// Inner unknowns move with the nodes; the part that the gradient adds is left out.
   void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                Step& step) override {
     NodeEquations& nodes = action.nodes;

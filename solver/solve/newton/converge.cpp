@@ -13,7 +13,7 @@ namespace {
 constexpr double chord_contraction = 0.2;
 /// A first step that needs more is not trusted.
 constexpr double mild_damping = 0.25;
-/// Steps this short that stall, though gradients have digits to spare, are told by factors that have none.
+/// Steps this short that stall, though gradients have digits to spare, lack digits of the factors.
 constexpr double stalled_by_factors = 1e-5;
 
 constexpr const char* spent = "the effort that one solve may take is spent";
@@ -127,7 +127,7 @@ NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& 
     report = converge(newton, path, tables, rest, on_step);
     newton.release();
     report.held = report.reached;
-    // Errors of coarse elements are amplified most in the direction that was held; finer ones tell it.
+    // Errors of coarse elements are amplified most in the direction that was held; finer ones err less.
     if (report.held) {
       saved = path;
       return report;

@@ -18,7 +18,7 @@ std::vector<double> nearest_ends(const EndMap& ends, const std::vector<double>& 
 /// Moves the ends of a path onto the boundary relation, as little as can be.
 void meet_ends(const Problem& problem, Path& path);
 
-/// After a step along the relation: the ends that follow from free ones, to twice the digits. Without it the
+/// After a step along the relation: the ends that depend on free ones, to twice the digits. Without it the
 /// rounding of long steps would add up to more than roundoff.
 void keep_ends(const EndMap& ends, Path& path);
 

@@ -9,7 +9,7 @@ namespace extremal {
 
 /// δS_h = 0 under the boundary relation in all unknowns at once, nothing condensed: gradient and sparse
 /// Hessian. Unknowns are numbered: nodes 1 … N − 1, then what the boundary relation leaves free of the ends,
-/// then the inner ones element by element. The duration, where it is free, stands apart.
+/// then the inner ones element by element. The duration, where it is free, is not among them.
 class Equations {
  public:
   void reset(const Problem& problem, const ElementTables& tables, int elements);

@@ -56,8 +56,8 @@ class NewtonIteration {
   bool extended() const { return extended_; }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
   double noise() const { return noise_; }
-  /// What roundoff makes of a step from `path`, with the factors there are: no path is nearer to an extremal,
-  /// as far as steps tell.
+  /// What roundoff makes of a step from `path`, with the factors there are: no step measures a smaller
+  /// distance from an extremal.
   double roundoff(Path& path);
 
   /// From now until release() steps leave out the direction in which the path last factored is softest. False
@@ -70,13 +70,13 @@ class NewtonIteration {
   /// The same, but gives up where pivoting would be needed.
   bool factor_quickly(const Path& path);
 
-  /// Whether steps may shift a periodic path in time (no, unless told): elements prefer some phases, by no
+  /// Whether steps may shift a periodic path in time (by default not): elements prefer some phases, by no
   /// more than they err. Forgotten by reset().
   void free_phase(bool free) { phase_free_ = free; }
 
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
-  /// The length of that correction where another quadrature on the same elements tells the gradient, and of
+  /// The length of that correction with the gradient of another quadrature on the same elements, and of
   /// what roundoff makes of it. action() then has that gradient. Of inner steps, laid out as Path::x, what is
   /// `explained` does not count.
   double step_under(const ElementTables& quadrature, const Path& path, const AlignedDoubles& explained = {});

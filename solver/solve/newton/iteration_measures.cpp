@@ -5,7 +5,7 @@
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/iteration.hpp"
 
-/// \file What an iteration tells of the equations where it is.
+/// \file Measures of the equations at the path of an iteration.
 
 namespace extremal {
 

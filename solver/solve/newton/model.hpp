@@ -44,7 +44,7 @@ class QuadraticModel {
   /// Directions that evaluate() and solve() hold from now until reset(); null for none.
   void set_phases(const PhaseConditions* phases) { phases_ = phases; }
   /// From now until reset() steps have nothing along directions whose eigenvalue is so small, relative, or
-  /// smaller, where ends are free; the factors there are follow.
+  /// smaller, where ends are free; for the present factors too.
   virtual void set_null_below(double) {}
   /// How many such directions the last step had nothing along.
   virtual int left_out() const { return 0; }

@@ -91,7 +91,7 @@ void NodeSystem::assemble_phases() {
     const std::span<const double> direction = phases_->direction(j);
     for (std::size_t k = 0; k < inner; ++k) columns_[k * border_ + column] = direction[n_ + k];
     for (const Triplet& z : ends_->z) {
-      const double along = z.value * direction[end_place(z.row)];
+      const double along = z.value * direction[end_index(z.row)];
       corner_(z.column, column) += along;
       corner_(column, z.column) += along;
     }
@@ -288,7 +288,7 @@ Inertia NodeSystem::inertia(double threshold) const {
     const double* direction = held.direction(j).data();
     for (Eigen::Index k = 0; k < block.rows(); ++k) block(k, free_ + j) = direction[n_ + k];
     for (const Triplet& z : ends_->z) {
-      corner(z.column, free_ + j) += z.value * direction[end_place(z.row)];
+      corner(z.column, free_ + j) += z.value * direction[end_index(z.row)];
       corner(free_ + j, z.column) = corner(z.column, free_ + j);
     }
   }

@@ -23,7 +23,7 @@ class NodeSystem {
   bool factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases = nullptr);
 
   /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing
-  /// along them. For 0 none is, however small. From now until reset(); the factors there are follow.
+  /// along them. For 0 none is, however small. From now until reset(), for the present factors too.
   void set_null_below(double threshold);
   /// How many directions the last step had nothing along.
   int left_out() const { return left_out_; }
@@ -41,7 +41,7 @@ class NodeSystem {
 
  private:
   /// Of end coordinate e among the nodes.
-  std::size_t end_place(int e) const { return e < n_ ? e : std::size_t(elements_) * n_ + e - n_; }
+  std::size_t end_index(int e) const { return e < n_ ? e : std::size_t(elements_) * n_ + e - n_; }
   bool factor_schur(const ClosingEquation* closing);
   void factor_border();
   bool factor_exactly(const ClosingEquation* closing);

@@ -73,7 +73,7 @@ int moving_symmetries(const Problem& problem, const Trajectory& orbit) {
 
 }  // namespace
 
-double told_apart(const Solution& solution, double size) {
+double distinct_distance(const Solution& solution, double size) {
   constexpr double distinct = 1e-6;
   return std::max(10 * solution.error_estimate, distinct * size);
 }
@@ -88,9 +88,9 @@ ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, d
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors) {
   if (!problem.periodic) return;
-  const double told = told_apart(solution, size);
+  const double distinct = distinct_distance(solution, size);
   if (const ClosingMap map = closing_map(problem); map.identity() && size > 0)
-    if (const int parts = repetitions(solution.trajectory, map, 1, told); parts > 0)
+    if (const int parts = repetitions(solution.trajectory, map, 1, distinct); parts > 0)
       solution.minimal_period = solution.duration() / parts;
   if (problem.coordinates() > most_coordinates_for_multipliers) {
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",

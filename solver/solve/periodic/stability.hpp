@@ -12,8 +12,8 @@ namespace extremal {
 /// How an orbit of a periodic problem closes, and what moves it; `relative_error` of its coordinates.
 ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, double relative_error);
 
-/// Distances along a solution of `size` that are told from none.
-double told_apart(const Solution& solution, double size);
+/// Distances along a solution of `size` above this are not zero.
+double distinct_distance(const Solution& solution, double size);
 
 /// Sets the Floquet multipliers and the minimal period of a converged solution of a periodic problem.
 /// `variation` was assembled for it, perhaps without success. `size` of the solution: that its error is

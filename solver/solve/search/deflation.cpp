@@ -22,15 +22,15 @@ DeflatedNewton::DeflatedNewton(const Problem& problem, Path& path, Workspace& wo
     : problem_(problem), path_(path), w_(workspace), count_(std::move(count)) {}
 
 /// Where the known extremals are at the nodes of the path.
-void DeflatedNewton::place(const std::vector<Solution>& known) {
+void DeflatedNewton::sample(const std::vector<Solution>& known) {
   const std::size_t n = problem_.coordinates();
   std::vector<double> v(n);
-  places_.clear();
+  known_.clear();
   for (const Solution& solution : known) {
-    Place place{std::vector<double>(path_.nodes().size()), solution.duration()};
+    Known each{std::vector<double>(path_.nodes().size()), solution.duration()};
     for (std::size_t k = 0; k < path_.mesh().size(); ++k)
-      solution.trajectory.at(path_.mesh()[k] * place.duration, {place.nodes.data() + k * n, n}, v);
-    places_.push_back(std::move(place));
+      solution.trajectory.at(path_.mesh()[k] * each.duration, {each.nodes.data() + k * n, n}, v);
+    known_.push_back(std::move(each));
   }
 }
 
@@ -44,10 +44,10 @@ double DeflatedNewton::dot(const std::vector<double>& nodes, const std::vector<d
 double DeflatedNewton::stretch(const Step& step) {
   const double unit = path_.duration();
   double slope = 0;
-  for (const Place& place : places_) {
+  for (const Known& each : known_) {
     away_.assign(path_.nodes().begin(), path_.nodes().end());
-    for (std::size_t k = 0; k < away_.size(); ++k) away_[k] -= place.nodes[k];
-    const double longer = (path_.duration() - place.duration) / unit;
+    for (std::size_t k = 0; k < away_.size(); ++k) away_[k] -= each.nodes[k];
+    const double longer = (path_.duration() - each.duration) / unit;
     const double square = dot(away_, away_) + longer * longer;
     if (square == 0) continue;
     slope -= 2 * (dot(away_, step.nodes) + longer * step.duration / unit) / (square * (1 + square));
@@ -57,7 +57,7 @@ double DeflatedNewton::stretch(const Step& step) {
 
 /// To where the plain step is short.
 bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution>& known) {
-  place(known);
+  sample(known);
   w_.iteration.reset(problem_, tables, path_.elements());
   const double first = scale_ = scales(path_, tables).q;
   if (scale_ == 0) scale_ = 1;

@@ -26,7 +26,7 @@ class DeflatedNewton {
   bool solve(Factors);
 
  private:
-  void place(const std::vector<Solution>& known);
+  void sample(const std::vector<Solution>& known);
   double dot(const std::vector<double>& nodes, const std::vector<double>& others) const;
   double stretch(const Step& step);
 
@@ -34,11 +34,11 @@ class DeflatedNewton {
   Path& path_;
   Workspace& w_;
   std::function<bool()> count_;
-  struct Place {
+  struct Known {
     std::vector<double> nodes;
     double duration;
   };
-  std::vector<Place> places_;  ///< of the known extremals
+  std::vector<Known> known_;  ///< of the known extremals
   std::vector<double> away_;
   double scale_ = 1;
   Step step_;

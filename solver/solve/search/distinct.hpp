@@ -12,14 +12,14 @@ namespace extremal {
 /// of the problem, is at rest.
 bool same_path(const Solution& a, const Solution& b, double tolerance, double scale);
 
-/// Whether both belong to one continuum as far as can be told: the second variation of each is singular, and
+/// Whether both belong to one continuum, by these numbers: the second variation of each is singular, and
 /// action, duration, energy and index agree. So do time shifts of a periodic orbit, and its images under a
 /// continuous symmetry.
 bool same_continuum(const Solution& a, const Solution& b, double tolerance);
 
 /// The same for orbits of an autonomous periodic problem, all of which have shifts of time: what symmetries,
-/// of time and of space, continuous or not, make of one orbit is one, as far as action, duration and energy
-/// tell.
+/// of time and of space, continuous or not, make of one orbit is one, if action, duration and
+/// energy agree.
 bool same_orbit(const Solution& a, const Solution& b, double tolerance);
 
 /// Whether two solutions on the same elements are the same to roundoff.

@@ -7,7 +7,7 @@
 #include "solve/homotopy/end_homotopy.hpp"
 #include "solve/search/search.hpp"
 
-/// \file Motions from the start that miss the end, led to it.
+/// \file Motions from the start, continued to the end that they miss.
 
 namespace extremal {
 
@@ -49,7 +49,7 @@ bool scale_to_energy(const Lagrangian& lagrangian, std::span<const double> q, do
   return false;
 }
 
-/// The motion from (q, v) at t = 0; none where it cannot be followed, or `count` allows no more steps.
+/// The motion from (q, v) at t = 0; none where the integration fails, or `count` allows no more steps.
 Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
                   double duration, const std::function<bool()>& count) {
   const auto more = [&count](int steps) {
@@ -82,12 +82,12 @@ bool Search::from_motion(const Guess& motion, double duration) {
     path.set_duration(duration);
     start_path(launched, ends, tables, path);
   };
-  if (!place(fill, homotopy_degree)) return false;
+  if (!open_fitting(fill, homotopy_degree)) return false;
   met_.insert(Met::motions);
   EndHomotopy homotopy(
       problem_, path_, w_, [this] { return refinement_.count_step(); }, missed,
       scales(path_, refinement_.tables()).q);
-  if (!homotopy.follow(refinement_.tables(), distance)) return false;
+  if (!homotopy.trace(refinement_.tables(), distance)) return false;
   refinement_.rebind();
   return found("homotopy in the ends from a motion");
 }

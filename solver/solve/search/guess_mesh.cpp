@@ -5,7 +5,7 @@
 #include "solve/guess/starting_ends.hpp"
 #include "solve/search/search.hpp"
 
-/// \file Guesses put on elements that follow them.
+/// \file Elements for a guess.
 
 namespace extremal {
 
@@ -19,8 +19,8 @@ constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, gu
 constexpr double guess_floor = 0.25;
 constexpr int most_passes = 10, highest_guess_degree = 12;
 /// Samples of a motion, elements that follow it, and their degree.
-constexpr std::size_t samples_an_element = 320, least_followed = 1024, most_followed = 1 << 15;
-constexpr int followed_degree = 7;
+constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
+constexpr int kept_degree = 7;
 /// A path of chance that needs more elements than this comes too near a singularity.
 constexpr int most_launched = 128;
 /// A singularity is near where elements differ so much.
@@ -57,7 +57,7 @@ Search::GuessKind Search::begin() {
   }
   int elements = first_elements(w_.frequency);
   const double floor = guess_->guess.given() ? guess_floor : 1.0;
-  // A sketch of an orbit may pass a collision; elements that follow it there serve no other path.
+  // A sketch of an orbit may pass a collision; elements for it serve no other path.
   const bool colliding = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
                          w_.frequency.grading(floor) > collision;
   if (colliding) elements = most_launched;
@@ -65,24 +65,24 @@ Search::GuessKind Search::begin() {
     mesh_ = w_.frequency.mesh(elements, floor);
     start(mesh_, bend_);
   }
-  if (guess_->guess.motion && !follow_motion()) resolve_guess();
+  if (guess_->guess.motion && !mesh_of_motion()) resolve_guess();
   return colliding ? GuessKind::colliding : GuessKind::usable;
 }
 
 /// A motion that took its integrator so many steps passes one encounter after the other, which elements would
-/// find one by one: they follow its steps. So they do beside a collision, where the frequency asks for more.
-/// False elsewhere.
-bool Search::follow_motion() {
+/// find one by one: each of them covers as many steps. So they do beside a collision, where the frequency
+/// asks for more. False elsewhere.
+bool Search::mesh_of_motion() {
   const std::vector<double>& tau = guess_->guess.tau;
   const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
   const std::size_t elements = (wanted + lanes) / lanes * lanes;
-  const bool many = wanted >= least_followed && wanted <= most_followed;
+  const bool many = wanted >= least_kept && wanted <= most_kept;
   const bool collides = w_.frequency.grading(guess_floor) > collision;
   if (!many && !(collides && elements < static_cast<std::size_t>(path_.elements()))) return false;
   mesh_.resize(elements + 1);
   for (std::size_t k = 0; k <= elements; ++k) mesh_[k] = tau[k * samples / elements];
-  start(mesh_, bend_, followed_degree);
-  if (many) refinement_.follow();
+  start(mesh_, bend_, kept_degree);
+  if (many) refinement_.keep_mesh();
   return true;
 }
 
@@ -118,7 +118,7 @@ bool Search::resolve_guess() {
   return finer_found;
 }
 
-bool Search::place(const std::function<void(const ElementTables&, Path&)>& fill, int degree) {
+bool Search::open_fitting(const std::function<void(const ElementTables&, Path&)>& fill, int degree) {
   fill(open(uniform_mesh(2 * lanes), Refinement::first_degree), path_);
   measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
   const int elements = first_elements(w_.frequency);

@@ -31,13 +31,14 @@ bool LoopSearch::pursue(const Problem& problem, Search& search, Loops& loops, co
   const unsigned seed = loops.count++;
   loops.draw(seed);
   const ElementTables& coarse = search.open(uniform_mesh(2 * lanes), Refinement::first_degree);
-  loops.settle(w_.iteration.action(), coarse, search.path());
-  if (!search.place([&](const ElementTables& tables, Path& path) { loops.fill(tables, path); })) return false;
+  loops.fit_size(w_.iteration.action(), coarse, search.path());
+  if (!search.open_fitting([&](const ElementTables& tables, Path& path) { loops.fill(tables, path); }))
+    return false;
   if (seed % 2) {
     DeflatedNewton bounded(problem, search.path(), w_, [&] { return search.count_step(); });
     if (!bounded.run(search.tables(), {})) return false;
   }
-  return search.settle(search.tables(), strategy);
+  return search.refine(search.tables(), strategy);
 }
 
 /// The orbit of which a path is a segment becomes the path of the whole search.
@@ -82,7 +83,7 @@ bool LoopSearch::next() {
   if (!pursue(part.segment.problem, part.search, part.loops, from_symmetric_loop)) return false;
   whole_.renew(share);
   const ElementTables& tables = reconstruct_orbit(part.segment, part.search.path());
-  return whole_.settle(tables, from_symmetric_loop);
+  return whole_.refine(tables, from_symmetric_loop);
 }
 
 }  // namespace extremal

@@ -112,7 +112,7 @@ bool Search::through_other_durations() {
     start(mesh_, bend_, homotopy_degree);
     path_.set_duration(duration);
     met_.insert(Met::other_durations);
-    if (!homotopy.follow(refinement_.tables())) continue;
+    if (!homotopy.trace(refinement_.tables())) continue;
     refinement_.rebind();
     if (found("homotopy in the duration")) return true;
   }
@@ -135,7 +135,7 @@ bool Search::from_noise(unsigned tries) {
       bend_path(problem_, bend, tables, path);
     };
     if (!problem_.periodic) start(mesh_, bend);
-    if (problem_.periodic && !place(fill)) {
+    if (problem_.periodic && !open_fitting(fill)) {
       refinement_.count_step();
       continue;
     }
@@ -145,7 +145,7 @@ bool Search::from_noise(unsigned tries) {
   return false;
 }
 
-/// The default guess, where the user's leads nowhere.
+/// The default guess, where the user's fails.
 bool Search::from_line() {
   if (!problem_.guess.given() || problem_.periodic || problem_.duration.free) return false;
   Problem line = problem_;
@@ -162,7 +162,7 @@ const ElementTables& Search::open(const std::vector<double>& mesh, int degree) {
   return refinement_.tables();
 }
 
-bool Search::settle(const ElementTables& tables, const char* strategy) {
+bool Search::refine(const ElementTables& tables, const char* strategy) {
   refinement_.take(tables);
   const bool result = found(strategy);
   outcome_.status = result ? Status::converged : Status::not_converged;
@@ -241,7 +241,7 @@ const Outcome& Search::run(Acceptance* acceptance) {
             "the orbit shrank to a point of equilibrium from the guess and from others; try a larger "
             "guess or another duration";
       }
-      // Where ends are conjugate, elements tell different members of a family.
+      // Where ends are conjugate, different elements find different members of a family.
       if (unheld_) std::swap(path_, *unheld_);
     }
   }

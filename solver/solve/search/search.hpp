@@ -27,14 +27,14 @@ class Search {
   /// The same from the guess only, accepted by nobody; an extremal far from it is none.
   const Outcome& run_near_guess();
 
-  /// Makes path() an empty path, to be filled by the caller and settled.
+  /// Makes path() an empty path, to be filled by the caller and refined.
   const ElementTables& open(const std::vector<double>& mesh, int degree);
   Path& path() { return path_; }
   /// Pursues path(), on elements of `tables`; whether an extremal was found.
-  bool settle(const ElementTables& tables, const char* strategy);
+  bool refine(const ElementTables& tables, const char* strategy);
   /// Puts the path that `fill` fills on elements that follow it; false if it comes too near a singularity.
-  bool place(const std::function<void(const ElementTables& tables, Path& path)>& fill,
-             int degree = Refinement::first_degree);
+  bool open_fitting(const std::function<void(const ElementTables& tables, Path& path)>& fill,
+                    int degree = Refinement::first_degree);
   const ElementTables& tables() const { return refinement_.tables(); }
   /// Sizes of paths and effort are those of another search.
   void be_like(const Search& other);
@@ -67,7 +67,7 @@ class Search {
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   GuessKind prepare();
   GuessKind begin();
-  bool follow_motion();
+  bool mesh_of_motion();
   bool resolve_guess();
   Pursuit pursue(const char* strategy);
   bool collapsed() const;

@@ -23,11 +23,11 @@ using Clock = std::chrono::steady_clock;
 
 /// Elements of a family keep the accuracy that is needed to land.
 constexpr int family_degree = 6;
-/// Guesses tried before families are followed, and each time between.
+/// Guesses tried before families are traced, and each time between.
 constexpr unsigned guesses = 8;
 /// Of the effort that one solve may take, for each extremal that is new.
 constexpr double patience = 3;
-/// So many in a row that lead to nothing new are enough.
+/// So many in a row without a new extremal are enough.
 constexpr int most_in_vain = 100;
 /// Random loops tried instead, and in vain.
 constexpr unsigned loops = 1200;
@@ -75,7 +75,7 @@ bool Several::repeats(const Solution& candidate) const {
   const int segments = segments_to_close(map);
   if (segments == 0) return false;
   const double size = scales(path_, *search_.outcome().tables).q;
-  const int parts = repetitions(candidate.trajectory, map, segments, told_apart(candidate, size));
+  const int parts = repetitions(candidate.trajectory, map, segments, distinct_distance(candidate, size));
   return parts == 0 || segments % parts != 0;
 }
 
@@ -106,15 +106,15 @@ int Several::add(Solution candidate) {
   });
   if (number >= 0) return number;
   found_.push_back(std::move(candidate));
-  followed_.emplace_back(families_, 0);
+  traced_.emplace_back(families_, 0);
   search_.renew(patience);
   in_vain_ = 0;
   return static_cast<int>(found_.size()) - 1;
 }
 
-int Several::settle(const ElementTables& tables, const char* strategy) {
+int Several::refine_and_keep(const ElementTables& tables, const char* strategy) {
   meet_ends(problem_, path_);
-  return search_.settle(tables, strategy) ? keep() : -1;
+  return search_.refine(tables, strategy) ? keep() : -1;
 }
 
 /// The largest |q| along the guess, or 1 where that is zero.
@@ -133,7 +133,7 @@ void Several::deflate() {
     start_path(problem_, search_.ends(), tables, path_);
     const std::size_t before = found_.size();
     if (!newton.run(tables, found_)) return;
-    settle(tables, "deflated newton from the guess");
+    refine_and_keep(tables, "deflated newton from the guess");
     if (found_.size() == before) return;
   }
 }
@@ -156,7 +156,7 @@ void Several::bend() {
   const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
   start_path(problem_, moved_ends(problem_, search_.ends(), bend.size, seed_), tables, path_);
   bend_path(problem_, bend, tables, path_);
-  settle(tables, "newton from the guess plus smooth noise");
+  refine_and_keep(tables, "newton from the guess plus smooth noise");
 }
 
 /// A duration in which the action of an arc is stationary against its radius: forces bend it about as much as
@@ -196,10 +196,10 @@ void Several::wind() {
   const double duration = autonomous ? natural_duration(arc, tables) : problem_.duration.value;
   EndHomotopy ends(problem_, path_, w_, count, arc_path(arc, search_.ends(), tables, path_), 1);
   path_.set_duration(duration);
-  if (!ends.follow(tables, 1)) return;
+  if (!ends.trace(tables, 1)) return;
   meet_ends(problem_, path_);
   DurationHomotopy durations(problem_, path_, w_, count);
-  if (problem_.duration.free || !autonomous || durations.follow(tables)) settle(tables, strategy);
+  if (problem_.duration.free || !autonomous || durations.trace(tables)) refine_and_keep(tables, strategy);
 }
 
 /// Makes the path a solution, on the elements of a family.
@@ -223,7 +223,7 @@ void Several::load(const Solution& solution) {
 
 /// The family number 0 is that of other durations, the next those of other values in each row of the boundary
 /// relation. From the extremal that the path is; null if it cannot be left.
-std::unique_ptr<ExtremalFamily> Several::leave(int family, bool onward) {
+std::unique_ptr<Homotopy> Several::leave(int family, bool onward) {
   const auto count = [this] { return search_.count_step(); };
   const ElementTables& tables = w_.levels.at(family_degree);
   if (family == 0) {
@@ -238,30 +238,30 @@ std::unique_ptr<ExtremalFamily> Several::leave(int family, bool onward) {
   return nullptr;
 }
 
-/// All extremals that the family comes by, both ways; of those it need not be followed again.
-void Several::follow_family(std::size_t solution, int family) {
+/// All extremals that the family comes by, both ways; of those it need not be traced again.
+void Several::trace_family(std::size_t solution, int family) {
   const char* strategy =
       family == 0 ? "family of extremals of other durations" : "family of extremals with other ends";
   for (bool onward : {false, true}) {
     load(found_[solution]);
-    const std::unique_ptr<ExtremalFamily> curve = leave(family, onward);
+    const std::unique_ptr<Homotopy> curve = leave(family, onward);
     for (int met = 0; curve && wanted() && curve->reach(); ++met) {
-      const int number = settle(w_.levels.at(family_degree), strategy);
-      if (number >= 0) followed_[number][family] = 1;
+      const int number = refine_and_keep(w_.levels.at(family_degree), strategy);
+      if (number >= 0) traced_[number][family] = 1;
       if (number == static_cast<int>(solution) && met > 0) return;  // a closed curve
       curve->resume();
     }
   }
 }
 
-/// The next family of the first extremal that has one; false if all have been followed.
-bool Several::follow_families() {
+/// The next family of the first extremal that has one; false if all have been traced.
+bool Several::trace_families() {
   const bool durations = !problem_.duration.free && problem_.lagrangian->structure().autonomous;
   for (int family = durations ? 0 : 1; family < families_; ++family)
     for (std::size_t k = 0; k < found_.size(); ++k)
-      if (!followed_[k][family]) {
-        followed_[k][family] = 1;
-        follow_family(k, family);
+      if (!traced_[k][family]) {
+        traced_[k][family] = 1;
+        trace_family(k, family);
         return true;
       }
   return false;
@@ -289,7 +289,7 @@ std::vector<Solution> Several::run(int most) {
   if (begun) deflate();
   guess();
   while (wanted())
-    if (!follow_families()) guess();
+    if (!trace_families()) guess();
   if (found_.empty()) return {std::move(*failed)};
   sort_by_action(found_);
   if (static_cast<int>(found_.size()) < most)

@@ -14,7 +14,7 @@
 
 namespace extremal {
 
-class ExtremalFamily;
+class Homotopy;
 
 /// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
 /// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
@@ -26,7 +26,7 @@ class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);
 
-  /// At most so many, sorted by action; the first one's message tells if there are fewer. Where there is
+  /// At most so many, sorted by action; the first one's message says if there are fewer. Where there is
   /// none, one that has not converged.
   std::vector<Solution> run(int most);
 
@@ -40,7 +40,7 @@ class Several {
   bool wanted() const;
   int keep();
   int add(Solution candidate);
-  int settle(const ElementTables& tables, const char* strategy);
+  int refine_and_keep(const ElementTables& tables, const char* strategy);
   double size_of_guess();
   void deflate();
   void guess();
@@ -48,9 +48,9 @@ class Several {
   bool repeats(const Solution& candidate) const;
   void wind();
   double natural_duration(Arc arc, const ElementTables& tables);
-  bool follow_families();
-  void follow_family(std::size_t solution, int family);
-  std::unique_ptr<ExtremalFamily> leave(int family, bool onward);
+  bool trace_families();
+  void trace_family(std::size_t solution, int family);
+  std::unique_ptr<Homotopy> leave(int family, bool onward);
   void load(const Solution& solution);
 
   const Problem& problem_;
@@ -66,7 +66,7 @@ class Several {
   int in_vain_ = 0;    ///< guesses since the last find
   unsigned seed_ = 0;  ///< of the next guess
   int families_ = 0;
-  std::vector<std::vector<char>> followed_;  ///< for each extremal, whether each family of it was
+  std::vector<std::vector<char>> traced_;  ///< for each extremal, whether each family of it was
   std::chrono::steady_clock::time_point start_;
   double analysing_ = 0;  ///< seconds
 };

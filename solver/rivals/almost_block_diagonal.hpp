@@ -11,7 +11,7 @@ namespace extremal {
 /// Unknowns y, x_1 … x_m (b each) and, where there is one, τ:
 ///   Φ_0 y − x_1 + f_0 τ = c_0,   Φ_k x_k − x_{k+1} + f_k τ = c_k,   Y y + X x_m + g τ = c_m.
 /// Elimination from the left with row pivoting, so that growth along the chain costs no digits.
-class Staircase {
+class AlmostBlockDiagonal {
  public:
   struct Blocks {
     std::vector<Eigen::MatrixXd> transition;  ///< Φ_0 is b × (entries of y), the others b × b

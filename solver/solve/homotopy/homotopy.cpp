@@ -1,4 +1,4 @@
-#include "solve/homotopy/family.hpp"
+#include "solve/homotopy/homotopy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -70,10 +70,10 @@ struct BoundedSteps {
 
 }  // namespace
 
-ExtremalFamily::ExtremalFamily(Path& path, Workspace& workspace, std::function<bool()> count, double unit)
+Homotopy::Homotopy(Path& path, Workspace& workspace, std::function<bool()> count, double unit)
     : path_(path), w_(workspace), count_(std::move(count)), unit_(unit) {}
 
-bool ExtremalFamily::linearise(Factors) {
+bool Homotopy::linearise(Factors) {
   if (++steps_ > most_steps_) return false;
   if (!count_()) {
     steps_ = most_steps_;
@@ -89,7 +89,7 @@ bool ExtremalFamily::linearise(Factors) {
   return std::isfinite(dot(correction, correction)) && std::isfinite(length) && length > 0;
 }
 
-double ExtremalFamily::dot(const Move& a, const Move& b) const {
+double Homotopy::dot(const Move& a, const Move& b) const {
   double sum = 0;
   for (std::size_t k = 0; k < a.step.nodes.size(); ++k) sum += a.step.nodes[k] * b.step.nodes[k];
   const double duration = path_.duration();
@@ -98,7 +98,7 @@ double ExtremalFamily::dot(const Move& a, const Move& b) const {
          a.parameter * b.parameter / (unit_ * unit_) + strain_product(path_, a.times, b.times);
 }
 
-bool ExtremalFamily::apply(const Move& move, double factor) {
+bool Homotopy::apply(const Move& move, double factor) {
   const double duration = path_.duration() + factor * move.step.duration;
   if (!(duration > 0) || !path_.move_mesh(move.times, factor, least_element) ||
       !set_parameter(parameter() + factor * move.parameter))
@@ -109,12 +109,12 @@ bool ExtremalFamily::apply(const Move& move, double factor) {
   return true;
 }
 
-void ExtremalFamily::restore() {
+void Homotopy::restore() {
   path_ = saved_;
   set_parameter(saved_parameter_);
 }
 
-bool ExtremalFamily::begin(const ElementTables& tables, int most_steps) {
+bool Homotopy::begin(const ElementTables& tables, int most_steps) {
   most_steps_ = most_steps;
   tables_ = &tables;
   steps_ = 0;
@@ -128,26 +128,26 @@ bool ExtremalFamily::begin(const ElementTables& tables, int most_steps) {
   return scale_ > 0;
 }
 
-bool ExtremalFamily::approach() {
+bool Homotopy::approach() {
   BoundedSteps policy{*this, most_approaches, largest_approach, close_to_curve};
   return newton_loop(BorderedSteps{*this, {}}, policy) == Progress::arrived;
 }
 
-bool ExtremalFamily::set_out() {
-  if (!linearise() || !turn()) return false;
+bool Homotopy::find_tangent() {
+  if (!linearise() || !update_tangent()) return false;
   std::swap(tangent_, next_);
   return true;
 }
 
 /// Newton's method across the tangent.
-bool ExtremalFamily::correct() {
+bool Homotopy::correct() {
   ShrinkingSteps policy{*this, most_corrections, std::max(longest_correction * length_, on_curve),
                         std::min(on_curve, corrected * length_)};
   return newton_loop(BorderedSteps{*this, {.tangent = &tangent_}}, policy) == Progress::arrived;
 }
 
 /// The next tangent, onward.
-bool ExtremalFamily::turn() {
+bool Homotopy::update_tangent() {
   const bool first = tangent_.step.nodes.empty();
   const TangentScale tangent =
       tangent_scale(*this, first ? nullptr : &tangent_, first ? onward(direction) : 0);
@@ -159,7 +159,7 @@ bool ExtremalFamily::turn() {
 
 /// Goes to where the parameter is zero, which the last step has passed, if that is near; else the next step
 /// becomes shorter.
-bool ExtremalFamily::land(double from) {
+bool Homotopy::land(double from) {
   constexpr double wanted = 0;
   const double passed = parameter();
   ShrinkingSteps policy{*this, most_landings, farthest_landing, landed};
@@ -170,7 +170,7 @@ bool ExtremalFamily::land(double from) {
 }
 
 /// Other elements where those there are do not resolve the path. False if it takes too many.
-bool ExtremalFamily::resolve() {
+bool Homotopy::resolve() {
   const int degree = path_.degree();
   w_.resolution.measure(path_, *tables_);
   if (w_.resolution.at(degree).q <= unresolved * scale_) return true;
@@ -187,21 +187,21 @@ bool ExtremalFamily::resolve() {
   tangent_.times.clear();
   last_length_ = 0;
   if (!linearise()) return false;
-  turn();
+  update_tangent();
   std::swap(tangent_, next_);
   return true;
 }
 
 /// Nearer to the family, where its tangent is known better.
-void ExtremalFamily::polish() {
+void Homotopy::polish() {
   last_length_ = 0;
   if (!approach() || !linearise()) return restore();
-  turn();
+  update_tangent();
   std::swap(tangent_, next_);
 }
 
 /// The parabola through the tangents here and before.
-Move ExtremalFamily::ahead() const {
+Move Homotopy::predicted() const {
   Move move = tangent_;
   if (last_length_ == 0) return move;
   const double half = 0.5 * length_ / last_length_;
@@ -210,12 +210,12 @@ Move ExtremalFamily::ahead() const {
   return move;
 }
 
-bool ExtremalFamily::reach() {
+bool Homotopy::reach() {
   while (length_ > least_length && steps_ < most_steps_) {
     saved_ = path_;
     saved_parameter_ = parameter();
     const int began = steps_;
-    if (!apply(ahead(), length_) || !correct() || !turn()) {
+    if (!apply(predicted(), length_) || !correct() || !update_tangent()) {
       restore();
       length_ *= 0.4;
       if (++refusals_ == refusals_before_polish) polish();
@@ -243,7 +243,7 @@ bool ExtremalFamily::reach() {
   return false;
 }
 
-void ExtremalFamily::resume() {
+void Homotopy::resume() {
   steps_ = 0;
   path_ = beyond_;
   w_.iteration.reset(problem(), *tables_, path_.elements());

@@ -1,4 +1,4 @@
-#include "rivals/chase.hpp"
+#include "rivals/integration_check.hpp"
 
 #include <fmt/format.h>
 
@@ -57,7 +57,8 @@ Eigen::VectorXd vector(std::span<const double> x) {
 
 }  // namespace
 
-Chase::Chase(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options)
+IntegrationCheck::IntegrationCheck(const Problem& problem, const Trajectory& trajectory,
+                                   const VerifyOptions& options)
     : problem_(problem),
       trajectory_(trajectory),
       options_(options),
@@ -75,12 +76,12 @@ Chase::Chase(const Problem& problem, const Trajectory& trajectory, const VerifyO
       interpolated_(2 * n_),
       next_(2 * n_) {}
 
-bool Chase::state_at(double t, std::span<double> y) {
+bool IntegrationCheck::state_at(double t, std::span<double> y) {
   trajectory_.at(t, y.first(n_), v_);
   return flow_.momentum(y.first(n_), v_, t, y.subspan(n_, n_));
 }
 
-std::string Chase::sample() {
+std::string IntegrationCheck::sample() {
   const int points = 2 * trajectory_.degree;
   std::vector<double> p_samples;
   for (int k = 0; k < trajectory_.elements(); ++k) {
@@ -114,7 +115,7 @@ std::string Chase::sample() {
   return {};
 }
 
-void Chase::begin_piece(double t) {
+void IntegrationCheck::begin_piece(double t) {
   state_at(t, std::span(y_).first(2 * n_));
   std::fill(y_.begin() + 2 * n_, y_.end(), 0.0);
   for (std::size_t c = 0; c < columns_; ++c) {
@@ -126,7 +127,7 @@ void Chase::begin_piece(double t) {
 
 /// What the errors that are allowed at the start, of q and ten times that of p, may have become in q: at
 /// most, or with probes the largest seen.
-double Chase::growth() const {
+double IntegrationCheck::growth() const {
   double largest = 0;
   for (std::size_t i = 0; i < n_; ++i) {
     double sum = 0, most = 0;
@@ -141,11 +142,13 @@ double Chase::growth() const {
 }
 
 /// Without the distance from the extremal only long pieces show errors that vary slowly.
-double Chase::growth_limit() const { return complete_ ? options_.growth : longer * options_.growth; }
+double IntegrationCheck::growth_limit() const {
+  return complete_ ? options_.growth : longer * options_.growth;
+}
 
 /// How far q and q' are from a state.
-bool Chase::measure(double t, std::span<const double> q, std::span<const double> v,
-                    std::span<const double> state, Miss& miss) {
+bool IntegrationCheck::measure(double t, std::span<const double> q, std::span<const double> v,
+                               std::span<const double> state, Miss& miss) {
   if (!flow_.velocity(state.first(n_), state.subspan(n_, n_), t, motion_v_)) return false;
   const auto unit = [](double difference, double allowed) {
     return difference > 0 ? difference / allowed : 0;
@@ -158,7 +161,7 @@ bool Chase::measure(double t, std::span<const double> q, std::span<const double>
   return true;
 }
 
-void Chase::note(double t, const Miss& miss, Verification& result) {
+void IntegrationCheck::note(double t, const Miss& miss, Verification& result) {
   if (std::max(miss.q, miss.v) > std::max(result.defect, result.velocity_defect)) result.worst_time = t;
   result.defect = std::max(result.defect, miss.q);
   result.velocity_defect = std::max(result.velocity_defect, miss.v);
@@ -166,7 +169,7 @@ void Chase::note(double t, const Miss& miss, Verification& result) {
 
 /// At the samples within the step. Where the interpolation, which is less exact than the step, misses one, a
 /// step that ends there counts.
-bool Chase::compare_step(double before, double now, Verification& result) {
+bool IntegrationCheck::compare_step(double before, double now, Verification& result) {
   if (compared_ == t_samples_.size() || t_samples_[compared_] > now) return true;
   if (!integrator_.prepare_interpolation(y_, static_cast<int>(2 * n_))) return false;
   for (; compared_ < t_samples_.size() && t_samples_[compared_] <= now; ++compared_) {
@@ -186,7 +189,7 @@ bool Chase::compare_step(double before, double now, Verification& result) {
 }
 
 /// For the distance between the ends of pieces.
-void Chase::keep_waypoint(double t) {
+void IntegrationCheck::keep_waypoint(double t) {
   const auto n = static_cast<Eigen::Index>(n_);
   if (!complete_ || kept_ > most_kept) return;
   trajectory_.at(t, std::span(next_).first(n_), v_);
@@ -199,7 +202,7 @@ void Chase::keep_waypoint(double t) {
   waypoints_.push_back(std::move(waypoint));
 }
 
-bool Chase::end_piece(double start, double end, Verification& result) {
+bool IntegrationCheck::end_piece(double start, double end, Verification& result) {
   ++result.pieces;
   result.growth = std::max(result.growth, growth());
   if (!state_at(end, next_)) return false;
@@ -230,8 +233,8 @@ bool Chase::end_piece(double start, double end, Verification& result) {
 
 /// Takes steps until a piece is complete: at `limit`, or where errors have grown enough; steps end where
 /// along a line they would have. What failed.
-std::string Chase::run_piece(double& t, double limit, const IntegrationOptions& integration,
-                             Verification& result) {
+std::string IntegrationCheck::run_piece(double& t, double limit, const IntegrationOptions& integration,
+                                        Verification& result) {
   const double start = t, allowed = options_.ends.empty() ? growth_limit() : INFINITY;
   begin_piece(t);
   const double first = growth();
@@ -259,7 +262,7 @@ std::string Chase::run_piece(double& t, double limit, const IntegrationOptions& 
   return end_piece(start, t, result) ? "" : fmt::format("L is not finite near t = {:.9g}", t);
 }
 
-std::string Chase::run(Verification& result) {
+std::string IntegrationCheck::run(Verification& result) {
   const double duration = trajectory_.duration();
   const IntegrationOptions integration{
       .tolerance = std::clamp(tighter * options_.tolerance * reach_, tightest, loosest),

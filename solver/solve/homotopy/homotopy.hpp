@@ -6,16 +6,16 @@
 #include "solve/homotopy/comoving.hpp"
 #include "solve/homotopy/curve.hpp"
 
-/// \file A curve of extremals, followed to where an extremal belongs to the problem.
+/// \file Continuation along a curve of extremals to one of the problem.
 
 namespace extremal {
 
 /// A path is taken along a curve of extremals, past folds, by pseudo-arclength. The parameter is zero where
 /// an extremal belongs to the problem.
-class ExtremalFamily : public ExtremalCurve {
+class Homotopy : public ExtremalCurve {
  public:
   /// Takes the path onward to where the parameter is zero again: nearly an extremal of the problem then.
-  /// False where the family does not come there.
+  /// False where the curve does not come there.
   bool reach();
   /// Back to where the last reach() passed zero, after the workspace was used for something else.
   void resume();
@@ -23,7 +23,7 @@ class ExtremalFamily : public ExtremalCurve {
  protected:
   /// `count` is called for each factorisation and says whether there may be more; `unit` is the size of the
   /// parameter that counts as much as the extent of the path.
-  ExtremalFamily(Path& path, Workspace& workspace, std::function<bool()> count, double unit);
+  Homotopy(Path& path, Workspace& workspace, std::function<bool()> count, double unit);
 
   /// See ExtremalCurve::linearise().
   virtual bool solve_linearised(Move& correction, Move& direction) = 0;
@@ -46,7 +46,7 @@ class ExtremalFamily : public ExtremalCurve {
   /// From a path nearby onto the family, by the shortest correction each time.
   bool approach();
   /// The tangent at the first point.
-  bool set_out();
+  bool find_tangent();
 
  private:
   bool linearise(Factors factors = Factors::anew) override;
@@ -54,8 +54,8 @@ class ExtremalFamily : public ExtremalCurve {
   bool apply(const Move& move, double factor) override;
   double varied() const override { return parameter(); }
   bool correct();
-  Move ahead() const;
-  bool turn();
+  Move predicted() const;
+  bool update_tangent();
   bool land(double from);
   void polish();
   bool resolve();

@@ -16,10 +16,10 @@ namespace extremal {
 /// q' and p may be off by this many tolerances of their range.
 inline constexpr double velocity_factor = 10;
 
-class Chase {
+class IntegrationCheck {
  public:
   /// The references must outlive it.
-  Chase(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options);
+  IntegrationCheck(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options);
 
   /// Reads the trajectory at points of every element, and the scales off them. What failed, or nothing.
   std::string sample();

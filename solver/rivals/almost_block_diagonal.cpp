@@ -1,4 +1,4 @@
-#include "rivals/staircase.hpp"
+#include "rivals/almost_block_diagonal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@ constexpr double dependent = 1e-8;
 
 }  // namespace
 
-bool Staircase::Solution::finite() const {
+bool AlmostBlockDiagonal::Solution::finite() const {
   return first.allFinite() && std::isfinite(extra) &&
          std::all_of(rest.begin(), rest.end(), [](const Eigen::VectorXd& x) { return x.allFinite(); });
 }
 
 /// LU of the first b columns, with the largest pivot of each.
-void Staircase::eliminate(Elimination& stage) const {
+void AlmostBlockDiagonal::eliminate(Elimination& stage) const {
   Matrix& a = stage.rows;
   stage.exchange.resize(size_);
   const Eigen::Index width = a.cols();
@@ -37,7 +37,7 @@ void Staircase::eliminate(Elimination& stage) const {
   }
 }
 
-void Staircase::factor(const Blocks& blocks) {
+void AlmostBlockDiagonal::factor(const Blocks& blocks) {
   const auto count = static_cast<int>(blocks.transition.size());
   size_ = static_cast<int>(blocks.transition.front().rows());
   first_ = static_cast<int>(blocks.transition.front().cols());
@@ -58,7 +58,7 @@ void Staircase::factor(const Blocks& blocks) {
 }
 
 /// The last rows over y and τ alone, with x_1 = Φ_0 y + f_0 τ − c_0.
-Eigen::MatrixXd Staircase::substituted(const Blocks& blocks) {
+Eigen::MatrixXd AlmostBlockDiagonal::substituted(const Blocks& blocks) {
   through_.resize(size_, first_ + extra_);
   through_.leftCols(first_) = blocks.transition.front();
   if (extra_) through_.col(first_) = blocks.extra.front();
@@ -70,7 +70,7 @@ Eigen::MatrixXd Staircase::substituted(const Blocks& blocks) {
 }
 
 /// The last rows over x_m, y and τ, below what elimination has left of the others.
-Eigen::MatrixXd Staircase::chained(const Blocks& blocks) {
+Eigen::MatrixXd AlmostBlockDiagonal::chained(const Blocks& blocks) {
   const auto count = static_cast<int>(blocks.transition.size());
   const int others = first_ + extra_;
   // What is known between x_{k+1}, y and τ.
@@ -98,12 +98,12 @@ Eigen::MatrixXd Staircase::chained(const Blocks& blocks) {
   return last;
 }
 
-Eigen::VectorXd Staircase::solve_last(const Eigen::VectorXd& right) const {
+Eigen::VectorXd AlmostBlockDiagonal::solve_last(const Eigen::VectorXd& right) const {
   if (least_norm_) return shortest_.solve(right);
   return last_.solve(right);
 }
 
-Staircase::Solution Staircase::solve(const std::vector<Eigen::VectorXd>& right) const {
+AlmostBlockDiagonal::Solution AlmostBlockDiagonal::solve(const std::vector<Eigen::VectorXd>& right) const {
   const int count = static_cast<int>(right.size()) - 1;
   if (count == 1) {
     const Eigen::VectorXd found = solve_last(right.back() + by_last_ * right.front());
@@ -135,8 +135,8 @@ Staircase::Solution Staircase::solve(const std::vector<Eigen::VectorXd>& right) 
 }
 
 /// x_k from x_{k+1}, y and τ.
-void Staircase::substitute_back(const Elimination& stage, const double* right, Solution& solution,
-                                int k) const {
+void AlmostBlockDiagonal::substitute_back(const Elimination& stage, const double* right, Solution& solution,
+                                          int k) const {
   Eigen::VectorXd& x = solution.rest[k - 1];
   const Eigen::VectorXd& next = solution.rest[k];
   for (int i = size_ - 1; i >= 0; --i) {
