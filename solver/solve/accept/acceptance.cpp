@@ -14,15 +14,15 @@
 #include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/periodic/stability.hpp"
+#include "solve/accept/limits.hpp"
 
 namespace extremal {
+
+using namespace limits::acceptance;
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// A residual under the finer quadrature grows by no more from a part of an orbit to the whole.
-constexpr double residual_growth = 10;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();

@@ -9,22 +9,13 @@
 #include "solve/mesh/resolution.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/residual_test.hpp"
+#include "solve/accept/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::conditions;
 
-/// Residuals above this, relative to the largest momentum, must be roundoff of strong forces.
-constexpr double largest_residual = 1e-6;
-/// Strong forces sum up a hundred times as many terms as those that cancel along a body at rest.
-constexpr double strong_force_roundoff = 100 * force_roundoff;
-/// The closing equation holds to so many tolerances, or to this, relative to its terms.
-constexpr double closing_tolerances = 10, least_closing = 1e-6;
-/// A duration this much longer than the guess's has run away.
-constexpr double longest_duration = 1e6;
-/// Forces that hold closed paths, in tolerances of the range of momenta: a small part of
-/// momentum_tolerances, or the paths are no family.
-constexpr double held_tolerances = 0.1;
+namespace {
 
 /// Where atoms overlap, forces are so strong that steps are roundoff while δS is not.
 bool balanced(const Solution& solution, const Path& path, const NewtonIteration& newton) {

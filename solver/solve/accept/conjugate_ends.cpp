@@ -7,26 +7,13 @@
 
 #include "analysis/windows.hpp"
 #include "solve/newton/converge.hpp"
+#include "solve/accept/limits.hpp"
 
 namespace extremal {
 
+using namespace limits::conjugate_ends;
+
 namespace {
-
-/// T within this of a conjugate time, relative, is one however accurate the trajectory is.
-constexpr double least_distance = 1e-13;
-/// A trajectory known no better than this does not make ends conjugate that are not.
-constexpr double largest_distance = 1e-5;
-/// Nearer than this, relative, the error of the elements is measured anew.
-constexpr double near = 1e-2;
-/// Of a path that did not converge, so near a conjugate time is no accident.
-constexpr double suspicious = 1e-6;
-/// A path that failed on more elements is not resolved: its second variation would take long and be
-/// no measure.
-constexpr int most_elements = 512;
-/// Roundoff of the elements' lengths, half a rounding on average, which acts as one of T.
-constexpr double roundoff = unit_roundoff / 2;
-
-constexpr int finer = 3, steps = 12;
 
 bool fixed(const Problem& problem) { return problem.ends.free == 0 && !problem.duration.free; }
 

@@ -6,17 +6,17 @@
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/accept/conjugate_ends.hpp"
+#include "solve/accept/limits.hpp"
 
 /// \file Why a solve found nothing.
 
 namespace extremal {
 
+using namespace limits::failure;
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Singular mass matrices of more coordinates are not looked for.
-constexpr int most_coordinates = 64;
 
 /// Why a solve may have failed before it began; empty if nothing is found.
 std::string irregularity(const Problem& problem) {

@@ -9,19 +9,13 @@
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
+#include "solve/accept/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::quadrature_check;
 
-/// What an error may be by its estimate.
-constexpr double honest = 10;
-/// Tolerances that velocities may change by: ten, and that is an estimate.
-constexpr double most_turned = honest * momentum_tolerances;
-/// Symmetries of more take too long to find.
-constexpr int most_coordinates = 18;
-/// Points about which symmetries are looked for.
-constexpr int guess_points = 32;
+namespace {
 
 /// Symmetries of the problem, found about a path and nearer to the origin: at some of those points forces
 /// count.

@@ -10,35 +10,11 @@
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/mesh/conservation.hpp"
+#include "solve/adapt/limits.hpp"
 
 namespace extremal {
 
-namespace {
-
-constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
-constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
-constexpr int most_elements = 1 << 20;
-/// An error below amplified_roundoff, relative to the range, or below the second, relative to the values, is
-/// roundoff if more elements reduce it by less than the first.
-constexpr double stagnation = 0.9, at_roundoff = 1e-14;
-/// Where an error is below the second, relative to the range, and so many times more elements did not reduce
-/// it, more hardly will, unless few had stepped over something.
-constexpr int futile_growth = 8;
-constexpr double resolved = 1e-3;
-constexpr int steps = 100;
-/// From an extremal to its companion, which is near or none.
-constexpr int companion_steps = 25;
-/// Elements become at most so many times more at once.
-constexpr double most_growth = 16;
-/// An error within this factor of what its order lets expect falls regularly.
-constexpr double regular_fall = 0.5;
-/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails or is futile, and no
-/// more of the steps that are dearer than others; or of one step.
-constexpr double most_cost = 1e8;
-/// Relative to the largest momentum; of periodic paths.
-constexpr double stationary_residual = 1e-10;
-
-}  // namespace
+using namespace limits::pinned;
 
 PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme) {}

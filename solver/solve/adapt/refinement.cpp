@@ -1,4 +1,5 @@
 #include "solve/adapt/refinement.hpp"
+#include "solve/adapt/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -7,32 +8,7 @@
 
 namespace extremal {
 
-namespace {
-
-/// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.
-constexpr int most_elements = 1 << 12, most_cuts = 64;
-/// Coarse elements have done their work when the path is known to this, relative to its range.
-constexpr double coarse_goal = 1e-3;
-/// A coarse element becomes at most so many at a time.
-constexpr double coarse_cut = 4;
-/// Steps allowed for one run of damped Newton.
-constexpr int coarse_steps = 25, fine_steps = 12;
-/// Times that elements are planned before all are halved.
-constexpr int most_plans = 6;
-/// An undamped step longer than this, relative to the path, casts doubt on the equations.
-constexpr double suspicious_step = 1e6;
-/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
-/// guess that asks for more elements may make of it.
-constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
-/// Of a step, to fill a path.
-constexpr double filling = 0.1;
-/// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
-constexpr double border_cost = 2;
-/// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
-/// harder to predict than what is between.
-constexpr double planned_slopes = 6;
-
-}  // namespace
+using namespace limits::refinement;
 
 Refinement::Refinement(const Problem& problem, const SolveOptions& options, Workspace& workspace,
                        Outcome& outcome)

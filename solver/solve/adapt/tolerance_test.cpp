@@ -6,30 +6,13 @@
 
 #include "solve/adapt/refinement.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
+#include "solve/adapt/limits.hpp"
 
 /// \file Whether the path that Newton's method left meets the tolerance.
 
 namespace extremal {
 
-namespace {
-
-/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large;
-/// the least may be roundoff.
-constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
-/// Errors of finer elements are less than this part of those before.
-constexpr double element_fall = 0.25;
-/// Of the size of the path that was started from: a path smaller than this is at rest.
-constexpr double rest = 1e-12;
-/// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
-constexpr double much_less = 0.25;
-/// Of roundoff that was measured.
-constexpr double certain = 3;
-/// Steps for the natural conditions, after Newton's method has converged.
-constexpr int most_natural_steps = 4;
-/// They use the factors there are as long as they contract so much.
-constexpr double worst_chord = 0.5;
-
-}  // namespace
+using namespace limits::tolerance_test;
 
 void Refinement::measure() {
   w_.resolution.measure(path_, *tables_);

@@ -7,13 +7,13 @@
 
 #include "machine/simd.hpp"
 #include "solve/newton/ends.hpp"
+#include "solve/branch/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::branch;
 
-/// A change of the parameter for difference quotients, in its unit.
-constexpr double small = 1e-5;
+namespace {
 
 void add_scaled(std::vector<double>& to, double factor, std::span<const double> a,
                 std::span<const double> b) {

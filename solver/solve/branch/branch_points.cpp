@@ -5,25 +5,15 @@
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/root.hpp"
 #include "solve/periodic/doubled_orbit.hpp"
+#include "solve/branch/limits.hpp"
 
 /// \file Points of a step where other branches cross.
 
 namespace extremal {
 
-namespace {
+using namespace limits::branch_points;
 
-constexpr int most_trials = 80, most_points = 8;
-/// Responses on either side of a branch point point opposite ways, to a cosine of this.
-constexpr double opposite = -0.9;
-/// Beyond a branch point, by so much of the step, the next one is sought.
-constexpr double beyond_it = 1e-4;
-/// From the start of another branch to the branch point.
-constexpr double start_distance = 1e-4;
-/// How far from a guess, in shares of the interval, a state is tried where the guess itself fails: near a
-/// branch point that is almost located, and else.
-constexpr double aside_near = 0.03, aside_far = 0.3;
-/// How far from a branch point, in shares of the step, states are tried on both sides of it.
-constexpr double offsets[] = {1e-7, 1e-5, 1e-3, 1e-2, 3e-2, 0.1};
+namespace {
 
 /// One end of the interval that holds a branch point.
 struct Side {

@@ -3,20 +3,11 @@
 #include <utility>
 
 #include "solve/mesh/roundoff.hpp"
+#include "solve/branch/limits.hpp"
 
 namespace extremal {
 
-namespace {
-
-/// A step is refused where corrections shrink less than this, or are longer than this part of it.
-constexpr double contraction = 0.5, longest_correction = 0.5;
-/// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
-/// singularity: they may grow so much before they shrink.
-constexpr double small_correction = 0.05, slowest = 4;
-/// Roundoff shrinks less than this from one correction to the next.
-constexpr double stagnation = 0.3;
-
-}  // namespace
+using namespace limits::chord_steps;
 
 Progress ChordSteps::take(bool solved, int k) {
   if (!solved) {

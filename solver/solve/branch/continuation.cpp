@@ -7,34 +7,14 @@
 #include <utility>
 
 #include "solve/search/search.hpp"
+#include "solve/branch/limits.hpp"
 
 namespace extremal {
 
+using namespace limits::continuation;
+
 namespace {
 
-/// Lengths are relative, as Branch::dot measures them. The longest step is one of which so many make up the
-/// distance wanted where as many points are allowed.
-constexpr double first_length = 0.02, least_length = 1e-6, least_longest = 0.1, most_longest = 0.4;
-constexpr double coverage = 4;
-/// The next try after a step that failed is so much of it.
-constexpr double shortening = 0.4;
-/// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, else it
-/// shrinks; it shrinks, too, after corrections that took more factorisations.
-constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.95, growth_if_bent = 1.3,
-                 growth_else = 0.8;
-constexpr int many_factorisations = 4;
-constexpr double growth_if_many = 0.7;
-/// Of the size of the guess: a path smaller than this is at rest.
-constexpr double rest = 1e-9;
-/// The first step onto a branch that crosses another; at least; and the next try.
-constexpr double first_departure = 0.05, least_departure = 1e-4, shorter_departure = 0.7;
-/// The action is compared with its derivatives at one point of so many, over half the lengths in turn until
-/// the difference is so small.
-constexpr int unchecked = 8;
-constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
-
-/// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
-constexpr double singular_grading = 100;
 double grading(const Path& path) {
   const std::span<const double> mesh = path.mesh();
   double shortest = 1, longest = 0;

@@ -1,22 +1,14 @@
 #include "solve/branch/tracker.hpp"
 #include "solve/mesh/roundoff.hpp"
+#include "solve/branch/limits.hpp"
 
 /// \file Elements along a branch.
 
 namespace extremal {
 
-namespace {
+using namespace limits::elements;
 
-/// Elements are planned for the first share of the tolerance; on the mesh there is, the second will do.
-constexpr double spare = 0.1, tolerated = 0.7;
-constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
-/// Elements become longer again where the path becomes smooth from point to point.
-constexpr double strongest_cut = 16, strongest_growth = 2;
-/// Elements whose error is below this share of the tolerance are more than needed; others are taken instead
-/// if they have no more nodes than this share.
-constexpr double lavish = 1e-4, worth_changing = 0.7;
-/// What q' may err by, in tolerances of its range.
-constexpr double slope_tolerances = 10;
+namespace {
 
 /// In tolerances.
 double excess(const Resolution::Error& error, const Scales& size, double tolerance) {

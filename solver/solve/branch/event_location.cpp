@@ -7,20 +7,13 @@
 #include "solve/branch/events.hpp"
 #include "solve/branch/root.hpp"
 #include "solve/mesh/roundoff.hpp"
+#include "solve/branch/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::event_location;
 
-/// From this near, relative to the distance wanted, Newton's method lands on a value; where it does not, the
-/// value is located so closely.
-constexpr double near_value = 1e-3, at_value = 1e-13;
-/// Two points of a closed branch differ by no more than this, relative.
-constexpr double same = 1e-6;
-/// A fold within this share of a step of a branch point is the same event.
-constexpr double one = 1e-2;
-/// An orbit this small against the one before the step is next to rest; to this share of it.
-constexpr double nearly_rest = 1e-3, rest_located = 0.1;
+namespace {
 
 /// Mean over τ of the product of two paths, each less its mean, by the nodes.
 double swing(const Path& a, const Path& b) {

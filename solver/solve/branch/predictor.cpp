@@ -3,15 +3,15 @@
 #include <utility>
 
 #include "solve/branch/tracker.hpp"
+#include "solve/branch/limits.hpp"
 
 /// \file How a branch continues from a state, by its tangents and other states.
 
 namespace extremal {
 
-namespace {
+using namespace limits::predictor;
 
-/// A step is begun no longer than the branch is predicted to turn by so much, the tangent of an angle.
-constexpr double predicted_turn = 0.4;
+namespace {
 
 /// The values of a path as a step from zero.
 Step values_of(const Path& path) {

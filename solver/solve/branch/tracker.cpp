@@ -4,18 +4,11 @@
 
 #include "solve/branch/chord_steps.hpp"
 #include "solve/mesh/roundoff.hpp"
+#include "solve/branch/limits.hpp"
 
 namespace extremal {
 
-namespace {
-
-/// Corrections are carried on to this share of the tolerance, and no further than this.
-constexpr double unfinished = 0.01, least_goal = 10 * least_correction;
-constexpr int most_resolutions = 4;
-/// The unit of lengths is no smaller than this share of the largest path so far.
-constexpr double least_extent = 0.3;
-
-}  // namespace
+using namespace limits::tracker;
 
 void BranchState::scale(double factor) {
   tangent.scale(factor);

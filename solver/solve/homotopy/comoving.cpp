@@ -1,17 +1,12 @@
 #include "solve/homotopy/comoving.hpp"
+#include "solve/homotopy/limits.hpp"
 
 #include "action/rule.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
 
-namespace {
-
-/// Of (δh/h)² against (δq)²/extent². Much less lets meshes degenerate where there is one coordinate: all of
-/// its changes are along the path.
-constexpr double strain_weight = 3;
-
-}  // namespace
+using namespace limits::comoving;
 
 void Comoving::measure_slopes(const Path& path) {
   const int n = path.coordinates(), s = path.degree(), count = path.elements();

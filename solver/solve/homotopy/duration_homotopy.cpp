@@ -5,20 +5,13 @@
 #include <utility>
 
 #include "solve/mesh/resolution.hpp"
+#include "solve/homotopy/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::duration_homotopy;
 
-/// Durations that are looked at: so many octaves either side, in quarters.
-constexpr int octaves = 6;
-/// Forces that bend a path by less than this, relative to its range, leave it nearly as it is.
-constexpr double slight = 0.2;
-/// A duration is natural if the path is not further from a motion than this times the least distance.
-constexpr double nearly_least = 1.3;
-constexpr std::size_t most_durations = 4;
-/// As T → 0: this much of the wanted duration.
-constexpr double instant = 1e-4;
+namespace {
 
 double largest(const std::vector<double>& values) {
   double result = 0;

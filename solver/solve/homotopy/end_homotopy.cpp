@@ -1,15 +1,11 @@
 #include "solve/homotopy/end_homotopy.hpp"
+#include "solve/homotopy/limits.hpp"
 
 #include "linear/dense.hpp"
 
 namespace extremal {
 
-namespace {
-
-/// A displacement for difference quotients, in units of the extent.
-constexpr double small = 1e-6;
-
-}  // namespace
+using namespace limits::end_homotopy;
 
 std::vector<double> unit_displacement(const BoundaryRelation& relation, int row) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(relation.rows, 2 * relation.coordinates);

@@ -5,31 +5,13 @@
 #include <utility>
 
 #include "solve/mesh/resolution.hpp"
+#include "solve/homotopy/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::homotopy;
 
-/// Lengths are relative: root mean square over the nodes by the path's range, and the parameter by its unit.
-constexpr double first_length = 0.1, least_length = 1e-5, largest_approach = 0.2;
-constexpr double on_curve = 1e-2, close_to_curve = 1e-3, farthest_landing = 0.05, landed = 1e-5;
-/// Of the last correction, by the length of the step: where the second variation is nearly singular, what is
-/// left makes the tangent turn.
-constexpr double corrected = 3e-3;
-/// An element keeps so much of its length in one move.
-constexpr double least_element = 0.3;
-/// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
-/// family turns by more than the angle with this cosine.
-constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
-constexpr int refusals_before_polish = 2;
-constexpr int most_corrections = 4, most_landings = 8, most_approaches = 25;
-/// The family has run away where the path is so much larger than at first, or the parameter so many units
-/// off, and further than at first.
-constexpr double runaway = 1e3, farthest = 4;
-/// Truncation error at which elements are chosen anew, and what is aimed at then; relative to the range.
-constexpr double unresolved = 1e-5, resolved = 1e-7;
-constexpr int most_elements = 256;
-constexpr double strongest_cut = 4;
+namespace {
 
 /// Corrections that shrink: each is shorter than `longest`, and than a part of the one before.
 struct ShrinkingSteps {

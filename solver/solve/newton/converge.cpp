@@ -1,4 +1,5 @@
 #include "solve/newton/converge.hpp"
+#include "solve/newton/limits.hpp"
 
 #include <fmt/format.h>
 
@@ -7,14 +8,9 @@
 
 namespace extremal {
 
-namespace {
+using namespace limits::converge;
 
-/// A factorisation is used again while the simplified steps shrink at least so fast.
-constexpr double chord_contraction = 0.2;
-/// A first step that needs more is not trusted.
-constexpr double mild_damping = 0.25;
-/// Steps this short that stall, though gradients have digits to spare, lack digits of the factors.
-constexpr double stalled_by_factors = 1e-5;
+namespace {
 
 constexpr const char* spent = "the effort that one solve may take is spent";
 

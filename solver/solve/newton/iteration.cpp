@@ -6,27 +6,13 @@
 
 #include "solve/newton/ends.hpp"
 #include "solve/newton/krylov.hpp"
+#include "solve/newton/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::iteration;
 
-/// Pivots this much smaller than the entry they came from are not trusted.
-constexpr double breakdown = 1e-11;
-/// Floating-point operations, elements times the cube of their unknowns, beyond which they are not.
-constexpr double most_pivoted_work = 1e9;
-/// Steps below this may fail to contract because they are roundoff; they are taken.
-constexpr double roundoff_step = 1e-11;
-/// Roundoff of a step is measured where one below the first stalls; a step that is no longer than so many
-/// times it is no more.
-constexpr double loudest = 1e-5, quiet = 10;
-/// A step that is not tested may contract worse than any before by this factor; by so much it does. Steps of
-/// another kind, as after finer elements, may be worse still: δS is taken to bend at least so much.
-constexpr double worst_surprise = 30, surprise = 5, least_curvature = 1e3;
-/// A model that is not the second variation must contract so much.
-constexpr double worst_approximate = 0.5;
-/// A simplified correction this much smaller than the step is worth taking.
-constexpr double worth_taking = 0.3;
+namespace {
 
 /// Largest |x|, or NaN if one is not finite, which the sum remembers and a maximum would not.
 double largest(std::span<const double> x) {

@@ -4,25 +4,15 @@
 
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/iteration.hpp"
+#include "solve/newton/limits.hpp"
 
 /// \file Measures of the equations at the path of an iteration.
 
 namespace extremal {
 
-namespace {
+using namespace limits::iteration_measures;
 
-/// Time of one more damping tried, by that of a step.
-constexpr double trial_burden = 0.4;
-/// Time of a step where the nodes are pivoted, again for each null direction, and where all unknowns are.
-constexpr double pivoted_burden = 100, sparse_burden = 1000;
-/// Roundoff of a step is the most that so many shifts make of it: one may meet little by chance.
-constexpr int shifts = 3;
-/// Of two terms that cancel one is rounded, to half a unit on average.
-constexpr double half_a_digit = unit_roundoff / 2, half_an_extended_digit = extended_roundoff;
-/// Times are known to so much of T: t is rounded, and so is t/T, at both ends of an element.
-constexpr double last_digits = 4 * unit_roundoff;
-/// Nodes are moved by as many roundings of the largest |q|.
-constexpr double moved_digits = 8 * unit_roundoff;
+namespace {
 
 /// The largest change of q by `scale` or of T by `duration`.
 double difference(const Step& a, const Step& b, double scale, double duration) {

@@ -1,10 +1,13 @@
 #include "solve/newton/krylov.hpp"
+#include "solve/newton/limits.hpp"
 
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <unsupported/Eigen/IterativeSolvers>
 
 namespace extremal {
+
+using namespace limits::krylov;
 namespace {
 class ModelledVariation;
 }
@@ -17,10 +20,6 @@ struct Eigen::internal::traits<extremal::ModelledVariation>
 namespace extremal {
 
 namespace {
-
-/// Of the step: Newton's method needs no more of its digits.
-constexpr double enough = 1e-3;
-constexpr int most_iterations = 24;
 
 /// A⁻¹ δ²S, with A⁻¹ what the model solves with, on steps laid out one part behind the other.
 class ModelledVariation : public Eigen::EigenBase<ModelledVariation> {

@@ -5,15 +5,13 @@
 
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
+#include "solve/newton/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::node_system;
 
-/// Of the size of the terms that a row of the border is the difference of.
-constexpr double negligible = 1e-10;
-/// Null directions of the chain, by coordinates, that are believed.
-constexpr std::size_t most_deflated = 4;
+namespace {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "solve/mesh/roundoff.hpp"
+#include "solve/newton/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::residual_test;
 
-/// A residual below this, relative to the largest momentum, may be roundoff.
-constexpr double least = 1e-10;
+namespace {
 
 /// Largest |q| of each coordinate.
 std::vector<double> magnitudes(const Path& path) {

@@ -1,4 +1,5 @@
 #include "solve/newton/sparse_border.hpp"
+#include "solve/newton/limits.hpp"
 
 #include <utility>
 
@@ -6,10 +7,9 @@
 
 namespace extremal {
 
-namespace {
+using namespace limits::sparse_border;
 
-/// Directions that differ from those before them by less than this are left to the least-squares solution.
-constexpr double dependent = 1e-10;
+namespace {
 
 Eigen::Map<const Eigen::VectorXd> vector(std::span<const double> x) { return {x.data(), std::ssize(x)}; }
 

@@ -3,20 +3,11 @@
 #include <algorithm>
 
 #include "solve/mesh/roundoff.hpp"
+#include "solve/newton/limits.hpp"
 
 namespace extremal {
 
-namespace {
-
-/// An eigenvalue of a path that errs by ε of its extent errs by ε times the relative change of the second
-/// derivatives of L, which is about 3 for a force 1/r².
-constexpr double change = 3;
-/// However much a path errs, an eigenvalue that is not small is not zero.
-constexpr double largest_zero = 1e-3;
-/// Of an elimination, if all are in one sense.
-constexpr double roundings_an_element = 16;
-
-}  // namespace
+using namespace limits::zero_eigenvalue;
 
 double zero_eigenvalue_along(double size, double error, int elements) {
   if (!(size > 0)) return zero_eigenvalue;

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solve/mesh/conservation.hpp"
+#include "solve/mesh/roundoff.hpp"
+
+/// \file The numbers by which a path is accepted or refused.
+
+namespace extremal::limits {
+
+namespace acceptance {
+
+/// A residual under the finer quadrature grows by no more from a part of an orbit to the whole.
+inline constexpr double residual_growth = 10;
+
+}  // namespace acceptance
+
+namespace conditions {
+
+/// Residuals above this, relative to the largest momentum, must be roundoff of strong forces.
+inline constexpr double largest_residual = 1e-6;
+/// Strong forces sum up a hundred times as many terms as those that cancel along a body at rest.
+inline constexpr double strong_force_roundoff = 100 * force_roundoff;
+/// The closing equation holds to so many tolerances, or to this, relative to its terms.
+inline constexpr double closing_tolerances = 10, least_closing = 1e-6;
+/// A duration this much longer than the guess's has run away.
+inline constexpr double longest_duration = 1e6;
+/// Forces that hold closed paths, in tolerances of the range of momenta: a small part of
+/// momentum_tolerances, or the paths are no family.
+inline constexpr double held_tolerances = 0.1;
+
+}  // namespace conditions
+
+namespace conjugate_ends {
+
+/// T within this of a conjugate time, relative, is one however accurate the trajectory is.
+inline constexpr double least_distance = 1e-13;
+/// A trajectory known no better than this does not make ends conjugate that are not.
+inline constexpr double largest_distance = 1e-5;
+/// Nearer than this, relative, the error of the elements is measured anew.
+inline constexpr double near = 1e-2;
+/// Of a path that did not converge, so near a conjugate time is no accident.
+inline constexpr double suspicious = 1e-6;
+/// A path that failed on more elements is not resolved: its second variation would take long and be
+/// no measure.
+inline constexpr int most_elements = 512;
+/// Roundoff of the elements' lengths, half a rounding on average, which acts as one of T.
+inline constexpr double roundoff = unit_roundoff / 2;
+inline constexpr int finer = 3, steps = 12;
+
+}  // namespace conjugate_ends
+
+namespace failure {
+
+/// Singular mass matrices of more coordinates are not looked for.
+inline constexpr int most_coordinates = 64;
+
+}  // namespace failure
+
+namespace quadrature_check {
+
+/// What an error may be by its estimate.
+inline constexpr double honest = 10;
+/// Tolerances that velocities may change by: ten, and that is an estimate.
+inline constexpr double most_turned = honest * momentum_tolerances;
+/// Symmetries of more take too long to find.
+inline constexpr int most_coordinates = 18;
+/// Points about which symmetries are looked for.
+inline constexpr int guess_points = 32;
+
+}  // namespace quadrature_check
+
+}  // namespace extremal::limits

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solve/mesh/roundoff.hpp"
+
+/// \file The numbers by which elements are chosen and a path meets the tolerance.
+
+namespace extremal::limits {
+
+namespace pinned {
+
+inline constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
+inline constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
+inline constexpr int most_elements = 1 << 20;
+/// An error below amplified_roundoff, relative to the range, or below the second, relative to the values, is
+/// roundoff if more elements reduce it by less than the first.
+inline constexpr double stagnation = 0.9, at_roundoff = 1e-14;
+/// Where an error is below the second, relative to the range, and so many times more elements did not reduce
+/// it, more hardly will, unless few had stepped over something.
+inline constexpr int futile_growth = 8;
+inline constexpr double resolved = 1e-3;
+inline constexpr int steps = 100;
+/// From an extremal to its companion, which is near or none.
+inline constexpr int companion_steps = 25;
+/// Elements become at most so many times more at once.
+inline constexpr double most_growth = 16;
+/// An error within this factor of what its order lets expect falls regularly.
+inline constexpr double regular_fall = 0.5;
+/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails or is futile, and no
+/// more of the steps that are dearer than others; or of one step.
+inline constexpr double most_cost = 1e8;
+/// Relative to the largest momentum; of periodic paths.
+inline constexpr double stationary_residual = 1e-10;
+
+}  // namespace pinned
+
+namespace refinement {
+
+/// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.
+inline constexpr int most_elements = 1 << 12, most_cuts = 64;
+/// Coarse elements have done their work when the path is known to this, relative to its range.
+inline constexpr double coarse_goal = 1e-3;
+/// A coarse element becomes at most so many at a time.
+inline constexpr double coarse_cut = 4;
+/// Steps allowed for one run of damped Newton.
+inline constexpr int coarse_steps = 25, fine_steps = 12;
+/// Times that elements are planned before all are halved.
+inline constexpr int most_plans = 6;
+/// An undamped step longer than this, relative to the path, casts doubt on the equations.
+inline constexpr double suspicious_step = 1e6;
+/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
+/// guess that asks for more elements may make of it.
+inline constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
+/// Of a step, to fill a path.
+inline constexpr double filling = 0.1;
+/// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
+inline constexpr double border_cost = 2;
+/// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
+/// harder to predict than what is between.
+inline constexpr double planned_slopes = 6;
+
+}  // namespace refinement
+
+namespace tolerance_test {
+
+/// A force that holds the phase of a periodic path, relative to the largest momentum, is at most so large;
+/// the least may be roundoff.
+inline constexpr double most_phase_force = 1e-7, least_phase_force = 1e-10;
+/// Errors of finer elements are less than this part of those before.
+inline constexpr double element_fall = 0.25;
+/// Of the size of the path that was started from: a path smaller than this is at rest.
+inline constexpr double rest = 1e-12;
+/// Of the range of velocities: that of momenta counts where inertia is not the same everywhere.
+inline constexpr double much_less = 0.25;
+/// Of roundoff that was measured.
+inline constexpr double certain = 3;
+/// Steps for the natural conditions, after Newton's method has converged.
+inline constexpr int most_natural_steps = 4;
+/// They use the factors there are as long as they contract so much.
+inline constexpr double worst_chord = 0.5;
+
+}  // namespace tolerance_test
+
+}  // namespace extremal::limits

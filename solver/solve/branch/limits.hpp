@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solve/mesh/roundoff.hpp"
+
+/// \file The numbers by which a branch is continued.
+
+namespace extremal::limits {
+
+namespace branch {
+
+/// A change of the parameter for difference quotients, in its unit.
+inline constexpr double small = 1e-5;
+
+}  // namespace branch
+
+namespace branch_points {
+
+inline constexpr int most_trials = 80, most_points = 8;
+/// Responses on either side of a branch point point opposite ways, to a cosine of this.
+inline constexpr double opposite = -0.9;
+/// Beyond a branch point, by so much of the step, the next one is sought.
+inline constexpr double beyond_it = 1e-4;
+/// From the start of another branch to the branch point.
+inline constexpr double start_distance = 1e-4;
+/// How far from a guess, in shares of the interval, a state is tried where the guess itself fails: near a
+/// branch point that is almost located, and else.
+inline constexpr double aside_near = 0.03, aside_far = 0.3;
+/// How far from a branch point, in shares of the step, states are tried on both sides of it.
+inline constexpr double offsets[] = {1e-7, 1e-5, 1e-3, 1e-2, 3e-2, 0.1};
+
+}  // namespace branch_points
+
+namespace chord_steps {
+
+/// A step is refused where corrections shrink less than this, or are longer than this part of it.
+inline constexpr double contraction = 0.5, longest_correction = 0.5;
+/// Corrections shorter than this part of a step hardly move the path, but where that is short, as near a
+/// singularity: they may grow so much before they shrink.
+inline constexpr double small_correction = 0.05, slowest = 4;
+/// Roundoff shrinks less than this from one correction to the next.
+inline constexpr double stagnation = 0.3;
+
+}  // namespace chord_steps
+
+namespace continuation {
+
+/// Lengths are relative, as Branch::dot measures them. The longest step is one of which so many make up the
+/// distance wanted where as many points are allowed.
+inline constexpr double first_length = 0.02, least_length = 1e-6, least_longest = 0.1, most_longest = 0.4;
+inline constexpr double coverage = 4;
+/// The next try after a step that failed is so much of it.
+inline constexpr double shortening = 0.4;
+/// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, else it
+/// shrinks; it shrinks, too, after corrections that took more factorisations.
+inline constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.95, growth_if_bent = 1.3,
+                 growth_else = 0.8;
+inline constexpr int many_factorisations = 4;
+inline constexpr double growth_if_many = 0.7;
+/// Of the size of the guess: a path smaller than this is at rest.
+inline constexpr double rest = 1e-9;
+/// The first step onto a branch that crosses another; at least; and the next try.
+inline constexpr double first_departure = 0.05, least_departure = 1e-4, shorter_departure = 0.7;
+/// The action is compared with its derivatives at one point of so many, over half the lengths in turn until
+/// the difference is so small.
+inline constexpr int unchecked = 8;
+inline constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
+/// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
+inline constexpr double singular_grading = 100;
+
+}  // namespace continuation
+
+namespace elements {
+
+/// Elements are planned for the first share of the tolerance; on the mesh there is, the second will do.
+inline constexpr double spare = 0.1, tolerated = 0.7;
+inline constexpr int highest_degree = 16, least_degree = 5, most_elements = 1 << 10;
+/// Elements become longer again where the path becomes smooth from point to point.
+inline constexpr double strongest_cut = 16, strongest_growth = 2;
+/// Elements whose error is below this share of the tolerance are more than needed; others are taken instead
+/// if they have no more nodes than this share.
+inline constexpr double lavish = 1e-4, worth_changing = 0.7;
+/// What q' may err by, in tolerances of its range.
+inline constexpr double slope_tolerances = 10;
+
+}  // namespace elements
+
+namespace event_location {
+
+/// From this near, relative to the distance wanted, Newton's method lands on a value; where it does not, the
+/// value is located so closely.
+inline constexpr double near_value = 1e-3, at_value = 1e-13;
+/// Two points of a closed branch differ by no more than this, relative.
+inline constexpr double same = 1e-6;
+/// A fold within this share of a step of a branch point is the same event.
+inline constexpr double one = 1e-2;
+/// An orbit this small against the one before the step is next to rest; to this share of it.
+inline constexpr double nearly_rest = 1e-3, rest_located = 0.1;
+
+}  // namespace event_location
+
+namespace predictor {
+
+/// A step is begun no longer than the branch is predicted to turn by so much, the tangent of an angle.
+inline constexpr double predicted_turn = 0.4;
+
+}  // namespace predictor
+
+namespace tracker {
+
+/// Corrections are carried on to this share of the tolerance, and no further than this.
+inline constexpr double unfinished = 0.01, least_goal = 10 * least_correction;
+inline constexpr int most_resolutions = 4;
+/// The unit of lengths is no smaller than this share of the largest path so far.
+inline constexpr double least_extent = 0.3;
+
+}  // namespace tracker
+
+}  // namespace extremal::limits
