@@ -41,7 +41,7 @@ Problem guessed_by(const Problem& problem, const Solution& solution) {
 Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Workspace& w) {
   Search search(reduction.part, options, w);
   search.run_near_guess();
-  Outcome outcome = std::move(search.outcome());
+  Outcome outcome = search.take();
   if (outcome.status != Status::converged) return outcome;
   outcome.reduction = &reduction;
   outcome.message += fmt::format(" on 1/{} of the orbit, which symmetries continue", reduction.parts());

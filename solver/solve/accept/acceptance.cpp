@@ -8,13 +8,13 @@
 
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
+#include "solve/accept/limits.hpp"
 #include "solve/accept/minimality.hpp"
 #include "solve/accept/quadrature_check.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/periodic/stability.hpp"
-#include "solve/accept/limits.hpp"
 
 namespace extremal {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/accept/limits.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/resolution.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/residual_test.hpp"
-#include "solve/accept/limits.hpp"
 
 namespace extremal {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "analysis/windows.hpp"
-#include "solve/newton/converge.hpp"
 #include "solve/accept/limits.hpp"
+#include "solve/newton/converge.hpp"
 
 namespace extremal {
 

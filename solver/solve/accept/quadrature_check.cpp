@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "solve/accept/limits.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
-#include "solve/accept/limits.hpp"
 
 namespace extremal {
 

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/adapt/limits.hpp"
 #include "solve/external/external_solver.hpp"
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/mesh/conservation.hpp"
-#include "solve/adapt/limits.hpp"
 
 namespace extremal {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "solve/adapt/limits.hpp"
 #include "solve/adapt/refinement.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
-#include "solve/adapt/limits.hpp"
 
 /// \file Whether the path that Newton's method left meets the tolerance.
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "machine/simd.hpp"
-#include "solve/newton/ends.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/newton/ends.hpp"
 
 namespace extremal {
 

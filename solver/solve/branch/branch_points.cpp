@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "solve/branch/branch_point.hpp"
+#include "solve/branch/limits.hpp"
 #include "solve/branch/root.hpp"
 #include "solve/periodic/doubled_orbit.hpp"
-#include "solve/branch/limits.hpp"
 
 /// \file Points of a step where other branches cross.
 

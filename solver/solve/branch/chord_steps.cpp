@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "solve/mesh/roundoff.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 

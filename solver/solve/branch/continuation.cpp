@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "solve/search/search.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/search/search.hpp"
 
 namespace extremal {
 

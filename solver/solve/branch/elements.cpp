@@ -1,6 +1,6 @@
+#include "solve/branch/limits.hpp"
 #include "solve/branch/tracker.hpp"
 #include "solve/mesh/roundoff.hpp"
-#include "solve/branch/limits.hpp"
 
 /// \file Elements along a branch.
 

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "solve/branch/events.hpp"
+#include "solve/branch/limits.hpp"
 #include "solve/branch/root.hpp"
 #include "solve/mesh/roundoff.hpp"
-#include "solve/branch/limits.hpp"
 
 namespace extremal {
 

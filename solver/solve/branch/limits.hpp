@@ -55,7 +55,7 @@ inline constexpr double shortening = 0.4;
 /// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, else it
 /// shrinks; it shrinks, too, after corrections that took more factorisations.
 inline constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.95, growth_if_bent = 1.3,
-                 growth_else = 0.8;
+                        growth_else = 0.8;
 inline constexpr int many_factorisations = 4;
 inline constexpr double growth_if_many = 0.7;
 /// Of the size of the guess: a path smaller than this is at rest.

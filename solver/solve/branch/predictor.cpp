@@ -2,8 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include "solve/branch/tracker.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/branch/tracker.hpp"
 
 /// \file How a branch continues from a state, by its tangents and other states.
 

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "solve/branch/chord_steps.hpp"
-#include "solve/mesh/roundoff.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 

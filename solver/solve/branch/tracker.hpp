@@ -22,7 +22,10 @@ enum class StepFailure {
 /// method across the tangent, on elements that meet the tolerance.
 class Tracker {
  public:
+  /// `family` must outlive it.
   Tracker(const ProblemFamily& family, double tolerance);
+  Tracker(const Tracker&) = delete;
+  Tracker& operator=(const Tracker&) = delete;
 
   /// Of the path that was reached last.
   BranchState state;

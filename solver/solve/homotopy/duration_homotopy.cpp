@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "solve/mesh/resolution.hpp"
 #include "solve/homotopy/limits.hpp"
+#include "solve/mesh/resolution.hpp"
 
 namespace extremal {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "solve/mesh/roundoff.hpp"
-#include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/newton/limits.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
 

@@ -3,13 +3,14 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/refinement.hpp"
 #include "solve/guess/first_path.hpp"
 
-/// \file Where Newton's method starts from: the guess, and what else where that fails.
+/// \file Where Newton's method starts from: the guess, and other paths where the guess fails.
 
 namespace extremal {
 
@@ -21,18 +22,19 @@ class Search {
   Search(const Search&) = delete;
   Search& operator=(const Search&) = delete;
 
-  /// To a path that meets the tolerance and that `acceptance`, where it is given, accepts. What it gives back
-  /// is the search's own.
+  /// To a path that meets the tolerance and that `acceptance`, if given, accepts. The outcome stays the
+  /// search's own until it is taken.
   const Outcome& run(Acceptance* acceptance = nullptr);
-  /// The same from the guess only, accepted by nobody; an extremal far from it is none.
+  /// The same from the guess only and without acceptance; a path far from the guess is a failure.
   const Outcome& run_near_guess();
+  Outcome take() { return std::move(outcome_); }
 
   /// Makes path() an empty path, to be filled by the caller and refined.
   const ElementTables& open(const std::vector<double>& mesh, int degree);
   Path& path() { return path_; }
   /// Pursues path(), on elements of `tables`; whether an extremal was found.
   bool refine(const ElementTables& tables, const char* strategy);
-  /// Puts the path that `fill` fills on elements that follow it; false if it comes too near a singularity.
+  /// Puts the path that `fill` fills on elements that resolve it; false if it comes too near a singularity.
   bool open_fitting(const std::function<void(const ElementTables& tables, Path& path)>& fill,
                     int degree = Refinement::first_degree);
   const ElementTables& tables() const { return refinement_.tables(); }
@@ -44,7 +46,6 @@ class Search {
   bool count_step() { return refinement_.count_step(); }
   bool exhausted() const { return refinement_.exhausted(); }
   const Outcome& outcome() const { return outcome_; }
-  Outcome& outcome() { return outcome_; }
   const std::vector<double>& ends() const { return ends_; }
   const std::vector<double>& mesh() const { return mesh_; }
 
@@ -61,7 +62,7 @@ class Search {
   /// What the search has tried or come to, for its message.
   enum class Met { other_durations, noise, motions, equilibrium };
   static constexpr int most_first_elements = 1 << 12;
-  /// Coarse elements may not follow a family of extremals as it grows.
+  /// Coarse elements may not resolve a family of extremals as it grows.
   static constexpr int homotopy_degree = 8;
   static int first_elements(const Frequency& frequency);
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
