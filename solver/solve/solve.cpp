@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The problem, guessed by what solves it.
+/// The problem with a solution as its guess.
 Problem guessed_by(const Problem& problem, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   const std::size_t n = problem.coordinates();

@@ -5,7 +5,7 @@
 #include "solve/adapt/outcome.hpp"
 #include "solve/adapt/workspace.hpp"
 
-/// \file Whether a path is an extremal, and what is known of it.
+/// \file Whether a path is an extremal, and its properties.
 
 namespace extremal {
 

@@ -23,8 +23,8 @@ std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions
                                       const ElementTables& tables, NewtonIteration& newton,
                                       const Solution& solution);
 
-/// Of the elements: energy drifts no more than the error explains, the residual of free ends is within what
-/// momenta may err by, and a path away from the guess is not singular. Raises the error estimate of
+/// Of the elements: energy drifts no more than the error explains, the residual of free ends is within the
+/// error allowed of momenta, and a path away from the guess is not singular. Raises the error estimate of
 /// `solution` where the drift shows a larger one. `found`: absent where L depends on t.
 std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions& options,
                                      const Outcome& outcome, const Path& path,

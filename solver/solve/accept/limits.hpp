@@ -60,7 +60,7 @@ inline constexpr int most_coordinates = 64;
 
 namespace quadrature_check {
 
-/// What an error may be by its estimate.
+/// Largest ratio of an error to its estimate.
 inline constexpr double honest = 10;
 /// Tolerances that velocities may change by: ten, and that is an estimate.
 inline constexpr double most_turned = honest * momentum_tolerances;

@@ -25,10 +25,10 @@ inline constexpr int steps = 100;
 inline constexpr int companion_steps = 25;
 /// Elements become at most so many times more at once.
 inline constexpr double most_growth = 16;
-/// An error within this factor of what its order lets expect falls regularly.
+/// An error within this factor of that predicted by its order falls regularly.
 inline constexpr double regular_fall = 0.5;
-/// Nanoseconds, by batch_cost(), after which no more elements are tried for what fails or is futile, and no
-/// more of the steps that are dearer than others; or of one step.
+/// Nanoseconds, by batch_cost(), after which no more elements are tried for a scheme that fails or is futile,
+/// and no more of the steps that are dearer than others; or of one step.
 inline constexpr double most_cost = 1e8;
 /// Relative to the largest momentum; of periodic paths.
 inline constexpr double stationary_residual = 1e-10;
@@ -49,15 +49,15 @@ inline constexpr int coarse_steps = 25, fine_steps = 12;
 inline constexpr int most_plans = 6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.
 inline constexpr double suspicious_step = 1e6;
-/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and what a
-/// guess that asks for more elements may make of it.
+/// Nanoseconds, by batch_cost(), that one solve may take; or so many steps on the first mesh; and the factor
+/// by which a guess that asks for more elements may raise it.
 inline constexpr double most_cost = 1e8, most_first_steps = 200, most_cost_growth = 10;
 /// Of a step, to fill a path.
 inline constexpr double filling = 0.1;
 /// Nanoseconds of a free end or duration, for each entry of the blocks of the nodes.
 inline constexpr double border_cost = 2;
 /// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
-/// harder to predict than what is between.
+/// harder to predict than those between.
 inline constexpr double planned_slopes = 6;
 
 }  // namespace refinement

@@ -7,7 +7,7 @@
 #include "solution/solution.hpp"
 #include "solve/external/method.hpp"
 
-/// \file What is asked of a solve.
+/// \file Options of a solve.
 
 namespace extremal {
 

@@ -6,7 +6,7 @@
 #include "solve/adapt/options.hpp"
 #include "solve/newton/iteration.hpp"
 
-/// \file What a stage gives back: a path with its error and its status.
+/// \file The result of a stage: a path with its error and its status.
 
 namespace extremal {
 

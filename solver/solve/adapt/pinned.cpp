@@ -127,7 +127,7 @@ bool PinnedSolve::holds_energy(const Resolution::Error& left_out) {
 
 /// Largest distance of the path from the extremal of elements of higher degree on the same mesh, or of halved
 /// elements where there is no higher degree, started from it; the companion's own truncation is added, and
-/// what other points in its elements would move. Infinite if it does not converge or does not hold its
+/// its movement under a finer quadrature. Infinite if it does not converge or does not hold its
 /// energy.
 double PinnedSolve::distance_to_companion() {
   const int n = problem_.coordinates();
@@ -176,7 +176,7 @@ Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
   const int most = most_affordable();
-  double before = INFINITY, expected = 0;  // errors: the last, and what this one should be
+  double before = INFINITY, expected = 0;  // errors: the last, and the expected one
   double least = INFINITY;
   int of_least = elements;
   for (;; before = outcome_.error) {

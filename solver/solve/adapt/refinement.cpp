@@ -236,7 +236,7 @@ Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
       newton = converge_to(finest, true);
     for (std::size_t k = 0; k < w_.before.size(); ++k)
       nodes.moved = std::max(nodes.moved, std::abs(path_.nodes()[k] - w_.before[k]));
-    // What Newton's method had left to do is no error of the elements, or not all of it.
+    // The remainder of Newton's method is no error of the elements, or not all of it.
     nodes.moved = std::max(0.1 * nodes.moved, nodes.moved - unfinished);
     Attempt result = judge(newton, aim, nodes);
     // With gradients that have digits to spare, steps shrink as long as the factors allow.

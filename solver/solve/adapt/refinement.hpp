@@ -35,7 +35,7 @@ class Refinement {
   bool exhausted() const { return outcome_.iterations >= most_steps_ || cost_ >= affordable(); }
 
   static constexpr int first_degree = 4;
-  /// An orbit so much smaller than what it began with is at rest.
+  /// An orbit so much smaller than its guess is at rest.
   static constexpr double at_rest = 1e-6;
   /// Makes the path of the outcome an empty one on `mesh`, to be filled by the caller.
   void open(const std::vector<double>& mesh, int degree = first_degree);
@@ -71,7 +71,7 @@ class Refinement {
   static constexpr double spare = 0.1;
   /// Newton's method goes at least so far: its error is cheap to remove and hard to bound.
   static constexpr double loosest_newton = 1e-6;
-  /// Before the elements changed: what they left out; how far the mesh nodes moved since;
+  /// Before the elements changed: their truncation error; how far the mesh nodes moved since;
   /// whether Newton's method had gone to the end before.
   struct NodeError {
     Resolution::Error left_out;
@@ -84,7 +84,7 @@ class Refinement {
   void measure();
   void measure_momenta();
   double inertia() const;
-  /// Newton until what is left to do is below `error`, relative; `reuse`: with the factors there are.
+  /// Newton until the remainder is below `error`, relative; `reuse`: with the factors there are.
   NewtonReport converge_to(double error, bool reuse);
   int steps_left(int wanted) const;
   double affordable() const { return share_ * most_cost_; }
@@ -117,7 +117,7 @@ class Refinement {
   ResidualTest test_;
   double longest_ = 0;      ///< undamped step so far, relative
   double left_out_ = 0;     ///< of q, by the elements that were judged last
-  double held_ = INFINITY;  ///< relative to momenta, what held the phase when it was too much
+  double held_ = INFINITY;  ///< relative to momenta, the force that held the phase when it was too large
   double worst_ = 0;        ///< error in units of the tolerance, when elements were last judged
   const ElementTables* tables_ = nullptr;
 };

@@ -46,14 +46,15 @@ double Refinement::inertia() const {
   return largest;
 }
 
-/// In units of what the tolerance allows.
+/// In units of the error allowed.
 double Refinement::excess(const Resolution::Error& error) const {
   if (error.q == 0 && error.v == 0) return 0;  // at rest
   return std::max(error.q / scales_.q, 0.1 * error.v / scales_.v) / options_.tolerance;
 }
 
-/// What may hold the phase of a periodic path, relative to the largest momentum: what elements leave out
-/// explains, to second order. Where weak forces all but allow a family, it is more, however fine they are.
+/// The force that may hold the phase of a periodic path, relative to the largest momentum: the truncation
+/// error explains it, to second order. Where weak forces all but allow a family, it is more, however fine
+/// they are.
 double Refinement::phase_force() const {
   const double explained = std::max(left_out_ / scales_.q, least_phase_force);
   return std::min({spare * options_.tolerance, most_phase_force, explained});
@@ -91,19 +92,19 @@ Refinement::Attempt Refinement::satisfy_natural_conditions(const NewtonReport& r
   if (passed && newton.extend()) return satisfy_natural_conditions(report);
   outcome_.message = passed ? hidden(newton.norm()) : test_.message();
   if (passed) return Attempt::unreachable;
-  // What holds the phase is an error of the elements if it falls with them.
+  // The force that holds the phase is an error of the elements if it falls with them.
   const double before = std::exchange(held_, test_.share());
   const bool falls = held_ <= options_.tolerance && held_ < element_fall * before;
   return problem_.periodic && falls ? Attempt::refine : Attempt::failed;
 }
 
-/// A tolerance, by what roundoff became.
+/// The message where roundoff hides the tolerance.
 std::string Refinement::hidden(double amplified) const {
   return fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
                      amplified, options_.tolerance);
 }
 
-/// What the momenta of a path make of its elements, which have q within the tolerance but not q', if that is
+/// The polynomials that momenta make of elements which have q within the tolerance but not q', if that is
 /// enough. The resolution is then that of the polynomials recovered.
 std::optional<Resolution::Error> Refinement::recovered(double q) {
   if (!recover(problem_, path_, w_, w_.raised)) return std::nullopt;
@@ -115,7 +116,7 @@ std::optional<Resolution::Error> Refinement::recovered(double q) {
   return std::nullopt;
 }
 
-/// What a converged iteration has reached: coefficients that its elements leave out; the error of the nodes,
+/// The error of a converged path: coefficients that its elements leave out; the error of the nodes,
 /// which comes from the forces and velocities left out and falls with their product (order 2s) from what
 /// the nodes moved when the elements changed; corrections not made; roundoff, a random walk over the points.
 Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, const NodeError& nodes) {

@@ -176,8 +176,8 @@ std::vector<double> Branch::closing_row(const Move& onward) const {
   return row;
 }
 
-/// H δx = −∂g/∂p, and what closes a free duration with it, by gradients beside the path with the factors
-/// there are. Ends that depend on p move along a line.
+/// H δx = −∂g/∂p, and the equation that closes a free duration with it, by gradients beside the path with the
+/// factors there are. Ends that depend on p move along a line.
 bool Branch::linearise_parameter() {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();

@@ -12,7 +12,7 @@
 
 namespace extremal {
 
-/// What varies along a branch.
+/// The number that varies along a branch.
 enum class Varied { duration, energy, parameter };
 
 /// Problems that differ in one number.
@@ -25,7 +25,7 @@ struct ProblemFamily {
   std::function<std::optional<Problem>(double)> at = {};
 };
 
-/// Curves through a path: with x the path, δS = 0 and what closes a free duration leave of (x,
+/// Curves through a path: with x the path, δS = 0 and the equation that closes a free duration leave of (x,
 /// T) one direction where the duration or the energy varies, and of (x, T, p) one where a parameter p does.
 class Branch : public ExtremalCurve {
  public:
@@ -35,11 +35,11 @@ class Branch : public ExtremalCurve {
   bool set_coordinate(double coordinate);
   /// Binds the equations to the path after its elements changed.
   void bind();
-  /// What Move::parameter changes: the parameter, or the duration.
+  /// The coordinate that Move::parameter changes: the parameter, or the duration.
   double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
   /// Moves path and coordinate; false if there is no problem there.
   bool apply(const Move& move, double factor) override;
-  /// Scalar product of a tangent with what the last apply() moved besides: ends and durations that do not
+  /// Scalar product of a tangent with the nonlinear part of the last apply(): ends and durations that do not
   /// depend linearly on the parameter.
   double drift(const Move& tangent) const override;
 
@@ -119,7 +119,7 @@ class Branch : public ExtremalCurve {
   Path at_;
   PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
   std::vector<double> momenta_;
-  std::vector<double> ends_;  ///< what the last apply() moved them by besides, 2n
+  std::vector<double> ends_;  ///< nonlinear part of the last apply(), 2n
   double stretch_ = 0;        ///< and the duration
 };
 

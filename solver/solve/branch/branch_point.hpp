@@ -5,11 +5,11 @@
 
 #include "solve/branch/tracker.hpp"
 
-/// \file Points of a branch, and what is found on a step.
+/// \file Points of a branch, and those found on a step.
 
 namespace extremal {
 
-/// What a point of a branch is: `fold` where the number that varies turns back, `branch` where another branch
+/// The kind of a point: `fold` where the number that varies turns back, `branch` where another branch
 /// crosses, `period_doubling` where one of twice the period begins.
 enum class PointKind { regular, fold, branch, period_doubling };
 
@@ -46,7 +46,7 @@ struct Event {
   FoundPoint found;
 };
 
-/// What is looked for on the steps of a branch.
+/// The search for points on the steps of a branch.
 struct EventSearch {
   const ProblemFamily& family;
   const BranchState& first;  ///< of the branch

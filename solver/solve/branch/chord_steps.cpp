@@ -20,7 +20,7 @@ Progress ChordSteps::take(bool solved, int k) {
   const double rate = k > 0 ? size / before_ : 1;
   factorisations_ += anew_;
   const bool noise = anew_ && size < amplified_roundoff && rate > stagnation;
-  // Factors of before may hide what those of this path find: it is held against what such found last.
+  // Old factors may hide corrections: growth is measured against the last correction of new ones.
   const double growth = way / (anew_ ? std::exchange(way_of_newton_, way) : way_before_);
   const double fastest = way > small_correction * length_ ? contraction : slowest;
   if (!noise && (!(way <= longest_correction * length_) || growth > fastest)) return Progress::failed;
@@ -29,7 +29,7 @@ Progress ChordSteps::take(bool solved, int k) {
     return Progress::failed;
   }
   if (k > 0 && newton_) curvature_ = rate / before_;
-  // What is left after a step of Newton's method, and by how much a step with its factors, which are off by
+  // The remainder after a step of Newton's method, and by how much a step with its factors, which are off by
   // all of the last move and not by half of it, shrinks that.
   const double left = size * (anew_ ? curvature_ * size : newton_ ? 2 * rate : rate);
   const double shrinking = anew_ ? 2 * curvature_ * size : left / size;

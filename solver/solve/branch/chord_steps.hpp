@@ -8,11 +8,11 @@
 
 namespace extremal {
 
-/// A gradient costs a quarter of what factors do: those there are, while the problem stays what it is, serve
+/// A gradient costs a quarter of a factorisation: present factors, while the problem stays the same, serve
 /// as long as they lead to the goal soon. For newton_loop().
 class ChordSteps {
  public:
-  /// For a step of `length` along `tangent`. Ends where what is left is below `goal`; a correction below
+  /// For a step of `length` along `tangent`. Ends where the remainder is below `goal`; a correction below
   /// `enough` will do where more steps would be needed.
   ChordSteps(Branch& branch, const Move& tangent, double length, double goal, double enough)
       : branch_(branch), tangent_(tangent), length_(length), goal_(goal), enough_(enough) {}

@@ -11,7 +11,7 @@
 
 namespace extremal {
 
-/// What is known of one branch as a whole.
+/// One branch as a whole.
 struct BranchRecord {
   std::optional<int> origin = {};  ///< number of the point, among all, that it begins next to; first: none
   BranchEnd end = BranchEnd::none;

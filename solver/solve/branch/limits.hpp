@@ -81,7 +81,7 @@ inline constexpr double strongest_cut = 16, strongest_growth = 2;
 /// Elements whose error is below this share of the tolerance are more than needed; others are taken instead
 /// if they have no more nodes than this share.
 inline constexpr double lavish = 1e-4, worth_changing = 0.7;
-/// What q' may err by, in tolerances of its range.
+/// Error allowed of q', in tolerances of its range.
 inline constexpr double slope_tolerances = 10;
 
 }  // namespace elements

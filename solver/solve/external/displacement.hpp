@@ -10,7 +10,8 @@ namespace extremal {
 
 /// F(z) = 0 for solvers of any kind: z is the displacement of the unknowns from a path, that of the duration
 /// last where it is free. F is δS_h by the square root of the time of each unknown, so that |F|² is about
-/// the integral of the squared force that an extremal would not need, and what closes the duration.
+/// the integral of the squared force that an extremal would not need, and the equation that closes the
+/// duration.
 class Displacement {
  public:
   /// From `path`, which is kept by reference: it is at the displacement evaluated last.

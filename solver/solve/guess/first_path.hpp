@@ -48,7 +48,7 @@ struct Arc {
   int turns = 0;
   double excess = 0;
 };
-/// Fills `path` with it. Returns what its ends differ by from `ends` (2n).
+/// Fills `path` with it. Returns the difference of its ends from `ends` (2n).
 std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, const ElementTables& tables,
                              Path& path);
 

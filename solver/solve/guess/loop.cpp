@@ -21,7 +21,7 @@ constexpr int most_turns = 12;
 constexpr double same_frequency = 1e-6;
 /// Of an eigenvalue of R: the modulus of others than symmetries differs from 1 by more.
 constexpr double unit_modulus = 1e-6;
-/// What is constant in a loop, in units of what moves.
+/// The constant part of a loop, in units of the moving part.
 constexpr double offset = 0.3;
 /// Points at which a loop is measured.
 constexpr int samples = 96;

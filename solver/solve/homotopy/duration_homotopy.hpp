@@ -15,9 +15,9 @@ namespace extremal {
 std::vector<double> natural_durations(const Problem& problem, Path& path, Workspace& workspace,
                                       const ElementTables& tables);
 
-/// The family of extremals of all durations, with the boundary relation given; the parameter is what the
-/// duration exceeds the wanted one by. For L = q'ᵀM q'/2 − V this is the homotopy in λ of q'ᵀM q'/2 − λV,
-/// λ = (duration/T)², from the straight line. The Lagrangian must not depend on t.
+/// The family of extremals of all durations, with the boundary relation given; the parameter is the
+/// excess of the duration over the wanted one. For L = q'ᵀM q'/2 − V this is the homotopy in λ of q'ᵀM q'/2 −
+/// λV, λ = (duration/T)², from the straight line. The Lagrangian must not depend on t.
 class DurationHomotopy : public Homotopy {
  public:
   DurationHomotopy(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count);

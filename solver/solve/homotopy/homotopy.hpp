@@ -31,7 +31,7 @@ class Homotopy : public ExtremalCurve {
   virtual double parameter() const = 0;
   /// False if the parameter cannot have this value.
   virtual bool set_parameter(double value) = 0;
-  /// Which way the first step goes along `direction`: the sign of what is returned.
+  /// Which way the first step goes along `direction`: the sign of the result.
   virtual double onward(const Move& direction) const = 0;
 
   Path& path_;

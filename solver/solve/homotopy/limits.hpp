@@ -42,8 +42,8 @@ namespace homotopy {
 /// Lengths are relative: root mean square over the nodes by the path's range, and the parameter by its unit.
 inline constexpr double first_length = 0.1, least_length = 1e-5, largest_approach = 0.2;
 inline constexpr double on_curve = 1e-2, close_to_curve = 1e-3, farthest_landing = 0.05, landed = 1e-5;
-/// Of the last correction, by the length of the step: where the second variation is nearly singular, what is
-/// left makes the tangent turn.
+/// Of the last correction, by the length of the step: where the second variation is nearly singular, the
+/// remainder makes the tangent turn.
 inline constexpr double corrected = 3e-3;
 /// An element keeps so much of its length in one move.
 inline constexpr double least_element = 0.3;
@@ -55,7 +55,7 @@ inline constexpr int most_corrections = 4, most_landings = 8, most_approaches = 
 /// The family has run away where the path is so much larger than at first, or the parameter so many units
 /// off, and further than at first.
 inline constexpr double runaway = 1e3, farthest = 4;
-/// Truncation error at which elements are chosen anew, and what is aimed at then; relative to the range.
+/// Truncation error at which elements are chosen anew, and the aim then; relative to the range.
 inline constexpr double unresolved = 1e-5, resolved = 1e-7;
 inline constexpr int most_elements = 256;
 inline constexpr double strongest_cut = 4;

@@ -9,7 +9,7 @@ namespace extremal {
 
 namespace {
 
-/// Drift by what explains it.
+/// Ratio of the drift to the errors that explain it.
 constexpr double margin = 10;
 /// Roundings of the terms of the energy, one for each that is summed up, and of q.
 constexpr double roundoff_of_terms = 2e3 * unit_roundoff, roundoff_of_q = 8 * unit_roundoff;
@@ -27,7 +27,7 @@ double shortest_element(const Trajectory& trajectory) {
   return shortest;
 }
 
-/// What errors of q are multiplied by in the slopes at the ends of the shortest element.
+/// Factor of errors of q in the slopes at the ends of the shortest element.
 double amplification(const Trajectory& trajectory) {
   return trajectory.degree * (trajectory.degree + 1) / shortest_element(trajectory);
 }

@@ -8,13 +8,13 @@
 
 namespace extremal {
 
-/// What p may err by, in tolerances of its range: by contract.
+/// Error allowed of p, in tolerances of its range: by contract.
 inline constexpr double momentum_tolerances = 10;
 
 /// Whether the drift is no more than a tolerance explains, relative to the ranges of q and, ten times, p.
 bool conserves_energy(const Survey& survey, const Trajectory& trajectory, double tolerance);
 
-/// Whether the drift is no more than what the elements leave out of q and q' explains.
+/// Whether the truncation error of q and q' explains the drift.
 bool conserves_energy(const Survey& survey, const Trajectory& trajectory, const Resolution::Error& left_out);
 
 /// The error of q, in its units, with a drift that the smooth error `estimate` does not explain: slopes at

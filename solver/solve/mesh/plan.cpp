@@ -13,7 +13,7 @@ namespace {
 /// Spare elements, since densities are estimates.
 constexpr double spare = 1.1;
 /// Another mesh must promise to be so much cheaper: the path has to be moved to it, and its distances are
-/// less certain than what the present elements show.
+/// less certain than the measure of the present elements.
 constexpr double worth_moving = 0.75;
 
 /// A batch of elements up to this degree is not worth planning again.

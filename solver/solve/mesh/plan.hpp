@@ -16,7 +16,7 @@ struct Plan {
   std::vector<double> mesh;  ///< empty: the one there is
 };
 
-/// What a plan aims at and may use.
+/// The aim of a plan, and its limits.
 struct PlanLimits {
   Resolution::Error aim;  ///< expected of the elements
   Resolution::Error

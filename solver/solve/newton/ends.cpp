@@ -8,7 +8,7 @@ namespace extremal {
 
 namespace {
 
-/// A sum, and what rounding left of it.
+/// A sum and its rounding error.
 struct DoubleSum {
   double high = 0, low = 0;
   void add(double x) {

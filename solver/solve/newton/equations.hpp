@@ -8,7 +8,7 @@
 namespace extremal {
 
 /// δS_h = 0 under the boundary relation in all unknowns at once, nothing condensed: gradient and sparse
-/// Hessian. Unknowns are numbered: nodes 1 … N − 1, then what the boundary relation leaves free of the ends,
+/// Hessian. Unknowns are numbered: nodes 1 … N − 1, then the free unknowns of the ends,
 /// then the inner ones element by element. The duration, where it is free, is not among them.
 class Equations {
  public:
@@ -21,8 +21,8 @@ class Equations {
   const std::vector<int>& rows() const { return rows_; }
   const std::vector<int>& columns() const { return columns_; }
 
-  /// Gradient at a path and, unless `entries` is empty, the Hessian's entries. What is not finite shows in
-  /// `action` (see DiscreteAction::finite).
+  /// Gradient at a path and, unless `entries` is empty, the Hessian's entries. Values that are not finite
+  /// show in `action` (see DiscreteAction::finite).
   void evaluate(DiscreteAction& action, const Path& path, std::span<double> entries);
 
   const std::vector<double>& gradient() const { return gradient_; }

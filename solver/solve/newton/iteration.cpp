@@ -103,7 +103,7 @@ void NewtonIteration::use_sparse(int elements) {
 }
 
 /// The correction from the gradient that was evaluated last; NaN if it is not finite. Another correction
-/// makes up for what is not refined.
+/// makes up for steps that are not refined.
 double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine) {
   if (!action_.finite()) return NAN;
   model_->set_refining(refine);

@@ -21,7 +21,7 @@ namespace extremal {
 /// where the duration is fixed.
 const ClosingEquation* closing_equation(const Problem& problem, const Path& path, ClosingEquation& equation);
 
-/// What ended a run of steps.
+/// How a step ended.
 enum class StepResult {
   ok,
   singular,    ///< the second variation is singular to working precision
@@ -42,12 +42,12 @@ class NewtonIteration {
   /// Assembles at `path`, factors and takes a damped step; then, where the simplified step that tested it
   /// is much smaller, takes that as well. `norm` becomes the size of the last correction, `contraction` its
   /// ratio to the one before. A step so short that earlier contraction lets expect the next correction
-  /// below `enough` is not tested: `norm` is then what is expected. Stronger damping than `least_damping` is
+  /// below `enough` is not tested: `norm` is then the expected size. Stronger damping than `least_damping` is
   /// a stall: the path is then where it was.
   static constexpr double strongest_damping = 1e-3;
   StepResult full_step(Path& path, double enough, double least_damping = strongest_damping);
 
-  /// What was learned of the curvature of δS no longer holds: another path.
+  /// Forgets the curvature of δS: the path is another.
   void forget();
   /// From now until forget() gradients are in extended precision, where the system has them; from the second
   /// time on so is the second variation that steps are solved for. False if they were, or where the Hessian
@@ -56,7 +56,7 @@ class NewtonIteration {
   bool extended() const { return extended_; }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
   double noise() const { return noise_; }
-  /// What roundoff makes of a step from `path`, with the factors there are: no step measures a smaller
+  /// Roundoff of a step from `path`, with the factors there are: no step measures a smaller
   /// distance from an extremal.
   double roundoff(Path& path);
 
@@ -77,12 +77,12 @@ class NewtonIteration {
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
   /// The length of that correction with the gradient of another quadrature on the same elements, and of
-  /// what roundoff makes of it. action() then has that gradient. Of inner steps, laid out as Path::x, what is
+  /// its roundoff. action() then has that gradient. Of inner steps, laid out as Path::x, the part
   /// `explained` does not count.
   double step_under(const ElementTables& quadrature, const Path& path, const AlignedDoubles& explained = {});
 
-  /// Of the velocities that such a step changes, the mean over an element, the most, without what the last
-  /// digits of t make of them where they change fast.
+  /// Of the velocities that such a step changes, the mean over an element, the most, without the part that
+  /// the last digits of t make where they change fast.
   double steepness(const Path& path) const;
 
   /// The error to be expected after a full step of this length and the simplified one, from the last that
@@ -92,7 +92,7 @@ class NewtonIteration {
   double norm() const { return norm_; }
   /// Expected size of the correction after it.
   double remaining() const { return remaining_; }
-  /// The same where what is left points to where the equations bend most, not to where the last step did.
+  /// The same if the remainder points to where the equations bend most, not along the last step.
   double most_remaining() const {
     return std::max(remaining_, norm_ * std::min(1.0, largest_curvature_ * undamped_));
   }

@@ -64,8 +64,8 @@ double NewtonIteration::roundoff(Path& path) {
   return result;
 }
 
-/// By how much step_ changes, relative as it, where each node, and what is free of the ends, is moved by some
-/// last digits of its own: a step from there takes that back, but all is rounded differently.
+/// By how much step_ changes, relative as it, where each node, and the free unknowns of the ends, is moved by
+/// some last digits of its own: a step from there takes that back, but all is rounded differently.
 double NewtonIteration::measure_noise(Path& path) {
   const std::size_t n = path.coordinates(), nodes = path.nodes().size();
   double magnitude = 0;
@@ -97,8 +97,8 @@ double NewtonIteration::measure_noise(Path& path) {
   return noise_;
 }
 
-/// The step, and how it changes by the roundoff of the equations that close what is free: it may have met
-/// little of it by chance.
+/// The step, and how it changes by the roundoff of the equations that close the free unknowns: it may have
+/// met little of it by chance.
 double NewtonIteration::step_under(const ElementTables& quadrature, const Path& path,
                                    const AlignedDoubles& explained) {
   action_.substitute(*problem_->lagrangian, quadrature);
@@ -137,7 +137,7 @@ double NewtonIteration::steepness(const Path& path) const {
 }
 
 /// Moves the equation that closes the duration, and the momenta at free ends, by half a digit of their terms;
-/// those to where step_ points, which is what they resist least. False if nothing is free.
+/// those to where step_ points, which they resist least. False if nothing is free.
 bool NewtonIteration::round_equations(const Path& path) {
   const std::size_t n = path.coordinates();
   if (closing(path)) {

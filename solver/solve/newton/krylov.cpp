@@ -21,7 +21,7 @@ namespace extremal {
 
 namespace {
 
-/// A⁻¹ δ²S, with A⁻¹ what the model solves with, on steps laid out one part behind the other.
+/// A⁻¹ δ²S, with A⁻¹ the factors of the model, on steps laid out one part behind the other.
 class ModelledVariation : public Eigen::EigenBase<ModelledVariation> {
  public:
   using Scalar = double;

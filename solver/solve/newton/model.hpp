@@ -9,7 +9,7 @@
 #include "problem/problem.hpp"
 #include "solve/periodic/phase.hpp"
 
-/// \file The quadratic model of S_h at a path: what a Newton step needs.
+/// \file The quadratic model of S_h at a path, from which Newton steps come.
 
 namespace extremal {
 
@@ -63,8 +63,8 @@ class QuadraticModel {
 class SecondVariationModel : public QuadraticModel {
  public:
   /// The step that a load on the nodes between elements, (N + 1) × n, would cause: with K the second
-  /// variation and what closes the duration, K·step = load. Loads on the ends are left out. The gradient is
-  /// evaluated anew after it.
+  /// variation and the equation that closes the duration, K·step = load. Loads on the ends are left out. The
+  /// gradient is evaluated anew after it.
   virtual void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                        Step& step) = 0;
 };

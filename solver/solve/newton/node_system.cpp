@@ -164,7 +164,7 @@ void NodeSystem::set_null_below(double threshold) {
 void NodeSystem::factor_border() {
   lu_.compute(schur_);
   const auto pivots = lu_.matrixLU().diagonal().cwiseAbs();
-  // As roundoff a pivot of zero makes a null direction what there is most of in a step.
+  // A pivot of zero becomes roundoff, which makes the null direction the largest part of a step.
   if (null_below_ == 0 && pivots.minCoeff() == 0) {
     const double size = free_ > 0 ? corner_.topLeftCorner(free_, free_).cwiseAbs().maxCoeff() : 1;
     schur_.diagonal().array() += 2 * unit_roundoff * std::max(size, schur_.cwiseAbs().maxCoeff());
@@ -204,7 +204,7 @@ bool NodeSystem::factor_exactly(const ClosingEquation* closing) {
   return true;
 }
 
-/// Minus the derivatives by what is free of the ends, and what the closing equation lacks.
+/// Minus the derivatives by the free unknowns of the ends, and minus the residual of the closing equation.
 void NodeSystem::border_right(const NodeEquations& nodes, const ClosingEquation* closing) {
   const std::size_t last = static_cast<std::size_t>(elements_) * n_;
   small_.setZero(border_);

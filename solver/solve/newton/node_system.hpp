@@ -10,7 +10,7 @@
 #include "solve/newton/model.hpp"
 
 /// \file The linear system of one Newton step, after condensation: the nodes between elements as a
-/// chain, bordered by what the boundary relation leaves free of the ends, and by the duration.
+/// chain, bordered by the free unknowns of the ends, and by the duration.
 
 namespace extremal {
 
@@ -22,8 +22,8 @@ class NodeSystem {
   /// working precision.
   bool factor(NodeEquations& nodes, const ClosingEquation* closing, const PhaseConditions* phases = nullptr);
 
-  /// Eigenvalues of what remains of the ends so small, relative, or smaller are null: a step has nothing
-  /// along them. For 0 none is, however small. From now until reset(), for the present factors too.
+  /// Eigenvalues of the Schur complement of the ends so small, relative, or smaller are null: a step has
+  /// nothing along them. For 0 none is, however small. From now until reset(), for the present factors too.
   void set_null_below(double threshold);
   /// How many directions the last step had nothing along.
   int left_out() const { return left_out_; }
@@ -35,7 +35,7 @@ class NodeSystem {
 
   /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
   /// are counted by NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
-  /// Schur complement that remains, are null. So are the directions that are held: what is counted is the
+  /// Schur complement that remains, are null. So are the directions that are held: counted is the
   /// form across them.
   Inertia inertia(double threshold) const;
 
@@ -68,9 +68,9 @@ class NodeSystem {
   Eigen::VectorXd small_, permuted_;
   Eigen::VectorXd row_units_, column_units_;  ///< that schur_ was multiplied by
 
-  bool exact_ = false, regular_ = false;  ///< the chain is singular, and what system_ is for; system_ is not
+  bool exact_ = false, regular_ = false;  ///< the chain is singular, so that system_ is used; system_ is not
   Border system_;
-  double smallest_ = 0;  ///< singular value of what remains of system_
+  double smallest_ = 0;  ///< singular value of the Schur complement of system_
   int left_out_ = 0;
 };
 

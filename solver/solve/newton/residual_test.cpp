@@ -45,7 +45,7 @@ double natural_residual(const Problem& problem, const DiscreteAction& action, co
     const NodeEquations& nodes = action.nodes;
     if (nodes.first.empty()) continue;  // a sparse matrix
     const std::vector<double>& block = start ? nodes.first : nodes.last;
-    // Differences of neighbours are exact: with what couples them inertia drops out.
+    // Differences of neighbours are exact: with their coupling inertia drops out.
     const std::vector<double>& beside = start || path.elements() == 1 ? nodes.first_lower : nodes.last_lower;
     for (int b = 0; b < n; ++b) {
       const double stiffness = block[a * n + b] + beside[start ? b * n + a : a * n + b];

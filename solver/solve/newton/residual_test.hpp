@@ -6,7 +6,7 @@
 
 namespace extremal {
 
-/// What is left of the natural conditions where the action was evaluated last, at `path`: the largest
+/// The residual of the natural conditions where the action was evaluated last, at `path`: the largest
 /// |component| above the roundoff of its own row, which is that of the forces that it sums, by its own second
 /// derivatives, and what these make of a displacement of q. Coordinates may have masses of different orders.
 double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path,
@@ -23,7 +23,7 @@ class ResidualTest {
   /// the phase of a periodic path.
   bool passed(const Problem& problem, const NewtonIteration& newton, const Path& path, double allowed = 0);
 
-  /// What the last test found left, relative to the largest momentum.
+  /// The residual of the last test, relative to the largest momentum.
   double share() const { return share_; }
 
   /// Why the last test was not passed.

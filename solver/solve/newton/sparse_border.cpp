@@ -15,7 +15,7 @@ Eigen::Map<const Eigen::VectorXd> vector(std::span<const double> x) { return {x.
 
 }  // namespace
 
-/// Unit vectors along which the directions are independent: what is largest of each, the others' eliminated.
+/// Unit vectors along which the directions are independent: the largest entry of each, the others eliminated.
 void SparseBorder::hold(Eigen::MatrixXd directions) {
   directions_ = std::move(directions);
   for (auto direction : directions_.colwise()) direction.normalize();
@@ -86,7 +86,7 @@ Inertia SparseBorder::inertia(SparseSymmetric& a) const {
   if (h == 0) return result;
   const Eigen::MatrixXd s =
       schur(std::vector<double>(solved_.rows(), 0.0), 0).bottomRightCorner(2 * h, 2 * h);
-  // The last diagonal entries are zero where H is null along what is held.
+  // The last diagonal entries are zero where H is null along the directions held.
   const Eigen::VectorXd unit = s.rowwise().lpNorm<Eigen::Infinity>().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = unit.asDiagonal() * (s + s.transpose()) * unit.asDiagonal();
   const Eigen::VectorXd values = symmetric_eigenvalues(scaled);

@@ -19,7 +19,7 @@ namespace extremal {
 /// a border of more columns around a matrix that is not null there, without any perturbation.
 class SparseBorder {
  public:
-  /// The directions to be held, unknowns × count; replaces what there was.
+  /// The directions to be held, unknowns × count; in place of those before.
   void hold(Eigen::MatrixXd directions);
   int held() const { return static_cast<int>(directions_.cols()); }
   /// The unknowns of E.

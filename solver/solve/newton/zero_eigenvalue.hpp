@@ -13,8 +13,8 @@ namespace extremal {
 inline constexpr double zero_eigenvalue = Border::deflated_below;
 
 /// For the nullity along a path of extent `size` known to `error`: eigenvalues so small, relative to those of
-/// one element, or smaller count as zero. An error of the path changes them by about as much, relative; the
-/// ends feel by the number of elements less than what each adds and takes.
+/// one element, or smaller count as zero. An error of the path changes them by about as much, relative, and
+/// the Schur complement of the ends by the number of elements less.
 double zero_eigenvalue_along(double size, double error, int elements);
 
 /// For steps along a path of largest |q| `magnitude` known to `error`: larger eigenvalues, relative to the

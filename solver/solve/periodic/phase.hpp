@@ -6,7 +6,7 @@
 #include "action/path.hpp"
 #include "problem/problem.hpp"
 
-/// \file What a period leaves free of an orbit: where on it time begins.
+/// \file The phase of a periodic orbit: where on it time begins.
 
 namespace extremal {
 

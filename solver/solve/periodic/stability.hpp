@@ -9,7 +9,8 @@
 
 namespace extremal {
 
-/// How an orbit of a periodic problem closes, and what moves it; `relative_error` of its coordinates.
+/// How an orbit of a periodic problem closes, and the symmetries that move it; `relative_error` of its
+/// coordinates.
 ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, double relative_error);
 
 /// Distances along a solution of `size` above this are not zero.

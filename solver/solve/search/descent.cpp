@@ -13,9 +13,9 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Block = Eigen::Map<const Matrix>;
 
-/// Relative to the range: a longer step may land beyond what the guess is meant to pass.
+/// Relative to the range: a longer step may land beyond the barrier that the guess avoids.
 constexpr double longest_step = 0.3;
-/// The action must fall by this part of what its slope promises.
+/// The action must fall by this part of the decrease that its slope predicts.
 constexpr double sufficient = 1e-4;
 constexpr double shortest = 0x1p-40;
 /// Relative to the range: minima this well known let the ends of windows move; and an extremal.
@@ -46,7 +46,7 @@ bool Descent::find_windows() {
   return true;
 }
 
-/// Newton's step of what is not held.
+/// Newton's step of the nodes that are not held.
 void Descent::solve_windows() {
   DiscreteAction& action = w_.iteration.action();
   const NodeEquations& nodes = action.nodes;

@@ -8,8 +8,8 @@
 
 namespace extremal {
 
-/// Whether their distance is within their errors and the tolerance. What is small against `scale`, the size
-/// of the problem, is at rest.
+/// Whether their distance is within their errors and the tolerance. A path that is small against `scale`, the
+/// size of the problem, is at rest.
 bool same_path(const Solution& a, const Solution& b, double tolerance, double scale);
 
 /// Whether both belong to one continuum, by these numbers: the second variation of each is singular, and
@@ -17,8 +17,8 @@ bool same_path(const Solution& a, const Solution& b, double tolerance, double sc
 /// continuous symmetry.
 bool same_continuum(const Solution& a, const Solution& b, double tolerance);
 
-/// The same for orbits of an autonomous periodic problem, all of which have shifts of time: what symmetries,
-/// of time and of space, continuous or not, make of one orbit is one, if action, duration and
+/// The same for orbits of an autonomous periodic problem, all of which have shifts of time: images of one
+/// orbit under symmetries, of time and of space, continuous or not, are the same, if action, duration and
 /// energy agree.
 bool same_orbit(const Solution& a, const Solution& b, double tolerance);
 

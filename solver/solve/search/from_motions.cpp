@@ -18,7 +18,7 @@ constexpr double step_error = 1e-8;
 constexpr int most_integrator_steps = 1000, samples_a_step = 16;
 /// So many of its steps evaluate L about as often as one of Newton's.
 constexpr int steps_a_count = 8;
-/// What is added to the mean velocity, in turn: of the extent of the guess times the frequency along it.
+/// Added to the mean velocity, in turn: of the extent of the guess times the frequency along it.
 constexpr double speeds[] = {0.3, 1, 0.1, 2};
 /// Durations that are free, in turn: of the guess.
 constexpr double durations[] = {1, 0.7, 1.5};
@@ -93,7 +93,7 @@ bool Search::from_motion(const Guess& motion, double duration) {
 }
 
 /// A motion satisfies all but the end. The longer a path, the fewer lines come near one; and each extremal is
-/// tied to motions by the ends between. As much effort as all before: it finds what they do not.
+/// tied to motions by the ends between. As much effort as all before: it finds extremals that they miss.
 bool Search::from_motions() {
   const Duration& given = problem_.duration;
   if (problem_.periodic || problem_.ends.free > 0 || (given.free && !given.energy)) return false;

@@ -86,7 +86,7 @@ bool Search::mesh_of_motion() {
   return true;
 }
 
-/// A good guess is worth what elements keep of it. Whether those there were did not keep it.
+/// Elements that resolve a good guess; false if those there were do.
 bool Search::resolve_guess() {
   bool finer_found = false;
   const double goal =

@@ -14,7 +14,7 @@ namespace extremal {
 
 namespace {
 
-/// Newton steps from guesses, and those times unknowns of the first mesh: what they may cost.
+/// Newton steps from guesses, and those times unknowns of the first mesh: their cost.
 constexpr int most_steps = 4000;
 constexpr double most_work = 1e7;
 constexpr double least_steps = 100;
@@ -68,7 +68,7 @@ Search::Pursuit Search::pursue(const char* strategy) {
   }
   const bool converged = result == Refinement::Result::converged;
   const bool doubtful = converged ? !refinement_.confirmed() : refinement_.suspicious();
-  // What closes on itself has no ends to be conjugate.
+  // A closed orbit has no ends to be conjugate.
   const auto doubted = problem_.periodic ? Refinement::Result::failed : Refinement::Result::unreachable;
   if (converged && doubtful) return {doubted, doubtful};
   return {converged && acceptance_ ? accepted() : result, doubtful};
@@ -177,7 +177,7 @@ void Search::be_like(const Search& other) {
 
 void Search::renew(double share) { refinement_.allow(static_cast<int>(share * allowance_), share); }
 
-/// Cheapest first; but where the user has given a guess, what stays near it before noise.
+/// Cheapest first; but where the user has given a guess, paths near it before noise.
 bool Search::from_other_guesses(GuessKind guess) {
   if (guess == GuessKind::colliding && from_noise(collision_noises)) return true;
   if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&

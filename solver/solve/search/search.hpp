@@ -59,7 +59,7 @@ class Search {
     Refinement::Result result;
     bool doubtful;  ///< the equations were nearly singular
   };
-  /// What the search has tried or come to, for its message.
+  /// Routes tried and ends met, for the message.
   enum class Met { other_durations, noise, motions, equilibrium };
   static constexpr int most_first_elements = 1 << 12;
   /// Coarse elements may not resolve a family of extremals as it grows.

@@ -18,10 +18,10 @@ class Homotopy;
 
 /// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
 /// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
-/// that other durations and other ends make of it, which come past more of the problem's. What finds nothing
-/// new for as many steps as one solve may take ends the search. For a periodic problem, random loops that
-/// close as it asks take the place of arcs, and an orbit that closes after part of the time, so that it is
-/// run through several times, is left out.
+/// that other durations and other ends make of it, which come past more of the problem's. The search
+/// ends after as many steps as one solve may take without a new one. For a periodic problem, random loops
+/// that close as it asks take the place of arcs, and an orbit that closes after part of the time, so that it
+/// is run through several times, is left out.
 class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);
