@@ -127,25 +127,17 @@ void Branch::note_action() {
   momenta_.insert(momenta_.end(), action.end_gradient().begin(), action.end_gradient().end());
 }
 
-/// With H and t the second derivatives of S_h in x and in x and T, H δx + t δT = −g leaves one direction
-/// free. Two right-hand sides of the equation that would close it give two solutions, even where H is
-/// singular.
 bool Branch::linearise_duration(Factors factors) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   if (!evaluate(&closing_, factors)) return false;
-  const bool anew = factors == Factors::anew;
-  if (anew) energy_unit_ = std::abs(energy_) + std::abs(action_) / path_.duration();
-  if (energy_unit_ == 0) energy_unit_ = 1;
-  const bool by_energy = closing_.row.empty();
-  const auto solve = [&](double excess, Move& move) {
-    closing_.value = by_energy ? energy_ + excess * energy_unit_ : -excess * units_.extent;
-    model.solve(action, &closing_, move.step);
-    move.parameter = std::exchange(move.step.duration, 0);
-  };
-  solve(0, correction);
+  const bool anew = factors == Factors::anew, by_energy = closing_.row.empty();
+  if (anew) energy_unit_ = energy_unit(action, path_.duration());
+  closing_.value = by_energy ? energy_ : 0;
+  solve_with_duration(model, action, closing_, correction);
   if (anew) {
-    solve(1, direction);
+    closing_.value = by_energy ? energy_ + energy_unit_ : -units_.extent;
+    solve_with_duration(model, action, closing_, direction);
     direction.add(correction, -1);
   }
   along_ = by_energy ? energy_unit_ : energy_change(direction);

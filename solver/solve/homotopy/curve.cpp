@@ -1,6 +1,7 @@
 #include "solve/homotopy/curve.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace extremal {
 
@@ -30,6 +31,17 @@ bool BorderedSteps::solve(Factors factors) {
   if (along == 0) return false;
   curve.correction.add(curve.direction, -off / along);
   return true;
+}
+
+void solve_with_duration(QuadraticModel& model, const DiscreteAction& action, const ClosingEquation& closing,
+                         Move& move) {
+  model.solve(action, &closing, move.step);
+  move.parameter = std::exchange(move.step.duration, 0);
+}
+
+double energy_unit(const DiscreteAction& action, double duration) {
+  const double unit = std::abs(action.slope_duration()) + std::abs(action.action()) / duration;
+  return unit > 0 ? unit : 1;
 }
 
 TangentScale tangent_scale(const ExtremalCurve& curve, const Move* before, double sense) {

@@ -55,6 +55,15 @@ struct BorderedSteps {
   bool solve(Factors factors);
 };
 
+/// Where the duration T is the number that varies: with H and t the second derivatives of S_h in x and in x
+/// and T, H δx + t δT = −g leaves one direction free. Solutions with two right-hand sides of the equation
+/// that closes it differ by this direction, even where H is singular. Sets a move to one solution; its
+/// parameter is δT.
+void solve_with_duration(QuadraticModel& model, const DiscreteAction& action, const ClosingEquation& closing,
+                         Move& move);
+/// |E| + |S|/T, or 1 where that is zero: by so much the right-hand sides differ if the energy closes them.
+double energy_unit(const DiscreteAction& action, double duration);
+
 /// The direction of a curve by `scale` is its tangent of length one, onward from the tangent `before`, with
 /// which it makes an angle of this cosine. Without one before, `sense` is its sign.
 struct TangentScale {

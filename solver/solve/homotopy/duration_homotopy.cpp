@@ -63,22 +63,16 @@ DurationHomotopy::DurationHomotopy(const Problem& problem, Path& path, Workspace
   problem_.duration = {.value = wanted_, .free = true, .energy = 0, .where = {}};
 }
 
-/// With H and t the second derivatives of S_h in x and in x and T, H δx + t δT = −g leaves one direction
-/// free. Two right-hand sides of the equation that would close it give two solutions, even where H is
-/// singular.
 bool DurationHomotopy::solve_linearised(Move& correction, Move& direction) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   ClosingEquation closing;
   if (!model.evaluate(action, path_, &closing) || !action.finite()) return false;
-  const double energy = std::abs(action.slope_duration()) + std::abs(action.action()) / path_.duration();
-  const auto solve = [&](double excess, Move& move) {
-    closing.value = excess - action.slope_duration();
-    model.solve(action, &closing, move.step);
-    move.parameter = std::exchange(move.step.duration, 0);
-  };
-  solve(0, correction);
-  solve(energy > 0 ? energy : 1, direction);
+  const double energy = -action.slope_duration();
+  closing.value = energy;
+  solve_with_duration(model, action, closing, correction);
+  closing.value = energy_unit(action, path_.duration()) + energy;
+  solve_with_duration(model, action, closing, direction);
   direction.add(correction, -1);
   return true;
 }
