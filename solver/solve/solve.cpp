@@ -46,6 +46,7 @@ Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Work
   outcome.reduction = &reduction;
   outcome.message += fmt::format(" on 1/{} of the orbit, which symmetries continue", reduction.parts());
   std::swap(outcome.part, outcome.path);
+  std::swap(outcome.path, w.spare_whole);
   reconstruct_orbit(reduction, outcome.part, *outcome.tables, outcome.path);
   return outcome;
 }
@@ -85,11 +86,13 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   if (options.scheme) return completed(judged(problem, PinnedSolve(problem, recording, w).run()));
   int spent = 0;
   if (const Reduction* reduction = problem.reduction.get()) {
-    const Outcome outcome = solve_part(*reduction, recording, w);
+    Outcome outcome = solve_part(*reduction, recording, w);
     // If roundoff hides an extremal on its part, so it does on the whole.
     if (outcome.hidden) return completed(judged(reduction->part, outcome));
     if (outcome.status == Status::converged) {
       Solution solution = judged(problem, outcome);
+      std::swap(outcome.part, w.spare);
+      std::swap(outcome.path, w.spare_whole);
       if (solution.converged()) return completed(std::move(solution));
     }
     spent = outcome.iterations;

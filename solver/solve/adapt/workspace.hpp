@@ -25,7 +25,7 @@ struct Workspace {
   SecondVariation variation;
   Path other, raised;  ///< while a path moves to other elements
   Scratch scratch;
-  Path spare;                  ///< memory of the next Outcome
+  Path spare, spare_whole;     ///< memory of the next Outcome, and of an orbit of which that has a part
   std::vector<double> before;  ///< mesh nodes when the present elements were opened
   std::unique_ptr<SchemeTables> pinned_scheme;
   ElementTables pinned;
