@@ -21,7 +21,7 @@ inline Solution first_judged(const Problem& problem, const SolveOptions& options
 /// Expects of a solution after a refusal that integration, piece by piece, confirms it.
 inline void expect_verified(const Problem& problem, const Solution& s, double tolerance) {
   const Verification found = verify(problem, s.trajectory, {.tolerance = tolerance});
-  EXPECT_TRUE(found.verified) << s.strategy << ": " << found.message;
+  EXPECT_TRUE(found.verified) << s.strategy << ", " << s.error_estimate << ": " << found.message;
 }
 
 }  // namespace extremal::laws

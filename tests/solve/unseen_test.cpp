@@ -140,10 +140,10 @@ TEST(Unseen, WherePullsVanish) {
 TEST(Unseen, ScenesThatAreRefused) {
   const auto refused = [](const char* name) {
     const Study study = load(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/refused/" + name + ".toml");
-    const SolveOptions options = counted(study.options);
-    Solution first = first_judged(study.problem, options);
+    const SolveOptions& options = study.options;
+    Solution first = first_judged(study.problem, counted(options));
     EXPECT_FALSE(first.converged()) << name;
-    const Solution s = Solver().solve(study.problem, options);
+    const Solution s = Solver().solve(study.problem, counted(options));
     if (s.converged()) {
       EXPECT_NE(s.strategy, "newton from the guess") << name;
       expect_verified(study.problem, s, options.tolerance);

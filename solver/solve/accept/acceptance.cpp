@@ -28,11 +28,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void refuse(const Refusal& refusal, Solution& solution) {
-  solution.status = refusal.status;
-  solution.message = refusal.message;
-}
-
 /// Momenta, residual, index and nullity from one evaluation at the path, on the iteration's elements.
 void read_equations(const Problem& problem, const Path& path, const Outcome& outcome, NewtonIteration& newton,
                     Solution& solution) {
@@ -67,6 +62,13 @@ void read_path(const Problem& problem, const Path& path, const Outcome& outcome,
 struct Examined {
   Solution solution;
   std::optional<Survey> survey = {};
+  bool hopeless = false;
+
+  void refuse(const Refusal& refusal) {
+    solution.status = refusal.status;
+    solution.message = refusal.message;
+    hopeless = refusal.hopeless;
+  }
 };
 
 /// Reads a solution off a path, and refuses it where equations or elements fail.
@@ -82,13 +84,13 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
   read_path(problem, path, outcome, w, solution);
   if (const auto fails = equations_fail(problem, options, path, *outcome.tables, w.iteration, solution)) {
-    refuse(*fails, solution);
+    result.refuse(*fails);
     return result;
   }
   result.survey = observe_energy(*problem.lagrangian, solution);
   if (const auto fails =
           elements_fail(problem, options, outcome, path, result.survey, w.iteration.action(), solution))
-    refuse(*fails, solution);
+    result.refuse(*fails);
   return result;
 }
 
@@ -161,13 +163,18 @@ Solution without_path(const Solution& solution) {
   return refused;
 }
 
-}  // namespace
+/// A solution, or why there is none and whether another guess would help.
+struct Judged {
+  Solution solution;
+  bool hopeless;
+};
 
-Solution accept(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
+Judged judged(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
   const auto start = Clock::now();
   QuadratureCheck check;
   std::optional<Path> better;
-  Solution solution = examine_all(problem, options, found, w, better, check).solution;
+  Examined examined = examine_all(problem, options, found, w, better, check);
+  Solution& solution = examined.solution;
   const Path& path = better ? *better : found.path;
   if (solution.converged()) {
     const double distance = read_minimality(problem, options, w.variation, solution);
@@ -175,6 +182,7 @@ Solution accept(const Problem& problem, const SolveOptions& options, const Outco
     judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
+  const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
   if (!solution.converged()) solution = without_path(solution);
   solution.strategy = found.strategy;
   if (options.method != Method::newton)
@@ -182,19 +190,24 @@ Solution accept(const Problem& problem, const SolveOptions& options, const Outco
   solution.iterations = found.iterations;
   w.iteration.forget();
   solution.seconds_analyse = seconds_since(start);
-  return solution;
+  return {std::move(solution), examined.hopeless || conjugate};
+}
+
+}  // namespace
+
+Solution accept(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
+  return judged(problem, options, found, w).solution;
 }
 
 Acceptance::Acceptance(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem), options_(options), w_(workspace) {}
 
 Acceptance::Verdict Acceptance::judge(const Outcome& found) {
-  Solution solution = accept(problem_, options_, found, w_);
+  auto [solution, hopeless] = judged(problem_, options_, found, w_);
   seconds_ += solution.seconds_analyse;
   const bool accepted = solution.converged();
-  const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
   if (accepted || !solution_) solution_ = std::move(solution);
-  return accepted ? Verdict::accepted : conjugate ? Verdict::hopeless : Verdict::refused;
+  return accepted ? Verdict::accepted : hopeless ? Verdict::hopeless : Verdict::refused;
 }
 
 Solution Acceptance::result(const Outcome& last) {

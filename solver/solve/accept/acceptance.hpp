@@ -28,7 +28,7 @@ class Acceptance {
   enum class Verdict {
     accepted,
     refused,
-    hopeless,  ///< ends are conjugate: other guesses do not help
+    hopeless,  ///< and other guesses do not help
   };
   Verdict judge(const Outcome& found);
 

@@ -100,7 +100,9 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
             "a residual of {:.1e} of the largest momentum is left, more than momenta change by within "
             "the tolerance {:.1e}: forces all but vanish along the path, and there may be no extremal "
             "near; try another guess",
-            solution.residual, options.tolerance)};
+            solution.residual, options.tolerance),
+        // Orbits near rest: the smaller the next one is, the more roundoff hides of its residual.
+        problem.periodic};
   // Far away, where forces vanish, equations that have no solution leave hardly a residual.
   if (outcome.elsewhere && !problem.periodic && nullity > 0)
     return Refusal{

@@ -15,6 +15,7 @@ namespace extremal {
 struct Refusal {
   Status status;
   std::string message;
+  bool hopeless = false;  ///< other guesses would lead to a path as bad
 };
 
 /// Of the equations at the path that the iteration factored last and `solution` was read off: action and
