@@ -1,10 +1,13 @@
 # `make demo` and `make test` work on a fresh clone: what is missing is installed, then built.
 SCENE = problems/scenes/cr3bp.toml
+# Where `make install` installs; the program looks for system files there.
+PREFIX = /usr/local
 
-.PHONY: configure build demo test bench debug asan ubsan sanitize format install packages clean
+.PHONY: configure build demo test bench debug asan ubsan sanitize gallery reference format install packages clean
 
 configure: packages
-	@cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
+	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) >build/configure.log 2>&1 || { \
+	  cat build/configure.log; exit 1; }
 
 build: configure
 	@cmake --build --preset release
@@ -28,12 +31,21 @@ bench: build
 	@for name in $(filter-out never_wrong data,$(notdir $(patsubst %/,%,$(wildcard bench/*/)))); do \
 	  OPENBLAS_NUM_THREADS=1 build/release/bench/bench_$$name || exit 1; done
 
+# Pictures of all scenes and the page that shows them.
+gallery: configure
+	@cmake --build --preset release --target extremal_app
+	@problems/gallery build/release/extremal
+
+# The tables of keys in problems/README.md.
+reference: configure
+	@cmake --build --preset release --target test_house
+	@EXTREMAL_WRITE_REFERENCE=1 build/release/tests/test_house --gtest_filter='Reference.*'
+
 format:
 	@git ls-files -co --exclude-standard '*.hpp' '*.cpp' | xargs clang-format -i
 
-# PREFIX=/usr/local by default
 install: build
-	@cmake --install build/release $(if $(PREFIX),--prefix $(PREFIX))
+	@cmake --install build/release
 
 packages:
 	@mkdir -p build

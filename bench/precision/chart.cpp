@@ -1,6 +1,7 @@
 #include "chart.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -30,9 +31,10 @@ struct Points {
 constexpr double distinct = 0.7;
 
 /// Runs that no other run beats in both error and time, by falling error.
-Points front(const std::vector<Cell>& runs) {
+template <class Runs>
+Points front(const Runs& runs) {
   Points all, best;
-  for (const Cell& run : runs)
+  for (const Run& run : runs)
     if (run.converged()) all.error_time.emplace_back(run.error, 1e6 * run.seconds);
   std::sort(all.error_time.begin(), all.error_time.end());
   double least = INFINITY;
@@ -59,11 +61,15 @@ struct Look {
   double size, line;
 };
 constexpr Look ours_look{"#1F5FA8", 7, 0.5, 2.2};
+constexpr Look by_hand_look{"#C06A2B", 5, 0.42, 1.2};
 /// In the order of the peers' table, repeated if there are more.
-constexpr Look peer_looks[] = {
-    {"#C06A2B", 5, 0.42, 1.2}, {"#6B8E4E", 9, 0.55, 1.2}, {"#8A7AA8", 13, 0.6, 1.2}};
+constexpr Look peer_looks[] = {{"#6B8E4E", 9, 0.55, 1.2}, {"#8A7AA8", 13, 0.6, 1.2}};
 
-const Look& peer_look(std::size_t k) { return peer_looks[k % std::size(peer_looks)]; }
+/// Of the curves: this library, shooting by hand, the peers.
+const Look& look(std::size_t curve) {
+  if (curve < 2) return curve == 0 ? ours_look : by_hand_look;
+  return peer_looks[(curve - 2) % std::size(peer_looks)];
+}
 
 std::string plot_item(const std::string& data, const Look& look) {
   return fmt::format("${} using 1:2 with linespoints lc rgb '{}' lw {} pt {} ps {}", data, look.colour,
@@ -89,15 +95,15 @@ std::string legend(const Peers& peers, double height) {
       "set label 1 \"Time to reach an error\" at screen {:.5f},{:.5f} left font ',17' tc rgb '#23272F'\n",
       left_margin / width, (height - 25) / height);
   text += fmt::format(
-      "set label 3 \"other programs: measured apart, each at its best setting in hindsight\" at screen "
+      "set label 3 \"others at their best setting in hindsight; {} measured apart\" at screen "
       "{:.5f},{:.5f} right font ',11' tc rgb '#5A606B'\n",
-      (width - right_margin) / width, (height - 53) / height);
+      fmt::join(peers.names, " and "), (width - right_margin) / width, (height - 53) / height);
   double x = left_margin;
-  text += legend_entry(object, x, height, ours_look, "Extremal");
-  x += 110;
-  for (std::size_t k = 0; k < peers.names.size(); ++k) {
-    text += legend_entry(object, x, height, peer_look(k), peers.names[k] + (k == 0 ? ", DOP853" : ""));
-    x += k == 0 ? 155 : 110;
+  std::vector<std::string> names{"Extremal", "shooting by hand, DOP853"};
+  names.insert(names.end(), peers.names.begin(), peers.names.end());
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += legend_entry(object, x, height, look(k), names[k]);
+    x += k == 1 ? 205 : 110;
   }
   return text;
 }
@@ -117,7 +123,9 @@ std::string panel(int index, int rows, const std::string& title, const SceneReco
   const double left = left_margin + (index % columns) * (panel_width + gap);
   const double top = height - header - (index / columns) * panel_height - above;
   const double bottom = top - panel_height + above + below;
-  std::vector<Points> curves{front(scene.cells)};
+  std::vector<Run> by_hand = scene.single_by_hand.runs;
+  by_hand.insert(by_hand.end(), scene.multiple_by_hand.runs.begin(), scene.multiple_by_hand.runs.end());
+  std::vector<Points> curves{front(scene.cells), front(by_hand)};
   for (std::size_t k = 0; k < peers.names.size(); ++k) {
     curves.emplace_back();
     for (double error : peer_errors)
@@ -128,7 +136,7 @@ std::string panel(int index, int rows, const std::string& title, const SceneReco
   std::string text, items;
   for (std::size_t k = 0; k < curves.size(); ++k) text += block(fmt::format("d{}", k), curves[k]);
   for (std::size_t k = curves.size(); k-- > 0;)  // ours last, on top
-    items += (items.empty() ? "" : ", ") + plot_item(fmt::format("d{}", k), k ? peer_look(k - 1) : ours_look);
+    items += (items.empty() ? "" : ", ") + plot_item(fmt::format("d{}", k), look(k));
   text += fmt::format(
       "set lmargin at screen {:.5f}\nset rmargin at screen {:.5f}\nset tmargin at screen {:.5f}\n"
       "set bmargin at screen {:.5f}\nset label 2 \"{}\" at graph 0,1.07 left tc rgb '#23272F' font ',13'\n"

@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "by_hand.hpp"
 #include "chart.hpp"
+#include "command.hpp"
+#include "levels.hpp"
 #include "machine.hpp"
 #include "measure.hpp"
 #include "peers.hpp"
@@ -39,7 +42,7 @@ struct Options {
   std::vector<double> tolerances;
   std::string json, plot, python = "/usr/bin/python3";
   double budget = 0.1;
-  bool profile = false, alone = false;
+  bool profile = false, alone = false, levels = false;
 };
 
 std::vector<double> decades(bool slow) {
@@ -59,7 +62,9 @@ SceneRecord measure_scene(const BenchmarkScene& scene, const Options& options) {
     const Reference reference = read_reference(path + ".csv", study.problem.names);
     for (double tolerance : options.tolerances.empty() ? decades(scene.slow) : options.tolerances)
       record.cells.push_back(measure(study, tolerance, reference, options.budget));
-    if (!options.alone) measure_shooting(study.problem, reference, options.budget / 4, record);
+    if (options.alone) return record;
+    measure_by_hand(study, reference, options.budget / 16, record);
+    measure_shooting(study.problem, reference, options.budget / 4, record);
   } catch (const std::exception& e) {
     record.refusal = e.what();
   }
@@ -103,6 +108,16 @@ void compare_programs(const Options& options) {
   if (!options.plot.empty()) draw_chart(options.plot, records, peers);
 }
 
+/// This program with the options that concern the measurements.
+std::string command_of(const char* program, const Options& options) {
+  std::string command =
+      fmt::format("{} --budget {} --python {}", quoted(program), options.budget, quoted(options.python));
+  for (const std::string& scene : options.scenes) command += " --scene " + quoted(scene);
+  for (double tolerance : options.tolerances) command += fmt::format(" --tolerances {}", tolerance);
+  if (options.alone) command += " --alone";
+  return command;
+}
+
 }  // namespace
 }  // namespace bench
 
@@ -119,11 +134,14 @@ int main(int argc, char** argv) {
   app.add_option("--plot", options.plot, "SVG file for a chart of time against error; needs gnuplot");
   app.add_option("--python", options.python, "interpreter that has scipy");
   app.add_flag("--alone", options.alone, "without shooting and scipy");
+  app.add_flag("--levels", options.levels, "all of it at each SIMD level of this processor, side by side");
   app.add_flag("--profile", options.profile, "only where the time of a solve goes; tolerance 1e-8");
   CLI11_PARSE(app, argc, argv);
   try {
     if (options.profile)
       bench::profile_scenes(options);
+    else if (options.levels)
+      bench::compare_levels(bench::command_of(argv[0], options), options.json);
     else
       bench::compare_programs(options);
     return 0;

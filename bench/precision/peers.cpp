@@ -51,6 +51,7 @@ Peers read_peers(const std::string& path) {
   Peers peers;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
+    if (!peers.times.empty() && line.empty()) break;  // the end of the first table
     if (!line.starts_with("| ") || line.starts_with("| ---")) continue;
     std::vector<std::string> cells = split(line, '|');  // with an empty one before and after
     const std::vector<std::string> inner(cells.begin() + 2, cells.end() - 1);

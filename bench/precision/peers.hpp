@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// \file Figures of programs that were measured elsewhere, read from the table of bench/data/README.md.
+/// \file Figures of programs that were measured elsewhere, read from the first table of bench/data/README.md.
 
 namespace bench {
 

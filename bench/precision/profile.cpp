@@ -91,7 +91,7 @@ void resample(const extremal::Trajectory& trajectory, const Stage& stage,
 /// The tape alone, over the points of all batches.
 double time_tape(const extremal::Lagrangian& lagrangian, const extremal::Trajectory& trajectory,
                  const extremal::ElementTables& tables, int batches) {
-  const int count = tables.shape().points * extremal::lanes;
+  const int count = tables.shape().points * extremal::simd_lanes();
   const std::size_t n = trajectory.coordinates;
   extremal::AlignedDoubles q(n * count), v(n * count), t(count),
       out(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * count);

@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 Json object(const Run& run) {
   Json result{{"tolerance", run.tolerance}, {"seconds", run.seconds}};
   if (run.segments > 0) result["segments"] = run.segments;
+  if (run.loose > 0) result["loose"] = run.loose;
   if (run.converged())
     result["error"] = run.error;
   else
@@ -54,9 +55,14 @@ Json object(const SceneRecord& scene) {
     return result;
   }
   result["runs"] = list(scene.cells);
-  for (double error : compared_errors)
-    if (const auto seconds = time_at_error(scene.cells, error))
-      result["seconds_at_error"][fmt::format("{:.0e}", error)] = *seconds;
+  result["boundary"] = scene.boundary;
+  for (double error : compared_errors) {
+    const std::string key = error_key(error);
+    if (const auto seconds = time_at_error(scene.cells, error)) result["seconds_at_error"][key] = *seconds;
+    if (const auto seconds = best_rival(scene, error)) result["rival_seconds_at_error"][key] = *seconds;
+  }
+  result["single_shooting_by_hand"] = object(scene.single_by_hand);
+  result["multiple_shooting_by_hand"] = object(scene.multiple_by_hand);
   result["single_shooting"] = object(scene.single);
   result["multiple_shooting"] = object(scene.multiple);
   result["scipy"] = object(scene.scipy);
@@ -64,6 +70,8 @@ Json object(const SceneRecord& scene) {
 }
 
 }  // namespace
+
+std::string error_key(double error) { return fmt::format("{:.0e}", error); }
 
 void write_record(const std::string& path, const Machine& machine, const std::vector<SceneRecord>& scenes) {
   Json root{{"processor", machine.processor},
@@ -73,8 +81,12 @@ void write_record(const std::string& path, const Machine& machine, const std::ve
             {"simd", machine.simd}};
   root["scenes"] = Json::array();
   for (const SceneRecord& scene : scenes) root["scenes"].push_back(object(scene));
+  write_text(path, root.dump(1) + "\n");
+}
+
+void write_text(const std::string& path, const std::string& text) {
   std::ofstream file(path);
-  file << root.dump(1) << "\n";
+  file << text;
   if (!file.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", path));
 }
 

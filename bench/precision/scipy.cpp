@@ -2,32 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 
+#include "command.hpp"
+
 namespace bench {
-namespace {
-
-std::string quoted(const std::string& word) {
-  std::string result = "'";
-  for (char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
-/// What a command writes to its standard output; `exit` is its exit status.
-std::string output_of(const std::string& command, int& exit) {
-  std::string text;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) return text;
-  char block[4096];
-  for (std::size_t count; (count = std::fread(block, 1, sizeof block, pipe)) > 0;) text.append(block, count);
-  exit = pclose(pipe);
-  return text;
-}
-
-}  // namespace
-
 std::string measure_scipy(const std::string& python, const std::string& script, const std::string& data,
                           std::vector<SceneRecord>& scenes) {
   std::string command =

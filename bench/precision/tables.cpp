@@ -6,44 +6,16 @@
 #include <functional>
 #include <map>
 
+#include "geometric_mean.hpp"
+
 namespace bench {
 namespace {
-
-/// Errors that the means are taken over.
-constexpr double mean_errors[] = {1e-8, 1e-11};
-
-std::string microseconds(std::optional<double> seconds) {
-  if (!seconds) return "-";
-  const double us = 1e6 * *seconds;
-  return fmt::format("{:.{}f}", us, us < 100 ? 1 : 0);
-}
 
 /// Marks what is outside the factor promised, and what is far outside.
 std::string honesty_text(const Cell& cell) {
   const double decades = std::abs(std::log10(cell.honesty()));
   const char* mark = decades <= 1 ? "  " : decades <= 2 ? " !" : "!!";
   return fmt::format("{:>8.3g}{}", cell.honesty(), mark);
-}
-
-class GeometricMean {
- public:
-  /// Another's time over ours, where both are known.
-  void add(std::optional<double> other, std::optional<double> ours) {
-    if (!other || !ours) return;
-    sum_ += std::log(*other / *ours), ++count_, slower_ += *other < *ours;
-  }
-  std::string text() const {
-    if (count_ == 0) return "none";
-    return fmt::format("{:.2f} over {} cells, below 1 in {}", std::exp(sum_ / count_), count_, slower_);
-  }
-
- private:
-  double sum_ = 0;
-  int count_ = 0, slower_ = 0;
-};
-
-std::string ratio(std::optional<double> other, std::optional<double> ours) {
-  return other && ours ? fmt::format("{:.2f}", *other / *ours) : "-";
 }
 
 /// Of the peers measured apart; nothing where none has a time.
@@ -58,32 +30,35 @@ std::optional<double> best_peer(const Peers& peers, const std::string& scene, do
 struct Times {
   Times(const SceneRecord& scene, const Peers& peers, double error)
       : ours(time_at_error(scene.cells, error)),
-        single(time_at_error(scene.single.runs, error)),
-        multiple(time_at_error(scene.multiple.runs, error)),
-        scipy(time_at_error(scene.scipy.runs, error)),
-        peer(best_peer(peers, scene.name, error)) {}
-  std::optional<double> shooting() const { return least({single, multiple}); }
-  std::optional<double> best() const { return least({single, multiple, scipy, peer}); }
+        best(best_rival(scene, error)),
+        peer(best_peer(peers, scene.name, error)) {
+    for (const Rival* rival : scene.rivals()) rivals.push_back(time_at_error(rival->runs, error));
+  }
 
-  std::optional<double> ours, single, multiple, scipy, peer;
+  std::optional<double> ours, best, peer;
+  std::vector<std::optional<double>> rivals;  ///< of this run, as SceneRecord::rivals() names them
 };
 
 void print_error(const std::vector<SceneRecord>& scenes, const Peers& peers, double error) {
-  fmt::print("\nTime at error {:.0e}, microseconds\n{:<20}{:>9} |{:>9}{:>9}{:>9} |", error, "", "extremal",
-             "single", "multiple", "scipy");
+  fmt::print("\nTime at error {:.0e}, microseconds\n{:<18}{:>9} |{:>18} |{:>18}\n", error, "", "",
+             "shooting by hand", "general shooting");
+  fmt::print("{:<18}{:>9} |{:>9}{:>9} |{:>9}{:>9}{:>9} |", "", "extremal", "single", "multiple", "single",
+             "multiple", "scipy");
   for (const std::string& name : peers.names) fmt::print("{:>10}", name);
-  fmt::print(" |{:>10}{:>10}\n", "best peer", "shooting");
+  fmt::print(" |{:>11}{:>10}\n", "best rival", "best peer");
   int reached = 0, solved = 0;
   for (const SceneRecord& scene : scenes) {
     if (!scene.refusal.empty()) continue;
     const Times times(scene, peers, error);
     ++solved;
     reached += times.ours.has_value();
-    fmt::print("{:<20}{:>9} |{:>9}{:>9}{:>9} |", scene.name, microseconds(times.ours),
-               microseconds(times.single), microseconds(times.multiple), microseconds(times.scipy));
+    fmt::print("{:<18}{:>9} |", scene.name, microseconds(times.ours));
+    for (std::size_t k = 0; k < times.rivals.size(); ++k)
+      fmt::print("{}{:>9}", k == 2 ? " |" : "", microseconds(times.rivals[k]));
+    fmt::print(" |");
     for (std::size_t k = 0; k < peers.names.size(); ++k)
       fmt::print("{:>10}", microseconds(peer_time(peers, scene.name, k, error)));
-    fmt::print(" |{:>10}{:>10}\n", ratio(times.peer, times.ours), ratio(times.shooting(), times.ours));
+    fmt::print(" |{:>11}{:>10}\n", ratio(times.best, times.ours), ratio(times.peer, times.ours));
   }
   fmt::print("reached in {} of {} scenes\n", reached, solved);
 }
@@ -106,6 +81,16 @@ void print_runs(const Rival& rival) {
 
 }  // namespace
 
+std::string microseconds(std::optional<double> seconds) {
+  if (!seconds) return "-";
+  const double us = 1e6 * *seconds;
+  return fmt::format("{:.{}f}", us, us < 100 ? 1 : 0);
+}
+
+std::string ratio(std::optional<double> other, std::optional<double> ours) {
+  return other && ours ? fmt::format("{:.2f}", *other / *ours) : "-";
+}
+
 void print_scene(const SceneRecord& scene) {
   fmt::print("\n{}\n", scene.name);
   if (!scene.refusal.empty()) {
@@ -124,21 +109,24 @@ void print_scene(const SceneRecord& scene) {
                cell.elements, cell.degree, cell.iterations, microseconds(cell.seconds), cell.error,
                cell.error / cell.allowed, cell.estimate, honesty_text(cell), cell.velocity_error);
   }
-  for (const Rival* rival : {&scene.single, &scene.multiple, &scene.scipy}) print_runs(*rival);
+  for (const Rival* rival : scene.rivals()) print_runs(*rival);
 }
 
 void print_summary(const std::vector<SceneRecord>& scenes, const Peers& peers) {
   fmt::print(
       "\nTime at error E: the fastest of all runs whose true error is at most E.\n"
-      "Left, in this run: single and multiple shooting, general, on the same tapes, and scipy's solve_bvp.\n"
-      "Right: programs with equations coded by hand, measured separately on the same kind of machine.\n"
-      "All with the setting that is best in hindsight (bench/data/README.md).\n"
-      "Last two columns: their time over ours.\n");
+      "Rivals in this run: shooting with equations coded by hand, general shooting on the tapes of this "
+      "library,\n"
+      "and scipy's solve_bvp, each with the setting that is best in hindsight. Peers were measured "
+      "separately.\n"
+      "Last two columns: the time of the best rival of this run, and of the best peer, over ours.\n");
   for (double error : compared_errors) print_error(scenes, peers, error);
 }
 
 void print_means(const std::vector<SceneRecord>& scenes, const Peers& peers) {
-  GeometricMean peer, single, multiple, shooting, scipy, best;
+  GeometricMean best, peer;
+  const SceneRecord names;
+  std::vector<GeometricMean> rivals(names.rivals().size());
   int problems = 0, cells = 0, reached = 0;
   for (const SceneRecord& scene : scenes) {
     if (!scene.boundary || !scene.refusal.empty()) continue;
@@ -147,24 +135,20 @@ void print_means(const std::vector<SceneRecord>& scenes, const Peers& peers) {
       const Times times(scene, peers, error);
       ++cells;
       reached += times.ours.has_value();
+      best.add(times.best, times.ours);
       peer.add(times.peer, times.ours);
-      single.add(times.single, times.ours);
-      multiple.add(times.multiple, times.ours);
-      shooting.add(times.shooting(), times.ours);
-      scipy.add(times.scipy, times.ours);
-      best.add(times.best(), times.ours);
+      for (std::size_t k = 0; k < rivals.size(); ++k) rivals[k].add(times.rivals[k], times.ours);
     }
   }
   fmt::print("\nErrors 1e-08 and 1e-11, {} boundary problems: {} of {} cells reached\n", problems, reached,
              cells);
   fmt::print("Geometric means of another's time over ours\n");
-  for (const auto& [name, mean] : {std::pair("best peer measured apart", &peer),
-                                   {"single shooting, this run", &single},
-                                   {"multiple shooting, this run", &multiple},
-                                   {"better shooting, this run", &shooting},
-                                   {"scipy, this run", &scipy},
-                                   {"best of all of these", &best}})
-    fmt::print("  {:<28} {}\n", name, mean->text());
+  const auto line = [](const std::string& name, const GeometricMean& mean) {
+    fmt::print("  {:<28} {}\n", name, mean.text());
+  };
+  line("best rival of this run", best);
+  for (std::size_t k = 0; k < rivals.size(); ++k) line(names.rivals()[k]->name, rivals[k]);
+  line("best peer measured apart", peer);
 }
 
 void print_honesty(const std::vector<SceneRecord>& scenes) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "peers.hpp"
@@ -8,6 +10,11 @@
 /// \file What was measured, as text on standard output.
 
 namespace bench {
+
+/// "-" where there is none.
+std::string microseconds(std::optional<double> seconds);
+/// Of another's time to ours.
+std::string ratio(std::optional<double> other, std::optional<double> ours);
 
 /// One line a tolerance.
 void print_scene(const SceneRecord& scene);

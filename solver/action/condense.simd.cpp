@@ -163,9 +163,7 @@ void take_single(const FrontView& f, const FrontTarget& t, int rows, const doubl
   }
 }
 
-/// Rows too short for the memset that the compiler would make of them.
-__attribute__((optimize("no-tree-loop-distribute-patterns"))) void clear_triangle(double* matrix, int size,
-                                                                                  int rows) {
+inline void clear_triangle(double* matrix, int size, int rows) {
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < (i < size ? i + 1 : size); ++j)
       group(matrix, static_cast<long>(i) * size + j) = Vec{};
@@ -294,7 +292,6 @@ void expand_step(const FrontView* fronts, int front_count, const double* matrix,
 
 }  // namespace
 
-extern const Elimination elimination;
-const Elimination elimination = {clear, condense, reduce, expand_step, scatter};
+Elimination elimination_kernels() { return {clear, condense, reduce, expand_step, scatter}; }
 
 }  // namespace extremal::EXTREMAL_LEVEL

@@ -24,13 +24,13 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   border_ = border;
   n_ = tables.coordinates();
   elements_ = elements;
-  batches_ = (elements + lanes - 1) / lanes;
+  batches_ = (elements + lanes_ - 1) / lanes_;
   inner_ = tables.inner();
   unknowns_ = tables.unknowns();
   condensation_ = condense ? &tables.condensation() : nullptr;
   const std::size_t m = unknowns_, groups = condense ? condensation_->fronts.groups() : 0;
-  sizes_ = {groups * lanes, m * lanes, static_cast<std::size_t>(tables.shape().points) * lanes,
-            static_cast<std::size_t>(of_ends + 2 * n_) * lanes};
+  sizes_ = {groups * lanes_, m * lanes_, static_cast<std::size_t>(tables.shape().points) * lanes_,
+            static_cast<std::size_t>(of_ends + 2 * n_) * lanes_};
   set_desks(condense);
   // Memory that grows only: what a smaller action leaves need not be cleared for the next.
   const auto provide = [](AlignedDoubles& x, std::size_t size) {
@@ -54,7 +54,7 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
 void DiscreteAction::substitute(const Lagrangian& lagrangian, const ElementTables& tables) {
   lagrangian_ = &lagrangian;
   tables_ = &tables;
-  sizes_.points = static_cast<std::size_t>(tables.shape().points) * lanes;
+  sizes_.points = static_cast<std::size_t>(tables.shape().points) * lanes_;
   for (Desk& desk : desks_) make_room(desk);
 }
 
@@ -72,7 +72,7 @@ void DiscreteAction::make_room(Desk& desk) const {
   desk.v.resize(tables_->shape().velocity_free ? 0 : n_ * sizes_.points);
   desk.t.resize(sizes_.points);
   desk.rows.resize(lagrangian_->rows(Order::hessian) * sizes_.points);
-  desk.work.resize(2 * sizes_.vector + 2 * lanes);
+  desk.work.resize(2 * sizes_.vector + 2 * lanes_);
 }
 
 /// evaluate(desk, b) for each batch in any order, gather(b) from the first to the last: sums do not depend on
@@ -171,20 +171,20 @@ void DiscreteAction::reduce_gradient(const Path& path) {
 }
 
 /// ∂²S/∂x∂T and ∂²S/∂T² from those with the elements' lengths: d/dT = Σ (h_k/T) ∂/∂h_k.
-void DiscreteAction::evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient,
-                                     double* row, double* corner) {
-  assembly_->border(tables_->shape(), elements, gradient, row, corner);
-  for (int lane = 0; lane < lanes; ++lane) {
+void DiscreteAction::evaluate_border(const Path& path, const ElementBatch& elements, double* row,
+                                     double* corner) {
+  assembly_->border(tables_->shape(), elements, row, corner);
+  for (int lane = 0; lane < lanes_; ++lane) {
     const double share = elements.h[lane] / path.duration();
     corner[lane] *= share * share;
-    for (int u = 0; u < unknowns_; ++u) row[u * lanes + lane] *= share;
+    for (int u = 0; u < unknowns_; ++u) row[u * lanes_ + lane] *= share;
   }
 }
 
 void DiscreteAction::visit(const Path& path, bool hessian,
                            const std::function<void(int batch, const BatchValues&)>& use) {
   clear_sums();
-  const std::size_t count = hessian ? tables_->entries().row.size() * lanes : 0;
+  const std::size_t count = hessian ? tables_->entries().row.size() * lanes_ : 0;
   entries_.resize(std::max(entries_.size(), count));
   Desk& desk = desks_.front();
   for (int b = 0; b < batches_; ++b) {
@@ -196,7 +196,7 @@ void DiscreteAction::visit(const Path& path, bool hessian,
     if (hessian) {
       std::fill_n(entries_.begin(), count, 0.0);
       assembly_->hessian(tables_->shape(), elements, tables_->entries().slots.data(), entries_.data());
-      if (border_) evaluate_border(path, elements, gradient, row, corner);
+      if (border_) evaluate_border(path, elements, row, corner);
     }
     use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr, corner});
   }
@@ -213,7 +213,7 @@ void DiscreteAction::condense(const Path& path, int b, Desk& desk) {
   if (extended_ready_) take_extended(b, gradient);
   elimination_->clear(fronts.data(), fronts.count(), matrix(b), fronts.ends(), 2 * n_);
   assembly_->hessian(tables_->shape(), elements, condensation_->slots.data(), matrix(b));
-  if (border_) evaluate_border(path, elements, gradient, gradient + sizes_.vector, sums(b, of_corner));
+  if (border_) evaluate_border(path, elements, gradient + sizes_.vector, sums(b, of_corner));
   elimination_->condense(fronts.data(), fronts.count(), matrix(b), fronts.ends(), 2 * n_, gradient,
                          1 + border_, inverses_.data() + b * sizes_.vector, sums(b, of_negative),
                          sums(b, of_ratio), desk.work.data());
@@ -232,10 +232,10 @@ void DiscreteAction::evaluate(const Path& path) {
     gather(path, b);
     gather_pivots(b);
     gather_gradient(b);
-    n_ < lanes ? gather_schur(b) : gather_large_schur(b);
+    n_ < most_lanes ? gather_schur(b) : gather_large_schur(b);
     if (border_) gather_border(b);
   });
-  if (n_ >= lanes) mirror_blocks();
+  if (n_ >= most_lanes) mirror_blocks();
   finish_sums();
 }
 
@@ -243,13 +243,13 @@ void DiscreteAction::expand_step(std::span<const double> node_step, double durat
                                  AlignedDoubles& step) const {
   const Fronts& fronts = condensation_->fronts;
   step.resize(batches_ * sizes_.vector);
-  alignas(64) double step_h[lanes];
-  std::fill_n(step_h, lanes, duration_step);
+  alignas(64) double step_h[most_lanes];
+  std::fill_n(step_h, lanes_, duration_step);
   for (int b = 0; b < batches_; ++b) {
-    double *x = step.data() + b * sizes_.vector, *ends = x + static_cast<std::size_t>(inner_) * lanes;
-    for (int lane = 0; lane < lanes; ++lane) {
-      const std::size_t k = std::min(b * lanes + lane, elements_ - 1);
-      for (int a = 0; a < 2 * n_; ++a) ends[a * lanes + lane] = node_step[k * n_ + a];
+    double *x = step.data() + b * sizes_.vector, *ends = x + static_cast<std::size_t>(inner_) * lanes_;
+    for (int lane = 0; lane < lanes_; ++lane) {
+      const std::size_t k = std::min(b * lanes_ + lane, elements_ - 1);
+      for (int a = 0; a < 2 * n_; ++a) ends[a * lanes_ + lane] = node_step[k * n_ + a];
     }
     const double* gradient = reduced(b);
     elimination_->expand_step(fronts.data(), fronts.count(), matrix(b), inverses_.data() + b * sizes_.vector,
@@ -259,19 +259,19 @@ void DiscreteAction::expand_step(std::span<const double> node_step, double durat
 
 void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> hessian,
                                      std::span<double> gradient) {
-  const int b = k / lanes, lane = k % lanes;
+  const int b = k / lanes_, lane = k % lanes_;
   Desk& desk = desks_.front();
   const ElementBatch elements = batch(path, b, desk);
   play(elements, Order::hessian, desk);
   const ElementTables::Entries& entries = tables_->entries();
-  AlignedDoubles values(entries.row.size() * lanes), sums(lanes);
+  AlignedDoubles values(entries.row.size() * lanes_), sums(lanes_);
   assembly_->gradient(tables_->shape(), elements, sums.data(), desk.work.data(), nullptr);
   assembly_->hessian(tables_->shape(), elements, entries.slots.data(), values.data());
-  for (int i = 0; i < unknowns_; ++i) gradient[i] = desk.work[i * lanes + lane];
+  for (int i = 0; i < unknowns_; ++i) gradient[i] = desk.work[i * lanes_ + lane];
   std::fill(hessian.begin(), hessian.end(), 0.0);
   for (std::size_t e = 0; e < entries.row.size(); ++e)
     hessian[static_cast<std::size_t>(entries.row[e]) * unknowns_ + entries.column[e]] =
-        values[e * lanes + lane];
+        values[e * lanes_ + lane];
 }
 
 /// M, C and a do not depend on active parameters: what does is a Lagrangian of its own, ∂R/∂p.
@@ -289,7 +289,7 @@ double DiscreteAction::parameter_slope(const Path& path, int parameter, AlignedD
                              desk.scratch);
     double* const action = sums(b, of_action);
     assembly_->gradient(shape, elements, action, mixed.data() + b * sizes_.vector, nullptr);
-    for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) sum += action[lane];
+    for (int lane = 0; lane < std::min(lanes_, elements_ - b * lanes_); ++lane) sum += action[lane];
   }
   return sum;
 }

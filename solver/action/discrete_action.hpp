@@ -34,7 +34,7 @@ struct NodeEquations {
   double pivot_ratio = 1;  ///< least pivot against the entry it came from
 };
 
-/// The uncondensed values of eight elements, a lane each.
+/// The uncondensed values of a batch of elements, a lane each.
 struct BatchValues {
   const double* gradient;  ///< over the m local unknowns
   const double* entries;   ///< Hessian, as ElementTables::entries lists it; null without Hessian
@@ -105,7 +105,7 @@ class DiscreteAction {
   /// Entry (i, j), i >= j, of the Hessian of element k in (q_a, q_b), 2n × 2n, as evaluate() condensed it.
   double condensed(int k, int i, int j) const {
     const std::size_t place = condensation_->fronts.ends() + std::size_t(i) * 2 * n_ + j;
-    return matrix(k / lanes)[place * lanes + k % lanes];
+    return matrix(k / lanes_)[place * lanes_ + k % lanes_];
   }
 
   /// ∂x_u/∂x_e of inner unknown u of element k by the ends e (q_a, then q_b), at fields[u*2n + e], by the
@@ -123,8 +123,8 @@ class DiscreteAction {
   };
   /// What a batch leaves to be summed up, in lanes; the gradient at the ends of the elements last.
   enum Sum { of_action, of_slope, of_corner, of_negative, of_ratio, of_residual, of_ends };
-  double* sums(int b, Sum sum) { return sums_.data() + b * sizes_.sums + sum * lanes; }
-  const double* sums(int b, Sum sum) const { return sums_.data() + b * sizes_.sums + sum * lanes; }
+  double* sums(int b, Sum sum) { return sums_.data() + b * sizes_.sums + sum * lanes_; }
+  const double* sums(int b, Sum sum) const { return sums_.data() + b * sizes_.sums + sum * lanes_; }
   /// What one batch is evaluated on; each thread has its own.
   struct Desk {
     Scratch scratch;
@@ -137,8 +137,7 @@ class DiscreteAction {
   void condense(const Path& path, int b, Desk& desk);
   void set_desks(bool condense);
   void make_room(Desk& desk) const;
-  void evaluate_border(const Path& path, const ElementBatch& elements, const double* gradient, double* row,
-                       double* corner);
+  void evaluate_border(const Path& path, const ElementBatch& elements, double* row, double* corner);
   void assemble_gradient(const ElementBatch& elements, int b, double* gradient);
   void keep_gradient(int b, const double* gradient);
   const ExtendedGradient::Values& taken() const { return changed_ ? extended_.change() : extended_.values(); }
@@ -170,6 +169,7 @@ class DiscreteAction {
   const Assembly* assembly_ = nullptr;
   const Elimination* elimination_ = nullptr;
   const ElementTables::Condensation* condensation_ = nullptr;
+  int lanes_ = simd_lanes();
   int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
   bool border_ = false, finite_ = false;
   bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path

@@ -5,39 +5,14 @@
 
 namespace extremal {
 
-namespace base {
-extern const Assembly assembly;
-extern const Elimination elimination;
-}  // namespace base
-namespace v3 {
-extern const Assembly assembly;
-extern const Elimination elimination;
-}  // namespace v3
-namespace v4 {
-extern const Assembly assembly;
-extern const Elimination elimination;
-}  // namespace v4
-
 const Assembly& assembly() {
-  switch (simd_level()) {
-    case SimdLevel::base:
-      return base::assembly;
-    case SimdLevel::v3:
-      return v3::assembly;
-    default:
-      return v4::assembly;
-  }
+  static const Assembly chosen = at_simd_level(EXTREMAL_AT_EACH_LEVEL(assembly_kernels))();
+  return chosen;
 }
 
 const Elimination& elimination() {
-  switch (simd_level()) {
-    case SimdLevel::base:
-      return base::elimination;
-    case SimdLevel::v3:
-      return v3::elimination;
-    default:
-      return v4::elimination;
-  }
+  static const Elimination chosen = at_simd_level(EXTREMAL_AT_EACH_LEVEL(elimination_kernels))();
+  return chosen;
 }
 
 }  // namespace extremal

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "machine/simd.hpp"
+
 /// \file The innermost loops of the method: eight elements side by side, one a lane. Plain data only,
 /// because the same header serves the kernels of every instruction set.
 ///
@@ -75,12 +77,13 @@ struct Assembly {
                    double* slope_h);
   /// Adds the lower triangle of the Hessian: contribution by contribution to the places `slots` (tables.hpp).
   void (*hessian)(const ElementShape&, const ElementBatch&, const int* slots, double* matrix);
-  /// ∂²L_d/∂x∂h (m) and ∂²L_d/∂h². `gradient` is what `gradient` returned.
-  void (*border)(const ElementShape&, const ElementBatch&, const double* gradient, double* row,
-                 double* corner);
+  /// ∂²L_d/∂x∂h (m) and ∂²L_d/∂h².
+  void (*border)(const ElementShape&, const ElementBatch&, double* row, double* corner);
 };
 
-/// That of the instruction set in use.
+EXTREMAL_DECLARE_AT_EACH_LEVEL(Assembly assembly_kernels())
+
+/// Those of the level in use.
 const Assembly& assembly();
 
 }  // namespace extremal

@@ -195,7 +195,7 @@ void hessian(const ElementShape& s, const ElementBatch& b, const int* slot, doub
 
 /// With q' = (…)/h at fixed unknowns, ∂q'/∂h = −q'/h, and L_d = h Σ b_i L_i gives
 ///   ∂²L_d/∂x∂h = Σ b_i [φ (L_q − L_qv q') − φ' L_vv q'/h],   ∂²L_d/∂h² = Σ b_i q'ᵀL_vv q'/h.
-void border(const ElementShape& s, const ElementBatch& b, const double*, double* out, double* corner) {
+void border(const ElementShape& s, const ElementBatch& b, double* out, double* corner) {
   const int n = s.n;
   const Vec h = at(b.h), rate = 1.0 / h;
   for (int k = 0; k < s.functions * n; ++k) group(out, k) = broadcast(0);
@@ -234,7 +234,6 @@ void border(const ElementShape& s, const ElementBatch& b, const double*, double*
 
 }  // namespace
 
-extern const Assembly assembly;
-const Assembly assembly = {expand, gradient, hessian, border};
+Assembly assembly_kernels() { return {expand, gradient, hessian, border}; }
 
 }  // namespace extremal::EXTREMAL_LEVEL

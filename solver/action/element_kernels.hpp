@@ -6,9 +6,7 @@
 
 namespace extremal::EXTREMAL_LEVEL {
 
-static constexpr int lanes = 8;
-
-/// Group k of eight.
+/// Group k: one value for each element of the batch.
 static inline const Vec& group(const double* p, long k) { return at(p + lanes * k); }
 static inline Vec& group(double* p, long k) { return at(p + lanes * k); }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "machine/simd.hpp"
+
 /// \file Elimination of the inner unknowns of eight elements side by side. Plain data only, because the same
 /// header serves the kernels of every instruction set.
 ///
@@ -52,7 +54,9 @@ struct Elimination {
   void (*scatter)(const double* groups, int count, int used, bool add, double* const* to);
 };
 
-/// That of the instruction set in use.
+EXTREMAL_DECLARE_AT_EACH_LEVEL(Elimination elimination_kernels())
+
+/// Those of the level in use.
 const Elimination& elimination();
 
 }  // namespace extremal

@@ -103,6 +103,7 @@ ExtendedGradient::Element::Element(const ExtendedGradient& rules, const Lagrangi
 
 /// The unknowns of element k.
 void ExtendedGradient::Element::load(int k) {
+  const int lanes = path.lanes();
   const std::size_t first = static_cast<std::size_t>(k) * n,
                     lane = static_cast<std::size_t>(k / lanes) * (degree + 1) * n * lanes + k % lanes;
   for (int a = 0; a < n; ++a) {

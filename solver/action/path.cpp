@@ -13,15 +13,15 @@ void Path::reset(const ElementTables& tables, std::span<const double> mesh, doub
   degree_ = tables.scheme().degree;
   unknowns_ = tables.unknowns();
   elements_ = static_cast<int>(mesh.size()) - 1;
-  batches_ = (elements_ + lanes - 1) / lanes;
+  batches_ = (elements_ + lanes_ - 1) / lanes_;
   mesh_.assign(mesh.begin(), mesh.end());
   lengths_.assign(lengths.begin(), lengths.end());
   if (lengths.empty()) measure_mesh();
   lobatto_.assign(tables.scheme().lobatto.begin(), tables.scheme().lobatto.end());
   high_.assign(static_cast<std::size_t>(elements_ + 1) * n_, 0);
   low_.assign(high_.size(), 0);
-  x_.assign(static_cast<std::size_t>(batches_) * unknowns_ * lanes, 0);
-  h_.resize(static_cast<std::size_t>(batches_) * lanes);
+  x_.assign(static_cast<std::size_t>(batches_) * unknowns_ * lanes_, 0);
+  h_.resize(static_cast<std::size_t>(batches_) * lanes_);
   start_.resize(h_.size());
   set_duration(duration);
 }
@@ -33,7 +33,7 @@ void Path::measure_mesh() {
 
 void Path::set_duration(double duration) {
   duration_ = duration;
-  for (int k = 0; k < batches_ * lanes; ++k) {
+  for (int k = 0; k < batches_ * lanes_; ++k) {
     const int e = std::min(k, elements_ - 1);
     h_[k] = lengths_[e] * duration;
     start_[k] = mesh_[e] * duration;
@@ -55,15 +55,15 @@ void Path::set_element(int k, const double* q) {
     set_node(k, a, first[a]);
     set_node(k + 1, a, last[a]);
   }
-  double* x = this->x(k / lanes) + k % lanes;
+  double* x = this->x(k / lanes_) + k % lanes_;
   for (int j = 1; j < degree_; ++j)
     for (int a = 0; a < n_; ++a)
-      x[((j - 1) * n_ + a) * lanes] = q[j * n_ + a] - (first[a] + lobatto_[j] * (last[a] - first[a]));
+      x[((j - 1) * n_ + a) * lanes_] = q[j * n_ + a] - (first[a] + lobatto_[j] * (last[a] - first[a]));
 }
 
 void Path::set_image(int k, const Path& other, int j, const SignedPermutation& map, bool backwards) {
-  const double* from = other.x(j / lanes) + j % lanes;
-  double* to = x(k / lanes) + k % lanes;
+  const double* from = other.x(j / lanes_) + j % lanes_;
+  double* to = x(k / lanes_) + k % lanes_;
   for (int a = 0; a < n_; ++a) {
     const int b = map.from[a];
     const double sign = map.sign[a];
@@ -72,7 +72,7 @@ void Path::set_image(int k, const Path& other, int j, const SignedPermutation& m
       set_node(k + end, a, sign * other.node(node)[b], sign * other.rest(node)[b]);
     }
     for (int i = 0; i < degree_ - 1; ++i)
-      to[(i * n_ + a) * lanes] = sign * from[((backwards ? degree_ - 2 - i : i) * n_ + b) * lanes];
+      to[(i * n_ + a) * lanes_] = sign * from[((backwards ? degree_ - 2 - i : i) * n_ + b) * lanes_];
   }
 }
 
@@ -90,10 +90,10 @@ void Path::add(std::span<const double> node_step, const AlignedDoubles& inner_st
     low_[k] = (high_[k] - (sum - part)) + (correction - part);
     high_[k] = sum;
   }
-  const std::size_t inner = static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes;
+  const std::size_t inner = static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes_;
   for (int b = 0; b < batches_; ++b) {
     double* to = x(b);
-    const double* from = inner_step.data() + static_cast<std::size_t>(b) * unknowns_ * lanes;
+    const double* from = inner_step.data() + static_cast<std::size_t>(b) * unknowns_ * lanes_;
     for (std::size_t k = 0; k < inner; ++k) to[k] += factor * from[k];
   }
 }
@@ -106,19 +106,19 @@ void Path::copy_values(const Path& other) {
 }
 
 void Path::load_ends() {
-  for (int k = 0; k < batches_ * lanes; ++k) {
+  for (int k = 0; k < batches_ * lanes_; ++k) {
     const std::size_t e = static_cast<std::size_t>(std::min(k, elements_ - 1)) * n_;
-    double* to = x(k / lanes) + static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes + k % lanes;
+    double* to = x(k / lanes_) + static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes_ + k % lanes_;
     for (int a = 0; a < n_; ++a) {
-      to[a * lanes] = high_[e + a];
-      to[(n_ + a) * lanes] = (high_[e + n_ + a] - high_[e + a]) + (low_[e + n_ + a] - low_[e + a]);
+      to[a * lanes_] = high_[e + a];
+      to[(n_ + a) * lanes_] = (high_[e + n_ + a] - high_[e + a]) + (low_[e + n_ + a] - low_[e + a]);
     }
   }
   // Idle lanes repeat the last element, so that nothing they compute is exceptional.
-  for (int k = elements_; k < batches_ * lanes; ++k) {
+  for (int k = elements_; k < batches_ * lanes_; ++k) {
     double* last = x(batches_ - 1);
-    const int from = (elements_ - 1) % lanes, to = k % lanes;
-    for (int u = 0; u < unknowns_; ++u) last[u * lanes + to] = last[u * lanes + from];
+    const int from = (elements_ - 1) % lanes_, to = k % lanes_;
+    for (int u = 0; u < unknowns_; ++u) last[u * lanes_ + to] = last[u * lanes_ + from];
   }
 }
 
@@ -127,15 +127,15 @@ void Path::interpolate_from(const Path& other, const ElementTables& tables, std:
   high_ = other.high_;
   low_ = other.low_;
   const int old_inner = other.degree_ - 1, old_count = other.degree_ + 1;
+  const std::size_t width = static_cast<std::size_t>(n_) * lanes_;  // from one node to the next
   for (int b = 0; b < batches_; ++b)
     for (int j = 1; j < degree_; ++j) {
       const double* row = matrix.data() + static_cast<std::size_t>(j) * old_count;
-      for (int a = 0; a < n_; ++a) {
-        double* to = x(b) + static_cast<std::size_t>((j - 1) * n_ + a) * lanes;
-        for (int i = 0; i < old_inner; ++i) {
-          const double* from = other.x(b) + static_cast<std::size_t>(i * n_ + a) * lanes;
-          for (int lane = 0; lane < lanes; ++lane) to[lane] += row[i + 1] * from[lane];
-        }
+      double* to = x(b) + (j - 1) * width;
+      for (int i = 0; i < old_inner; ++i) {
+        const double* from = other.x(b) + i * width;
+        const double factor = row[i + 1];
+        for (std::size_t k = 0; k < width; ++k) to[k] += factor * from[k];
       }
     }
   load_ends();
@@ -174,8 +174,8 @@ void Path::split_from(const Path& other, const ElementTables& tables, std::span<
 void Path::values(int k, int count, const double* tau, double* q) const {
   constexpr double nothing = 1e-290;  // from a node: its own weight is then all there is
   const std::vector<double>& weights = lobatto_barycentric(degree_).weights;
-  const double* x = this->x(k / lanes) + k % lanes;
-  const double* delta = x + static_cast<std::size_t>(unknowns_ - n_) * lanes;
+  const double* x = this->x(k / lanes_) + k % lanes_;
+  const double* delta = x + static_cast<std::size_t>(unknowns_ - n_) * lanes_;
   double sum[max_degree + 1] = {}, weight[max_degree + 1];
   std::fill_n(q, static_cast<std::size_t>(n_) * count, 0.0);
   for (int j = 0; j <= degree_; ++j) {
@@ -186,13 +186,13 @@ void Path::values(int k, int count, const double* tau, double* q) const {
     }
     if (j == 0 || j == degree_) continue;
     for (int a = 0; a < n_; ++a) {
-      const double deviation = x[((j - 1) * n_ + a) * lanes];
+      const double deviation = x[((j - 1) * n_ + a) * lanes_];
       for (int p = 0; p < count; ++p) q[a * count + p] += weight[p] * deviation;
     }
   }
   for (int a = 0; a < n_; ++a)
     for (int p = 0; p < count; ++p)
-      q[a * count + p] = node(k)[a] + (tau[p] * delta[a * lanes] + q[a * count + p] / sum[p]);
+      q[a * count + p] = node(k)[a] + (tau[p] * delta[a * lanes_] + q[a * count + p] / sum[p]);
 }
 
 void Path::resample_from(const Path& other, const ElementTables& tables, std::span<const double> mesh) {
@@ -231,26 +231,26 @@ void Path::resample_from(const Path& other, const ElementTables& tables, std::sp
 }
 
 void Path::element(int k, double* q) const {
-  const double* x = this->x(k / lanes) + k % lanes;
+  const double* x = this->x(k / lanes_) + k % lanes_;
   const double *first = node(k), *last = node(k + 1);
-  const std::size_t delta = static_cast<std::size_t>(unknowns_ - n_) * lanes;
+  const std::size_t delta = static_cast<std::size_t>(unknowns_ - n_) * lanes_;
   for (int a = 0; a < n_; ++a) {
     q[a] = first[a];
     q[degree_ * n_ + a] = last[a];
     for (int j = 1; j < degree_; ++j)
-      q[j * n_ + a] = first[a] + (lobatto_[j] * x[delta + a * lanes] + x[((j - 1) * n_ + a) * lanes]);
+      q[j * n_ + a] = first[a] + (lobatto_[j] * x[delta + a * lanes_] + x[((j - 1) * n_ + a) * lanes_]);
   }
 }
 
 void Path::element_slopes(int k, std::span<const double> derivative, double* v) const {
-  const double* x = this->x(k / lanes) + k % lanes;
-  const double* delta = x + static_cast<std::size_t>(unknowns_ - n_) * lanes;
-  const double length = h(k / lanes)[k % lanes];
+  const double* x = this->x(k / lanes_) + k % lanes_;
+  const double* delta = x + static_cast<std::size_t>(unknowns_ - n_) * lanes_;
+  const double length = h(k / lanes_)[k % lanes_];
   for (int j = 0; j <= degree_; ++j)
     for (int a = 0; a < n_; ++a) {
-      double slope = delta[a * lanes];
+      double slope = delta[a * lanes_];
       for (int i = 1; i < degree_; ++i)
-        slope += derivative[j * (degree_ + 1) + i] * x[((i - 1) * n_ + a) * lanes];
+        slope += derivative[j * (degree_ + 1) + i] * x[((i - 1) * n_ + a) * lanes_];
       v[j * n_ + a] = slope / length;
     }
 }

@@ -5,6 +5,7 @@
 
 #include "action/tables.hpp"
 #include "machine/aligned.hpp"
+#include "machine/simd.hpp"
 #include "problem/signed_permutation.hpp"
 
 /// \file The unknown: a piecewise polynomial path on a mesh, laid out for the kernels.
@@ -13,8 +14,8 @@ namespace extremal {
 
 /// Values at the nodes between elements are kept as unevaluated sums high + low, so that the difference of
 /// neighbours, and with it the momentum, is exact to roundoff of the difference. Inner unknowns are the
-/// deviations from the chord, eight elements side by side; idle lanes of the last batch copy the last
-/// element.
+/// deviations from the chord, batch by batch with one element in each lane; idle lanes of the last batch copy
+/// the last element.
 class Path {
  public:
   /// N = mesh.size() − 1 elements over `mesh` (t/T, 0 to 1), all zero, of `lengths` if they are known to more
@@ -26,6 +27,7 @@ class Path {
   int degree() const { return degree_; }
   int elements() const { return elements_; }
   int batches() const { return batches_; }
+  int lanes() const { return lanes_; }  ///< elements of a batch
   double duration() const { return duration_; }
   std::span<const double> mesh() const { return mesh_; }
   std::span<const double> lengths() const { return lengths_; }  ///< N, in t/T
@@ -58,11 +60,11 @@ class Path {
 
   /// Lanes: x(batch)[(J*n + a)*lanes + lane], J inner, then q_a, then Δ.
   const double* x(int batch) const {
-    return x_.data() + static_cast<std::size_t>(batch) * unknowns_ * lanes_of;
+    return x_.data() + static_cast<std::size_t>(batch) * unknowns_ * lanes_;
   }
-  double* x(int batch) { return x_.data() + static_cast<std::size_t>(batch) * unknowns_ * lanes_of; }
-  const double* h(int batch) const { return h_.data() + static_cast<std::size_t>(batch) * lanes_of; }
-  const double* start(int batch) const { return start_.data() + static_cast<std::size_t>(batch) * lanes_of; }
+  double* x(int batch) { return x_.data() + static_cast<std::size_t>(batch) * unknowns_ * lanes_; }
+  const double* h(int batch) const { return h_.data() + static_cast<std::size_t>(batch) * lanes_; }
+  const double* start(int batch) const { return start_.data() + static_cast<std::size_t>(batch) * lanes_; }
 
   /// The same path in elements of another degree (exact where it is raised), same mesh.
   /// `matrix` is interpolation_matrix(degree(), Lobatto nodes of the new degree).
@@ -85,7 +87,7 @@ class Path {
   void values(int k, int count, const double* tau, double* q) const;
   void measure_mesh();
 
-  static constexpr int lanes_of = 8;
+  int lanes_ = simd_lanes();
   int n_ = 0, degree_ = 0, elements_ = 0, batches_ = 0, unknowns_ = 0;
   double duration_ = 0;
   std::vector<double> mesh_, lengths_, high_, low_, lobatto_;

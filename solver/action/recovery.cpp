@@ -11,8 +11,6 @@ namespace extremal {
 
 namespace {
 
-constexpr int both = 2 * lanes;
-
 /// B_{s−1}, B_s and B_{s+1} at the inner Lobatto nodes of some degree.
 using Shapes = std::vector<std::array<double, 3>>;
 
@@ -57,10 +55,10 @@ bool Recovery::measure(const Lagrangian& lagrangian, DiscreteAction& action, con
   if (!action.finite()) return false;
   const Structure& structure = lagrangian.structure();
   n_ = path.coordinates();
-  for (AlignedDoubles* x : {&q_, &v_, &defects_}) x->resize(static_cast<std::size_t>(n_) * both);
-  t_.resize(both);
-  if (!structure.quadratic) rows_.resize(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * both);
-  coefficients_.resize(static_cast<std::size_t>(path.batches()) * n_ * three);
+  for (AlignedDoubles* x : {&q_, &v_, &defects_}) x->resize(static_cast<std::size_t>(n_) * both_);
+  t_.resize(both_);
+  if (!structure.quadratic) rows_.resize(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * both_);
+  coefficients_.resize(static_cast<std::size_t>(path.batches()) * n_ * 3 * lanes_);
   mass_.setZero(n_, n_);
   for (const Triplet& m : structure.mass) mass_(m.row, m.column) += m.value;
   diagonal_ = structure.quadratic && mass_.isDiagonal(0);
@@ -79,69 +77,70 @@ void Recovery::find_slopes(const SchemeTables& scheme, const Path& path, int b) 
   const int s = scheme.degree;
   const double* x = path.x(b);
   for (int a = 0; a < n_; ++a) {
-    const double *start = x + ((s - 1) * n_ + a) * lanes, *delta = start + n_ * lanes;
+    const double *start = x + ((s - 1) * n_ + a) * lanes_, *delta = start + n_ * lanes_;
     for (int e = 0; e < 2; ++e) {
-      double *q = q_.data() + a * both + e * lanes, *v = v_.data() + a * both + e * lanes;
-      for (int lane = 0; lane < lanes; ++lane) {
+      double *q = q_.data() + a * both_ + e * lanes_, *v = v_.data() + a * both_ + e * lanes_;
+      for (int lane = 0; lane < lanes_; ++lane) {
         q[lane] = start[lane] + e * delta[lane];
         v[lane] = delta[lane];
       }
       for (int j = 1; j < s; ++j) {
-        const double slope = scheme.end_derivative[e * (s + 1) + j], *inner = x + ((j - 1) * n_ + a) * lanes;
-        for (int lane = 0; lane < lanes; ++lane) v[lane] += slope * inner[lane];
+        const double slope = scheme.end_derivative[e * (s + 1) + j], *inner = x + ((j - 1) * n_ + a) * lanes_;
+        for (int lane = 0; lane < lanes_; ++lane) v[lane] += slope * inner[lane];
       }
-      for (int lane = 0; lane < lanes; ++lane) v[lane] /= path.h(b)[lane];
+      for (int lane = 0; lane < lanes_; ++lane) v[lane] /= path.h(b)[lane];
     }
   }
-  for (int k = 0; k < both; ++k) t_[k] = path.start(b)[k % lanes] + (k / lanes) * path.h(b)[k % lanes];
+  for (int k = 0; k < both_; ++k) t_[k] = path.start(b)[k % lanes_] + (k / lanes_) * path.h(b)[k % lanes_];
 }
 
 /// The momenta of S_h, −∂S/∂q_a and ∂S/∂q_b, less ∂L/∂q' = M q' + C q + a + ∂R/∂q'.
 void Recovery::find_defects(const Lagrangian& lagrangian, const double* gradient) {
   const Structure& s = lagrangian.structure();
   for (int a = 0; a < n_; ++a)
-    for (int lane = 0; lane < lanes; ++lane) {
-      defects_[a * both + lane] = -gradient[a * lanes + lane];
-      defects_[a * both + lanes + lane] = gradient[(n_ + a) * lanes + lane];
+    for (int lane = 0; lane < lanes_; ++lane) {
+      defects_[a * both_ + lane] = -gradient[a * lanes_ + lane];
+      defects_[a * both_ + lanes_ + lane] = gradient[(n_ + a) * lanes_ + lane];
     }
   const auto take = [&](int to, double factor, const double* from) {
-    for (int k = 0; k < both; ++k) defects_[to * both + k] -= factor * from[k];
+    for (int k = 0; k < both_; ++k) defects_[to * both_ + k] -= factor * from[k];
   };
-  for (const Triplet& m : s.mass) take(m.row, m.value, v_.data() + m.column * both);
-  for (const Triplet& c : s.gyroscopic) take(c.row, c.value, q_.data() + c.column * both);
+  for (const Triplet& m : s.mass) take(m.row, m.value, v_.data() + m.column * both_);
+  for (const Triplet& c : s.gyroscopic) take(c.row, c.value, q_.data() + c.column * both_);
   for (std::size_t a = 0; a < s.linear.size(); ++a)
-    for (int k = 0; k < both; ++k) defects_[a * both + k] -= s.linear[a];
+    for (int k = 0; k < both_; ++k) defects_[a * both_ + k] -= s.linear[a];
   if (s.quadratic) return;
-  lagrangian.evaluate({both, both, q_.data(), v_.data(), t_.data()}, Order::hessian, rows_.data(), scratch_);
+  lagrangian.evaluate({both_, both_, q_.data(), v_.data(), t_.data()}, Order::hessian, rows_.data(),
+                      scratch_);
   for (std::size_t g = 0; g < s.gradient.size(); ++g)
-    if (s.gradient[g] >= n_) take(s.gradient[g] - n_, 1, rows_.data() + (1 + g) * both);
+    if (s.gradient[g] >= n_) take(s.gradient[g] - n_, 1, rows_.data() + (1 + g) * both_);
 }
 
 /// Of a constant mass.
 void Recovery::solve_with_mass(AlignedDoubles& x) {
   if (diagonal_) {
-    for (int k = 0; k < n_ * both; ++k) x[k] /= mass_(k / both, k / both);
+    for (int k = 0; k < n_ * both_; ++k) x[k] /= mass_(k / both_, k / both_);
     return;
   }
-  for (int k = 0; k < both; ++k) solve_column(k, x);
+  for (int k = 0; k < both_; ++k) solve_column(k, x);
 }
 
 void Recovery::solve_column(int k, AlignedDoubles& x) {
   column_.resize(n_);
-  for (int a = 0; a < n_; ++a) column_[a] = x[a * both + k];
+  for (int a = 0; a < n_; ++a) column_[a] = x[a * both_ + k];
   column_ = factors_.solve(column_);
-  for (int a = 0; a < n_; ++a) x[a * both + k] = column_[a];
+  for (int a = 0; a < n_; ++a) x[a * both_ + k] = column_[a];
 }
 
 /// Defects of momenta to those of velocities, where the mass is another at each node.
 void Recovery::divide(const Lagrangian& lagrangian) {
   const Structure& s = lagrangian.structure();
-  for (int k = 0; k < both; ++k) {
+  for (int k = 0; k < both_; ++k) {
     mass_.setZero(n_, n_);
     for (std::size_t e = 0; e < s.hessian.size(); ++e) {
       const int row = s.hessian[e].row - n_, column = s.hessian[e].column - n_;
       if (row < 0 || column < 0) continue;
-      mass_(row, column) = mass_(column, row) = rows_[(1 + s.gradient.size() + e) * both + k];
+      mass_(row, column) = mass_(column, row) = rows_[(1 + s.gradient.size() + e) * both_ + k];
     }
     factors_.compute(mass_);
     solve_column(k, defects_);
@@ -153,24 +152,24 @@ void Recovery::keep(const Structure& structure, const Path& path, int b) {
   const double sign = s % 2 == 0 ? 1 : -1;
   const double* const h = path.h(b);
   for (int a = 0; a < n_; ++a) {
-    const double *first = defects_.data() + a * both, *last = first + lanes;
+    const double *first = defects_.data() + a * both_, *last = first + lanes_;
     double* to = coefficients(b, a);
-    for (int lane = 0; lane < lanes; ++lane) {
+    for (int lane = 0; lane < lanes_; ++lane) {
       to[lane] = 0.25 * h[lane] * (last[lane] + sign * first[lane]);
-      to[lanes + lane] = 0.25 * h[lane] * (last[lane] - sign * first[lane]);
+      to[lanes_ + lane] = 0.25 * h[lane] * (last[lane] - sign * first[lane]);
     }
   }
-  turned_.assign(static_cast<std::size_t>(n_) * both, 0);
+  turned_.assign(static_cast<std::size_t>(n_) * both_, 0);
   for (const Triplet& c : structure.gyroscopic)
-    for (int lane = 0; lane < lanes; ++lane) {
-      turned_[c.column * both + lane] += c.value * coefficients(b, c.row)[lane];
-      turned_[c.row * both + lane] -= c.value * coefficients(b, c.column)[lane];
+    for (int lane = 0; lane < lanes_; ++lane) {
+      turned_[c.column * both_ + lane] += c.value * coefficients(b, c.row)[lane];
+      turned_[c.row * both_ + lane] -= c.value * coefficients(b, c.column)[lane];
     }
   if (!structure.gyroscopic.empty()) solve_with_mass(turned_);
   for (int a = 0; a < n_; ++a) {
-    double *sum = coefficients(b, a) + lanes, *missed = sum + lanes;
-    for (int lane = 0; lane < lanes; ++lane) {
-      const double turned = 0.5 * h[lane] * turned_[a * both + lane] / (2 * s + 1);
+    double *sum = coefficients(b, a) + lanes_, *missed = sum + lanes_;
+    for (int lane = 0; lane < lanes_; ++lane) {
+      const double turned = 0.5 * h[lane] * turned_[a * both_ + lane] / (2 * s + 1);
       const double further = (sum[lane] + turned) * s / (2 * s + 1);
       missed[lane] = sum[lane] - further;
       sum[lane] = further;
@@ -184,11 +183,11 @@ void Recovery::raise(const Path& path, const ElementTables& raised, std::span<co
   to.interpolate_from(path, raised, matrix);
   for (int b = 0; b < path.batches(); ++b)
     for (int a = 0; a < n_; ++a) {
-      const double *d = coefficients(b, a), *further = d + lanes, *missed = further + lanes;
+      const double *d = coefficients(b, a), *further = d + lanes_, *missed = further + lanes_;
       for (std::size_t j = 0; j < shapes.size(); ++j) {
-        double* x = to.x(b) + (j * n_ + a) * lanes;
+        double* x = to.x(b) + (j * n_ + a) * lanes_;
         const auto [before, at, after] = shapes[j];
-        for (int lane = 0; lane < lanes; ++lane)
+        for (int lane = 0; lane < lanes_; ++lane)
           x[lane] += at * d[lane] + after * further[lane] + before * missed[lane];
       }
     }
@@ -196,14 +195,14 @@ void Recovery::raise(const Path& path, const ElementTables& raised, std::span<co
 
 void Recovery::misplaced(const Path& path, AlignedDoubles& to) const {
   const Shapes& shapes = own_shapes(path.degree());
-  const std::size_t unknowns = static_cast<std::size_t>(path.degree() + 1) * n_ * lanes;
+  const std::size_t unknowns = static_cast<std::size_t>(path.degree() + 1) * n_ * lanes_;
   to.assign(path.batches() * unknowns, 0);
   for (int b = 0; b < path.batches(); ++b)
     for (int a = 0; a < n_; ++a) {
-      const double* missed = coefficients(b, a) + 2 * lanes;
+      const double* missed = coefficients(b, a) + 2 * lanes_;
       for (std::size_t j = 0; j < shapes.size(); ++j)
-        for (int lane = 0; lane < lanes; ++lane)
-          to[b * unknowns + (j * n_ + a) * lanes + lane] = shapes[j][0] * missed[lane];
+        for (int lane = 0; lane < lanes_; ++lane)
+          to[b * unknowns + (j * n_ + a) * lanes_ + lane] = shapes[j][0] * missed[lane];
     }
 }
 

@@ -46,14 +46,13 @@ class Recovery {
   void solve_column(int k, AlignedDoubles& x);
   void keep(const Structure& structure, const Path& path, int batch);
   double* coefficients(int batch, int a) {
-    return coefficients_.data() + (std::size_t(batch) * n_ + a) * three;
+    return coefficients_.data() + (std::size_t(batch) * n_ + a) * 3 * lanes_;
   }
   const double* coefficients(int batch, int a) const {
-    return coefficients_.data() + (std::size_t(batch) * n_ + a) * three;
+    return coefficients_.data() + (std::size_t(batch) * n_ + a) * 3 * lanes_;
   }
 
-  static constexpr int three = 3 * lanes;
-
+  int lanes_ = simd_lanes(), both_ = 2 * lanes_;  ///< entries of a row for one end of the elements, for both
   int n_ = 0;
   bool diagonal_ = false;
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;

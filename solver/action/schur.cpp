@@ -18,10 +18,10 @@ DiscreteAction::Blocks DiscreteAction::blocks(int k) {
 }
 
 void DiscreteAction::gather_schur(int b) {
-  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes;
-  const int first = b * lanes, last = std::min(elements_, first + lanes), n = n_;
+  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes_;
+  const int first = b * lanes_, last = std::min(elements_, first + lanes_), n = n_;
   const auto entry = [&](int i, int j, int lane) {
-    return schur[(static_cast<std::size_t>(i) * 2 * n + j) * lanes + lane];
+    return schur[(static_cast<std::size_t>(i) * 2 * n + j) * lanes_ + lane];
   };
   const auto add_symmetric = [&](double* block, int offset, int lane) {
     for (int i = 0; i < n; ++i)
@@ -44,10 +44,10 @@ void DiscreteAction::gather_schur(int b) {
 /// The same row by row, all lanes at once: blocks too large to be passed over for each lane. Their upper
 /// triangles are left to mirror_blocks(): rows are gathered in whole vectors, beyond the diagonal.
 void DiscreteAction::gather_large_schur(int b) {
-  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes;
-  const int first = b * lanes, used = std::min(elements_ - first, lanes);
-  const std::size_t row = static_cast<std::size_t>(2 * n_) * lanes;
-  double *start[lanes], *end[lanes], *lower[lanes];
+  const double* schur = matrix(b) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes_;
+  const int first = b * lanes_, used = std::min(elements_ - first, lanes_);
+  const std::size_t row = static_cast<std::size_t>(2 * n_) * lanes_;
+  double *start[most_lanes], *end[most_lanes], *lower[most_lanes];
   for (int lane = 0; lane < used; ++lane) {
     const Blocks to = blocks(first + lane);
     start[lane] = to.start;
@@ -55,10 +55,10 @@ void DiscreteAction::gather_large_schur(int b) {
     lower[lane] = to.lower;
   }
   for (int i = 0; i < n_; ++i, schur += row) {
-    const int count = std::min(n_, (i / lanes + 1) * lanes);
+    const int count = std::min(n_, (i / lanes_ + 1) * lanes_);
     const double* const second = schur + n_ * row;
     elimination_->scatter(schur, count, used, true, start);
-    elimination_->scatter(second + n_ * lanes, count, used, true, end);
+    elimination_->scatter(second + n_ * lanes_, count, used, true, end);
     elimination_->scatter(second, n_, used, false, lower);
     for (int lane = 0; lane < used; ++lane) {
       start[lane] += n_;
@@ -81,13 +81,13 @@ void DiscreteAction::mirror_blocks() {
 void DiscreteAction::gather_border(int b) {
   const double* row = reduced(b) + sizes_.vector;
   const double* corner = sums(b, of_corner);
-  double taken[lanes];
+  double taken[most_lanes];
   eliminated(b, row, row, taken);
-  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  const int first = b * lanes_, last = std::min(elements_, first + lanes_);
   for (int k = first; k < last; ++k) {
     const int lane = k - first;
     double* node = nodes.border.data() + static_cast<std::size_t>(k) * n_;
-    for (int a = 0; a < 2 * n_; ++a) node[a] += row[(inner_ + a) * lanes + lane];
+    for (int a = 0; a < 2 * n_; ++a) node[a] += row[(inner_ + a) * lanes_ + lane];
     nodes.corner += corner[lane] - taken[lane];
   }
 }

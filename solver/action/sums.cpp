@@ -12,6 +12,20 @@ namespace {
 /// Of the fastest: momenta where the path is slower say little of inertia.
 constexpr double slow = 0.1;
 
+/// Largest |x|; not-a-number is passed over. Eight maxima side by side, which compilers turn into vectors.
+double largest_magnitude(const double* x, int count) {
+  constexpr int parts = 8;
+  double part[parts] = {};
+  int i = 0;
+  for (; i + parts <= count; i += parts)
+    for (int k = 0; k < parts; ++k) {
+      const double size = std::abs(x[i + k]);
+      part[k] = size > part[k] ? size : part[k];
+    }
+  for (; i < count; ++i) part[0] = std::max(part[0], std::abs(x[i]));
+  return *std::max_element(part, part + parts);
+}
+
 }  // namespace
 
 void DiscreteAction::clear_sums() {
@@ -25,14 +39,8 @@ void DiscreteAction::clear_sums() {
 
 /// Keeps of the gradient of a batch, before condensation, what is summed up.
 void DiscreteAction::keep_gradient(int b, const double* gradient) {
-  double* const largest = sums(b, of_residual);
-  std::fill_n(largest, lanes, 0.0);
-  for (int u = 0; u < inner_; ++u)
-    for (int lane = 0; lane < lanes; ++lane) {
-      const double size = std::abs(gradient[u * lanes + lane]);
-      largest[lane] = size > largest[lane] ? size : largest[lane];
-    }
-  std::copy_n(gradient + inner_ * lanes, 2 * n_ * lanes, sums(b, of_ends));
+  *sums(b, of_residual) = largest_magnitude(gradient, inner_ * lanes_);
+  std::copy_n(gradient + inner_ * lanes_, 2 * n_ * lanes_, sums(b, of_ends));
 }
 
 /// Puts the gradient of a batch there as rounded from extended precision. Where elements meet, the difference
@@ -41,18 +49,18 @@ void DiscreteAction::keep_gradient(int b, const double* gradient) {
 void DiscreteAction::take_extended(int b, double* gradient) {
   double *action = sums(b, of_action), *slope = sums(b, of_slope);
   std::fill_n(gradient, sizes_.vector, 0.0);
-  std::fill_n(action, lanes, 0.0);
-  std::fill_n(slope, lanes, 0.0);
+  std::fill_n(action, lanes_, 0.0);
+  std::fill_n(slope, lanes_, 0.0);
   const std::size_t width = static_cast<std::size_t>(inner_);
   const DoubleDouble* const nodes = taken().nodes.data();
-  for (int k = b * lanes, lane = 0; lane < lanes && k < elements_; ++k, ++lane) {
+  for (int k = b * lanes_, lane = 0; lane < lanes_ && k < elements_; ++k, ++lane) {
     const DoubleDouble *inner = taken().inner.data() + k * width,
                        *left = nodes + static_cast<std::size_t>(k) * n_;
-    for (int u = 0; u < inner_; ++u) gradient[u * lanes + lane] = inner[u].x[0];
+    for (int u = 0; u < inner_; ++u) gradient[u * lanes_ + lane] = inner[u].x[0];
     for (int a = 0; a < n_; ++a) {
       const DoubleDouble& right = left[n_ + a];
-      if (k == 0) gradient[(inner_ + a) * lanes + lane] = left[a].x[1];
-      gradient[(inner_ + n_ + a) * lanes + lane] = right.x[k + 1 == elements_];
+      if (k == 0) gradient[(inner_ + a) * lanes_ + lane] = left[a].x[1];
+      gradient[(inner_ + n_ + a) * lanes_ + lane] = right.x[k + 1 == elements_];
     }
   }
   keep_gradient(b, gradient);
@@ -76,17 +84,16 @@ void DiscreteAction::finish_extended() {
 
 /// Sums the values and the gradient of a batch as they are, before condensation.
 void DiscreteAction::gather(const Path& path, int b) {
-  const double *action = sums(b, of_action), *slope = sums(b, of_slope), *largest = sums(b, of_residual),
-               *ends = sums(b, of_ends);
-  const int first = b * lanes, last = std::min(elements_, first + lanes);
-  residual_ = std::max(residual_, *std::max_element(largest, largest + lanes));
+  const double *action = sums(b, of_action), *slope = sums(b, of_slope), *ends = sums(b, of_ends);
+  const int first = b * lanes_, last = std::min(elements_, first + lanes_);
+  residual_ = std::max(residual_, *sums(b, of_residual));
   for (int k = first; k < last; ++k) {
     const int lane = k - first;
     action_ += action[lane];
     if (border_) slope_duration_ += slope[lane] * path.lengths()[k];
     double* node = raw_nodes_.data() + static_cast<std::size_t>(k) * n_;
     for (int a = 0; a < 2 * n_; ++a) {
-      const double g = ends[a * lanes + lane];
+      const double g = ends[a * lanes_ + lane];
       node[a] += g;
       momentum_scale_ = std::max(momentum_scale_, std::abs(g));
     }
@@ -98,7 +105,7 @@ double DiscreteAction::momentum_range() const {
   for (int a = 0; a < n_ && !extended_ready_; ++a) {
     double low = -start_gradient_[a], high = low;
     for (int k = 0; k < elements_; ++k) {
-      const double p = sums(k / lanes, of_ends)[(n_ + a) * lanes + k % lanes];
+      const double p = sums(k / lanes_, of_ends)[(n_ + a) * lanes_ + k % lanes_];
       low = std::min(low, p);
       high = std::max(high, p);
     }
@@ -112,25 +119,25 @@ double DiscreteAction::inertia(const Path& path) const {
   if (extended_ready_) return 0;
   const auto speed = [&](int k) {
     const double* delta =
-        path.x(k / lanes) + static_cast<std::size_t>(path.degree() * n_) * lanes + k % lanes;
+        path.x(k / lanes_) + static_cast<std::size_t>(path.degree() * n_) * lanes_ + k % lanes_;
     double largest = 0;
-    for (int a = 0; a < n_; ++a) largest = std::max(largest, std::abs(delta[a * lanes]));
-    return largest / path.h(k / lanes)[k % lanes];
+    for (int a = 0; a < n_; ++a) largest = std::max(largest, std::abs(delta[a * lanes_]));
+    return largest / path.h(k / lanes_)[k % lanes_];
   };
   double fastest = 0, inertia = 0;
   for (int k = 0; k < elements_; ++k) fastest = std::max(fastest, speed(k));
   for (int k = 0; k < elements_; ++k) {
     const double fast = speed(k),
-                 *p = sums(k / lanes, of_ends) + static_cast<std::size_t>(n_) * lanes + k % lanes;
+                 *p = sums(k / lanes_, of_ends) + static_cast<std::size_t>(n_) * lanes_ + k % lanes_;
     for (int a = 0; a < n_ && fast > slow * fastest; ++a)
-      inertia = std::max(inertia, std::abs(p[a * lanes]) / fast);
+      inertia = std::max(inertia, std::abs(p[a * lanes_]) / fast);
   }
   return inertia;
 }
 
 void DiscreteAction::gather_pivots(int b) {
   const double *negative = sums(b, of_negative), *ratio = sums(b, of_ratio);
-  for (int lane = 0; lane < std::min(lanes, elements_ - b * lanes); ++lane) {
+  for (int lane = 0; lane < std::min(lanes_, elements_ - b * lanes_); ++lane) {
     nodes.negative += static_cast<int>(negative[lane]);
     if (!(ratio[lane] >= nodes.pivot_ratio)) nodes.pivot_ratio = ratio[lane];
   }
@@ -138,13 +145,13 @@ void DiscreteAction::gather_pivots(int b) {
 
 void DiscreteAction::gather_gradient(int b) {
   const double* gradient = reduced(b);
-  const int first = b * lanes, last = std::min(elements_, first + lanes);
+  const int first = b * lanes_, last = std::min(elements_, first + lanes_);
   for (int k = first; k < last; ++k) {
     double* node = nodes.gradient.data() + static_cast<std::size_t>(k) * n_;
-    for (int a = 0; a < 2 * n_; ++a) node[a] += gradient[(inner_ + a) * lanes + k - first];
+    for (int a = 0; a < 2 * n_; ++a) node[a] += gradient[(inner_ + a) * lanes_ + k - first];
   }
   if (!border_) return;
-  double taken[lanes];
+  double taken[most_lanes];
   eliminated(b, gradient, gradient + sizes_.vector, taken);
   for (int k = first; k < last; ++k) nodes.border_gradient -= taken[k - first];
 }
@@ -153,12 +160,12 @@ void DiscreteAction::gather_gradient(int b) {
 void DiscreteAction::eliminated(int b, const double* x, const double* y, double* sum) const {
   const Fronts& fronts = condensation_->fronts;
   const double* inverse = inverses_.data() + b * sizes_.vector;
-  std::fill_n(sum, lanes, 0.0);
+  std::fill_n(sum, lanes_, 0.0);
   for (int f = 0; f < fronts.count(); ++f) {
     const FrontView& front = fronts.data()[f];
-    for (int j = 0; j < front.pivots; ++j, inverse += lanes) {
-      const int u = front.unknown[j] * lanes;
-      for (int lane = 0; lane < lanes; ++lane) sum[lane] += x[u + lane] * y[u + lane] * inverse[lane];
+    for (int j = 0; j < front.pivots; ++j, inverse += lanes_) {
+      const int u = front.unknown[j] * lanes_;
+      for (int lane = 0; lane < lanes_; ++lane) sum[lane] += x[u + lane] * y[u + lane] * inverse[lane];
     }
   }
 }

@@ -8,7 +8,7 @@ namespace extremal {
 /// Lᵀ x = −L_eᵀ, row by row from the last: x_j = −Σ_{i>j} L_ij x_i, where x is the identity at the ends.
 void DiscreteAction::unfold(int k, std::span<double> fields) const {
   const Fronts& fronts = condensation_->fronts;
-  const std::size_t batch = k / lanes, lane = k % lanes, columns = 2 * n_;
+  const std::size_t batch = k / lanes_, lane = k % lanes_, columns = 2 * n_;
   const double *matrix = this->matrix(batch) + lane,
                *inverse = inverses_.data() + batch * sizes_.vector + lane;
   for (int f = fronts.count() - 1; f >= 0; --f) {
@@ -18,7 +18,7 @@ void DiscreteAction::unfold(int k, std::span<double> fields) const {
       std::fill_n(field, columns, 0.0);
       for (int i = j + 1; i < front.rows; ++i) {
         const std::size_t place = front.panel + static_cast<std::size_t>(i) * front.pivots + j;
-        const double factor = matrix[place * lanes] * inverse[(front.first + j) * lanes];
+        const double factor = matrix[place * lanes_] * inverse[(front.first + j) * lanes_];
         const int unknown = front.unknown[i];
         if (unknown >= inner_) {
           field[unknown - inner_] -= factor;

@@ -105,13 +105,13 @@ Eigen::VectorXd SecondVariation::shift(int k) const {
   return field;
 }
 
-/// Evaluates parts, eight at a time, in the order of time, and halves those that are too long.
+/// Evaluates parts, a batch at a time, in the order of time, and halves those that are too long.
 bool SecondVariation::cut() {
   const int most = std::max(most_pieces, most_of_element * trajectory_->elements());
   waiting_.clear();  // the next one last
   for (int k = trajectory_->elements(); k-- > 0;) waiting_.push_back({k, 0, 1});
   while (!waiting_.empty()) {
-    const std::size_t count = std::min<std::size_t>(lanes, waiting_.size());
+    const std::size_t count = std::min<std::size_t>(simd_lanes(), waiting_.size());
     batch_.assign(waiting_.rbegin(), waiting_.rbegin() + count);
     evaluate(batch_);
     if (!action_.finite()) return false;
@@ -177,6 +177,7 @@ bool SecondVariation::resolved(const DiscreteAction& action, int count, double a
   action.expand_step(steps_, 0, inner_);
   std::fill(steps_.begin(), steps_.end(), 0.0);
   action.expand_step(steps_, 0, rest_);
+  const int lanes = simd_lanes();
   for (int k = 0; k < count; ++k)
     for (int a = 0; a < n; ++a) {
       double largest = 0, tail = 0;
@@ -196,7 +197,7 @@ bool SecondVariation::resolved(const DiscreteAction& action, int count, double a
 }
 
 void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> parts) {
-  const int n = coordinates(), first = count();
+  const int n = coordinates(), first = count(), lanes = simd_lanes();
   for (int k = 0; k < static_cast<int>(parts.size()); ++k) {
     pieces_.push_back({parts[k], start(parts[k]), length(parts[k]), first + k / lanes * lanes});
     const std::size_t size = static_cast<std::size_t>(n) * n, at = forms_.size();

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "app/commands.hpp"
+#include "app/lines.hpp"
 #include "study/inspection.hpp"
 
 namespace extremal::app {
@@ -14,10 +15,38 @@ std::string coordinates_text(const System& system) {
   return fmt::format("{}: {}", system.names.size(), fmt::join(texts, ", "));
 }
 
+std::vector<std::string> parameter_texts(const System& system) {
+  std::vector<std::string> texts;
+  for (const auto& [name, parameter] : system.parameters)
+    texts.push_back(parameter_text(name, parameter.value, parameter.list));
+  return texts;
+}
+
 std::string boundary_text(const Problem& problem) {
   const int n = problem.coordinates(), rows = problem.boundary.rows;
   if (problem.periodic) return "periodic";
   return fmt::format("{} conditions on {} end values, {} natural", rows, 2 * n, problem.ends.free);
+}
+
+/// The end values that the boundary relation does not fix, of one end.
+std::string open_text(const Problem& problem, bool at_end) {
+  constexpr std::size_t most = 12;
+  const int n = problem.coordinates();
+  std::vector<std::string> names;
+  for (int a = 0; a < n; ++a)
+    if (!problem.ends.fixed[at_end ? n + a : a])
+      names.push_back(fmt::format("{}({})", problem.names[a], at_end ? "T" : "0"));
+  if (names.empty()) return "none";
+  if (names.size() > most) names[most] = fmt::format("… {} in all", names.size());
+  names.resize(std::min(names.size(), most + 1));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void print_ends(const Problem& problem) {
+  line("boundary", boundary_text(problem));
+  if (problem.periodic || problem.ends.free == 0) return;
+  line("not fixed",
+       fmt::format("at the start {}; at the end {}", open_text(problem, false), open_text(problem, true)));
 }
 
 std::string duration_text(const Duration& duration) {
@@ -26,23 +55,20 @@ std::string duration_text(const Duration& duration) {
   return fmt::format("free, guess {}, closed by {}", duration.value, closed);
 }
 
-void line(const char* name, const std::string& text) { fmt::print("{:<14} {}\n", name, text); }
-
 void print_structure(const Inspection& found) {
   line("time", found.autonomous ? "L does not depend on t: energy is conserved" : "L depends on t");
   if (found.quadratic)
     line("velocities",
-         fmt::format("constant mass, {} entries; {} gyroscopic{}", found.mass_entries,
+         fmt::format("constant mass, entries: {}; gyroscopic: {}{}", found.mass_entries,
                      found.gyroscopic_entries,
                      found.velocity_free ? "; separable: the rest of L depends on positions only" : ""));
   else
     line("velocities", "L is not quadratic in them with a constant mass");
-  line("Hessian", fmt::format("{} entries evaluated: {} in (q, q), {} in (q', q), {} in (q', q')",
+  line("Hessian", fmt::format("entries evaluated: {}; in (q, q): {}, in (q', q): {}, in (q', q'): {}",
                               found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
   for (const Inspection::Tape& tape : found.tapes)
-    line(tape.order.c_str(),
-         fmt::format("{} instructions in {} kernel{}, {} played a point", tape.instructions, tape.kernels,
-                     tape.kernels == 1 ? "" : "s", tape.played));
+    line(tape.order.c_str(), fmt::format("instructions: {}; kernels: {}; executed at each point: {}",
+                                         tape.instructions, tape.kernels, tape.played));
 }
 
 std::string point_text(const Study& study, const WorstDerivative& worst) {
@@ -58,7 +84,7 @@ std::string point_text(const Study& study, const WorstDerivative& worst) {
 void print_worst(const Study& study, const char* order, const WorstDerivative& worst) {
   if (worst.name.empty()) return;
   const std::string off =
-      worst.error > 0 ? fmt::format("off by {:.1e}", worst.error) : "equal but for roundoff";
+      worst.error > 0 ? fmt::format("off by {:.1e}", worst.error) : "equal up to roundoff";
   line(order, fmt::format("at worst {} = {:.15g}, by differences {:.15g}: {}", worst.name, worst.derivative,
                           worst.difference, off));
   line("", "at " + point_text(study, worst));
@@ -72,7 +98,8 @@ int check(const CheckArguments& arguments) {
   const DerivativeCheck& derivatives = found.derivatives;
   if (!study.title.empty()) line("title", study.title);
   line("coordinates", coordinates_text(study.system));
-  line("boundary", boundary_text(study.problem));
+  lines("parameters", parameter_texts(study.system));
+  print_ends(study.problem);
   line("duration", duration_text(study.problem.duration));
   print_structure(found);
   line("derivatives", fmt::format("against differences of sixth order at {} points, by {} of {} variables",
@@ -81,8 +108,8 @@ int check(const CheckArguments& arguments) {
   print_worst(study, "second", derivatives.hessian);
   if (derivatives.agree()) return Exit::done;
   fmt::print(stderr, "error: {}: {}\n", arguments.scene,
-             derivatives.points ? "derivatives and differences do not agree"
-                                : "L is not finite at any of the points that were tried");
+             derivatives.points ? "derivatives and difference quotients do not agree"
+                                : "L is not finite at any point that was tried");
   return Exit::not_converged;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-/// \file The commands. Each returns the exit code; what is refused is thrown.
+/// \file The commands. Each returns the exit code and throws where it refuses.
 
 namespace extremal::app {
 
@@ -19,8 +19,8 @@ struct OptionError : std::runtime_error {
 struct SolveArguments {
   std::string scene;
   std::vector<std::string> sets;
-  std::string output, csv, plot;  ///< paths; empty: not asked for
-  int samples = 0;                ///< 0: not asked for
+  std::string output, csv, plot;  ///< paths, "-" for standard output; empty: not wanted
+  int samples = 0;                ///< 0: not wanted
   std::string at;                 ///< "T1,T2,…"
   int repeat = 1;
   bool quiet = false;
@@ -30,7 +30,7 @@ int solve(const SolveArguments& arguments);
 struct CompareArguments {
   std::string scene;
   std::vector<std::string> sets;
-  std::string output, plot;  ///< paths; empty: not asked for
+  std::string output, plot;
   bool quiet = false;
 };
 int compare(const CompareArguments& arguments);
@@ -38,7 +38,7 @@ int compare(const CompareArguments& arguments);
 struct ContinueArguments {
   std::string scene;
   std::vector<std::string> sets;
-  std::string output, csv, plot;  ///< paths; empty: not asked for
+  std::string output, csv, plot;
   bool quiet = false;
 };
 int follow(const ContinueArguments& arguments);
@@ -49,6 +49,7 @@ struct CheckArguments {
 };
 int check(const CheckArguments& arguments);
 
-int list();
+/// All systems, schemes and methods, or one system where it is named.
+int list(const std::string& system);
 
 }  // namespace extremal::app

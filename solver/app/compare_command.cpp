@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "app/commands.hpp"
-#include "app/paths.hpp"
+#include "app/outputs.hpp"
 #include "report/comparison.hpp"
 #include "report/plot.hpp"
 #include "study/compare.hpp"
@@ -21,18 +21,16 @@ void show(const ComparisonRow& row) {
 }  // namespace
 
 int compare(const CompareArguments& a) {
-  check_writable("--output", a.output);
-  check_writable("--plot", a.plot);
-  if (!a.plot.empty()) check_plot_path(a.plot);
+  const bool table = !on_standard_output(a.output, "") && !a.quiet;
   const Study study = load(a.scene, a.sets);
   CompareOptions options;
   const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   if (terminal) options.progress = show;
   const Comparison found = extremal::compare(study, options);
   if (terminal) fmt::print(stderr, "\r\x1b[K");
-  if (!a.output.empty()) write_json(a.output, found);
+  if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, found); });
   if (!a.plot.empty() && found.any()) write_plot(a.plot, found);
-  if (!a.quiet) fmt::print("{}", summary(found));
+  if (table) fmt::print("{}", summary(found));
   if (found.any()) return Exit::done;
   fmt::print(stderr, "error: {}: {}\n", a.scene, found.message);
   return Exit::not_converged;

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "app/commands.hpp"
-#include "app/paths.hpp"
+#include "app/outputs.hpp"
 #include "report/branch.hpp"
 #include "report/plot.hpp"
 #include "study/continued.hpp"
@@ -23,24 +23,21 @@ void show(const BranchPoint& point) {
 }  // namespace
 
 int follow(const ContinueArguments& a) {
-  check_writable("--output", a.output);
-  check_writable("--csv", a.csv);
-  check_writable("--plot", a.plot);
-  if (!a.plot.empty()) check_plot_path(a.plot);
+  const bool table = !on_standard_output(a.output, a.csv) && !a.quiet;
   const Study study = load(a.scene, a.sets);
   const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   std::function<void(const BranchPoint&)> progress;
   if (terminal) progress = show;
   const FollowedBranch branch = extremal::follow(study, progress);
   if (terminal) fmt::print(stderr, "\r\x1b[K");
-  if (!a.output.empty()) write_json(a.output, branch);
+  if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, branch); });
   if (branch.points.empty()) {
     fmt::print(stderr, "error: {}: {}\n", a.scene, branch.branches.front().message);
     return Exit::not_converged;
   }
-  if (!a.csv.empty()) write_csv(a.csv, branch);
+  if (!a.csv.empty()) write_output(a.csv, [&](std::ostream& out) { write_csv(out, branch); });
   if (!a.plot.empty()) write_plot(a.plot, branch);
-  if (!a.quiet) fmt::print("{}", summary(branch));
+  if (table) fmt::print("{}", summary(branch));
   return Exit::done;
 }
 

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "app/commands.hpp"
+#include "app/lines.hpp"
 #include "study/inspection.hpp"
 
 namespace extremal::app {
@@ -15,13 +17,42 @@ void print(const char* title, const std::vector<CatalogueEntry>& entries) {
   for (const CatalogueEntry& e : entries) fmt::print("  {:<{}}  {}\n", e.name, width, e.help);
 }
 
-}  // namespace
-
-int list() {
+int list_all() {
   const Catalogue found = catalogue();
-  print("Systems (system.use)", found.systems);
+  print("Systems (system.use); one of them: extremal list SYSTEM", found.systems);
   print("\nSchemes (solve.scheme)", found.schemes);
   print("\nMethods (solve.method)", found.methods);
+  return Exit::done;
+}
+
+std::string assignment_text(const Assignment& parameter) {
+  std::vector<double> values;
+  for (const Quantity& value : parameter.values) values.push_back(std::get<double>(value.value));
+  return parameter_text(parameter.name, values, parameter.list);
+}
+
+void print_formulas(const SystemTable& system) {
+  std::vector<std::string> coordinates, parameters, definitions;
+  for (const Assignment& p : system.parameters) parameters.push_back(assignment_text(p));
+  for (const Text& c : system.coordinates) coordinates.push_back(c.value);
+  for (const Definition& d : system.definitions)
+    definitions.push_back(fmt::format("{} = {}", d.name, d.formula.value));
+  line("coordinates", fmt::format("{}", fmt::join(coordinates, ", ")));
+  lines("parameters", parameters);
+  lines("definitions", definitions);
+  if (system.lagrangian) line("Lagrangian", system.lagrangian->value);
+}
+
+}  // namespace
+
+int list(const std::string& system) {
+  if (system.empty()) return list_all();
+  const SystemDescription found = describe(system);
+  line("system", found.name);
+  for (const AboutEntry& note : found.about) lines(note.name, note.texts);
+  print_formulas(found.system);
+  line("file", found.path);
+  lines("scenes", found.scenes);
   return Exit::done;
 }
 

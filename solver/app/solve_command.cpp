@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "app/commands.hpp"
-#include "app/paths.hpp"
+#include "app/outputs.hpp"
 #include "app/sampling.hpp"
 #include "report/csv.hpp"
 #include "report/json.hpp"
@@ -15,18 +15,7 @@
 namespace extremal::app {
 namespace {
 
-constexpr int csv_samples = 201, plot_samples = 801, most_samples = 10'000'000;
-
-void check_options(const SolveArguments& a) {
-  if (a.samples && !a.at.empty()) throw OptionError("--samples and --at exclude each other");
-  if (a.samples > most_samples)
-    throw OptionError(fmt::format("--samples {}: at most {} are written", a.samples, most_samples));
-  if (a.repeat < 1) throw OptionError(fmt::format("--repeat {}: need at least 1", a.repeat));
-  check_writable("--output", a.output);
-  check_writable("--csv", a.csv);
-  check_writable("--plot", a.plot);
-  if (!a.plot.empty()) check_plot_path(a.plot);
-}
+constexpr int csv_samples = 201, plot_samples = 801;
 
 /// One line that is written over, on a terminal.
 class Progress {
@@ -83,10 +72,12 @@ void write_csv_of(const std::string& path, const Study& study, const Result& res
   const auto samples = [&](const Result& each) {
     return each.samples ? *each.samples : sampled(study, each, csv_samples);
   };
-  if (!result.solutions) return write_csv(path, samples(result), result.names);
-  std::vector<Samples> all;
-  for (const Result& each : *result.solutions) all.push_back(samples(each));
-  write_csv(path, all, result.names);
+  write_output(path, [&](std::ostream& out) {
+    if (!result.solutions) return write_csv(out, samples(result), result.names);
+    std::vector<Samples> all;
+    for (const Result& each : *result.solutions) all.push_back(samples(each));
+    write_csv(out, all, result.names);
+  });
 }
 
 Picture picture_of(const Study& study, const Result& result) {
@@ -100,7 +91,7 @@ Picture picture_of(const Study& study, const Result& result) {
 }
 
 void write_outputs(const SolveArguments& a, const Study& study, const Result& result) {
-  if (!a.output.empty()) write_json(a.output, result);
+  if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, result); });
   if (!result.solution.converged()) return;
   if (!a.csv.empty()) write_csv_of(a.csv, study, result);
   if (!a.plot.empty()) write_plot(a.plot, picture_of(study, result));
@@ -109,12 +100,13 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
 }  // namespace
 
 int solve(const SolveArguments& a) {
-  check_options(a);
+  const bool table = !on_standard_output(a.output, a.csv) && !a.quiet;
   const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
   Study study = load(a.scene, a.sets);
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
 
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
+  if (!study.problem.periodic) result.natural_conditions = study.problem.ends.free;
   {
     const Progress progress(!a.quiet && a.repeat == 1);
     study.options.progress = progress.callback();
@@ -126,7 +118,7 @@ int solve(const SolveArguments& a) {
   const bool converged = result.solution.converged();
   if (converged && study.solutions == 0) result.samples = wanted_samples(a, at, study, result.solution);
   write_outputs(a, study, result);
-  if (!a.quiet) fmt::print("{}", summary(result));
+  if (table) fmt::print("{}", summary(result));
   if (!converged)
     fmt::print(stderr, "error: {}: {}: {}\n", a.scene, name(result.solution.status), result.solution.message);
   return converged ? Exit::done : Exit::not_converged;

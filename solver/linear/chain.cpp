@@ -20,18 +20,8 @@ namespace {
 constexpr double most_work = 1e8;
 
 ChainKernels kernels(int size) {
-  const auto choose = [&](auto small, auto large) {
-    const ChainKernels own = small(size);
-    return own.factor ? own : large(size);
-  };
-  switch (simd_level()) {
-    case SimdLevel::v4:
-      return choose(v4::small_chain, v4::large_chain);
-    case SimdLevel::v3:
-      return choose(v3::small_chain, v3::large_chain);
-    default:
-      return choose(base::small_chain, base::large_chain);
-  }
+  const ChainKernels own = at_simd_level(EXTREMAL_AT_EACH_LEVEL(small_chain))(size);
+  return own.factor ? own : at_simd_level(EXTREMAL_AT_EACH_LEVEL(large_chain))(size);
 }
 
 /// Roundoff in a pivot relative to the terms it is the sum of, for `order` unknowns.

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "machine/simd.hpp"
+
 /// \file What the kernels of the chain and chain.cpp agree on. Kernels are built once for each
 /// instruction set, so nothing here is inline.
 
@@ -29,17 +31,7 @@ struct ChainKernels {
 };
 
 // small_chain: sizes that are worth a kernel of their own, null pointers for the others.
-namespace base {
-ChainKernels small_chain(int size);
-ChainKernels large_chain(int size);
-}  // namespace base
-namespace v3 {
-ChainKernels small_chain(int size);
-ChainKernels large_chain(int size);
-}  // namespace v3
-namespace v4 {
-ChainKernels small_chain(int size);
-ChainKernels large_chain(int size);
-}  // namespace v4
+EXTREMAL_DECLARE_AT_EACH_LEVEL(ChainKernels small_chain(int size))
+EXTREMAL_DECLARE_AT_EACH_LEVEL(ChainKernels large_chain(int size))
 
 }  // namespace extremal

@@ -22,22 +22,22 @@ struct Layout {
 
 /// Rows of `to` are columns of b, n × n.
 void load_transposed(const double* b, int n, double* to, int stride) {
-  const int whole = n & ~7;
-  for (int i = 0; i < whole; i += 8)
-    for (int j = 0; j < whole; j += 8) {
-      Vec rows[8];
-      for (int k = 0; k < 8; ++k) rows[k] = load_eight(b + (i + k) * n + j);
+  const int whole = n & -lanes;
+  for (int i = 0; i < whole; i += lanes)
+    for (int j = 0; j < whole; j += lanes) {
+      Vec rows[lanes];
+      for (int k = 0; k < lanes; ++k) rows[k] = load(b + (i + k) * n + j);
       transpose(rows);
-      for (int k = 0; k < 8; ++k) at(to + (j + k) * stride + i) = rows[k];
+      for (int k = 0; k < lanes; ++k) at(to + (j + k) * stride + i) = rows[k];
     }
   for (int i = 0; i < n; ++i)
     for (int j = i < whole ? whole : 0; j < n; ++j) to[j * stride + i] = b[i * n + j];
 }
 
 /// W := [D; B]ᵀ with zeros in the padding; returns Σ |entries| of D and B.
-double load(const Layout& l, const double* d, const double* b, double* w) {
+double load_block(const Layout& l, const double* d, const double* b, double* w) {
   const int n = l.size;
-  for (int i = 0; i < l.half * l.stride; i += 8) at(w + i) = Vec{};
+  for (int i = 0; i < l.half * l.stride; i += lanes) at(w + i) = Vec{};
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) w[j * l.stride + i] = d[j * n + i];
   if (b) load_transposed(b, n, w + l.half, l.stride);
@@ -65,12 +65,12 @@ void eliminate(const Layout& l, const double* diagonal, double* w, double* v, do
                ChainMonitor& m) {
   for (int first = 0; first < l.size; first += tile) {
     const int last = first + tile < l.size ? first + tile : l.size;
-    take_rows(w + first * l.stride, l.stride, v + first, w, first, l.stride, first & ~7, l.stride);
+    take_rows(w + first * l.stride, l.stride, v + first, w, first, l.stride, first & -lanes, l.stride);
     for (int j = first; j < last; ++j) {
       pivot(l, j, magnitude(diagonal[j * (l.size + 1)]), w, v, taken, m);
       for (int i = j + 1; i < last; ++i) {
         const double factor = v[j * l.stride + i];
-        for (int c = first & ~7; c < l.stride; c += 8)
+        for (int c = first & -lanes; c < l.stride; c += lanes)
           at(w + i * l.stride + c) -= factor * at(w + j * l.stride + c);
       }
     }
@@ -86,7 +86,7 @@ void factor(const double* diagonal, const double* lower, int blocks, int size, d
   double* next = w + l.half * l.stride;
   double* const taken = next + l.half * l.stride;
   for (int c = 0; c < l.stride; ++c) taken[c] = 0;
-  double scale = load(l, diagonal, blocks > 1 ? lower : nullptr, w);
+  double scale = load_block(l, diagonal, blocks > 1 ? lower : nullptr, w);
   for (int k = 0; k < blocks; ++k) {
     double* const v = l.rows(memory, k);
     eliminate(l, diagonal + k * nn, w, v, taken, m);
@@ -96,9 +96,10 @@ void factor(const double* diagonal, const double* lower, int blocks, int size, d
     m.wild = larger(m.wild, total - wild_growth * scale);
     if (k + 1 == blocks) break;
     scale = sum(lower + k * nn, nn) +
-            load(l, diagonal + (k + 1) * nn, k + 2 < blocks ? lower + (k + 1) * nn : nullptr, next);
+            load_block(l, diagonal + (k + 1) * nn, k + 2 < blocks ? lower + (k + 1) * nn : nullptr, next);
     for (int j = 0; j < size; j += tile)
-      take_rows(next + j * l.stride, l.stride, v + l.half + j, w + l.half, size, l.stride, j & ~7, l.half);
+      take_rows(next + j * l.stride, l.stride, v + l.half + j, w + l.half, size, l.stride, j & -lanes,
+                l.half);
     for (int c = 0; c < l.half; ++c) taken[c] = taken[l.half + c], taken[l.half + c] = 0;
     double* const swap = w;
     w = next, next = swap;
@@ -106,44 +107,33 @@ void factor(const double* diagonal, const double* lower, int blocks, int size, d
   *monitor = m;
 }
 
-/// x −= Σ_{i < 8} y_i v_i, rows v_i of `count` columns.
-inline void subtract_eight(double* x, const double* v, const Vec& y, int stride, int count) {
+/// x −= Σ_{i < lanes} y_i v_i, rows v_i of `count` columns.
+inline void subtract_rows(double* x, const double* v, Vec y, int stride, int count) {
   int c = 0;
-  for (; c + 8 <= count; c += 8) {
-    Vec even = load_eight(x + c), odd = {};
-    for (int i = 0; i < 8; i += 2) {
+  for (; c + lanes <= count; c += lanes) {
+    Vec even = load(x + c), odd = {};
+    for (int i = 0; i < lanes; i += 2) {
       even -= y[i] * at(v + i * stride + c);
       odd += y[i + 1] * at(v + (i + 1) * stride + c);
     }
-    even -= odd;
-    __builtin_memcpy(x + c, &even, sizeof even);
+    store(x + c, even - odd);
   }
   for (; c < count; ++c)
-    for (int i = 0; i < 8; ++i) x[c] -= y[i] * v[i * stride + c];
+    for (int i = 0; i < lanes; ++i) x[c] -= y[i] * v[i * stride + c];
 }
 
 /// sum_i += Σ_c v_i(c) x(c) lane by lane; what is left over of the columns goes to lane 0.
 inline void add_products(Vec* sum, const double* v, const double* x, int stride, int count) {
   int c = 0;
-  for (; c + 8 <= count; c += 8) {
-    const Vec y = load_eight(x + c);
-    for (int i = 0; i < 8; ++i) sum[i] += at(v + i * stride + c) * y;
+  for (; c + lanes <= count; c += lanes) {
+    const Vec y = load(x + c);
+    for (int i = 0; i < lanes; ++i) sum[i] += at(v + i * stride + c) * y;
   }
   for (; c < count; ++c)
-    for (int i = 0; i < 8; ++i) sum[i][0] += v[i * stride + c] * x[c];
+    for (int i = 0; i < lanes; ++i) sum[i][0] += v[i * stride + c] * x[c];
 }
 
-/// The sums over the lanes of eight vectors.
-inline Vec across(const Vec* s) {
-  Vec pair[4], four[2];
-  for (int i = 0; i < 4; ++i)
-    pair[i] = even_entries(s[2 * i], s[2 * i + 1]) + odd_entries(s[2 * i], s[2 * i + 1]);
-  for (int i = 0; i < 2; ++i)
-    four[i] = even_pairs(pair[2 * i], pair[2 * i + 1]) + odd_pairs(pair[2 * i], pair[2 * i + 1]);
-  return first_halves(four[0], four[1]) + last_halves(four[0], four[1]);
-}
-
-/// Rows j and after, fewer than eight, of L y = x.
+/// Rows j and after, fewer than `lanes`, of L y = x.
 void forward_few(const Layout& l, const double* v, int j, double* x, bool more) {
   for (; j < l.size; ++j) {
     const double* const row = v + j * l.stride;
@@ -162,16 +152,17 @@ void backward_few(const Layout& l, const double* v, int first, double* x, bool m
 }
 
 void solve_one(const Layout& l, const double* memory, int blocks, double* x) {
-  const int n = l.size, whole = n & ~7;
+  const int n = l.size, whole = n & -lanes;
   for (int k = 0; k < blocks; ++k, x += n) {
     const double* const v = l.rows(memory, k);
-    for (int first = 0; first < whole; first += 8) {
+    for (int first = 0; first < whole; first += lanes) {
       const double* const rows = v + first * l.stride;
-      Vec y = load_eight(x + first);
-      for (int j = 0; j < 8; ++j) y -= y[j] * at(rows + j * l.stride + first);  // V is zero up to its pivot
-      __builtin_memcpy(x + first, &y, sizeof y);
-      subtract_eight(x + first + 8, rows + first + 8, y, l.stride, n - first - 8);
-      if (k + 1 < blocks) subtract_eight(x + n, rows + l.half, y, l.stride, n);
+      Vec y = load(x + first);
+      for (int j = 0; j < lanes; ++j)
+        y -= y[j] * at(rows + j * l.stride + first);  // V is zero up to its pivot
+      store(x + first, y);
+      subtract_rows(x + first + lanes, rows + first + lanes, y, l.stride, n - first - lanes);
+      if (k + 1 < blocks) subtract_rows(x + n, rows + l.half, y, l.stride, n);
     }
     forward_few(l, v, whole, x, k + 1 < blocks);
   }
@@ -179,15 +170,15 @@ void solve_one(const Layout& l, const double* memory, int blocks, double* x) {
     x -= n;
     const double* const v = l.rows(memory, k);
     backward_few(l, v, whole, x, k + 1 < blocks);
-    for (int first = whole - 8; first >= 0; first -= 8) {
+    for (int first = whole - lanes; first >= 0; first -= lanes) {
       const double* const rows = v + first * l.stride;
-      Vec sum[8] = {};
-      add_products(sum, rows + first + 8, x + first + 8, l.stride, n - first - 8);
+      Vec sum[lanes] = {};
+      add_products(sum, rows + first + lanes, x + first + lanes, l.stride, n - first - lanes);
       if (k + 1 < blocks) add_products(sum, rows + l.half, x + n, l.stride, n);
-      Vec y = load_eight(x + first) * at(l.inverse(v) + first) - across(sum);
-      for (int i = 6; i >= 0; --i)
-        for (int j = 7; j > i; --j) y[i] -= rows[i * l.stride + first + j] * y[j];
-      __builtin_memcpy(x + first, &y, sizeof y);
+      Vec y = load(x + first) * at(l.inverse(v) + first) - sum_lanes(sum);
+      for (int i = lanes - 2; i >= 0; --i)
+        for (int j = lanes - 1; j > i; --j) y[i] -= rows[i * l.stride + first + j] * y[j];
+      store(x + first, y);
     }
   }
 }
@@ -246,21 +237,17 @@ void solve_columns(const Layout& l, const double* memory, int blocks, double* x,
   }
 }
 
-typedef double Two __attribute__((vector_size(16)));
-typedef double Four __attribute__((vector_size(32)));
+/// Right-hand sides from column c on, as many at a time as a register holds, then half as many, and so on.
+template <int wide>
+void solve_from(int c, const Layout& l, const double* memory, int blocks, double* x, int columns) {
+  for (; c + wide <= columns; c += wide)
+    solve_columns<typename Doubles<wide>::type>(l, memory, blocks, x + c, columns);
+  if constexpr (wide > 1) solve_from<wide / 2>(c, l, memory, blocks, x, columns);
+}
 
 void solve(const double* memory, int blocks, int size, double* x, int columns) {
   const Layout l(size);
-  if (columns == 1) return solve_one(l, memory, blocks, x);
-  int c = 0;
-#ifdef __AVX512F__
-  for (; c + 8 <= columns; c += 8) solve_columns<Vec>(l, memory, blocks, x + c, columns);
-#endif
-#ifdef __AVX__
-  for (; c + 4 <= columns; c += 4) solve_columns<Four>(l, memory, blocks, x + c, columns);
-#endif
-  for (; c + 2 <= columns; c += 2) solve_columns<Two>(l, memory, blocks, x + c, columns);
-  if (c < columns) solve_columns<double>(l, memory, blocks, x + c, columns);
+  columns == 1 ? solve_one(l, memory, blocks, x) : solve_from<lanes>(0, l, memory, blocks, x, columns);
 }
 
 }  // namespace

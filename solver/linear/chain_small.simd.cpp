@@ -1,4 +1,5 @@
 #include "linear/chain_kernels.hpp"
+#include "machine/lanes.hpp"
 
 // Small blocks: everything about one block stays in registers, and the chain is burnt at both ends. A
 // pivot waits for a division, so one direction alone leaves the processor idle; block k from the top and
@@ -148,11 +149,6 @@ void factor(const double* diagonal, const double* lower, int blocks, int, double
   *monitor = merge(ends, meeting);
 }
 
-// Vectors of right-hand sides, as wide as the machine has registers.
-typedef double Two __attribute__((vector_size(16)));
-typedef double Four __attribute__((vector_size(32)));
-typedef double Eight __attribute__((vector_size(64)));
-
 template <int n, class T>
 inline void read(T* to, const double* x, int columns) {
   for (int i = 0; i < n; ++i) __builtin_memcpy(to + i, x + i * columns, sizeof(T));
@@ -218,18 +214,17 @@ inline void solve_columns(const Stage<n>* stage, int blocks, double* x, int colu
   }
 }
 
+/// Right-hand sides from column c on, as many at a time as a register holds, then half as many, and so on.
+template <int n, int wide>
+void solve_from(int c, const Stage<n>* stage, int blocks, double* x, int columns) {
+  for (; c + wide <= columns; c += wide)
+    solve_columns<n, typename Doubles<wide>::type>(stage, blocks, x + c, columns);
+  if constexpr (wide > 1) solve_from<n, wide / 2>(c, stage, blocks, x, columns);
+}
+
 template <int n>
 void solve(const double* memory, int blocks, int, double* x, int columns) {
-  const Stage<n>* const stage = reinterpret_cast<const Stage<n>*>(memory);
-  int c = 0;
-#ifdef __AVX512F__
-  for (; c + 8 <= columns; c += 8) solve_columns<n, Eight>(stage, blocks, x + c, columns);
-#endif
-#ifdef __AVX__
-  for (; c + 4 <= columns; c += 4) solve_columns<n, Four>(stage, blocks, x + c, columns);
-#endif
-  for (; c + 2 <= columns; c += 2) solve_columns<n, Two>(stage, blocks, x + c, columns);
-  if (c < columns) solve_columns<n, double>(stage, blocks, x + c, columns);
+  solve_from<n, lanes>(0, reinterpret_cast<const Stage<n>*>(memory), blocks, x, columns);
 }
 
 template <int n>

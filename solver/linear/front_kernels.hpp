@@ -1,12 +1,14 @@
 #pragma once
 
+#include "machine/simd.hpp"
+
 /// \file What the kernels of a sparse factorisation and supernodal.cpp agree on. Kernels are built once for
 /// each instruction set, so nothing here is inline.
 
 namespace extremal {
 
 /// A front: rows of `stride` doubles, a row a pivot. Their first `half` columns are those of the pivots,
-/// padded to whole vectors, then come those of what the pivots are coupled with, padded too. With W = D Lᵀ
+/// padded, then come those of what the pivots are coupled with, padded too. With W = D Lᵀ
 /// and V = Lᵀ as for the chain (chain_large.simd.cpp), U = −(what is left for later) holds the upper triangle
 /// over the latter columns.
 struct FrontShape {
@@ -20,6 +22,8 @@ struct FrontMonitor {
 };
 
 struct FrontKernels {
+  int padding;  ///< columns are padded to multiples of it
+
   /// LDLᵀ of W with 1×1 and 2×2 pivots chosen among the pivots of the front: order[i] becomes the pivot (of
   /// 0 … pivots − 1) that was taken as number i. `diagonal` has two doubles for each: 1/d and 0, or the
   /// inverse of a 2×2 block [d0 e; e d1] as (d0, e), (d1, e). size: |a_ii| of the pivots. taken: Σ w²/|d| of
@@ -38,14 +42,6 @@ struct FrontKernels {
   void (*backward)(const FrontShape& shape, const double* v, double* y, const double* rest);
 };
 
-namespace base {
-FrontKernels front_kernels();
-}
-namespace v3 {
-FrontKernels front_kernels();
-}
-namespace v4 {
-FrontKernels front_kernels();
-}
+EXTREMAL_DECLARE_AT_EACH_LEVEL(FrontKernels front_kernels())
 
 }  // namespace extremal

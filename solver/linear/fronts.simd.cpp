@@ -14,14 +14,14 @@ inline void swap(double& a, double& b) {
   b = c;
 }
 
-/// `vectors` × 8 columns of a row: −= Σ_{t < count} v[t] w[t].
+/// `vectors` × lanes columns of a row: −= Σ_{t < count} v[t] w[t].
 template <int vectors>
 inline void complete(double* to, const double* v, const double* w, int count, int stride) {
   Vec sum[vectors];
-  for (int c = 0; c < vectors; ++c) sum[c] = at(to + 8 * c);
+  for (int c = 0; c < vectors; ++c) sum[c] = at(to + lanes * c);
   for (int t = 0; t < count; ++t, v += stride, w += stride)
-    for (int c = 0; c < vectors; ++c) sum[c] -= *v * at(w + 8 * c);
-  for (int c = 0; c < vectors; ++c) at(to + 8 * c) = sum[c];
+    for (int c = 0; c < vectors; ++c) sum[c] -= *v * at(w + lanes * c);
+  for (int c = 0; c < vectors; ++c) at(to + lanes * c) = sum[c];
 }
 
 /// Elimination in progress.
@@ -36,15 +36,15 @@ struct Front {
 
   /// Row j, by what the first `count` pivots take from it.
   void complete_row(int j, int count) const {
-    int c = j & ~7;
+    int c = j & -lanes;
     double* const to = row(w, j);
-    for (; c + 32 <= s.stride; c += 32) complete<4>(to + c, v + j, w + c, count, s.stride);
-    for (; c < s.stride; c += 8) complete<1>(to + c, v + j, w + c, count, s.stride);
+    for (; c + 4 * lanes <= s.stride; c += 4 * lanes) complete<4>(to + c, v + j, w + c, count, s.stride);
+    for (; c < s.stride; c += lanes) complete<1>(to + c, v + j, w + c, count, s.stride);
   }
 
   void exchange(int i, int k) const {
     if (i == k) return;
-    for (int c = 0; c < s.stride; c += 8) {
+    for (int c = 0; c < s.stride; c += lanes) {
       const Vec x = at(row(w, i) + c);
       at(row(w, i) + c) = at(row(w, k) + c);
       at(row(w, k) + c) = x;
@@ -88,7 +88,7 @@ struct Front {
     diagonal[2 * j + 1] = 0;
     const double* const wj = row(w, j);
     double* const vj = row(v, j);
-    for (int c = j & ~7; c < s.stride; ++c) vj[c] = wj[c] * r;
+    for (int c = j & -lanes; c < s.stride; ++c) vj[c] = wj[c] * r;
     account(j);
     return true;
   }
@@ -107,7 +107,7 @@ struct Front {
     diagonal[2 * j + 2] = d1;
     diagonal[2 * j + 1] = diagonal[2 * j + 3] = e;
     double *const v0 = row(v, j), *const v1 = row(v, j + 1);
-    for (int k = j & ~7; k < s.stride; ++k) {
+    for (int k = j & -lanes; k < s.stride; ++k) {
       v0[k] = d0 * w0[k] + e * w1[k];
       v1[k] = e * w0[k] + d1 * w1[k];
     }
@@ -144,17 +144,18 @@ bool eliminate(const FrontShape& shape, double* w, double* v, int* order, double
 }
 
 void update(const FrontShape& s, const double* v, const double* w, double* u) {
-  const int width = s.stride - s.half;
-  for (int i = 0; i < width; i += tile)
-    take_rows(u + long(i) * width, width, v + s.half + i, w + s.half, s.pivots, s.stride, i & ~7, width);
+  const int columns = s.stride - s.half;
+  for (int i = 0; i < columns; i += tile)
+    take_rows(u + long(i) * columns, columns, v + s.half + i, w + s.half, s.pivots, s.stride, i & -lanes,
+              columns);
 }
 
 void extend(const FrontShape& child, const double* u, const int* to, const int* run, const FrontShape& s,
             double* w, double* parent_u) {
-  const int width = child.stride - child.half, parent_width = s.stride - s.half;
-  for (int i = 0; i < child.rest; ++i, u += width) {
-    double* const row =
-        to[i] < s.half ? w + long(to[i]) * s.stride : parent_u + long(to[i] - s.half) * parent_width - s.half;
+  const int columns = child.stride - child.half, parent_columns = s.stride - s.half;
+  for (int i = 0; i < child.rest; ++i, u += columns) {
+    double* const row = to[i] < s.half ? w + long(to[i]) * s.stride
+                                       : parent_u + long(to[i] - s.half) * parent_columns - s.half;
     for (int k = i; k < child.rest; k = run[k]) {
       double* const target = row + to[k] - k;
       for (int c = k; c < run[k]; ++c) target[c] += u[c];
@@ -190,6 +191,6 @@ void backward(const FrontShape& s, const double* v, double* y, const double* res
 
 }  // namespace
 
-FrontKernels front_kernels() { return {eliminate, update, extend, forward, backward}; }
+FrontKernels front_kernels() { return {padding, eliminate, update, extend, forward, backward}; }
 
 }  // namespace extremal::EXTREMAL_LEVEL

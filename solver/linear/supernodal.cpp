@@ -12,18 +12,7 @@ namespace {
 /// Wider supernodes are divided: within one, pivots are taken one by one.
 constexpr int most_pivots = 64;
 
-FrontKernels kernels() {
-  switch (simd_level()) {
-    case SimdLevel::v4:
-      return v4::front_kernels();
-    case SimdLevel::v3:
-      return v3::front_kernels();
-    default:
-      return base::front_kernels();
-  }
-}
-
-int padded(int n) { return (n + 7) / 8 * 8; }
+int padded(int n, int padding) { return (n + padding - 1) / padding * padding; }
 
 std::size_t size_of_u(const FrontShape& s) {
   const std::size_t width = s.stride - s.half;
@@ -33,7 +22,7 @@ std::size_t size_of_u(const FrontShape& s) {
 }  // namespace
 
 void SupernodalFactor::analyse(const SparsePattern& lower) {
-  kernels_ = kernels();
+  kernels_ = at_simd_level(EXTREMAL_AT_EACH_LEVEL(front_kernels))();
   nodes_ = find_supernodes(lower, most_pivots);
   const int n = int(nodes_.order.size()), count = nodes_.count();
   fronts_.resize(count);
@@ -44,8 +33,8 @@ void SupernodalFactor::analyse(const SparsePattern& lower) {
     FrontShape& shape = front.shape;
     shape.pivots = nodes_.first[s + 1] - nodes_.first[s];
     shape.rest = nodes_.row_begin[s + 1] - nodes_.row_begin[s];
-    shape.half = padded(shape.pivots);
-    shape.stride = shape.half + padded(shape.rest);
+    shape.half = padded(shape.pivots, kernels_.padding);
+    shape.stride = shape.half + padded(shape.rest, kernels_.padding);
     front.first = nodes_.first[s];
     front.rows = nodes_.row_begin[s];
     front.v = v;

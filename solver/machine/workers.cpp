@@ -30,11 +30,20 @@ using Work = void (*)(const void* context, int thread, int piece);
 /// Work that comes again soon is spun for, about as long as sleeping and waking take; later work wakes.
 constexpr int most_spins = 1000;
 
+/// Tells the processor that this is a loop of waiting.
+inline void relax() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
 template <class T>
 void wait_while(const std::atomic<T>& value, T old) {
   for (int spin = 0; spin < most_spins; ++spin) {
     if (value.load(std::memory_order_acquire) != old) return;
-    __builtin_ia32_pause();
+    relax();
   }
   value.wait(old, std::memory_order_acquire);
 }

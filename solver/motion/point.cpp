@@ -5,18 +5,11 @@
 
 namespace extremal {
 
-namespace {
-
-/// The point fills a whole batch, each row one cache line.
-constexpr int batch = 8;
-
-}  // namespace
-
 PointEvaluator::PointEvaluator(const Lagrangian& lagrangian) : lagrangian_(lagrangian) {
   const Structure& s = lagrangian.structure();
   const std::size_t inputs = 2 * s.coordinates + 1;
-  point_ = storage_.reserve((inputs + lagrangian.rows(Order::hessian)) * batch);
-  out_ = point_ + inputs * batch;
+  point_ = storage_.reserve((inputs + lagrangian.rows(Order::hessian)) * lanes_);
+  out_ = point_ + inputs * lanes_;
   dq_.resize(s.coordinates);
   dv_.resize(s.coordinates);
   vq_ = s.gyroscopic;
@@ -33,12 +26,12 @@ PointEvaluator::PointEvaluator(const Lagrangian& lagrangian) : lagrangian_(lagra
 bool PointEvaluator::evaluate(std::span<const double> q, std::span<const double> v, double t, Order order) {
   const std::size_t n = dq_.size();
   for (std::size_t a = 0; a < n; ++a) {
-    std::fill_n(point_ + a * batch, batch, q[a]);
-    std::fill_n(point_ + (n + a) * batch, batch, v[a]);
+    std::fill_n(point_ + a * lanes_, lanes_, q[a]);
+    std::fill_n(point_ + (n + a) * lanes_, lanes_, v[a]);
   }
-  double* const times = point_ + 2 * n * batch;
-  std::fill_n(times, batch, t);
-  lagrangian_.evaluate({batch, batch, point_, point_ + n * batch, times}, order, out_, scratch_);
+  double* const times = point_ + 2 * n * lanes_;
+  std::fill_n(times, lanes_, t);
+  lagrangian_.evaluate({lanes_, lanes_, point_, point_ + n * lanes_, times}, order, out_, scratch_);
   return read_gradient(q, v) && (order != Order::hessian || read_hessian());
 }
 
@@ -54,7 +47,7 @@ bool PointEvaluator::read_gradient(std::span<const double> q, std::span<const do
   for (std::size_t a = 0; a < s.linear.size(); ++a) dv_[a] += s.linear[a];
   for (std::size_t k = 0; k < s.gradient.size(); ++k) {
     const auto z = static_cast<std::size_t>(s.gradient[k]);
-    (z < dq_.size() ? dq_[z] : dv_[z - dq_.size()]) += out_[(1 + k) * batch];
+    (z < dq_.size() ? dq_[z] : dv_[z - dq_.size()]) += out_[(1 + k) * lanes_];
   }
   const auto finite = [](double x) { return std::isfinite(x); };
   return std::all_of(dq_.begin(), dq_.end(), finite) && std::all_of(dv_.begin(), dv_.end(), finite);
@@ -64,12 +57,12 @@ bool PointEvaluator::read_gradient(std::span<const double> q, std::span<const do
 bool PointEvaluator::read_hessian() {
   const Structure& s = lagrangian_.structure();
   const int n = s.coordinates;
-  const double* const rows = out_ + (1 + s.gradient.size()) * batch;
+  const double* const rows = out_ + (1 + s.gradient.size()) * lanes_;
   std::size_t in_qq = 0, in_vq = s.gyroscopic.size(), in_vv = s.mass.size();
   bool finite = true;
   for (std::size_t k = 0; k < s.hessian.size(); ++k) {
     const auto [row, column] = s.hessian[k];
-    const double value = rows[k * batch];
+    const double value = rows[k * lanes_];
     finite = finite && std::isfinite(value);
     auto& block = row < n ? qq_ : column < n ? vq_ : vv_;
     std::size_t& next = row < n ? in_qq : column < n ? in_vq : in_vv;

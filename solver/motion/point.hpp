@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "machine/simd.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file A Lagrangian at one point, without allocation after the first.
@@ -31,6 +32,7 @@ class PointEvaluator {
   bool read_hessian();
 
   const Lagrangian& lagrangian_;
+  const int lanes_ = simd_lanes();  ///< the point fills a whole batch
   std::vector<double> dq_, dv_;
   std::vector<Triplet> qq_, vq_, vv_;
   Scratch storage_, scratch_;

@@ -118,9 +118,8 @@ std::string record_text(const FollowedBranch& branch, std::size_t number) {
                         record.points);
   text += fmt::format("{:<16}{}\n", "end", printable(record.message, 2000));
   if (record.points == 0) return text;
-  return text +
-         fmt::format("{:<16}{} along the branch, violated by {:.1e} of S at most; dS/dq = p by {:.1e}\n",
-                     "check", law(branch), record.worst_action_slope, record.worst_momentum);
+  return text + fmt::format("{:<16}{} along the branch to {:.1e} of S; dS/dq = p to {:.1e}\n", "check",
+                            law(branch), record.worst_action_slope, record.worst_momentum);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ std::string summary(const Comparison& comparison) {
   std::string text = comparison.title.empty() ? "" : printable(comparison.title, 200) + "\n";
   text += fmt::format("{:<16}{}\n", "reference", printable(comparison.message, 2000));
   if (comparison.reference)
-    text += fmt::format("{:<16}{:.1e}, with q ranging over {:.3g}\n", "error estimate",
+    text += fmt::format("{:<16}{:.1e}; largest range of q {:.3g}\n", "error estimate",
                         comparison.reference->error_estimate, comparison.reference->range);
   using Align = Table::Align;
   Table table{{{"method", Align::left}, {"tolerance"}, {"error of q"}, {"time"}, {"status", Align::left}},

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <ostream>
@@ -18,6 +19,10 @@
 namespace extremal {
 
 namespace {
+
+[[noreturn]] void refuse_missing_gnuplot() {
+  throw std::runtime_error("gnuplot draws the plots and was not found: apt install gnuplot-nox");
+}
 
 std::string content(const std::string& path) {
   std::ostringstream text;
@@ -52,9 +57,7 @@ bool run_gnuplot(const std::string& folder, const char* script, const char* log)
   const FileActions actions(folder, log);
   pid_t child = 0;
   const int error = posix_spawnp(&child, "gnuplot", actions.get(), nullptr, argv, environ);
-  if (error == ENOENT) {
-    throw std::runtime_error("plots are drawn by gnuplot, which was not found: apt install gnuplot-nox");
-  }
+  if (error == ENOENT) refuse_missing_gnuplot();
   if (error != 0) throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
@@ -65,7 +68,22 @@ bool run_gnuplot(const std::string& folder, const char* script, const char* log)
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+/// Replaces the time at which a PDF was made by a fixed one of the same length: output is deterministic.
+void reset_date(std::string& pdf) {
+  const std::string key = "/CreationDate (D:", date = "20000101000000";
+  const std::size_t at = pdf.find(key);
+  if (at != std::string::npos) pdf.replace(at + key.size(), date.size(), date);
+}
+
 }  // namespace
+
+void require_gnuplot() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "/bin:/usr/bin");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((folder + "/gnuplot").c_str(), X_OK) == 0) return;
+  refuse_missing_gnuplot();
+}
 
 std::string draw(const Figure& figure, Format format) {
   const TemporaryFolder folder;
@@ -75,6 +93,7 @@ std::string draw(const Figure& figure, Format format) {
   if (!ended_well || image.empty()) {
     throw std::runtime_error("gnuplot failed: " + printable(content(folder / "log"), 400));
   }
+  if (format == Format::pdf) reset_date(image);
   return image;
 }
 

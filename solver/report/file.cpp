@@ -27,6 +27,8 @@ void remove_partial(const std::string& path) {
 }  // namespace
 
 void write_file(const std::string& path, const std::function<void(std::ostream&)>& write) {
+  std::error_code ignored;  // where no folder can be made, opening fails and says why
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
   errno = 0;
   std::ofstream out(path, std::ios::binary);
   if (!out) refuse(path);

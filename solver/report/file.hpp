@@ -8,9 +8,9 @@
 
 namespace extremal {
 
-/// Opens the path, lets `write` fill it and closes it. Throws std::runtime_error with the path and the
-/// system's reason if any of this fails, and passes on what `write` throws; a regular file written in part
-/// is then removed.
+/// Makes the folders of the path, opens it, lets `write` fill it and closes it. Throws std::runtime_error
+/// with the path and the system's reason if any of this fails, and passes on what `write` throws; a regular
+/// file written in part is then removed.
 void write_file(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace extremal

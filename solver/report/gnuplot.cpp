@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 namespace extremal {
 
@@ -14,6 +16,7 @@ constexpr Colour ink = 0x262A33, quiet_ink = 0x5A606B, frame = 0x8C929C, rule = 
 constexpr double font_size = 13, title_size = 18;  // pixels
 constexpr int zoom = 2;                            ///< pixels of a PNG for one of the layout
 constexpr int raster = 20 * zoom;                  ///< gnuplot's own units in one pixel of the layout
+constexpr double flatness = 0.05;  ///< largest distance, in pixels, of a curve from the chords drawn for it
 
 /// A literal between double quotes. All but letters, spaces and what is not ASCII is written as an octal
 /// escape, so that no text can end the literal or have gnuplot substitute a command in it. Digits too: one
@@ -30,6 +33,44 @@ std::string quoted(const std::string& text) {
 
 std::string hexadecimal(Colour colour) { return fmt::format("'#{:06X}'", colour); }
 
+struct Point {
+  double x = 0, y = 0;
+};
+
+double distance_to_chord(const Point& p, const Point& from, const Point& to) {
+  const double x = to.x - from.x, y = to.y - from.y, length2 = x * x + y * y;
+  const double along = length2 > 0 ? ((p.x - from.x) * x + (p.y - from.y) * y) / length2 : 0;
+  const double t = std::clamp(along, 0.0, 1.0);
+  return std::hypot(p.x - from.x - t * x, p.y - from.y - t * y);
+}
+
+/// The path with fewer points: no point that is left out is farther than `most` from the chords of the others
+/// (Douglas and Peucker 1973).
+std::vector<Point> thinned(const std::vector<Point>& path, double most) {
+  if (path.size() < 3) return path;
+  std::vector<char> kept(path.size(), 0);
+  kept.front() = kept.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> pieces{{0, path.size() - 1}};
+  while (!pieces.empty()) {
+    const auto [from, to] = pieces.back();
+    pieces.pop_back();
+    double farthest = most;
+    std::size_t corner = from;
+    for (std::size_t k = from + 1; k < to; ++k)
+      if (const double d = distance_to_chord(path[k], path[from], path[to]); d > farthest) {
+        farthest = d;
+        corner = k;
+      }
+    if (corner == from) continue;
+    kept[corner] = 1;
+    pieces.insert(pieces.end(), {{from, corner}, {corner, to}});
+  }
+  std::vector<Point> result;
+  for (std::size_t k = 0; k < path.size(); ++k)
+    if (kept[k]) result.push_back(path[k]);
+  return result;
+}
+
 /// What gnuplot measures in units of its own, which differ with the format.
 struct Sizes {
   double font;    ///< of a pixel
@@ -39,6 +80,12 @@ struct Sizes {
 };
 constexpr Sizes svg_sizes{.font = 1, .point = 0.6, .tick = 0.4, .number = 0.35};
 constexpr Sizes png_sizes{.font = 0.75, .point = 0.8, .tick = 1, .number = 0};
+constexpr double pixels_an_inch = 96;  // of a PDF
+constexpr Sizes pdf_sizes{.font = 0.75, .point = 0.5, .tick = 0.75, .number = 0};
+
+const Sizes& sizes_of(Format format) {
+  return format == Format::svg ? svg_sizes : format == Format::png ? png_sizes : pdf_sizes;
+}
 
 Box whole_pixels(const Box& box) {
   return {std::round(box.left), std::round(box.top), std::round(box.width), std::round(box.height)};
@@ -52,7 +99,7 @@ class Script {
       : figure_(figure),
         width_(std::round(figure.width)),
         height_(std::round(figure.height)),
-        sizes_(format == Format::svg ? svg_sizes : png_sizes) {
+        sizes_(sizes_of(format)) {
     terminal(format);
     add("set output {}\nset encoding utf8\nset key off\nset multiplot\n", quoted(output));
     add("set cbrange [0:1]\n");
@@ -73,6 +120,11 @@ class Script {
     const double size = font_size * sizes_.font;
     if (format == Format::svg) {
       add("set terminal svg size {:.0f},{:.0f} {} font 'Helvetica,{}'\n", width_, height_, common, size);
+    } else if (format == Format::pdf) {
+      // Its scale of fonts is 0.5 unless it is given; a line of width 1 is three quarters of a pixel.
+      add("set terminal pdfcairo size {:.4f}in,{:.4f}in {} font 'Helvetica,{}' fontscale 0.75 linewidth "
+          "1.33\n",
+          width_ / pixels_an_inch, height_ / pixels_an_inch, common, size);
     } else {
       add("set terminal pngcairo size {:.0f},{:.0f} {} font 'Helvetica,{}'", zoom * width_, zoom * height_,
           common, size);
@@ -194,15 +246,18 @@ class Script {
   /// curve turns; so no step is quite that.
   std::string points(const Panel& panel, const Column& x, const Column& y) {
     const Box box = whole_pixels(panel.box);
+    std::vector<Point> path(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k)
+      path[k] = {panel.x.place(x[k]) * box.width * raster, panel.y.place(y[k]) * box.height * raster};
     const std::string block = open_block();
     long across = -1, up = -1;
     const auto next = [](double position, long before) {
       const long rounded = std::lround(position);
       return rounded == before ? rounded + 1 : rounded;
     };
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      across = next(panel.x.place(x[k]) * box.width * raster, across);
-      up = next(panel.y.place(y[k]) * box.height * raster, up);
+    for (const Point& point : thinned(path, flatness * raster)) {
+      across = next(point.x, across);
+      up = next(point.y, up);
       add("{} {}\n", across, up);
     }
     add("EOD\n");

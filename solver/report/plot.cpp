@@ -18,7 +18,9 @@ namespace {
 Format format_of(const std::string& path) {
   if (path.ends_with(".svg")) return Format::svg;
   if (path.ends_with(".png")) return Format::png;
-  throw std::invalid_argument(fmt::format("cannot plot into {}: the name must end in .svg or .png", path));
+  if (path.ends_with(".pdf")) return Format::pdf;
+  throw std::invalid_argument(
+      fmt::format("cannot plot into {}: the name must end in .svg, .png or .pdf", path));
 }
 
 void check_finite(const std::string& key, const Column& column) {

@@ -19,11 +19,11 @@ struct Picture {
   std::vector<std::string> labels = {};  ///< of all of them, for the legend
 };
 
-/// Refuses a path that does not end in .svg or .png with std::invalid_argument. To be called before work is
-/// begun whose result would be plotted.
+/// Refuses a path that does not end in .svg, .png or .pdf with std::invalid_argument. To be called before
+/// work is begun whose result would be plotted.
 void check_plot_path(const std::string& path);
 
-/// Draws with gnuplot, SVG or PNG by the suffix of the path. What is drawn follows from the names:
+/// Draws with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows from the names:
 ///  - one coordinate: it and its velocity against time;
 ///  - two: the path in the plane, equal scales, beside both against time;
 ///  - three: the path in space and its projections;

@@ -33,6 +33,7 @@ struct Result {
   std::optional<Samples> samples = {};  ///< never written where the solution has not converged
   /// Those of a search, by action; `solution` is the first of them, or tells why there is none.
   std::optional<std::vector<Result>> solutions = {};
+  int natural_conditions = 0;  ///< at the ends, of a problem that is not periodic
 };
 
 /// Keys in JSON and CSV: "x[1]'" and "p_x[1]".

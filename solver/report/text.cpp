@@ -76,7 +76,7 @@ std::string counted(int count, const char* noun) {
 /// Of an orbit that repeats itself.
 std::string period_text(const Solution& solution) {
   if (!solution.minimal_period || *solution.minimal_period == solution.duration()) return "";
-  return fmt::format("{:.12g}, which the orbit goes through {} times", *solution.minimal_period,
+  return fmt::format("{:.12g}, repeated {} times", *solution.minimal_period,
                      std::lround(solution.duration() / *solution.minimal_period));
 }
 
@@ -93,7 +93,7 @@ std::string stability_text(const Solution& solution) {
   list(floquet.quadruples, "complex quadruple", "");
   list(floquet.circle_pairs, "pair", " on the unit circle");
   list(floquet.trivial_pairs, "trivial pair",
-       " at ±1 (double; that of the shift in time is known, others to √ε)");
+       " at ±1 (double: exact for the time shift, else accurate to √ε)");
   return text + fmt::format("; largest modulus {:.9g}", std::abs(floquet.multipliers.front()));
 }
 
@@ -155,6 +155,8 @@ std::string summary(const Result& result) {
   lines.add("status", name(solution.status));
   lines.add("message", printable(solution.message, 2000));
   lines.add("strategy", printable(solution.strategy, 200));
+  if (result.natural_conditions > 0)
+    lines.add("boundary", counted(result.natural_conditions, "natural condition"));
   if (trajectory.elements() > 0) {
     lines.add_number("duration", solution.duration());
     lines.add_number("action", solution.action);

@@ -31,17 +31,17 @@ constexpr dop853::Row<double> error3 = third_order_error();
 }  // namespace
 
 Convoy::Convoy(LaneFlow& flow)
-    : flow_(flow), kernels_(flow.kernels()), t_(lanes), h_(lanes), stage_t_(lanes), sums_(2 * lanes) {}
+    : flow_(flow), kernels_(flow.kernels()), t_(lanes_), h_(lanes_), stage_t_(lanes_), sums_(2 * lanes_) {}
 
 void Convoy::resize(int columns) {
   rows_ = static_cast<std::size_t>(2 * flow_.coordinates()) * (1 + columns);
-  y_.resize(rows_ * lanes);
-  next_.resize(rows_ * lanes);
-  k_.resize(rows_ * lanes * dop853::stages);
+  y_.resize(rows_ * lanes_);
+  next_.resize(rows_ * lanes_);
+  k_.resize(rows_ * lanes_ * dop853::stages);
 }
 
 bool Convoy::under_way() const {
-  return std::any_of(lane_, lane_ + lanes, [](const Lane& lane) { return lane.leg != nullptr; });
+  return std::any_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.leg != nullptr; });
 }
 
 bool Convoy::run(std::span<Leg> legs, int columns, double tolerance, int most_steps) {
@@ -52,7 +52,7 @@ bool Convoy::run(std::span<Leg> legs, int columns, double tolerance, int most_st
   failed_ = false;
   waiting_.clear();
   for (std::size_t k = legs.size(); k-- > 0;) waiting_.push_back(&legs[k]);
-  for (int l = 0; l < lanes; ++l) {
+  for (int l = 0; l < lanes_; ++l) {
     // A lane without a leg of its own stays where the first one starts.
     const bool idle = waiting_.empty();
     if (idle) waiting_.push_back(&legs.front());
@@ -71,7 +71,7 @@ bool Convoy::run(std::span<Leg> legs, int columns, double tolerance, int most_st
 void Convoy::take_leg(int l) {
   Leg& leg = *waiting_.back();
   waiting_.pop_back();
-  for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes + l] = leg.initial[r];
+  for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes_ + l] = leg.initial[r];
   leg.complete = false;
   leg.steps = 0;
   const double longer = leg.first_step > 0 ? std::pow(tolerance_ / leg.tolerance, 1 / order) : 0;
@@ -80,19 +80,19 @@ void Convoy::take_leg(int l) {
 
 /// For lanes that know none: a part of the time in which q or p would change by its own size.
 void Convoy::choose_first_steps() {
-  if (std::none_of(lane_, lane_ + lanes, [](const Lane& lane) { return lane.leg && lane.h == 0; })) return;
+  if (std::none_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.leg && lane.h == 0; })) return;
   const int n = flow_.coordinates();
-  for (int l = 0; l < lanes; ++l) t_[l] = lane_[l].t;
+  for (int l = 0; l < lanes_; ++l) t_[l] = lane_[l].t;
   flow_.slope(t_.data(), y_.data(), 0, k_.data());
-  for (int l = 0; l < lanes; ++l) {
+  for (int l = 0; l < lanes_; ++l) {
     Lane& lane = lane_[l];
     if (!lane.leg || lane.h > 0) continue;
     lane.h = lane.leg->end - lane.t;
     for (const int begin : {0, n}) {
       double value = 0, slope = 0;
       for (int r = begin; r < begin + n; ++r) {
-        value = std::max(value, std::abs(y_[r * lanes + l]));
-        slope = std::max(slope, std::abs(k_[r * lanes + l]));
+        value = std::max(value, std::abs(y_[r * lanes_ + l]));
+        slope = std::max(slope, std::abs(k_[r * lanes_ + l]));
       }
       if (value > 0 && slope > 0)
         lane.h = std::min(lane.h, 2 * std::pow(tolerance_, 1 / order) * value / slope);
@@ -102,7 +102,7 @@ void Convoy::choose_first_steps() {
 }
 
 void Convoy::plan_steps() {
-  for (int l = 0; l < lanes; ++l) {
+  for (int l = 0; l < lanes_; ++l) {
     Lane& lane = lane_[l];
     t_[l] = lane.t;
     h_[l] = 0;
@@ -116,7 +116,7 @@ void Convoy::plan_steps() {
 void Convoy::list(const dop853::Row<double>& row, std::vector<LaneStage>& stages) const {
   stages.clear();
   for (int j = 0; j < dop853::stages; ++j)
-    if (row[j] != 0) stages.push_back({row[j], k_.data() + j * rows_ * lanes});
+    if (row[j] != 0) stages.push_back({row[j], k_.data() + j * rows_ * lanes_});
 }
 
 void Convoy::step(int columns) {
@@ -128,8 +128,8 @@ void Convoy::step(int columns) {
   flow_.slope(t_.data(), y_.data(), columns, k_.data());
   for (int i = 1; i < dop853::stages; ++i) {
     combine(dop853::a<double>[i]);
-    for (int l = 0; l < lanes; ++l) stage_t_[l] = t_[l] + dop853::c<double>[i] * h_[l];
-    flow_.slope(stage_t_.data(), next_.data(), columns, k_.data() + i * rows_ * lanes);
+    for (int l = 0; l < lanes_; ++l) stage_t_[l] = t_[l] + dop853::c<double>[i] * h_[l];
+    flow_.slope(stage_t_.data(), next_.data(), columns, k_.data() + i * rows_ * lanes_);
   }
   combine(dop853::b<double>);
   ++steps_;
@@ -141,7 +141,7 @@ void Convoy::judge() {
   std::fill(sums_.begin(), sums_.end(), 0.0);
   list(dop853::error5<double>, stages_);
   list(error3, others_);
-  const std::size_t half = static_cast<std::size_t>(n) * lanes;
+  const std::size_t half = static_cast<std::size_t>(n) * lanes_;
   for (const std::size_t begin : {std::size_t(0), half}) {
     kernels_.add_errors(y_.data() + begin, next_.data() + begin, stages_.data(), count(stages_),
                         others_.data(), count(others_), tolerance_, sums_.data(), n);
@@ -149,9 +149,9 @@ void Convoy::judge() {
       for (LaneStage& stage : *stages) stage.slope += half;
   }
   bool taken = false;
-  for (int l = 0; l < lanes; ++l) {
+  for (int l = 0; l < lanes_; ++l) {
     if (!lane_[l].leg) continue;
-    const double sum5 = sums_[l], sum3 = sums_[lanes + l];
+    const double sum5 = sums_[l], sum3 = sums_[lanes_ + l];
     judge_lane(l, sum5 == 0 ? 0 : h_[l] * sum5 / std::sqrt((sum5 + 0.01 * sum3) * 2 * n));
     if (failed_) return fail();
     if (!lane_[l].leg && !waiting_.empty()) {
@@ -190,10 +190,10 @@ void Convoy::judge_lane(int l, double error) {
 void Convoy::accept(int l) {
   Lane& lane = lane_[l];
   if (!lane.last) {
-    for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes + l] = next_[r * lanes + l];
+    for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes_ + l] = next_[r * lanes_ + l];
     return;
   }
-  for (std::size_t r = 0; r < rows_; ++r) lane.leg->final[r] = next_[r * lanes + l];
+  for (std::size_t r = 0; r < rows_; ++r) lane.leg->final[r] = next_[r * lanes_ + l];
   lane.leg->complete = true;
   lane.leg = nullptr;
 }

@@ -7,7 +7,7 @@
 #include "motion/dop853_tableau.hpp"
 #include "rivals/lane_flow.hpp"
 
-/// \file Many pieces of motion integrated by the method of Dormand and Prince, eight at a time.
+/// \file Many pieces of motion integrated by the method of Dormand and Prince, one in each lane.
 
 namespace extremal {
 
@@ -22,7 +22,7 @@ struct Leg {
   int steps = 0;
 };
 
-/// Eight lanes, each with its own time, step length and error control; a lane that has finished takes the
+/// Lanes, each with its own time, step length and error control; a lane that has finished takes the
 /// next leg. Error and step length are those of the state without its variations.
 class Convoy {
  public:
@@ -33,7 +33,7 @@ class Convoy {
   /// and |p|. False if one could not be completed. `most_steps` is for each leg.
   bool run(std::span<Leg> legs, int columns, double tolerance, int most_steps);
 
-  int steps() const { return steps_; }  ///< of eight lanes together, in all
+  int steps() const { return steps_; }  ///< of all lanes together, in all
 
  private:
   struct Lane {
@@ -56,7 +56,8 @@ class Convoy {
 
   LaneFlow& flow_;
   const LaneKernels& kernels_;
-  Lane lane_[lanes];
+  const int lanes_ = simd_lanes();
+  Lane lane_[most_lanes];
   std::vector<Leg*> waiting_;  ///< the next one last
   AlignedDoubles y_, next_, k_, t_, h_, stage_t_, sums_;
   std::vector<LaneStage> stages_, others_;

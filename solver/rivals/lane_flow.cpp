@@ -17,27 +17,16 @@ constexpr double roundoff = 2e-15, near = 1e-8, acceptable = 1e-12;
 
 }  // namespace
 
-LaneKernels lane_kernels() {
-  switch (simd_level()) {
-    case SimdLevel::base:
-      return base::lane_kernels();
-    case SimdLevel::v3:
-      return v3::lane_kernels();
-    default:
-      return v4::lane_kernels();
-  }
-}
-
 LaneFlow::LaneFlow(const Lagrangian& lagrangian)
     : lagrangian_(lagrangian),
       structure_(lagrangian.structure()),
       n_(structure_.coordinates),
-      kernels_(lane_kernels()),
+      kernels_(at_simd_level(EXTREMAL_AT_EACH_LEVEL(lane_kernels))()),
       gradient_q_(n_, -1),
       gradient_v_(n_, -1),
-      v_(static_cast<std::size_t>(n_) * lanes),
-      out_(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * lanes),
-      work_(static_cast<std::size_t>(n_) * lanes) {
+      v_(static_cast<std::size_t>(n_) * lanes_),
+      out_(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * lanes_),
+      work_(static_cast<std::size_t>(n_) * lanes_) {
   for (std::size_t k = 0; k < structure_.gradient.size(); ++k) {
     const int z = structure_.gradient[k];
     (z < n_ ? gradient_q_[z] : gradient_v_[z - n_]) = static_cast<int>(1 + k);
@@ -45,7 +34,7 @@ LaneFlow::LaneFlow(const Lagrangian& lagrangian)
   if (structure_.quadratic)
     invert_mass();
   else
-    factors_.resize(static_cast<std::size_t>(n_) * n_ * lanes);
+    factors_.resize(static_cast<std::size_t>(n_) * n_ * lanes_);
   list_entries();
 }
 
@@ -67,20 +56,20 @@ void LaneFlow::invert_mass() {
     vq_.push_back({c.row, c.column, nullptr});
     values.push_back(c.value);
   }
-  constants_.resize(values.size() * lanes);
+  constants_.resize(values.size() * lanes_);
   for (std::size_t k = 0; k < values.size(); ++k)
-    std::fill_n(constants_.data() + k * lanes, lanes, values[k]);
+    std::fill_n(constants_.data() + k * lanes_, lanes_, values[k]);
   const double* next = constants_.data();
   for (std::vector<LaneEntry>* list : {&mass_inverse_, &vq_})
     for (LaneEntry& entry : *list) {
       entry.value = next;
-      next += lanes;
+      next += lanes_;
     }
 }
 
 /// Second derivatives where the tape writes them; both triangles of ∂²L/∂q∂q, the lower one of ∂²L/∂q'∂q'.
 void LaneFlow::list_entries() {
-  const double* value = out_.data() + (1 + structure_.gradient.size()) * lanes;
+  const double* value = out_.data() + (1 + structure_.gradient.size()) * lanes_;
   for (const auto& [row, column] : structure_.hessian) {
     if (row < n_) {
       qq_.push_back({row, column, value});
@@ -90,23 +79,23 @@ void LaneFlow::list_entries() {
     } else {
       vv_.push_back({row - n_, column - n_, value});
     }
-    value += lanes;
+    value += lanes_;
   }
 }
 
 void LaneFlow::evaluate(const double* t, const double* y, Order order) {
-  lagrangian_.evaluate({lanes, lanes, y, v_.data(), t}, order, out_.data(), scratch_);
+  lagrangian_.evaluate({lanes_, lanes_, y, v_.data(), t}, order, out_.data(), scratch_);
 }
 
 /// q' from p, left in v_; and in out_ the derivatives up to `order` there.
 void LaneFlow::solve_velocity(const double* t, const double* y, Order order) {
-  const double* const p = y + static_cast<std::size_t>(n_) * lanes;
+  const double* const p = y + static_cast<std::size_t>(n_) * lanes_;
   if (structure_.quadratic) {
-    std::copy_n(p, n_ * lanes, work_.data());
+    std::copy_n(p, n_ * lanes_, work_.data());
     kernels_.add_products(vq_.data(), static_cast<int>(structure_.gyroscopic.size()), -1, y, work_.data(), 1,
                           0, 0);
     for (std::size_t a = 0; a < structure_.linear.size(); ++a)
-      for (int lane = 0; lane < lanes; ++lane) work_[a * lanes + lane] -= structure_.linear[a];
+      for (int lane = 0; lane < lanes_; ++lane) work_[a * lanes_ + lane] -= structure_.linear[a];
     std::fill(v_.begin(), v_.end(), 0.0);
     kernels_.add_products(mass_inverse_.data(), static_cast<int>(mass_inverse_.size()), 1, work_.data(),
                           v_.data(), 1, 0, 0);
@@ -123,28 +112,28 @@ void LaneFlow::solve_velocity(const double* t, const double* y, Order order) {
 /// Factors ∂²L/∂q'∂q' and takes a step of Newton, unless v_ belongs to p already: then false. The worst lane
 /// counts; lanes that are not finite do not.
 bool LaneFlow::correct_velocity(const double* p, double& before) {
-  double size[lanes] = {}, worst = 0;
+  double size[most_lanes] = {}, worst = 0;
   residual_.fill(0);
   for (int a = 0; a < n_; ++a)
-    for (int lane = 0; lane < lanes; ++lane) {
-      const double momentum = gradient_v_[a] < 0 ? 0 : out_[gradient_v_[a] * lanes + lane];
-      const double r = p[a * lanes + lane] - momentum;
-      work_[a * lanes + lane] = r;
+    for (int lane = 0; lane < lanes_; ++lane) {
+      const double momentum = gradient_v_[a] < 0 ? 0 : out_[gradient_v_[a] * lanes_ + lane];
+      const double r = p[a * lanes_ + lane] - momentum;
+      work_[a * lanes_ + lane] = r;
       residual_[lane] = std::abs(r) <= residual_[lane] ? residual_[lane] : std::abs(r);
-      size[lane] = std::max({size[lane], std::abs(p[a * lanes + lane]), std::abs(momentum)});
+      size[lane] = std::max({size[lane], std::abs(p[a * lanes_ + lane]), std::abs(momentum)});
     }
-  for (int lane = 0; lane < lanes; ++lane) {
+  for (int lane = 0; lane < lanes_; ++lane) {
     if (size[lane] > 0) residual_[lane] /= size[lane];
     if (std::isfinite(residual_[lane])) worst = std::max(worst, residual_[lane]);
   }
   std::fill(factors_.begin(), factors_.end(), 0.0);
   for (const LaneEntry& e : vv_)
-    std::copy_n(e.value, lanes, factors_.data() + static_cast<std::size_t>(e.row * n_ + e.column) * lanes);
+    std::copy_n(e.value, lanes_, factors_.data() + static_cast<std::size_t>(e.row * n_ + e.column) * lanes_);
   kernels_.factor(factors_.data(), n_);
   if (worst <= roundoff || (before <= near && worst <= acceptable)) return false;
   before = worst;
   kernels_.solve(factors_.data(), n_, work_.data(), 1, 0);
-  for (int i = 0; i < n_ * lanes; ++i) {
+  for (int i = 0; i < n_ * lanes_; ++i) {
     v_[i] += work_[i];
     // A lane that has been lost starts anew.
     if (!std::isfinite(v_[i])) v_[i] = 0;
@@ -155,11 +144,11 @@ bool LaneFlow::correct_velocity(const double* p, double& before) {
 /// ∂L/∂q.
 void LaneFlow::write_force(double* force) {
   for (int a = 0; a < n_; ++a) {
-    double* const to = force + a * lanes;
+    double* const to = force + a * lanes_;
     if (gradient_q_[a] < 0)
-      std::fill_n(to, lanes, 0.0);
+      std::fill_n(to, lanes_, 0.0);
     else
-      std::copy_n(out_.data() + gradient_q_[a] * lanes, lanes, to);
+      std::copy_n(out_.data() + gradient_q_[a] * lanes_, lanes_, to);
   }
   kernels_.add_transposed(vq_.data(), static_cast<int>(structure_.gyroscopic.size()), v_.data(), force, 1, 0,
                           0);
@@ -167,13 +156,13 @@ void LaneFlow::write_force(double* force) {
 
 /// L_vv δq' = δp − L_vq δq,  δp' = L_qq δq + L_vqᵀ δq'.
 void LaneFlow::vary(const double* y, int columns, double* slope) {
-  const std::size_t half = static_cast<std::size_t>(n_) * lanes;
+  const std::size_t half = static_cast<std::size_t>(n_) * lanes_;
   const long stride = 2L * n_;
   const auto count = [](const std::vector<LaneEntry>& entries) { return static_cast<int>(entries.size()); };
   double* const right = structure_.quadratic ? work_.data() : slope;
   const long right_stride = structure_.quadratic ? n_ : stride;
   for (int c = 0; c < columns; ++c) {
-    std::copy_n(y + c * 2 * half + half, half, right + c * right_stride * lanes);
+    std::copy_n(y + c * 2 * half + half, half, right + c * right_stride * lanes_);
     std::fill_n(slope + c * 2 * half + half, half, 0.0);
     if (structure_.quadratic) std::fill_n(slope + c * 2 * half, half, 0.0);
   }
@@ -188,11 +177,11 @@ void LaneFlow::vary(const double* y, int columns, double* slope) {
 }
 
 void LaneFlow::slope(const double* t, const double* y, int columns, double* slope) {
-  const std::size_t half = static_cast<std::size_t>(n_) * lanes;
+  const std::size_t half = static_cast<std::size_t>(n_) * lanes_;
   work_.resize(std::max(work_.size(), half * columns));
   solve_velocity(t, y, columns > 0 ? Order::hessian : Order::gradient);
   std::copy_n(v_.data(), half, slope);
-  for (int lane = 0; lane < lanes && !structure_.quadratic; ++lane)
+  for (int lane = 0; lane < lanes_ && !structure_.quadratic; ++lane)
     if (!(residual_[lane] <= acceptable)) slope[lane] = std::numeric_limits<double>::quiet_NaN();
   write_force(slope + half);
   if (columns > 0) vary(y + 2 * half, columns, slope + 2 * half);

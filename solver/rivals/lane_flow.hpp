@@ -8,12 +8,12 @@
 #include "rivals/lanes.hpp"
 #include "system/lagrangian.hpp"
 
-/// \file The motion of eight states of a Lagrangian system at once, as a flow in (q, p), p = ∂L/∂q'.
+/// \file The motion of the states in all lanes at once, as a flow in (q, p), p = ∂L/∂q'.
 
 namespace extremal {
 
-/// What Flow computes for one point: one play of the tape serves all lanes. A state is a block of 2n rows of
-/// eight, q then p; blocks of variations (δq, δp) may follow, the same number in every lane.
+/// What Flow computes for one point: one play of the tape serves all lanes. A state is a block of 2n rows,
+/// q then p; blocks of variations (δq, δp) may follow, the same number in every lane.
 class LaneFlow {
  public:
   /// `lagrangian` must outlive it. Throws std::invalid_argument for a singular constant mass.
@@ -39,12 +39,12 @@ class LaneFlow {
 
   const Lagrangian& lagrangian_;
   const Structure& structure_;
-  const int n_;
+  const int n_, lanes_ = simd_lanes();
   LaneKernels kernels_;
   std::vector<LaneEntry> mass_inverse_, qq_, vq_, vv_;
   std::vector<int> gradient_q_, gradient_v_;  ///< rows of output, or −1
   AlignedDoubles constants_, v_, out_, work_, factors_;
-  std::array<double, lanes> residual_ = {};  ///< of p = ∂L/∂q', by its size
+  std::array<double, most_lanes> residual_ = {};  ///< of p = ∂L/∂q', by its size
   Scratch scratch_;
 };
 

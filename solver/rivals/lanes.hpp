@@ -1,5 +1,7 @@
 #pragma once
 
+#include "machine/simd.hpp"
+
 /// \file Kernels that carry eight motions side by side, one a lane. Kernels include this: no inline functions
 /// here. Rows are groups of eight doubles, aligned to 64 bytes.
 
@@ -37,14 +39,6 @@ struct LaneKernels {
   void (*solve)(const double* factors, int n, double* x, int columns, long stride);
 };
 
-namespace base {
-LaneKernels lane_kernels();
-}
-namespace v3 {
-LaneKernels lane_kernels();
-}
-namespace v4 {
-LaneKernels lane_kernels();
-}
+EXTREMAL_DECLARE_AT_EACH_LEVEL(LaneKernels lane_kernels())
 
 }  // namespace extremal

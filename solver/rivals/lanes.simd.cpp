@@ -6,8 +6,6 @@ namespace extremal::EXTREMAL_LEVEL {
 
 namespace {
 
-constexpr int lanes = 8;
-
 inline const Vec& row(const double* p, long k) { return at(p + lanes * k); }
 inline Vec& row(double* p, long k) { return at(p + lanes * k); }
 

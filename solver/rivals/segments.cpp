@@ -164,16 +164,16 @@ EndStates Segments::end_states(const Course& course) {
 void Segments::end_slopes(const Course& course) {
   blocks_.extra.clear();
   if (!problem_.duration.free) return;
-  const std::size_t size = static_cast<std::size_t>(2 * n_) * lanes;
-  AlignedDoubles y(size), slope(size), t(lanes);
-  for (int begin = 0; begin < segments_; begin += lanes) {
-    for (int l = 0; l < lanes; ++l)
+  const std::size_t size = static_cast<std::size_t>(2 * n_) * simd_lanes();
+  AlignedDoubles y(size), slope(size), t(simd_lanes());
+  for (int begin = 0; begin < segments_; begin += simd_lanes()) {
+    for (int l = 0; l < simd_lanes(); ++l)
       for (int i = 0; i < 2 * n_; ++i)
-        y[static_cast<std::size_t>(i) * lanes + l] = ends_(i, std::min(begin + l, segments_ - 1));
+        y[static_cast<std::size_t>(i) * simd_lanes() + l] = ends_(i, std::min(begin + l, segments_ - 1));
     lane_flow_.slope(t.data(), y.data(), 0, slope.data());
-    for (int l = 0; l < lanes && begin + l < segments_; ++l) {
+    for (int l = 0; l < simd_lanes() && begin + l < segments_; ++l) {
       Eigen::VectorXd f(2 * n_);
-      for (int i = 0; i < 2 * n_; ++i) f[i] = slope[static_cast<std::size_t>(i) * lanes + l];
+      for (int i = 0; i < 2 * n_; ++i) f[i] = slope[static_cast<std::size_t>(i) * simd_lanes() + l];
       // Of one unit of log T, so that its size compares with the others'.
       blocks_.extra.push_back(f * (course.duration / segments_));
     }
@@ -204,7 +204,7 @@ void Segments::close(const Course& course) {
 
 bool Segments::evaluate(const Course& course, double tolerance, bool with_variations) {
   const int wanted = static_cast<int>(segments_ == 1 ? basis_.cols() : 2 * n_);
-  int split = with_variations ? std::clamp(lanes / segments_, 1, std::max(wanted, 1)) : 1;
+  int split = with_variations ? std::clamp(simd_lanes() / segments_, 1, std::max(wanted, 1)) : 1;
   const int columns = with_variations ? (wanted + split - 1) / split : 0;
   if (columns > 0) split = (wanted + columns - 1) / columns;
   load(course, split, columns);

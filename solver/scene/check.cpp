@@ -99,14 +99,23 @@ struct Checker {
     check_finite(node, label);
   }
 
+  /// A key outside every table may belong to one of them.
+  [[noreturn]] static void refuse_key(const Location& at, const std::string& key, std::string_view table,
+                                      const std::string& within) {
+    std::vector<std::string> known = keys_of(table);
+    std::string message = fmt::format("unknown key '{}'{}", key, within);
+    for (const std::string& other : table.empty() ? known : std::vector<std::string>{})
+      if (const KeyRecord* record = find_key(other, key); record && record->key == key)
+        throw SceneError(at, fmt::format("{}; did you mean '{}.{}'?", message, other, key));
+    throw UnknownName(at, message, key, std::move(known));
+  }
+
   void check_table(const toml::table& table, std::string_view name) const {
     const bool top = name.empty() || name == "system file";
     const std::string within = top ? "" : fmt::format(" in [{}]", name);
     for (const auto& [key, value] : document.entries(table)) {
       const KeyRecord* record = find_key(name, key->str());
-      if (!record)
-        throw UnknownName(document.at(key->source()), fmt::format("unknown key '{}'{}", key->str(), within),
-                          std::string(key->str()), keys_of(name));
+      if (!record) refuse_key(document.at(key->source()), std::string(key->str()), name, within);
       const std::string label = top && record->kind == Kind::table
                                     ? fmt::format("[{}]", key->str())
                                     : fmt::format("'{}'{}", key->str(), within);

@@ -28,7 +28,7 @@ std::string quoted(std::string_view s) {
 std::string readable(std::string_view description) {
   if (description.find("unescaped control characters") == std::string_view::npos)
     return std::string(description);
-  return "a string that is not closed on its line, or holds a control character";
+  return "this string is not closed on its line, or contains a control character";
 }
 
 struct Setting {

@@ -124,7 +124,7 @@ SolveTable read_solve_table(const Document& document, const toml::table& table) 
 SearchTable read_search_table(const Document& document, const toml::table& table) {
   const auto solutions = number(document, table, "solutions");
   if (!solutions)
-    throw SceneError(document.at(table), "[search] has no solutions; give how many extremals are wanted");
+    throw SceneError(document.at(table), "[search] has no 'solutions'; give the largest number of extremals");
   return {*solutions};
 }
 
@@ -136,7 +136,7 @@ ContinuationTable read_continuation_table(const Document& document, const toml::
     throw SceneError(at,
                      "[continuation] has no parameter; give \"duration\", \"energy\" or the name of a "
                      "parameter of the system");
-  if (!to) throw SceneError(at, "[continuation] has no 'to'; give the value that the family is to lead to");
+  if (!to) throw SceneError(at, "[continuation] has no 'to'; give the last value of the parameter");
   return {at, *parameter, *to, number(document, table, "points"), table["switch"].value_or(false)};
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "scene/read.hpp"
 #include "scene/systems.hpp"
@@ -34,10 +35,13 @@ SystemTable merge(SystemTable file, const SystemTable& scene) {
 }
 
 void check_system(const SystemTable& system) {
-  if (system.coordinates.empty()) throw SceneError(system.at, "[system] has no coordinates");
-  if (!system.lagrangian) throw SceneError(system.at, "[system] has no lagrangian");
+  if (system.coordinates.empty())
+    throw SceneError(system.at, "[system] has no 'coordinates'; list them, or name a system by 'use'");
+  if (!system.lagrangian)
+    throw SceneError(system.at, "[system] has no 'lagrangian'; write one, or name a system by 'use'");
   if (system.curvature && system.curvature->value < 0)
-    throw SceneError(system.curvature->at, "curvature is a bound and cannot be negative");
+    throw SceneError(system.curvature->at,
+                     fmt::format("curvature = {}; need 0 or more", system.curvature->value));
 }
 
 /// What the duration allows and asks for.
@@ -53,8 +57,9 @@ void check_duration(const Scene& scene) {
                                    "duration = \"free\" or leave '" +
                                    name + "' out");
   if (!boundary.free && scene.guess.duration)
-    throw SceneError(scene.guess.duration->at,
-                     "a guessed duration is for duration = \"free\", but duration is fixed");
+    throw SceneError(
+        scene.guess.duration->at,
+        "'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or leave the guess out");
   if (boundary.free && !closing)
     throw SceneError(boundary.duration.at, "a free duration needs 'energy' or 'where' to close it");
   if (boundary.free && !scene.guess.duration && !scene.guess.file)
@@ -96,10 +101,21 @@ const toml::table* table(const Document& document, std::string_view name, bool n
   return found;
 }
 
+/// The text of a scene. Where the file is missing, a scene of that name in the library is named.
+std::shared_ptr<const Source> read_text(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const bool here = fs::exists(path, error) || fs::exists(path + ".toml", error);
+  const std::string other = here ? "" : find_scene(fs::path(path).filename().string());
+  if (other.empty()) return read_source(path);
+  const auto source = std::make_shared<Source>(Source{path, ""});
+  throw SceneError({source, 0, 0}, fmt::format("no such file; did you mean '{}'?", other));
+}
+
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& sets) {
-  Document document = parse_document(read_source(path));
+  Document document = parse_document(read_text(path));
   for (const std::string& argument : sets) set_value(document, argument);
   check_keys(document, document.root, "");
   check_relations(document);

@@ -27,13 +27,19 @@ enum class Kind {
 const char* description(Kind kind);
 
 /// One key. `table` is "" for the top of a scene, "system file" for that of a system file; the key "*" stands
-/// for any name (a coordinate).
+/// for any name (a coordinate). The tables of problems/README.md are made from these records.
 struct KeyRecord {
   std::string_view table, key;
   Kind kind;
-  bool by_name = false;   ///< a table of such values, under names of the user's
-  bool available = true;  ///< in this version
+  std::string_view fallback = {};  ///< the value where the key is left out, or "none", "required"
+  std::string_view meaning = {};
+  std::string_view example = {};  ///< as TOML within its table
+  bool by_name = false;           ///< a table of such values, under names of the user's
+  bool available = true;          ///< in this version
 };
+
+/// All keys, table by table.
+std::span<const KeyRecord> key_records();
 
 /// The record of a key, or of "*", or null.
 const KeyRecord* find_key(std::string_view table, std::string_view key);

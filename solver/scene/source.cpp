@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -87,6 +88,25 @@ void check_characters(const std::shared_ptr<const Source>& source) {
   }
 }
 
+/// Refuses a file that does not exist, with the names of those beside it.
+[[noreturn]] void refuse_missing(const std::shared_ptr<const Source>& source) {
+  const fs::path path = source->name, folder = path.parent_path();
+  const Location whole{source, 0, 0};
+  std::error_code error;
+  if (!folder.empty() && !fs::is_directory(folder, error))
+    throw SceneError(whole, fmt::format("no such file; there is no folder '{}'", folder.string()));
+  std::vector<std::string> files;
+  const fs::path here = folder.empty() ? "." : folder;
+  for (fs::directory_iterator it(here, error), end; !error && it != end; it.increment(error))
+    if (std::error_code ignored; it->is_regular_file(ignored))
+      files.push_back(it->path().filename().string());
+  std::sort(files.begin(), files.end());
+  const std::string name = path.filename().string(), completed = name + ".toml";
+  const bool exists = std::binary_search(files.begin(), files.end(), completed);
+  throw UnknownName(whole, "no such file", exists ? completed : name, files,
+                    folder.empty() ? "" : (folder / "").string());
+}
+
 /// Moves over one character of content as it is written; returns the bytes it stands for.
 std::size_t skip_content(Cursor& cursor, bool escapes, bool long_string) {
   if (!escapes || cursor.peek() != '\\') {
@@ -140,8 +160,8 @@ std::shared_ptr<const Source> read_source(const std::string& path) {
   const auto refuse = [&](const std::string& message) { throw SceneError({source, 0, 0}, message); };
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status))
-    refuse(error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file");
+  if (status.type() == fs::file_type::not_found) refuse_missing(source);
+  if (!fs::exists(status)) refuse(error.message());
   if (fs::is_directory(status)) refuse("is a directory; a file is needed");
   if (!fs::is_regular_file(status)) refuse("is not a regular file");
   const auto size = fs::file_size(path, error);
@@ -177,7 +197,7 @@ void check_key_depth(const std::shared_ptr<const Source>& source) {
       dots = 0;
     if (dots >= deepest_key)
       throw SceneError({source, cursor.line, cursor.column},
-                       fmt::format("a key of more than {} parts", deepest_key));
+                       fmt::format("this key has more than {} parts", deepest_key));
     last = part ? 'a' : c;
     blank = false;
     if (c == '#')

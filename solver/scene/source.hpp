@@ -34,13 +34,18 @@ struct SceneError : std::runtime_error {
       : std::runtime_error(to_string(at) + ": " + message), at(at) {}
 };
 
-/// A name that does not exist, with those that do, for a suggestion.
+/// A name that does not exist, with those that do, for a suggestion; `prefix` is written before it.
 struct UnknownName : SceneError {
   std::string message, name;
   std::vector<std::string> known;
+  std::string prefix;
   UnknownName(const Location& at, const std::string& message, std::string name,
-              std::vector<std::string> known)
-      : SceneError(at, message), message(message), name(std::move(name)), known(std::move(known)) {}
+              std::vector<std::string> known, std::string prefix = "")
+      : SceneError(at, message),
+        message(message),
+        name(std::move(name)),
+        known(std::move(known)),
+        prefix(std::move(prefix)) {}
 };
 
 /// A string of a scene. `at` is its opening quote.
@@ -54,8 +59,9 @@ Location position(const Text& text, std::size_t offset);
 
 inline constexpr std::size_t largest_file = std::size_t{16} << 20;  ///< bytes
 
-/// Reads a text file. Throws SceneError if it is missing, unreadable, not a regular file, above
-/// `largest_file` (told by its size, before reading), empty, or not UTF-8 text.
+/// Reads a text file. Throws UnknownName with the files beside it if it is missing, SceneError if it is
+/// unreadable, not a regular file, above `largest_file` (by its size, before reading), empty, or not UTF-8
+/// text.
 std::shared_ptr<const Source> read_source(const std::string& path);
 
 /// Throws SceneError if a dotted key has more than 64 parts: the parser recurses over them.

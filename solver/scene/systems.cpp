@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "scene/read.hpp"
 
@@ -14,8 +15,8 @@ namespace extremal {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where system files are looked up after the folder of the scene.
-std::vector<fs::path> folders() {
+/// The folders of EXTREMAL_PROBLEMS, and `inner` in each of them, in the installation and in the source.
+std::vector<fs::path> folders(const char* inner) {
   std::vector<fs::path> list;
   if (const char* problems = std::getenv("EXTREMAL_PROBLEMS")) {
     std::string_view rest = problems;
@@ -23,15 +24,18 @@ std::vector<fs::path> folders() {
       const auto end = std::min(rest.find(':'), rest.size());
       if (end > 0) {
         list.emplace_back(rest.substr(0, end));
-        list.push_back(list.back() / "systems");
+        list.push_back(list.back() / inner);
       }
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
   }
-  list.emplace_back(EXTREMAL_INSTALLED_SYSTEMS);
-  list.emplace_back(EXTREMAL_SOURCE_SYSTEMS);
+  list.push_back(fs::path(EXTREMAL_INSTALLED_PROBLEMS) / inner);
+  list.push_back(fs::path(EXTREMAL_SOURCE_PROBLEMS) / inner);
   return list;
 }
+
+/// Where system files are looked up after the folder of the scene.
+std::vector<fs::path> system_folders() { return folders("systems"); }
 
 bool is_scene(const Document& document) { return document.root.contains("boundary"); }
 
@@ -54,11 +58,82 @@ std::vector<fs::path> toml_files(const fs::path& folder) {
   return files;
 }
 
+struct FoundSystem {
+  fs::path path;
+  Document document;
+};
+
+/// The system file of a name, with or without ".toml", in a folder or else where system files are. A scene of
+/// that name is passed over.
+std::optional<FoundSystem> find_system(const std::string& name, const fs::path& folder) {
+  std::vector<fs::path> places = system_folders();
+  places.insert(places.begin(), folder);
+  const bool suffixed = fs::path(name).extension() == ".toml";
+  for (const fs::path& place : places) {
+    const fs::path file = place / (name + (suffixed ? "" : ".toml"));
+    std::error_code error;
+    if (name.empty() || !fs::exists(file, error)) continue;
+    Document document = parse_document(read_source(file.string()));
+    if (!is_scene(document)) return FoundSystem{file, std::move(document)};
+  }
+  return std::nullopt;
+}
+
+SystemTable table_of(const FoundSystem& system) {
+  const Document& document = system.document;
+  check_keys(document, document.root, "system file");
+  const toml::table* table = document.root["system"].as_table();
+  if (!table) throw SceneError(document.at(document.root), "a system file needs the table [system]");
+  if (const toml::node* nested = table->get("use"))
+    throw SceneError(document.at(*nested), "a system file cannot use another");
+  return read_system_table(document, *table);
+}
+
+std::vector<std::string> system_names() {
+  std::vector<std::string> names;
+  for (const SystemFile& file : system_files()) names.push_back(file.name);
+  return names;
+}
+
+/// [about], a string as a list of one.
+std::vector<AboutEntry> notes_of(const Document& document) {
+  std::vector<AboutEntry> notes;
+  const toml::table* about = document.root["about"].as_table();
+  if (!about) return notes;
+  for (const auto& [key, value] : document.entries(*about)) {
+    notes.push_back({std::string(key->str()), {}});
+    if (const auto text = value->value<std::string>()) notes.back().texts.push_back(*text);
+    if (const toml::array* list = value->as_array())
+      for (const toml::node& text : *list) notes.back().texts.push_back(text.value_or(std::string()));
+  }
+  return notes;
+}
+
+/// The scenes that use a system, in the working folder and in those of scenes; the first of a name counts.
+std::vector<std::string> scenes_of(const std::string& system) {
+  std::map<std::string, std::string> found;
+  std::vector<fs::path> places = folders("scenes");
+  places.insert(places.begin(), fs::path("."));
+  for (const fs::path& folder : places)
+    for (const fs::path& file : toml_files(folder)) {
+      try {
+        const Document document = parse_document(read_source(file.string()));
+        const std::string use = document.root["system"]["use"].value_or(std::string());
+        if (is_scene(document) && fs::path(use).stem() == system)
+          found.emplace(file.filename().string(), file.lexically_normal().string());
+      } catch (const SceneError&) {  // this file is no scene
+      }
+    }
+  std::vector<std::string> paths;
+  for (const auto& [name, path] : found) paths.push_back(path);
+  return paths;
+}
+
 }  // namespace
 
 std::vector<SystemFile> system_files() {
   std::map<std::string, SystemFile> found;
-  for (const fs::path& folder : folders())
+  for (const fs::path& folder : system_folders())
     for (const fs::path& file : toml_files(folder)) {
       const std::string name = file.stem().string();
       if (found.count(name)) continue;
@@ -74,28 +149,32 @@ std::vector<SystemFile> system_files() {
 }
 
 SystemTable read_system(const Text& use, const std::string& scene_path) {
-  std::vector<fs::path> places = folders();
-  places.insert(places.begin(), fs::path(scene_path).parent_path());
-  const bool suffixed = fs::path(use.value).extension() == ".toml";
-  for (const fs::path& place : places) {
-    const fs::path file = place / (use.value + (suffixed ? "" : ".toml"));
-    std::error_code error;
-    if (use.value.empty() || !fs::exists(file, error)) continue;
-    const Document document = parse_document(read_source(file.string()));
-    if (is_scene(document)) continue;
-    check_keys(document, document.root, "system file");
-    const toml::table* table = document.root["system"].as_table();
-    if (!table) throw SceneError(document.at(document.root), "a system file needs the table [system]");
-    if (const toml::node* nested = table->get("use"))
-      throw SceneError(document.at(*nested), "a system file cannot use another");
-    return read_system_table(document, *table);
-  }
-  std::vector<std::string> known;
-  for (const SystemFile& file : system_files()) known.push_back(file.name);
+  const auto found = find_system(use.value, fs::path(scene_path).parent_path());
+  if (found) return table_of(*found);
+  const std::vector<std::string> known = system_names();
   throw UnknownName(
       position(use, 0),
       fmt::format("no system file '{}' beside the scene or among: {}", use.value, fmt::join(known, ", ")),
       use.value, known);
+}
+
+SystemDescription describe_system(const std::string& name) {
+  const auto found = find_system(name, "");
+  if (!found) {
+    const auto argument = std::make_shared<Source>(Source{"extremal list", "", false});
+    throw UnknownName({argument, 0, 0}, fmt::format("there is no system '{}'", name), name, system_names());
+  }
+  const std::string stem = found->path.stem().string();
+  return {stem, found->path.string(), notes_of(found->document), table_of(*found), scenes_of(stem)};
+}
+
+std::string find_scene(const std::string& name) {
+  const bool suffixed = fs::path(name).extension() == ".toml";
+  for (const fs::path& folder : folders("scenes")) {
+    const fs::path file = folder / (name + (suffixed ? "" : ".toml"));
+    if (std::error_code error; !name.empty() && fs::is_regular_file(file, error)) return file.string();
+  }
+  return {};
 }
 
 }  // namespace extremal

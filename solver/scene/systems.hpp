@@ -5,7 +5,8 @@
 
 #include "scene/scene.hpp"
 
-/// \file System files: a Lagrangian with its documentation, to be used by scenes.
+/// \file System files: a Lagrangian with its documentation, to be used by scenes; and the scenes of the
+/// library.
 
 namespace extremal {
 
@@ -22,5 +23,25 @@ std::vector<SystemFile> system_files();
 /// Scenes are passed over, so that a scene may have the name of its system. Throws UnknownName, or SceneError
 /// if the file is no system file.
 SystemTable read_system(const Text& use, const std::string& scene_path);
+
+/// An entry of [about].
+struct AboutEntry {
+  std::string name;
+  std::vector<std::string> texts;
+};
+
+struct SystemDescription {
+  std::string name, path;
+  std::vector<AboutEntry> about;  ///< in the order of the file
+  SystemTable system;
+  std::vector<std::string> scenes;  ///< paths of the scenes that use it
+};
+
+/// The system file of a name in the working folder or as above. Throws as read_system does.
+SystemDescription describe_system(const std::string& name);
+
+/// The path of a scene of the library, with or without ".toml": in the directories of EXTREMAL_PROBLEMS (and
+/// scenes/ in them), installed and in the source; "" if there is none.
+std::string find_scene(const std::string& name);
 
 }  // namespace extremal

@@ -45,7 +45,7 @@ int massless(const Structure& structure) {
 [[noreturn]] void refuse_irregular(const Problem& problem, int coordinate, const Location& at) {
   throw SceneError(
       at, fmt::format("the Lagrangian is not regular: its second derivative by the velocities is singular, "
-                      "so {}' does not follow from the momenta",
+                      "so the momenta do not determine {}'",
                       problem.names[coordinate]));
 }
 
@@ -66,7 +66,7 @@ bool wholly_fixed(const EndMap& ends, bool at_end) {
 class GuessValues {
  public:
   explicit GuessValues(const Problem& problem) : problem_(problem), n_(problem.coordinates()) {
-    stride_ = 8 * lanes;
+    stride_ = 8 * most_lanes;
     rows_ = inputs_.reserve(std::size_t(2 * n_ + 2) * stride_);
   }
 
@@ -179,9 +179,9 @@ void check_symmetry(const Closure& closure, const Problem& problem, const Locati
   const double change = std::min(worst[0], worst[1]);
   if (change > tolerance * scale)
     throw SceneError(
-        at, fmt::format("the map does not leave the Lagrangian unchanged: beyond a constant it changes by "
-                        "{:.3g} where its values are up to {:.3g}",
-                        change, scale));
+        at,
+        fmt::format("the map changes the Lagrangian by {:.3g} beyond a constant; its values are up to {:.3g}",
+                    change, scale));
 }
 
 }  // namespace extremal

@@ -97,14 +97,14 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
   }
   if (known->second.list)
     throw SceneError(position(table.parameter, 0),
-                     fmt::format("'{}' is a list; a parameter that varies is one number", name));
+                     fmt::format("'{}' is a list; a continued parameter must be one number", name));
   const auto varied = std::make_shared<VariedScene>(scene, problem, name);
   Continued continued{name, {problem, Varied::parameter, known->second.value.front(), table.to.value, {}}};
   const double beside = continued.family.from + near * (table.to.value - continued.family.from);
   if (!same_coefficients(problem.ends, varied->at(beside).ends))
     throw SceneError(
         position(table.parameter, 0),
-        fmt::format("the coefficients of the boundary relation depend on '{}'; only its values may", name));
+        fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides may", name));
   continued.family.at = [varied](double value) -> std::optional<Problem> {
     try {
       return varied->at(value);
@@ -131,8 +131,8 @@ Continued read_continued(const Scene& scene, const System& system, const Problem
 
 FollowedBranch follow(const Study& study, const std::function<void(const BranchPoint&)>& progress) {
   if (!study.continuation)
-    throw std::invalid_argument(study.scene +
-                                ": the table [continuation] is missing: what is to vary, and how far");
+    throw std::invalid_argument(
+        study.scene + ": the table [continuation] is missing; it names the parameter and its last value");
   const Continued& continued = *study.continuation;
   Diagram diagram(continued.family, {study.options, continued.points, continued.switching});
   FollowedBranch followed;

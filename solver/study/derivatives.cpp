@@ -18,7 +18,9 @@ namespace {
 constexpr int points_wanted = 5, points_tried = 40, most_columns = 256;
 constexpr int most_work = 1 << 22;              // columns times variables
 constexpr double steps[] = {8e-3, 1e-3, 1e-4};  // of a variable's size: the best of them counts
-/// f'(x) = Σ c_i f(x + i h)/h to sixth order, i = −3 … 3; the eighth lane repeats the middle.
+/// f'(x) = Σ c_i f(x + i h)/h to sixth order, i = −3 … 3; the eighth point repeats the middle.
+constexpr int lanes = 8;  // of a batch of any level
+static_assert(lanes % most_lanes == 0);
 constexpr std::array<double, lanes> weights = {-1. / 60, 9. / 60,  -45. / 60, 0,
                                                45. / 60, -9. / 60, 1. / 60,   0};
 

@@ -53,7 +53,7 @@ std::vector<std::size_t> columns_of(const std::vector<Cell>& header, const std::
     const auto found =
         std::find_if(header.begin(), header.end(), [&](const Cell& c) { return c.text == name; });
     if (found == header.end())
-      throw SceneError(header.front().at, fmt::format("there is no column '{}'", name));
+      throw SceneError(header.front().at, fmt::format("the file has no column '{}'", name));
     columns.push_back(found - header.begin());
   }
   return columns;
@@ -124,8 +124,8 @@ SampledFile read_samples(const std::string& path, const std::vector<std::string>
     throw SceneError(whole, fmt::format("found {} samples; need at least 2", samples.t.size()));
   for (std::size_t k = 1; k < samples.t.size(); ++k)
     if (!(samples.t[k] > samples.t[k - 1]))
-      throw SceneError(whole,
-                       fmt::format("the times must ascend; {} follows {}", samples.t[k], samples.t[k - 1]));
+      throw SceneError(
+          whole, fmt::format("the times must increase; found {} after {}", samples.t[k], samples.t[k - 1]));
   return samples;
 }
 

@@ -5,6 +5,7 @@
 #include "action/scheme.hpp"
 #include "scene/schema.hpp"
 #include "scene/systems.hpp"
+#include "study/suggestion.hpp"
 #include "system/tape_lagrangian.hpp"
 
 namespace extremal {
@@ -49,6 +50,15 @@ Catalogue catalogue() {
   for (const MethodRecord& m : method_records())
     found.methods.push_back({std::string(m.name), std::string(m.help)});
   return found;
+}
+
+SystemDescription describe(const std::string& system) {
+  return with_suggestion([&] { return describe_system(system); });
+}
+
+std::string example_scene() {
+  const std::string found = find_scene("kepler");
+  return found.empty() ? "scene.toml" : found;
 }
 
 }  // namespace extremal

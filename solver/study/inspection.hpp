@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/systems.hpp"
 #include "study/derivatives.hpp"
 #include "study/study.hpp"
 
@@ -36,5 +37,11 @@ struct Catalogue {
 };
 /// System files, schemes and methods from their own records.
 Catalogue catalogue();
+
+/// One system file. Throws SceneError for an unknown name, with the nearest one.
+SystemDescription describe(const std::string& system);
+
+/// A scene of the library that exists, as an example: its path, or "scene.toml" where no library is found.
+std::string example_scene();
 
 }  // namespace extremal

@@ -24,6 +24,7 @@ double limit_in(const char* path) {
 }  // namespace
 
 double solve_bytes(const Structure& structure, int elements, int degree) {
+  const int lanes = simd_lanes();
   const double n = structure.coordinates, functions = degree + 1, unknowns = functions * n;
   const double batches = std::ceil(double(elements) / lanes);
   const double rows = (1.0 + structure.gradient.size() + structure.hessian.size()) * functions * lanes;

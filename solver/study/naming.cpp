@@ -1,6 +1,7 @@
 #include "study/naming.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <cmath>
@@ -37,15 +38,20 @@ Range range_of(const std::string& name, const Location& at, const System& system
     if (c.name != stem) continue;
     if (bracket == std::string::npos) return {c.first, c.count, c.array};
     if (!c.array)
-      throw SceneError(at, fmt::format("'{}' is not an array, so '{}' names nothing", stem, name));
+      throw SceneError(at, fmt::format("'{0}' is not an array; write '{0}' in place of '{1}'", stem, name));
     const int index = index_of(name, bracket);
     if (index < 1 || index > c.count)
       throw SceneError(at,
                        fmt::format("'{}' is out of range: '{}' has elements 1 to {}", name, stem, c.count));
     return {c.first + index - 1, 1, false};
   }
-  for (const Coordinate& c : system.coordinates) keys.push_back(c.name);
-  throw UnknownName(at, fmt::format("unknown coordinate '{}'", name), stem, std::move(keys));
+  std::vector<std::string> coordinates;
+  for (const Coordinate& c : system.coordinates) coordinates.push_back(c.name);
+  keys.insert(keys.end(), coordinates.begin(), coordinates.end());
+  constexpr std::size_t most_shown = 12;
+  const std::string known =
+      coordinates.size() > most_shown ? "" : fmt::format("; the system has {}", fmt::join(coordinates, ", "));
+  throw UnknownName(at, fmt::format("unknown coordinate '{}'{}", name, known), stem, std::move(keys));
 }
 
 void for_each_value(const Assignment& assignment, const Range& range,

@@ -12,6 +12,7 @@
 #include "study/guess.hpp"
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
+#include "study/suggestion.hpp"
 
 namespace extremal {
 namespace {
@@ -85,7 +86,7 @@ void check_memory(const Study& study) {
   const double available = available_bytes();
   if (needed > available)
     throw std::length_error(
-        fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; there are {}",
+        fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; {} are available",
                     study.scene, n, elements, degree, byte_text(needed), byte_text(available)));
 }
 
@@ -122,15 +123,9 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 
 Study load(const std::string& path, const std::vector<std::string>& sets) {
   const auto begin = Clock::now();
-  try {
-    Study study = load_checked(path, sets);
-    study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
-    return study;
-  } catch (const UnknownName& e) {
-    const std::string nearest = nearest_name(e.name, e.known);
-    if (nearest.empty()) throw SceneError(e.at, e.message);
-    throw SceneError(e.at, fmt::format("{}; did you mean '{}'?", e.message, nearest));
-  }
+  Study study = with_suggestion([&] { return load_checked(path, sets); });
+  study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
+  return study;
 }
 
 Solution run(const Study& study, int repeat) {

@@ -34,11 +34,11 @@ void add_quadratic_form(const Structure& s, std::span<const double> q, std::span
   }
 }
 
-void put_hessian(const Structure& s, const double* rows, PointValues& values) {
+void put_hessian(const Structure& s, const double* rows, int stride, PointValues& values) {
   const int n = s.coordinates;
   for (std::size_t k = 0; k < s.hessian.size(); ++k) {
     const auto [a, b] = s.hessian[k];
-    const double h = rows[k * lanes];
+    const double h = rows[k * stride];
     if (a < n) {
       values.qq[a * n + b] = values.qq[b * n + a] = h;
     } else if (b < n) {
@@ -68,6 +68,7 @@ PointValues evaluate_at(const Lagrangian& lagrangian, std::span<const double> q,
                                 std::to_string(v.size()) + " velocities; the system has " +
                                 std::to_string(n));
   // One batch: the point in every lane.
+  const int lanes = simd_lanes();
   AlignedDoubles rows((2 * n + 1) * lanes), out(static_cast<std::size_t>(lagrangian.rows(order)) * lanes);
   for (std::size_t a = 0; a < n; ++a) {
     std::fill_n(&rows[a * lanes], lanes, q[a]);
@@ -90,7 +91,7 @@ PointValues evaluate_at(const Lagrangian& lagrangian, std::span<const double> q,
     values.qq.resize(n * n);
     values.vq.resize(n * n);
     values.vv.resize(n * n);
-    put_hessian(s, out.data() + (1 + s.gradient.size()) * lanes, values);
+    put_hessian(s, out.data() + (1 + s.gradient.size()) * lanes, lanes, values);
   }
   add_quadratic_form(s, q, v, order, values);
   return values;

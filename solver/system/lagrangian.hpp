@@ -46,7 +46,7 @@ struct Structure {
 enum class Order { value, gradient, hessian };
 
 /// A batch of points, structure of arrays: coordinate a at point i is q[a*stride + i]; every row starts
-/// at a multiple of 64 bytes. `count` is a multiple of `lanes`. `v` may be null where the remainder is
+/// at a multiple of 64 bytes. `count` is a multiple of simd_lanes(). `v` may be null where the remainder is
 /// velocity_free, `t` where the system is autonomous.
 struct Points {
   int count = 0;

@@ -12,18 +12,9 @@ namespace {
 /// Batches played together: enough to pay for the dispatch of an instruction, and no more than lets
 /// what they read and write stay in the second-level cache.
 constexpr int fewest_batches = 8, most_batches = 16;
-constexpr int cache_batches = 256 * 1024 / (lanes * sizeof(double));
+constexpr int cache_doubles = 256 * 1024 / sizeof(double);
 
-Player player() {
-  switch (simd_level()) {
-    case SimdLevel::base:
-      return base::play;
-    case SimdLevel::v3:
-      return v3::play;
-    default:
-      return v4::play;
-  }
-}
+Player player() { return at_simd_level(EXTREMAL_AT_EACH_LEVEL(play)); }
 
 }  // namespace
 
@@ -47,7 +38,7 @@ Tape::Tape(std::span<const Contribution> contributions, int outputs, std::span<c
     slots_ = std::max(slots_, tracks_.back().program.slots);
     operands_ = std::max(operands_, tracks_.back().program.operands());
   }
-  widest_ = std::clamp(cache_batches / std::max(operands_, 1), fewest_batches, most_batches);
+  widest_ = std::clamp(cache_doubles / simd_lanes() / std::max(operands_, 1), fewest_batches, most_batches);
   for (int row = 0; row < outputs; ++row)
     if (!touched[row]) untouched_.push_back(row);
 }
@@ -90,7 +81,7 @@ void Tape::fit(const Tape& other) {
 
 void Tape::play(const Track& track, const Chunk& chunk) {
   const Program& program = track.program;
-  const std::size_t length = static_cast<std::size_t>(chunk.batches) * lanes;
+  const std::size_t length = static_cast<std::size_t>(chunk.batches) * simd_lanes();
   double** const outputs = chunk.operands + program.inputs;
   double** const slots = outputs + program.outputs;
   for (int k = 0; k < program.slots; ++k) slots[k] = chunk.memory + k * length;
@@ -116,6 +107,7 @@ void Tape::play(const Track& track, const Chunk& chunk) {
 }
 
 void Tape::play(const Points& points, double* out, Scratch& scratch) const {
+  const int lanes = simd_lanes();
   if (points.count % lanes != 0)
     throw std::invalid_argument("a batch of " + std::to_string(points.count) +
                                 " points; need a multiple of " + std::to_string(lanes));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "machine/simd.hpp"
+
 /// \file The instructions of a tape and who plays them. Kernels include this: no inline functions here.
 
 namespace extremal {
@@ -54,23 +56,16 @@ struct Instruction {
   unsigned s;           ///< scalar
 };
 
-/// Plays `length` instructions on `vectors` batches of eight points each. operands[k] is the first
+/// Plays `length` instructions on `batches` of eight points each. operands[k] is the first
 /// point of operand k, aligned to 64 bytes.
 using Player = void (*)(const Instruction* code, int length, double* const* operands, const double* scalars,
-                        int vectors);
+                        int batches);
 
 /// The same on one point each, in numbers with more digits: long double or dd_real.
 template <class Number>
 void play_extended(const Instruction* code, int length, Number* const* operands, const double* scalars);
 
-namespace base {
-void play(const Instruction*, int, double* const*, const double*, int);
-}
-namespace v3 {
-void play(const Instruction*, int, double* const*, const double*, int);
-}
-namespace v4 {
-void play(const Instruction*, int, double* const*, const double*, int);
-}
+EXTREMAL_DECLARE_AT_EACH_LEVEL(void play(const Instruction* code, int length, double* const* operands,
+                                         const double* scalars, int batches))
 
 }  // namespace extremal

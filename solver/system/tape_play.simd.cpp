@@ -14,7 +14,7 @@ struct Step {
   const Vec *a, *b;
   Vec* c;
   Vec s;
-  int vectors;
+  int batches;
 };
 
 template <Code code>
@@ -43,27 +43,27 @@ inline Vec arithmetic(Vec a, Vec b, Vec c, Vec s) {
   if constexpr (code == Code::reciprocal_root) return broadcast(1) / sqrt(a);
 }
 
-/// Fixed: the number of vectors where it is known, so that the loop is unrolled; otherwise 0.
+/// Fixed: the number of batches where it is known, so that the loop is unrolled; otherwise 0.
 template <int fixed, Code code>
 __attribute__((always_inline)) inline void run(const Step& x) {
   if constexpr (fixed > 0) {
 #pragma GCC unroll 8
     for (int k = 0; k < fixed; ++k) x.d[k] = arithmetic<code>(x.a[k], x.b[k], x.c[k], x.s);
   } else {
-    for (int k = 0; k < x.vectors; ++k) x.d[k] = arithmetic<code>(x.a[k], x.b[k], x.c[k], x.s);
+    for (int k = 0; k < x.batches; ++k) x.d[k] = arithmetic<code>(x.a[k], x.b[k], x.c[k], x.s);
   }
 }
 
 inline void map(const Step& x, Vec (*function)(Vec)) {
-  for (int k = 0; k < x.vectors; ++k) x.d[k] = function(x.a[k]);
+  for (int k = 0; k < x.batches; ++k) x.d[k] = function(x.a[k]);
 }
 
 inline void map(const Step& x, Vec (*function)(Vec, Vec)) {
-  for (int k = 0; k < x.vectors; ++k) x.d[k] = function(x.a[k], x.b[k]);
+  for (int k = 0; k < x.batches; ++k) x.d[k] = function(x.a[k], x.b[k]);
 }
 
 void map_sincos(const Step& x) {
-  for (int k = 0; k < x.vectors; ++k) {
+  for (int k = 0; k < x.batches; ++k) {
     Vec sine, cosine;
     sincos(x.a[k], sine, cosine);
     x.d[k] = sine;
@@ -166,23 +166,23 @@ inline void dispatch(Code code, const Step& x) {
 
 template <int fixed>
 void play_chunk(const Instruction* code, int length, double* const* operands, const double* scalars,
-                int vectors) {
+                int batches) {
   for (const Instruction* i = code; i != code + length; ++i) {
     dispatch<fixed>(i->code, {&at(operands[i->d]), &at(operands[i->a]), &at(operands[i->b]),
-                              &at(operands[i->c]), broadcast(scalars[i->s]), vectors});
+                              &at(operands[i->c]), broadcast(scalars[i->s]), batches});
   }
 }
 
 }  // namespace
 
-void play(const Instruction* code, int length, double* const* operands, const double* scalars, int vectors) {
-  switch (vectors) {
+void play(const Instruction* code, int length, double* const* operands, const double* scalars, int batches) {
+  switch (batches) {
     case 1:
-      return play_chunk<1>(code, length, operands, scalars, vectors);
+      return play_chunk<1>(code, length, operands, scalars, batches);
     case 8:
-      return play_chunk<8>(code, length, operands, scalars, vectors);
+      return play_chunk<8>(code, length, operands, scalars, batches);
     default:
-      return play_chunk<0>(code, length, operands, scalars, vectors);
+      return play_chunk<0>(code, length, operands, scalars, batches);
   }
 }
 

@@ -63,8 +63,8 @@ TEST_F(Command, ComparisonWithoutASolution) {
 
 TEST_F(Command, ComparisonsThatAreRefused) {
   write("scene.toml", pendulum);
-  EXPECT_EQ(extremal({"compare", "scene.toml", "--output", "none/c.json"}).error,
-            "error: --output none/c.json: there is no such folder\n");
+  EXPECT_EQ(extremal({"compare", "scene.toml", "--output", "scene.toml/c.json"}).error,
+            "error: --output: 'scene.toml' is not a folder (see extremal help compare)\n");
   EXPECT_EQ(extremal({"compare", "scene.toml", "--plot", "c.gif"}).exit, 2);
   EXPECT_EQ(extremal({"compare", "missing.toml"}).exit, 2);
   EXPECT_EQ(extremal({"compare"}).exit, 2);

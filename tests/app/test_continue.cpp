@@ -100,7 +100,7 @@ TEST_F(Command, FamiliesThatAreRefused) {
   EXPECT_EQ(refusal(continued("lambdo", "4")),
             "error: scene.toml:10:14: unknown parameter 'lambdo'; did you mean 'lambda'?\n");
   EXPECT_EQ(refusal(continued("m", "4")),
-            "error: scene.toml:10:14: 'm' is a list; a parameter that varies is one number\n");
+            "error: scene.toml:10:14: 'm' is a list; a continued parameter must be one number\n");
   EXPECT_EQ(refusal(continued("lambda", "1.0")),
             "error: scene.toml:11:6: lambda is 1 already; give another value for 'to'\n");
   EXPECT_EQ(refusal(continued("duration", "-1.0")),
@@ -108,8 +108,9 @@ TEST_F(Command, FamiliesThatAreRefused) {
   EXPECT_EQ(
       refusal(continued("energy", "-1.0")),
       "error: scene.toml:10:14: varying the energy needs duration = \"free\" and 'energy' in [boundary]\n");
-  EXPECT_EQ(refusal(bratu.substr(0, bratu.find("[continuation]"))),
-            "error: scene.toml: the table [continuation] is missing: what is to vary, and how far\n");
+  EXPECT_EQ(
+      refusal(bratu.substr(0, bratu.find("[continuation]"))),
+      "error: scene.toml: the table [continuation] is missing; it names the parameter and its last value\n");
   const std::string free =
       "[boundary]\nstart = { q = 0.0 }\nend = { q = 0.0 }\nduration = \"free\"\nenergy = 2\n"
       "[guess]\nduration = 1\n[continuation]\nparameter = \"duration\"\nto = 2\n";
@@ -118,6 +119,6 @@ TEST_F(Command, FamiliesThatAreRefused) {
             "parameter\n");
   write("scene.toml", bratu);
   EXPECT_EQ(extremal({"continue", "scene.toml", "--plot", "b.gif"}).exit, 2);
-  EXPECT_EQ(extremal({"continue", "scene.toml", "--output", "none/b.json"}).error,
-            "error: --output none/b.json: there is no such folder\n");
+  EXPECT_EQ(extremal({"continue", "scene.toml", "--output", "scene.toml/b.json"}).error,
+            "error: --output: 'scene.toml' is not a folder (see extremal help continue)\n");
 }

@@ -148,68 +148,6 @@ TEST_F(Command, OutputIsDeterministic) {
   EXPECT_EQ(result("a.json"), result("b.json"));
 }
 
-TEST_F(Command, OptionsThatAreWrong) {
-  EXPECT_EQ(solve(pendulum, {"--samples", "1"}).error, "error: --samples 1: need at least 2\n");
-  EXPECT_EQ(solve(pendulum, {"--samples", "-3"}).error, "error: --samples -3: need at least 2\n");
-  EXPECT_EQ(solve(pendulum, {"--samples", "100000000"}).error,
-            "error: --samples 100000000: at most 10000000 are written\n");
-  EXPECT_EQ(solve(pendulum, {"--samples", "3", "--at", "1"}).error,
-            "error: --samples and --at exclude each other\n");
-  EXPECT_EQ(solve(pendulum, {"--repeat", "0"}).error, "error: --repeat 0: need at least 1\n");
-  EXPECT_EQ(solve(pendulum, {"--plot", "p.pdf"}).exit, 2);
-  for (const std::vector<std::string>& wrong : {std::vector<std::string>{},
-                                                {"solve"},
-                                                {"solv", "scene.toml"},
-                                                {"solve", "scene.toml", "--ouput", "x"},
-                                                {"solve", "scene.toml", "--samples", "many"},
-                                                {"solve", "scene.toml", "--set"}}) {
-    const Outcome o = extremal(wrong);
-    EXPECT_EQ(o.exit, 2);
-    EXPECT_EQ(o.error.rfind("error: ", 0), 0u) << o.error;
-    EXPECT_EQ(o.out, "");
-  }
-}
-
-TEST_F(Command, OutputsThatCannotBeWrittenAreRefusedBeforeSolving) {
-  EXPECT_EQ(solve(pendulum, {"--output", "no/r.json"}).error,
-            "error: --output no/r.json: there is no such folder\n");
-  fs::create_directory(folder / "sub");
-  const Outcome o = solve(pendulum, {"--csv", "sub", "--output", "r.json"});
-  EXPECT_EQ(o.error, "error: --csv sub: is a directory\n");
-  EXPECT_EQ(o.exit, 2);
-  EXPECT_FALSE(fs::exists(folder / "r.json"));
-  EXPECT_EQ(solve(pendulum, {"--output", "/dev/full"}).exit, 2);
-}
-
-TEST_F(Command, HelpNamesTheOptions) {
-  const Outcome o = extremal({"solve", "--help"});
-  EXPECT_EQ(o.exit, 0);
-  for (const char* option :
-       {"--output", "--csv", "--plot", "--samples", "--at", "--set", "--repeat", "--quiet"})
-    EXPECT_NE(o.out.find(option), std::string::npos) << option;
-}
-
-TEST_F(Command, CheckSaysWhatWasFound) {
-  write("scene.toml", pendulum);
-  const Outcome o = extremal({"check", "scene.toml"});
-  EXPECT_EQ(o.exit, 0) << o.error;
-  for (const char* text :
-       {"1: q", "energy is conserved", "constant mass", "separable", "∂L/∂q", "∂²L/∂q∂q", "instructions"})
-    EXPECT_NE(o.out.find(text), std::string::npos) << text << "\n" << o.out;
-}
-
-TEST_F(Command, ListNamesSchemesMethodsAndSystems) {
-  write(
-      "spring.toml",
-      "[about]\nwhat = \"A spring of its own.\"\n[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n");
-  ::setenv("EXTREMAL_PROBLEMS", folder.c_str(), 1);
-  const Outcome o = extremal({"list"});
-  ::unsetenv("EXTREMAL_PROBLEMS");
-  EXPECT_EQ(o.exit, 0);
-  for (const char* text : {"spring", "A spring of its own.", "midpoint", "lobatto", "newton"})
-    EXPECT_NE(o.out.find(text), std::string::npos) << text;
-}
-
 TEST_F(Command, ThreadsChangeNothing) {
   const std::string chain =
       "[system]\nuse = \"fpu-chain\"\nparameters = { n = 12 }\n[boundary]\n"

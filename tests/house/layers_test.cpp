@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "house/sources.hpp"
@@ -52,6 +53,12 @@ TEST(Layers, SolverReachesNothingBesideIt) {
     for (const Include& include : includes(file))
       for (const char* beside : {"problems/", "tests/", "bench/", "..", "extremal/", "gtest", "benchmark"})
         EXPECT_FALSE(include.file.starts_with(beside)) << file << ":" << include.line << ": " << include.file;
+}
+
+TEST(Layers, ThePageOfSolverNamesEveryFolder) {
+  const std::string page = read(root() / "solver/README.md");
+  for (const std::string& folder : house::layers().order)
+    EXPECT_NE(page.find(fmt::format("| [{}](", folder)), std::string::npos) << folder;
 }
 
 }  // namespace

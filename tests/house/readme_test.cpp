@@ -1,38 +1,22 @@
-#include <gtest/gtest.h>
+#include <fmt/format.h>
 
-#include "house/sources.hpp"
+#include "app/command.hpp"
+#include "house/pages.hpp"
 
-/// What README shows is what the repository holds. Its commands are run by .ci/run.
+/// What the pages show is what the repository holds. Their commands are run by .ci/run.
 
 using namespace house;
 
 namespace {
 
-struct Block {
-  std::string language, text;
-};
-
-std::vector<Block> blocks() {
-  std::vector<Block> result;
-  bool inside = false;
-  for (const std::string& line : lines(root() / "README.md")) {
-    if (line.starts_with("```")) {
-      inside = !inside;
-      if (inside) result.push_back({line.substr(3), ""});
-    } else if (inside) {
-      result.back().text += line + "\n";
-    }
-  }
-  EXPECT_FALSE(inside) << "a block of README.md does not end";
-  return result;
-}
+const fs::path readme = root() / "README.md";
 
 TEST(Readme, ScenesAreFiles) {
   std::set<std::string> scenes;
   for (const auto& entry : fs::directory_iterator(root() / "problems/scenes"))
     scenes.insert(read(entry.path()));
   int shown = 0;
-  for (const Block& block : blocks()) {
+  for (const Block& block : blocks(readme)) {
     if (block.language != "toml") continue;
     ++shown;
     EXPECT_TRUE(scenes.contains(block.text)) << "no file of problems/scenes holds\n" << block.text;
@@ -44,7 +28,7 @@ TEST(Readme, CodeIsTheConsumer) {
   const std::string consumer = read(root() / "tests/consumer/main.cpp");
   const std::string lists = read(root() / "tests/consumer/CMakeLists.txt");
   int shown = 0;
-  for (const Block& block : blocks()) {
+  for (const Block& block : blocks(readme)) {
     if (block.language != "cpp" && block.language != "cmake") continue;
     ++shown;
     const std::string& source = block.language == "cpp" ? consumer : lists;
@@ -53,13 +37,58 @@ TEST(Readme, CodeIsTheConsumer) {
   EXPECT_EQ(shown, 2);
 }
 
-TEST(Readme, LinksLead) {
-  const std::string text = std::regex_replace(read(root() / "README.md"), std::regex("```[^`]*```"), "");
-  const std::regex link(R"(\]\(([^)#]+)\))");
-  for (std::sregex_iterator match(text.begin(), text.end(), link), none; match != none; ++match) {
-    const std::string target = (*match)[1];
-    EXPECT_TRUE(target.starts_with("http") || fs::exists(root() / target)) << target;
+/// Errors and times are left out: the last digits of the former differ between processors.
+std::string without_small_numbers(const std::string& text) {
+  const std::string masked = std::regex_replace(text, std::regex(R"(\d\.\de-\d\d)"), "…");
+  return masked.substr(0, masked.find("time  "));
+}
+
+using Shown = extremal::test::Command;
+TEST_F(Shown, ResultIsThatOfTheScene) {
+  const auto outcome = extremal({"solve", (root() / "problems/scenes/kepler.toml").string()});
+  ASSERT_EQ(outcome.exit, 0) << outcome.error;
+  int shown = 0;
+  for (const Block& block : blocks(readme)) {
+    if (block.language != "text") continue;
+    ++shown;
+    EXPECT_EQ(without_small_numbers(block.text), without_small_numbers(outcome.out));
   }
+  EXPECT_EQ(shown, 1);
+}
+
+TEST(Pages, LinksExist) {
+  for (const char* name : {"README.md", "problems/README.md", "problems/gallery.md", "solver/README.md",
+                           "bench/README.md", "bench/data/README.md", "tests/data/README.md"}) {
+    const fs::path page = root() / name;
+    const std::string text = std::regex_replace(read(page), std::regex("```[^`]*```|`[^`]*`"), "");
+    const std::regex link(R"~(\]\(([^)#]+)[)#]|src="([^"]+)")~");
+    for (std::sregex_iterator match(text.begin(), text.end(), link), none; match != none; ++match) {
+      const std::string target = (*match)[1].matched ? (*match)[1] : (*match)[2];
+      EXPECT_TRUE(target.starts_with("http") || fs::exists(page.parent_path() / target))
+          << name << " links " << target;
+    }
+  }
+}
+
+/// `make gallery` draws the pictures; a repository has room for small ones.
+TEST(Gallery, ShowsEveryScene) {
+  const std::string gallery = read(root() / "problems/gallery.md");
+  std::uintmax_t size = 0, count = 0;
+  for (const auto& entry : fs::directory_iterator(root() / "problems/scenes")) {
+    const std::string name = entry.path().stem();
+    const fs::path picture = root() / "problems/pictures" / (name + ".svg");
+    std::smatch title;
+    const std::string scene = read(entry.path());
+    ASSERT_TRUE(std::regex_search(scene, title, std::regex("^title = \"(.*)\"\n"))) << name;
+    for (const std::string& part : {fmt::format("[{}](scenes/{}.toml)", title[1].str(), name),
+                                    fmt::format("src=\"pictures/{}.svg\"", name)})
+      EXPECT_NE(gallery.find(part), std::string::npos) << part;
+    ASSERT_TRUE(fs::exists(picture)) << picture << ": make gallery draws it";
+    size += fs::file_size(picture);
+    ++count;
+  }
+  ASSERT_GT(count, 0u);
+  EXPECT_LE(size / count, 60'000u) << "bytes of a picture";
 }
 
 }  // namespace

@@ -36,16 +36,14 @@ void expect_kernel(const ChainKernels& kernels, int blocks, int n) {
 
 TEST(Kernels, EveryLevelAgreesWithDense) {
   using Family = ChainKernels (*)(int);
-  std::vector<Family> families = {base::small_chain, base::large_chain};
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("x86-64-v3"))
-    families.insert(families.end(), {v3::small_chain, v3::large_chain});
-  if (__builtin_cpu_supports("x86-64-v4"))
-    families.insert(families.end(), {v4::small_chain, v4::large_chain});
-  for (Family family : families)
-    for (int n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 15, 16, 17, 33})
-      if (const ChainKernels kernels = family(n); kernels.factor)
-        for (int blocks : {1, 2, 3, 4, 9}) expect_kernel(kernels, blocks, n);
+  const Family small[] = EXTREMAL_AT_EACH_LEVEL(small_chain), large[] = EXTREMAL_AT_EACH_LEVEL(large_chain);
+  for (std::size_t level = 0; level < std::size(small); ++level) {
+    if (!available(static_cast<SimdLevel>(level))) continue;
+    for (const Family family : {small[level], large[level]})
+      for (const int n : {1, 2, 3, 4, 5, 6, 7, 8, 9, 15, 16, 17, 33})
+        if (const ChainKernels kernels = family(n); kernels.factor)
+          for (const int blocks : {1, 2, 3, 4, 9}) expect_kernel(kernels, blocks, n);
+  }
 }
 
 }  // namespace

@@ -102,13 +102,19 @@ TEST(Plot, EveryKindAsSvgAndPng) {
     EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
     EXPECT_NE(png.find("IEND"), std::string::npos);
     EXPECT_GT(png.size(), 10000u);
+
+    write_plot(folder / "p.pdf", picture);
+    const std::string pdf = content(folder / "p.pdf");
+    EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+    EXPECT_NE(pdf.find("%%EOF"), std::string::npos);
+    EXPECT_NE(pdf.find("/CreationDate (D:20000101000000"), std::string::npos);
   }
 }
 
 TEST(Plot, IsTheSameTwice) {
   const TemporaryFolder folder;
   for (const std::vector<std::string>& names : kinds()) {
-    for (const std::string suffix : {".svg", ".png"}) {
+    for (const std::string suffix : {".svg", ".png", ".pdf"}) {
       write_plot(folder / ("a" + suffix), arc("Twice", names));
       write_plot(folder / ("b" + suffix), arc("Twice", names));
       EXPECT_TRUE(content(folder / ("a" + suffix)) == content(folder / ("b" + suffix))) << suffix;
@@ -243,18 +249,19 @@ std::string refusal(const std::string& path, const Picture& picture) {
 }
 
 TEST(Plot, RefusesOtherSuffixes) {
-  for (const char* path : {"p.pdf", "p", "svg", "p.SVG", ""}) {
+  for (const char* path : {"p.gif", "p", "svg", "p.SVG", ""}) {
     EXPECT_THROW(check_plot_path(path), std::invalid_argument) << path;
   }
   EXPECT_NO_THROW(check_plot_path("a/b.svg"));
   EXPECT_NO_THROW(check_plot_path("b.png"));
-  EXPECT_EQ(refusal<std::invalid_argument>("p.pdf", arc("", {"x"})),
-            "cannot plot into p.pdf: the name must end in .svg or .png");
+  EXPECT_NO_THROW(check_plot_path("b.pdf"));
+  EXPECT_EQ(refusal<std::invalid_argument>("p.gif", arc("", {"x"})),
+            "cannot plot into p.gif: the name must end in .svg, .png or .pdf");
 }
 
 TEST(Plot, APathThatCannotBeWrittenIsNamed) {
-  EXPECT_EQ(refusal<std::runtime_error>("/nonexistent/p.svg", arc("", {"x"})),
-            "cannot write /nonexistent/p.svg: No such file or directory");
+  EXPECT_EQ(refusal<std::runtime_error>("/dev/null/p.svg", arc("", {"x"})),
+            "cannot write /dev/null/p.svg: Not a directory");
 }
 
 TEST(Plot, RefusesSamplesThatCannotBeDrawn) {

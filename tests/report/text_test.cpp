@@ -61,10 +61,9 @@ TEST(Summary, TellsStability) {
   Floquet& floquet = result.solution.floquet.emplace();
   floquet.multipliers = {{606.25, 0}, {1, 0}, {1, 0}, {1 / 606.25, 0}};
   floquet.real_pairs = floquet.trivial_pairs = 1;
-  EXPECT_NE(
-      summary(result).find("stability       unstable: 1 real pair, 1 trivial pair at ±1 (double; that of "
-                           "the shift in time is known, others to √ε); largest modulus 606.25\n"),
-      std::string::npos);
+  EXPECT_NE(summary(result).find("stability       unstable: 1 real pair, 1 trivial pair at ±1 (double: exact "
+                                 "for the time shift, else accurate to √ε); largest modulus 606.25\n"),
+            std::string::npos);
   floquet.multipliers = {{2, 2}, {2, -2}, {0.25, 0.25}, {0.25, -0.25}};
   floquet.real_pairs = floquet.trivial_pairs = 0;
   floquet.quadruples = 1;

@@ -52,7 +52,7 @@ TEST_F(SceneFiles, SyntaxNamesThePlace) {
 
 TEST_F(SceneFiles, UnclosedString) {
   EXPECT_EQ(message("title = \"abc\n"),
-            "scene.toml:1:13: a string that is not closed on its line, or holds a control character");
+            "scene.toml:1:13: this string is not closed on its line, or contains a control character");
 }
 
 TEST_F(SceneFiles, DeepNestingIsRefused) {
@@ -64,8 +64,8 @@ TEST_F(SceneFiles, DeepNestingIsRefused) {
   for (std::size_t k = 0; k < million; ++k) dotted += ".a";
   for (std::size_t k = 0; k < million; ++k) quoted += " . 'x'";
   EXPECT_NE(message(braces).find("exceeded maximum nested value depth of 256"), std::string::npos);
-  EXPECT_EQ(message(dotted + " = 1"), "scene.toml:1:128: a key of more than 64 parts");
-  EXPECT_EQ(message("[" + dotted + "]"), "scene.toml:1:129: a key of more than 64 parts");
+  EXPECT_EQ(message(dotted + " = 1"), "scene.toml:1:128: this key has more than 64 parts");
+  EXPECT_EQ(message("[" + dotted + "]"), "scene.toml:1:129: this key has more than 64 parts");
   EXPECT_NE(message("t = \"\"\"a\"b\"\"\"\"\n" + quoted + " = 1").find("scene.toml:2:"), std::string::npos);
 }
 

@@ -94,18 +94,18 @@ TEST_F(SceneFiles, WrongTypes) {
 TEST_F(SceneFiles, MissingKeys) {
   EXPECT_EQ(message(with("duration = 2\n", "")),
             "scene.toml:4:1: [boundary] has no duration; give a number, a formula or \"free\"");
-  EXPECT_EQ(message(with("coordinates = [\"q\"]\n", "")), "scene.toml:1:1: [system] has no coordinates");
+  EXPECT_EQ(message(with("coordinates = [\"q\"]\n", "")),
+            "scene.toml:1:1: [system] has no 'coordinates'; list them, or name a system by 'use'");
   EXPECT_EQ(message(with("lagrangian = \"q'^2/2 + cos(q)\"\n", "")),
-            "scene.toml:1:1: [system] has no lagrangian");
+            "scene.toml:1:1: [system] has no 'lagrangian'; write one, or name a system by 'use'");
   EXPECT_EQ(message(pendulum.substr(0, pendulum.find("[boundary]"))),
             "scene.toml: the table [boundary] is missing");
 }
 
 TEST_F(SceneFiles, Contradictions) {
   EXPECT_EQ(message(pendulum + "[solve]\nelements = 4\nscheme = \"midpoint\"\ntolerance = 1e-3\n"),
-            "scene.toml:11:1: 'tolerance' and 'elements' exclude each other: elements pins the "
-            "discretisation, so no "
-            "tolerance can be met");
+            "scene.toml:11:1: 'tolerance' and 'elements' exclude each other: 'elements' fixes "
+            "the discretisation and with it the error");
   EXPECT_EQ(message(pendulum + "[solve]\nelements = 4\n"),
             "scene.toml:9:1: 'elements' needs 'scheme': the number of elements alone does not fix a "
             "discretisation");
@@ -121,17 +121,17 @@ TEST_F(SceneFiles, Contradictions) {
   EXPECT_EQ(message(with("= 2\n", "= \"free\"\nenergy = 1\n")),
             "scene.toml:7:12: a free duration needs 'duration' in [guess], or a guess file");
   EXPECT_EQ(message(pendulum + "[guess]\nduration = 2.4\n"),
-            "scene.toml:9:12: a guessed duration is for duration = \"free\", but duration is fixed");
+            "scene.toml:9:12: 'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or "
+            "leave the guess out");
   EXPECT_EQ(message(pendulum + "periodic = true\n"),
             "scene.toml:8:1: 'periodic' and 'start' exclude each other: a periodic orbit has no fixed ends; "
-            "use where "
-            "to select it");
+            "'where' selects it");
   EXPECT_EQ(message(pendulum + "periodic = false\n"), "");
   EXPECT_EQ(
       message(pendulum + "conditions = [\"q(0) = 1\"]\n"),
       "scene.toml:8:1: 'conditions' and 'start' exclude each other: write the fixed ends as conditions too");
   EXPECT_EQ(message(pendulum + "map = { q = \"-q\" }\n"),
-            "scene.toml:8:1: 'map' needs 'periodic': a map closes a periodic orbit");
+            "scene.toml:8:1: 'map' needs 'periodic': a map relates the ends of a periodic orbit");
   EXPECT_EQ(message(pendulum + "[guess]\nq = \"t\"\nfile = \"a.csv\"\n"),
             "scene.toml:10:1: 'file' and 'q' exclude each other: a guess has one source");
   EXPECT_EQ(
@@ -162,7 +162,7 @@ TEST_F(SceneFiles, Search) {
             "scene.toml:9:13: 'solutions' in [search] must be an integer, found a number");
   EXPECT_EQ(message(search("solution = 2\n")), "scene.toml:9:1: unknown key 'solution' in [search]");
   EXPECT_EQ(message(search("")),
-            "scene.toml:8:1: [search] has no solutions; give how many extremals are wanted");
+            "scene.toml:8:1: [search] has no 'solutions'; give the largest number of extremals");
 }
 
 TEST_F(SceneFiles, ContinuationIsRead) {
@@ -178,7 +178,7 @@ TEST_F(SceneFiles, ContinuationIsRead) {
             "scene.toml:8:1: [continuation] has no parameter; give \"duration\", \"energy\" or the name of a "
             "parameter of the system");
   EXPECT_EQ(message(continuation("parameter = \"duration\"\n")),
-            "scene.toml:8:1: [continuation] has no 'to'; give the value that the family is to lead to");
+            "scene.toml:8:1: [continuation] has no 'to'; give the last value of the parameter");
   EXPECT_EQ(message(continuation(fine + "points = 1\n")), "scene.toml:11:10: points = 1; need 2 to 100000");
   EXPECT_FALSE(scene.continuation->switching);
   EXPECT_EQ(message(continuation(fine + "switch = 1\n")),

@@ -53,7 +53,7 @@ class ComovingTest : public testing::Test {
     const Path change = sampled(at);
     Step step;
     step.nodes.assign(change.nodes().begin(), change.nodes().end());
-    step.inner.assign(change.x(0), change.x(0) + change.batches() * tables().unknowns() * lanes);
+    step.inner.assign(change.x(0), change.x(0) + change.batches() * tables().unknowns() * simd_lanes());
     return step;
   }
 

@@ -19,7 +19,7 @@ struct Line {
 
   /// Of q(0), the middle, q(T); and back.
   void go_and_return(std::vector<double> step) {
-    const AlignedDoubles inner(static_cast<std::size_t>(levels.at(4).unknowns()) * lanes);
+    const AlignedDoubles inner(static_cast<std::size_t>(levels.at(4).unknowns()) * simd_lanes());
     for (const double factor : {1.0, -1.0}) {
       path.add(step, inner, factor);
       keep_ends(ends, path);
@@ -56,8 +56,8 @@ TEST(Ends, OfClosedPathsAreTheSameToTheLastDigit) {
   const Problem problem = periodic(free, 1);
   Line line(free, problem.ends);
   for (const double step : {0.1, 1 / 3.0, 1e-9, 1e7}) {
-    line.path.add(std::vector<double>{step, 0, step}, AlignedDoubles(line.levels.at(4).unknowns() * lanes),
-                  1);
+    line.path.add(std::vector<double>{step, 0, step},
+                  AlignedDoubles(line.levels.at(4).unknowns() * simd_lanes()), 1);
     keep_ends(line.ends, line.path);
     EXPECT_EQ(line.path.node(0)[0], line.path.node(2)[0]);
     EXPECT_EQ(line.path.rest(0)[0], line.path.rest(2)[0]);

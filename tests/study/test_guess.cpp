@@ -39,7 +39,8 @@ TEST_F(Scenes, GuessListsElementsAndWhatIsLeftOut) {
 
 TEST_F(Scenes, GuessFormulasThatAreWrong) {
   const auto guess = [&](const std::string& s) { return message(masses + ends + "[guess]\n" + s + "\n"); };
-  EXPECT_EQ(guess("fiel = \"a.csv\""), "scene.toml:11:1: unknown coordinate 'fiel'; did you mean 'file'?");
+  EXPECT_EQ(guess("fiel = \"a.csv\""),
+            "scene.toml:11:1: unknown coordinate 'fiel'; the system has x, q; did you mean 'file'?");
   EXPECT_EQ(guess("q = [\"t\", \"t\"]"), "scene.toml:11:5: 'q' has 3 elements; found 2 values");
   EXPECT_EQ(guess("x = \"log(t - 1)\""), "scene.toml:11:6: the guess is not finite at t = 0");
   EXPECT_EQ(guess("x = \"2*tt\"").rfind("scene.toml:11:8: ", 0), 0u);
@@ -98,12 +99,13 @@ TEST_F(Scenes, GuessFilesThatAreWrong) {
     write("g.csv", content);
     return message(masses + ends + "[guess]\nfile = \"g.csv\"\n");
   };
-  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"), "g.csv:1:1: there is no column 'q[3]'");
+  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"), "g.csv:1:1: the file has no column 'q[3]'");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,a,1,1\n"), "g.csv:3:5: 'a' is not a finite number");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,nan,1,1\n"), "g.csv:3:5: 'nan' is not a finite number");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,1,1\n"), "g.csv:3:1: found 4 values for 5 columns");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n"), "g.csv: found 1 samples; need at least 2");
-  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"), "g.csv: the times must ascend; 0 follows 0");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"),
+            "g.csv: the times must increase; found 0 after 0");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"), "none.csv: no such file");
 }
 
@@ -119,7 +121,7 @@ TEST_F(Scenes, GuessFromAState) {
   EXPECT_EQ(message(masses + ends + "[guess.state]\nq = [0, 1]\n"),
             "scene.toml:11:5: 'q' has 3 elements; found 2 values");
   EXPECT_EQ(message(masses + ends + "[guess]\nstate = { \"y'\" = 1 }\n"),
-            "scene.toml:11:11: unknown coordinate 'y'");
+            "scene.toml:11:11: unknown coordinate 'y'; the system has x, q");
 }
 
 TEST_F(Scenes, GuessFromAStateThatEndsInACollision) {

@@ -22,10 +22,10 @@ struct Level {
 };
 
 std::vector<Level> levels() {
-  __builtin_cpu_init();
-  std::vector<Level> result = {{SimdLevel::base, base::play}};
-  if (__builtin_cpu_supports("x86-64-v3")) result.push_back({SimdLevel::v3, v3::play});
-  if (__builtin_cpu_supports("x86-64-v4")) result.push_back({SimdLevel::v4, v4::play});
+  const Player players[] = EXTREMAL_AT_EACH_LEVEL(play);
+  std::vector<Level> result;
+  for (std::size_t k = 0; k < std::size(players); ++k)
+    if (const auto level = static_cast<SimdLevel>(k); available(level)) result.push_back({level, players[k]});
   return result;
 }
 
@@ -91,6 +91,8 @@ double ulp(Real x) {
 
 class EveryLevel : public testing::TestWithParam<Level> {
  protected:
+  const int lanes = lanes_of(GetParam().level);
+
   /// Operands d, a, b, c, e of as many batches.
   AlignedDoubles rows(int batches, double low, double high) {
     AlignedDoubles result(static_cast<std::size_t>(5) * batches * lanes);

@@ -169,7 +169,7 @@ double PinnedSolve::wanted_growth() const {
 int PinnedSolve::most_affordable() {
   bind(scheme_.points);
   return static_cast<int>(
-      std::min<double>(most_elements, lanes * most_cost / batch_cost(w_.pinned, scheme_.degree)));
+      std::min<double>(most_elements, most_lanes * most_cost / batch_cost(w_.pinned, scheme_.degree)));
 }
 
 Outcome PinnedSolve::run() {

@@ -44,8 +44,10 @@ void Refinement::take(const ElementTables& tables) {
 
 double Refinement::step_cost() const {
   const double n = path_.coordinates(), columns = problem_.ends.free + problem_.duration.free;
-  const double cost = path_.batches() * batch_cost(*tables_, path_.degree()) +
-                      border_cost * path_.elements() * n * n * columns;
+  // Effort does not depend on how many elements go together: it is that of batches of the widest level.
+  const double batches = static_cast<double>(path_.batches()) * path_.lanes() / most_lanes;
+  const double cost =
+      batches * batch_cost(*tables_, path_.degree()) + border_cost * path_.elements() * n * n * columns;
   return mesh_kept_ ? cost / extended_growth : cost;
 }
 

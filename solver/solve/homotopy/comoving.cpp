@@ -53,7 +53,7 @@ void Comoving::find_times(const Path& path, double extent, const Step& step, std
 void Comoving::take_along(const Path& path, double extent, Step& step, std::vector<double>& times) {
   measure_slopes(path);
   find_times(path, extent, step, times);
-  const int n = path.coordinates(), s = path.degree();
+  const int n = path.coordinates(), s = path.degree(), lanes = path.lanes();
   const std::size_t m = static_cast<std::size_t>(s + 1) * n;
   const std::vector<double>& lobatto = lobatto_nodal_basis(s).points;
   for (std::size_t k = 0; k < times.size(); ++k)

@@ -44,7 +44,7 @@ void Frequency::add(double tau, double omega) {
 void measure_frequency(const Problem& problem, DiscreteAction& action, const ElementTables& tables,
                        const Path& path, Frequency& frequency) {
   const Structure& s = problem.lagrangian->structure();
-  const int points = tables.shape().points;
+  const int points = tables.shape().points, lanes = path.lanes();
   const std::size_t stride = static_cast<std::size_t>(points) * lanes;
   const double lightest = lightest_mass(s);
   frequency.clear();

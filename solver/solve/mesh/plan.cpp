@@ -19,8 +19,7 @@ constexpr double worth_moving = 0.75;
 /// A batch of elements up to this degree is not worth planning again.
 constexpr int cheap_degree = 10;
 
-/// Eight elements go together.
-double batches(double elements) { return std::ceil(elements / lanes); }
+double batches(double elements) { return std::ceil(elements / simd_lanes()); }
 
 }  // namespace
 
@@ -93,7 +92,7 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
     least = worth_moving * cost(keep, present);
   }
   // One batch cannot become fewer, and a low degree not much lower.
-  if (least < INFINITY && present <= lanes && keep <= cheap_degree) return best;
+  if (least < INFINITY && present <= simd_lanes() && keep <= cheap_degree) return best;
   locate(resolution);
   int moved = 0;
   double count = 0;
@@ -114,7 +113,7 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
     density_.add(0.5 * (mesh[k] + mesh[k + 1]), density);
     if (k + 1 == decays_.size()) density_.add(1, density);
   }
-  return {moved, density_.mesh(lanes * static_cast<int>(batches(count)), 0)};
+  return {moved, density_.mesh(simd_lanes() * static_cast<int>(batches(count)), 0)};
 }
 
 }  // namespace extremal

@@ -21,54 +21,67 @@ constexpr double negligible = 1e-12;
 /// Velocities are not asked for more digits than this share of the mean speed gives.
 constexpr double nearly_uniform = 1e-3;
 
-/// Legendre coefficient k of coordinate a over the eight elements of a batch.
-void coefficient(const double* x, const SchemeTables& tables, int n, int a, int k, double* out) {
+/// Legendre coefficient k of every coordinate, over the elements of a batch: n × lanes.
+void coefficients(const double* x, const SchemeTables& tables, int width, int k, double* out) {
   const double* row = tables.legendre.data() + static_cast<std::size_t>(k) * tables.functions;
-  std::fill_n(out, lanes, 0.0);
-  for (int j = 0; j + 2 < tables.functions; ++j)
-    for (int lane = 0; lane < lanes; ++lane) out[lane] += row[j] * x[(j * n + a) * lanes + lane];
-  if (k != 1) return;
-  const double* delta = x + static_cast<std::size_t>((tables.degree * n) + a) * lanes;
-  for (int lane = 0; lane < lanes; ++lane) out[lane] += 0.5 * delta[lane];
+  std::fill_n(out, width, 0.0);
+  const auto add = [&](double factor, const double* from) {
+    for (int u = 0; u < width; ++u) out[u] += factor * from[u];
+  };
+  for (int j = 0; j + 2 < tables.functions; ++j) add(row[j], x + static_cast<std::size_t>(j) * width);
+  if (k == 1) add(0.5, x + static_cast<std::size_t>(tables.degree) * width);
 }
+
+/// Least and largest entries of some rows that come one by one.
+struct Extremes {
+  static constexpr int most = 64;  ///< entries of a row
+  double low[most], high[most];
+  Extremes() {
+    std::fill_n(low, most, INFINITY);
+    std::fill_n(high, most, -INFINITY);
+  }
+  template <class Value>
+  void add(int count, const Value& value) {
+    for (int k = 0; k < count; ++k) {
+      const double x = value(k);
+      low[k] = x < low[k] ? x : low[k];
+      high[k] = x > high[k] ? x : high[k];
+    }
+  }
+  double least(int first, int count) const { return *std::min_element(low + first, low + first + count); }
+  double largest(int first, int count) const { return *std::max_element(high + first, high + first + count); }
+};
 
 }  // namespace
 
 Scales scales(const Path& path, const ElementTables& tables) {
-  const int n = path.coordinates(), degree = path.degree();
+  const int n = path.coordinates(), degree = path.degree(), lanes = path.lanes(), width = n * lanes;
   Scales result;
-  for (int a = 0; a < n; ++a) {
+  for (int from = 0; from < width; from += Extremes::most) {
     // Lane by lane; idle lanes repeat the last element.
-    double low[lanes], high[lanes], slow[lanes], fast[lanes];
-    std::fill_n(low, lanes, path.node(0)[a]);
-    std::fill_n(high, lanes, path.node(0)[a]);
-    std::fill_n(slow, lanes, INFINITY);
-    std::fill_n(fast, lanes, -INFINITY);
+    const int count = std::min(Extremes::most, width - from);
+    Extremes values, speeds;
+    double rates[Extremes::most];
     for (int b = 0; b < path.batches(); ++b) {
-      const double* x = path.x(b) + static_cast<std::size_t>(a) * lanes;
-      const double *start = x + static_cast<std::size_t>((degree - 1) * n) * lanes,
-                   *delta = start + n * lanes;
-      for (int j = 0; j <= degree; ++j) {
+      const double *x = path.x(b) + from, *start = x + static_cast<std::size_t>(degree - 1) * width,
+                   *delta = start + width, *h = path.h(b);
+      values.add(count, [&](int k) { return start[k]; });
+      values.add(count, [&](int k) { return start[k] + delta[k]; });
+      for (int j = 1; j < degree; ++j) {
         const double tau = tables.scheme().lobatto[j];
-        const double* inner = x + static_cast<std::size_t>((j - 1) * n) * lanes;
-        const bool end = j == 0 || j == degree;
-        for (int lane = 0; lane < lanes; ++lane) {
-          const double q = start[lane] + tau * delta[lane] + (end ? 0 : inner[lane]);
-          low[lane] = q < low[lane] ? q : low[lane];
-          high[lane] = q > high[lane] ? q : high[lane];
-        }
+        const double* inner = x + static_cast<std::size_t>(j - 1) * width;
+        values.add(count, [&](int k) { return start[k] + tau * delta[k] + inner[k]; });
       }
-      for (int lane = 0; lane < lanes; ++lane) {
-        const double speed = delta[lane] / path.h(b)[lane];
-        slow[lane] = speed < slow[lane] ? speed : slow[lane];
-        fast[lane] = speed > fast[lane] ? speed : fast[lane];
-      }
+      for (int k = 0; k < count; k += lanes)
+        for (int lane = 0; lane < lanes; ++lane) rates[k + lane] = delta[k + lane] / h[lane];
+      speeds.add(count, [&](int k) { return rates[k]; });
     }
-    const double least = *std::min_element(low, low + lanes), most = *std::max_element(high, high + lanes);
-    result.magnitude = std::max({result.magnitude, std::abs(most), std::abs(least)});
-    result.q = std::max(result.q, most - least);
-    result.v =
-        std::max(result.v, *std::max_element(fast, fast + lanes) - *std::min_element(slow, slow + lanes));
+    for (int k = 0; k < count; k += lanes) {
+      const double least = values.least(k, lanes), most = values.largest(k, lanes);
+      result.magnitude = std::max({result.magnitude, std::abs(most), std::abs(least)});
+      result.q = std::max(result.q, most - least);
+      result.v = std::max(result.v, speeds.largest(k, lanes) - speeds.least(k, lanes));
+    }
   }
   result.range = result.q;
   if (result.q <= negligible * result.magnitude) result.q = result.magnitude;
@@ -80,35 +93,37 @@ Scales scales(const Path& path, const ElementTables& tables) {
 
 void Resolution::measure(const Path& path, const ElementTables& tables) {
   const SchemeTables& scheme = tables.scheme();
-  const int n = path.coordinates(), s = scheme.degree;
+  const int n = path.coordinates(), s = scheme.degree, lanes = path.lanes(), width = n * lanes;
   degree_ = s;
   tails_.clear();
-  double c[4][lanes], extent[lanes];
+  coefficients_.resize(static_cast<std::size_t>(4 * width));
+  double* const c = coefficients_.data();
   for (int b = 0; b < path.batches(); ++b) {
-    double last[lanes] = {}, second[lanes] = {}, before[lanes] = {}, own[lanes] = {};
-    std::fill_n(extent, lanes, 0.0);
+    const double* const x = path.x(b);
+    double extent[most_lanes] = {}, last[most_lanes] = {}, second[most_lanes] = {}, before[most_lanes] = {},
+           own[most_lanes] = {};
     for (int u = 0; u < n * (s - 1); ++u)
       for (int lane = 0; lane < lanes; ++lane)
-        extent[lane] = std::max(extent[lane], std::abs(path.x(b)[u * lanes + lane]));
+        extent[lane] = std::max(extent[lane], std::abs(x[u * lanes + lane]));
     for (int a = 0; a < n; ++a)
       for (int lane = 0; lane < lanes; ++lane)
-        extent[lane] = std::max(extent[lane], 0.5 * std::abs(path.x(b)[(s * n + a) * lanes + lane]));
-    for (int a = 0; a < n; ++a) {
-      for (int k = 0; k < 4; ++k) {
-        if (s - k >= 1)
-          coefficient(path.x(b), scheme, n, a, s - k, c[k]);
-        else
-          std::fill_n(c[k], lanes, 0.0);
-      }
+        extent[lane] = std::max(extent[lane], 0.5 * std::abs(x[(s * n + a) * lanes + lane]));
+    for (int k = 0; k < 4; ++k) {
+      if (s - k >= 1)
+        coefficients(x, scheme, width, s - k, c + k * width);
+      else
+        std::fill_n(c + k * width, width, 0.0);
+    }
+    for (int u = 0; u < width; u += lanes)
       for (int lane = 0; lane < lanes; ++lane) {
-        const double c0 = std::abs(c[0][lane]), c1 = std::abs(c[1][lane]),
-                     earlier = std::max(std::abs(c[2][lane]), std::abs(c[3][lane]));
+        const double* const at = c + u + lane;
+        const double c0 = std::abs(at[0]), c1 = std::abs(at[width]),
+                     earlier = std::max(std::abs(at[2 * width]), std::abs(at[3 * width]));
         own[lane] = std::max(c0, c1) > std::max(last[lane], second[lane]) ? earlier : own[lane];
         last[lane] = std::max(last[lane], c0);
         second[lane] = std::max(second[lane], c1);
         before[lane] = std::max(before[lane], earlier);
       }
-    }
     const int count = std::min(lanes, path.elements() - b * lanes);
     for (int lane = 0; lane < count; ++lane) {
       // Coefficients at roundoff of the element's own extent are no measure.

@@ -44,6 +44,7 @@ class Resolution {
  private:
   int degree_ = 0;
   std::vector<Tail> tails_;
+  std::vector<double> coefficients_;  ///< the last four of every coordinate over a batch
 };
 
 }  // namespace extremal

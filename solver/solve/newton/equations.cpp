@@ -53,7 +53,7 @@ void Equations::list_entries() {
           rows_.push_back(r.unknown);
           columns_.push_back(c.unknown);
           sources_.push_back(
-              {static_cast<int>(e) * lanes + k % lanes, r.factor * c.factor * (twice ? 2 : 1)});
+              {static_cast<int>(e) * lanes_ + k % lanes_, r.factor * c.factor * (twice ? 2 : 1)});
         }
     source_start_.push_back(static_cast<int>(sources_.size()));
   }
@@ -64,13 +64,13 @@ void Equations::spread(std::vector<double>& to, int first, int last, const doubl
   for (int k = first; k < last; ++k)
     for (int u = 0; u < inner_ + 2 * n_; ++u)
       for (const Share& share : shares(k, u))
-        to[share.unknown] += share.factor * batch[u * lanes + k - first];
+        to[share.unknown] += share.factor * batch[u * lanes_ + k - first];
 }
 
 void Equations::clear_gradient() { std::fill(gradient_.begin(), gradient_.end(), 0.0); }
 
 void Equations::add_gradient(int batch, const double* gradient) {
-  spread(gradient_, batch * lanes, std::min(elements_, (batch + 1) * lanes), gradient);
+  spread(gradient_, batch * lanes_, std::min(elements_, (batch + 1) * lanes_), gradient);
 }
 
 void Equations::load(std::span<const double> nodes) {
@@ -87,7 +87,7 @@ void Equations::evaluate(DiscreteAction& action, const Path& path, std::span<dou
     corner_ = 0;
   }
   action.visit(path, hessian, [&](int batch, const BatchValues& values) {
-    const int first = batch * lanes, last = std::min(elements_, first + lanes);
+    const int first = batch * lanes_, last = std::min(elements_, first + lanes_);
     add_gradient(batch, values.gradient);
     if (!hessian) return;
     for (int s = source_start_[first]; s < source_start_[last]; ++s)
@@ -126,14 +126,14 @@ void Equations::express_direction(std::span<const double> direction, std::span<d
 }
 
 void Equations::expand(std::span<const double> x, Step& step) const {
-  const int m = inner_ + 2 * n_, batches = (elements_ + lanes - 1) / lanes;
+  const int m = inner_ + 2 * n_, batches = (elements_ + lanes_ - 1) / lanes_;
   step.nodes.assign(static_cast<std::size_t>(elements_ + 1) * n_, 0);
-  step.inner.assign(static_cast<std::size_t>(batches) * m * lanes, 0);
+  step.inner.assign(static_cast<std::size_t>(batches) * m * lanes_, 0);
   for (int k = 0; k < elements_; ++k)
     for (int u = 0; u < m; ++u) {
       double value = 0;
       for (const Share& share : shares(k, u)) value += share.factor * x[share.unknown];
-      step.inner[(static_cast<std::size_t>(k / lanes) * m + u) * lanes + k % lanes] = value;
+      step.inner[(static_cast<std::size_t>(k / lanes_) * m + u) * lanes_ + k % lanes_] = value;
       if (u >= inner_) step.nodes[static_cast<std::size_t>(k) * n_ + u - inner_] = value;
     }
 }

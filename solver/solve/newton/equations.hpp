@@ -64,6 +64,7 @@ class Equations {
 
   const ElementTables* tables_ = nullptr;
   const EndMap* ends_ = nullptr;
+  int lanes_ = simd_lanes();
   int n_ = 0, elements_ = 0, inner_ = 0, unknowns_ = 0;
   std::vector<Share> all_, end_shares_;
   std::vector<int> end_start_;

@@ -19,9 +19,9 @@ Matrix inverse_stiffness(const SchemeTables& scheme) {
   return all.topLeftCorner(inner, inner).llt().solve(Matrix::Identity(inner, inner));
 }
 
-/// to[lane] += factor · from[lane].
-void add(double* to, double factor, const double* from) {
-  for (int lane = 0; lane < lanes; ++lane) to[lane] += factor * from[lane];
+/// to[k] += factor · from[k], k < count.
+void add(double* to, double factor, const double* from, int count) {
+  for (int k = 0; k < count; ++k) to[k] += factor * from[k];
 }
 
 }  // namespace
@@ -34,6 +34,7 @@ bool RaisedModel::suits(const ElementTables& tables) {
 }
 
 void RaisedModel::reset(const Problem& problem, const ElementTables& tables, int elements) {
+  const int lanes = simd_lanes();
   n_ = tables.coordinates();
   elements_ = elements;
   const SchemeTables &scheme = tables.scheme(), &low_scheme = low_tables_.scheme();
@@ -72,7 +73,7 @@ void RaisedModel::evaluate_gradient(DiscreteAction& action, const Path& path) {
 
 /// The gradient by polynomials of low degree, and the step of the rest.
 void RaisedModel::restrict_batch(const Path& path, int batch, const double* gradient) {
-  const int group = n_ * lanes;  // from one node to the next
+  const int lanes = path.lanes(), group = n_ * lanes;  // from one node to the next
   double* const low = low_gradient_.data();
   double* const high = high_step_.data() + static_cast<std::size_t>(batch) * inner_ * group;
   std::fill_n(low, low_inner_ * group, 0.0);
@@ -81,12 +82,10 @@ void RaisedModel::restrict_batch(const Path& path, int batch, const double* grad
   const double* const h = path.h(batch);
   for (int j = 0; j < inner_; ++j) {
     const double* const from = gradient + j * group;
-    for (int i = 0; i < low_inner_; ++i)
-      for (int a = 0; a < n_; ++a)
-        add(low + i * group + a * lanes, up_[j * low_inner_ + i], from + a * lanes);
+    for (int i = 0; i < low_inner_; ++i) add(low + i * group, up_[j * low_inner_ + i], from, group);
     for (int i = 0; i < inner_; ++i)
       for (int a = 0; a < n_; ++a)
-        add(high + i * group + a * lanes, -rest_[i * inner_ + j] * mass_[a], from + a * lanes);
+        add(high + i * group + a * lanes, -rest_[i * inner_ + j] * mass_[a], from + a * lanes, lanes);
   }
   for (int k = 0; k < inner_ * n_; ++k)
     for (int lane = 0; lane < lanes; ++lane) high[k * lanes + lane] *= h[lane];
@@ -98,7 +97,7 @@ void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
   low_.solve(low_action_, closing, low_step_);
   step.nodes = low_step_.nodes;
   step.duration = low_step_.duration;
-  const int group = n_ * lanes, batches = (elements_ + lanes - 1) / lanes;
+  const int lanes = simd_lanes(), group = n_ * lanes, batches = (elements_ + lanes - 1) / lanes;
   step.inner.resize(static_cast<std::size_t>(batches) * (inner_ + 2) * group);
   for (int b = 0; b < batches; ++b) {
     const double* const low = low_step_.inner.data() + static_cast<std::size_t>(b) * (low_inner_ + 2) * group;
@@ -106,8 +105,7 @@ void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
     std::copy_n(high_step_.data() + static_cast<std::size_t>(b) * inner_ * group, inner_ * group, to);
     for (int j = 0; j < inner_; ++j)
       for (int i = 0; i < low_inner_; ++i)
-        for (int a = 0; a < n_; ++a)
-          add(to + j * group + a * lanes, up_[j * low_inner_ + i], low + i * group + a * lanes);
+        add(to + j * group, up_[j * low_inner_ + i], low + i * group, group);
     std::copy_n(low + low_inner_ * group, 2 * group, to + inner_ * group);
   }
 }

@@ -12,13 +12,13 @@ namespace {
 
 /// Half of q'·h of every element to each of its ends.
 void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* direction) {
-  const int n = path.coordinates(), inner = path.degree() - 1;
+  const int n = path.coordinates(), inner = path.degree() - 1, lanes = path.lanes();
   for (int b = 0; b < path.batches(); ++b)
     for (int end = 0; end < 2; ++end) {
       const double* derivative = scheme.end_derivative.data() + end * (inner + 2) + 1;
       for (int a = 0; a < n; ++a) {
         const double* x = path.x(b) + static_cast<std::size_t>(a) * lanes;
-        double slope[lanes];
+        double slope[most_lanes];
         std::copy_n(x + static_cast<std::size_t>(inner + 1) * n * lanes, lanes, slope);
         for (int j = 0; j < inner; ++j)
           for (int lane = 0; lane < lanes; ++lane)

@@ -69,7 +69,8 @@ void Descent::solve_windows() {
 /// Of the action along the step.
 double Descent::slope() {
   DiscreteAction& action = w_.iteration.action();
-  const int n = path_.coordinates(), inner = (path_.degree() - 1) * n, m = inner + 2 * n;
+  const int n = path_.coordinates(), inner = (path_.degree() - 1) * n, m = inner + 2 * n,
+            lanes = path_.lanes();
   double sum = 0;
   action.visit(path_, false, [&](int b, const BatchValues& values) {
     const double* const inner_step = step_.inner.data() + static_cast<std::size_t>(b) * m * lanes;

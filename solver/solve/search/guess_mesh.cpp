@@ -18,6 +18,8 @@ constexpr double longest_element = 2.0;
 constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
 constexpr double guess_floor = 0.25;
 constexpr int most_passes = 10, highest_guess_degree = 12;
+/// Elements of a first mesh, at least; whole batches are taken.
+constexpr int least_first_elements = 4;
 /// Samples of a motion, elements that follow it, and their degree.
 constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
 constexpr int kept_degree = 7;
@@ -30,11 +32,17 @@ constexpr double mild_grading = 3;
 /// Tries to move the default guess to where L is finite.
 constexpr unsigned most_bends = 8;
 
+/// So many elements at least.
+int whole_batches(double elements) {
+  return simd_lanes() * static_cast<int>(std::ceil(elements / simd_lanes()));
+}
+
 }  // namespace
 
 int Search::first_elements(const Frequency& frequency) {
-  const double wanted = std::min<double>(frequency.phase() / longest_element, most_first_elements);
-  return lanes * std::max(1, static_cast<int>(std::ceil(wanted / lanes)));
+  const double wanted =
+      std::clamp<double>(frequency.phase() / longest_element, least_first_elements, most_first_elements);
+  return whole_batches(wanted);
 }
 
 void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree) {
@@ -47,7 +55,7 @@ void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree
 /// is finite on it.
 Search::GuessKind Search::begin() {
   ends_ = starting_ends(*guess_);
-  mesh_ = uniform_mesh(lanes);
+  mesh_ = uniform_mesh(whole_batches(least_first_elements));
   for (unsigned seed = 0; seed <= most_bends; ++seed) {
     bend_ = {0.1 * seed, seed};
     start(mesh_, bend_);
@@ -61,7 +69,7 @@ Search::GuessKind Search::begin() {
   const bool colliding = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
                          w_.frequency.grading(floor) > collision;
   if (colliding) elements = most_launched;
-  if (elements > lanes || w_.frequency.grading(floor) >= mild_grading) {
+  if (elements > path_.elements() || w_.frequency.grading(floor) >= mild_grading) {
     mesh_ = w_.frequency.mesh(elements, floor);
     start(mesh_, bend_);
   }
@@ -75,7 +83,7 @@ Search::GuessKind Search::begin() {
 bool Search::mesh_of_motion() {
   const std::vector<double>& tau = guess_->guess.tau;
   const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
-  const std::size_t elements = (wanted + lanes) / lanes * lanes;
+  const std::size_t elements = (wanted / simd_lanes() + 1) * simd_lanes();
   const bool many = wanted >= least_kept && wanted <= most_kept;
   const bool collides = w_.frequency.grading(guess_floor) > collision;
   if (!many && !(collides && elements < static_cast<std::size_t>(path_.elements()))) return false;
@@ -119,7 +127,7 @@ bool Search::resolve_guess() {
 }
 
 bool Search::open_fitting(const std::function<void(const ElementTables&, Path&)>& fill, int degree) {
-  fill(open(uniform_mesh(2 * lanes), Refinement::first_degree), path_);
+  fill(open(uniform_mesh(sketch_elements), Refinement::first_degree), path_);
   measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
   const int elements = first_elements(w_.frequency);
   if (!w_.frequency.finite() || elements > most_launched) return false;

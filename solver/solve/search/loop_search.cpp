@@ -30,7 +30,7 @@ bool LoopSearch::pursue(const Problem& problem, Search& search, Loops& loops, co
   search.renew(share);
   const unsigned seed = loops.count++;
   loops.draw(seed);
-  const ElementTables& coarse = search.open(uniform_mesh(2 * lanes), Refinement::first_degree);
+  const ElementTables& coarse = search.open(uniform_mesh(Search::sketch_elements), Refinement::first_degree);
   loops.fit_size(w_.iteration.action(), coarse, search.path());
   if (!search.open_fitting([&](const ElementTables& tables, Path& path) { loops.fill(tables, path); }))
     return false;

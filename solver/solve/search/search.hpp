@@ -38,6 +38,8 @@ class Search {
   bool open_fitting(const std::function<void(const ElementTables& tables, Path& path)>& fill,
                     int degree = Refinement::first_degree);
   const ElementTables& tables() const { return refinement_.tables(); }
+  /// Elements of a random path whose frequency is measured.
+  static constexpr int sketch_elements = 16;
   /// Sizes of paths and effort are those of another search.
   void be_like(const Search& other);
   /// Effort that further paths may take together, in shares of that of one solve.

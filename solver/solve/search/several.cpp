@@ -22,7 +22,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Elements of a family keep the accuracy that is needed to land.
-constexpr int family_degree = 6;
+constexpr int family_degree = 6, elements_a_turn = 8;
 /// Guesses tried before families are traced, and each time between.
 constexpr unsigned guesses = 8;
 /// Of the effort that one solve may take, for each extremal that is new.
@@ -190,7 +190,7 @@ void Several::wind() {
   constexpr const char* strategy = "homotopy from an arc of a circle";
   const auto count = [this] { return search_.count_step(); };
   const Arc arc = arc_of(seed_, search_.ends());
-  const std::vector<double> mesh = uniform_mesh(lanes * std::max(1, std::abs(arc.turns)));
+  const std::vector<double> mesh = uniform_mesh(elements_a_turn * std::max(1, std::abs(arc.turns)));
   const ElementTables& tables = search_.open(mesh, family_degree);
   const bool autonomous = problem_.lagrangian->structure().autonomous;
   const double duration = autonomous ? natural_duration(arc, tables) : problem_.duration.value;

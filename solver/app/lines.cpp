@@ -1,0 +1,24 @@
+#include "app/lines.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace extremal::app {
+
+void line(const std::string& label, const std::string& text) { fmt::print("{:<14} {}\n", label, text); }
+
+void lines(const std::string& label, const std::vector<std::string>& texts) {
+  for (std::size_t k = 0; k < texts.size(); ++k) line(k == 0 ? label : "", texts[k]);
+}
+
+std::string parameter_text(const std::string& name, const std::vector<double>& values, bool list) {
+  constexpr std::size_t most = 12;
+  if (!list) return fmt::format("{} = {}", name, values.front());
+  const auto end = values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), most));
+  return fmt::format("{} = [{}{}]", name, fmt::join(values.begin(), end, ", "),
+                     values.size() > most ? fmt::format(", … {} values", values.size()) : "");
+}
+
+}  // namespace extremal::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// \file Lines of a label and a text, as `check` and `list` print them.
+
+namespace extremal::app {
+
+void line(const std::string& label, const std::string& text);
+
+/// The label beside the first of the texts, which are below each other.
+void lines(const std::string& label, const std::vector<std::string>& texts);
+
+/// "mu = 1", "m = [1, 2]"; of a long list the first values and their number.
+std::string parameter_text(const std::string& name, const std::vector<double>& values, bool list);
+
+}  // namespace extremal::app
