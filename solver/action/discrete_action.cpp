@@ -31,7 +31,7 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   const std::size_t m = unknowns_, groups = condense ? condensation_->fronts.groups() : 0;
   sizes_ = {groups * lanes_, m * lanes_, static_cast<std::size_t>(tables.shape().points) * lanes_,
             static_cast<std::size_t>(of_ends + 2 * n_) * lanes_};
-  set_desks(condense);
+  set_buffers(condense);
   // Memory that grows only: what a smaller action leaves need not be cleared for the next.
   const auto provide = [](AlignedDoubles& x, std::size_t size) {
     if (x.size() < size) x.resize(size);
@@ -55,55 +55,56 @@ void DiscreteAction::substitute(const Lagrangian& lagrangian, const ElementTable
   lagrangian_ = &lagrangian;
   tables_ = &tables;
   sizes_.points = static_cast<std::size_t>(tables.shape().points) * lanes_;
-  for (Desk& desk : desks_) make_room(desk);
+  for (Buffers& buffers : buffers_) make_room(buffers);
 }
 
 /// One, or where there is that much work one for each thread.
-void DiscreteAction::set_desks(bool condense) {
+void DiscreteAction::set_buffers(bool condense) {
   const double points = static_cast<double>(lagrangian_->rows(Order::hessian) * sizes_.points);
   const double work = condense ? points + condensation_->fronts.work() : 0;
   const bool shared = batches_ > 1 && batches_ * work > least_share * threads();
-  desks_.resize(shared ? threads() : 1);
-  for (Desk& desk : desks_) make_room(desk);
+  buffers_.resize(shared ? threads() : 1);
+  for (Buffers& buffers : buffers_) make_room(buffers);
 }
 
-void DiscreteAction::make_room(Desk& desk) const {
-  desk.q.resize(n_ * sizes_.points);
-  desk.v.resize(tables_->shape().velocity_free ? 0 : n_ * sizes_.points);
-  desk.t.resize(sizes_.points);
-  desk.rows.resize(lagrangian_->rows(Order::hessian) * sizes_.points);
-  desk.work.resize(2 * sizes_.vector + 2 * lanes_);
+void DiscreteAction::make_room(Buffers& buffers) const {
+  buffers.q.resize(n_ * sizes_.points);
+  buffers.v.resize(tables_->shape().velocity_free ? 0 : n_ * sizes_.points);
+  buffers.t.resize(sizes_.points);
+  buffers.rows.resize(lagrangian_->rows(Order::hessian) * sizes_.points);
+  buffers.work.resize(2 * sizes_.vector + 2 * lanes_);
 }
 
-/// evaluate(desk, b) for each batch in any order, gather(b) from the first to the last: sums do not depend on
-/// how many threads there are.
+/// evaluate(buffers, b) for each batch in any order, gather(b) from the first to the last: sums do not depend
+/// on how many threads there are.
 template <class Evaluate, class Gather>
 void DiscreteAction::for_batches(const Evaluate& evaluate, const Gather& gather) {
-  if (desks_.size() == 1) {
+  if (buffers_.size() == 1) {
     for (int b = 0; b < batches_; ++b) {
-      evaluate(desks_.front(), b);
+      evaluate(buffers_.front(), b);
       gather(b);
     }
     return;
   }
-  share_out(batches_, [&](int thread, int b) { evaluate(desks_[thread], b); });
+  share_out(batches_, [&](int thread, int b) { evaluate(buffers_[thread], b); });
   for (int b = 0; b < batches_; ++b) gather(b);
 }
 
-ElementBatch DiscreteAction::batch(const Path& path, int b, Desk& desk) {
+ElementBatch DiscreteAction::batch(const Path& path, int b, Buffers& buffers) {
   return {.h = path.h(b),
           .start = path.start(b),
           .x = path.x(b),
-          .q = desk.q.data(),
-          .v = desk.v.data(),
-          .t = lagrangian_->structure().autonomous ? nullptr : desk.t.data(),
-          .rows = desk.rows.data()};
+          .q = buffers.q.data(),
+          .v = buffers.v.data(),
+          .t = lagrangian_->structure().autonomous ? nullptr : buffers.t.data(),
+          .rows = buffers.rows.data()};
 }
 
-void DiscreteAction::play(const ElementBatch& batch, Order order, Desk& desk) {
+void DiscreteAction::play(const ElementBatch& batch, Order order, Buffers& buffers) {
   assembly_->expand(tables_->shape(), batch);
   const int count = static_cast<int>(sizes_.points);
-  lagrangian_->evaluate({count, count, batch.q, batch.v, batch.t}, order, desk.rows.data(), desk.scratch);
+  lagrangian_->evaluate({count, count, batch.q, batch.v, batch.t}, order, buffers.rows.data(),
+                        buffers.scratch);
 }
 
 void DiscreteAction::assemble_gradient(const ElementBatch& elements, int b, double* gradient) {
@@ -113,18 +114,18 @@ void DiscreteAction::assemble_gradient(const ElementBatch& elements, int b, doub
 }
 
 const double* DiscreteAction::rows(const Path& path, int b, Order order) {
-  Desk& desk = desks_.front();
-  play(batch(path, b, desk), order, desk);
-  return desk.rows.data();
+  Buffers& buffers = buffers_.front();
+  play(batch(path, b, buffers), order, buffers);
+  return buffers.rows.data();
 }
 
 void DiscreteAction::evaluate_plain(const Path& path) {
   clear_sums();
-  Desk& desk = desks_.front();
+  Buffers& buffers = buffers_.front();
   for (int b = 0; b < batches_; ++b) {
-    const ElementBatch elements = batch(path, b, desk);
-    play(elements, Order::gradient, desk);
-    assemble_gradient(elements, b, desk.work.data());
+    const ElementBatch elements = batch(path, b, buffers);
+    play(elements, Order::gradient, buffers);
+    assemble_gradient(elements, b, buffers.work.data());
     gather(path, b);
   }
   finish_sums();
@@ -152,16 +153,16 @@ void DiscreteAction::put_gradient(const Path& path) {
 /// With the factors there are.
 void DiscreteAction::reduce_gradient(const Path& path) {
   const Fronts& fronts = condensation_->fronts;
-  const auto evaluate = [&](Desk& desk, int b) {
+  const auto evaluate = [&](Buffers& buffers, int b) {
     if (extended_ready_) {
       take_extended(b, reduced(b));
     } else {
-      const ElementBatch elements = batch(path, b, desk);
-      play(elements, Order::gradient, desk);
+      const ElementBatch elements = batch(path, b, buffers);
+      play(elements, Order::gradient, buffers);
       assemble_gradient(elements, b, reduced(b));
     }
     elimination_->reduce(fronts.data(), fronts.count(), matrix(b), inverses_.data() + b * sizes_.vector,
-                         reduced(b), desk.work.data());
+                         reduced(b), buffers.work.data());
   };
   for_batches(evaluate, [&](int b) {
     gather(path, b);
@@ -186,11 +187,11 @@ void DiscreteAction::visit(const Path& path, bool hessian,
   clear_sums();
   const std::size_t count = hessian ? tables_->entries().row.size() * lanes_ : 0;
   entries_.resize(std::max(entries_.size(), count));
-  Desk& desk = desks_.front();
+  Buffers& buffers = buffers_.front();
   for (int b = 0; b < batches_; ++b) {
-    const ElementBatch elements = batch(path, b, desk);
-    play(elements, hessian ? Order::hessian : Order::gradient, desk);
-    double *corner = sums(b, of_corner), *gradient = desk.work.data(), *row = gradient + sizes_.vector;
+    const ElementBatch elements = batch(path, b, buffers);
+    play(elements, hessian ? Order::hessian : Order::gradient, buffers);
+    double *corner = sums(b, of_corner), *gradient = buffers.work.data(), *row = gradient + sizes_.vector;
     assemble_gradient(elements, b, gradient);
     gather(path, b);
     if (hessian) {
@@ -204,10 +205,10 @@ void DiscreteAction::visit(const Path& path, bool hessian,
 }
 
 /// One batch: values, derivatives, inner unknowns eliminated.
-void DiscreteAction::condense(const Path& path, int b, Desk& desk) {
+void DiscreteAction::condense(const Path& path, int b, Buffers& buffers) {
   const Fronts& fronts = condensation_->fronts;
-  const ElementBatch elements = batch(path, b, desk);
-  play(elements, Order::hessian, desk);
+  const ElementBatch elements = batch(path, b, buffers);
+  play(elements, Order::hessian, buffers);
   double* const gradient = reduced(b);
   assemble_gradient(elements, b, gradient);
   if (extended_ready_) take_extended(b, gradient);
@@ -216,7 +217,7 @@ void DiscreteAction::condense(const Path& path, int b, Desk& desk) {
   if (border_) evaluate_border(path, elements, gradient + sizes_.vector, sums(b, of_corner));
   elimination_->condense(fronts.data(), fronts.count(), matrix(b), fronts.ends(), 2 * n_, gradient,
                          1 + border_, inverses_.data() + b * sizes_.vector, sums(b, of_negative),
-                         sums(b, of_ratio), desk.work.data());
+                         sums(b, of_ratio), buffers.work.data());
 }
 
 void DiscreteAction::evaluate(const Path& path) {
@@ -227,7 +228,7 @@ void DiscreteAction::evaluate(const Path& path) {
   nodes.corner = 0;
   nodes.negative = 0;
   nodes.pivot_ratio = 1;
-  const auto evaluate = [&](Desk& desk, int b) { condense(path, b, desk); };
+  const auto evaluate = [&](Buffers& buffers, int b) { condense(path, b, buffers); };
   for_batches(evaluate, [&](int b) {
     gather(path, b);
     gather_pivots(b);
@@ -260,14 +261,14 @@ void DiscreteAction::expand_step(std::span<const double> node_step, double durat
 void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> hessian,
                                      std::span<double> gradient) {
   const int b = k / lanes_, lane = k % lanes_;
-  Desk& desk = desks_.front();
-  const ElementBatch elements = batch(path, b, desk);
-  play(elements, Order::hessian, desk);
+  Buffers& buffers = buffers_.front();
+  const ElementBatch elements = batch(path, b, buffers);
+  play(elements, Order::hessian, buffers);
   const ElementTables::Entries& entries = tables_->entries();
   AlignedDoubles values(entries.row.size() * lanes_), sums(lanes_);
-  assembly_->gradient(tables_->shape(), elements, sums.data(), desk.work.data(), nullptr);
+  assembly_->gradient(tables_->shape(), elements, sums.data(), buffers.work.data(), nullptr);
   assembly_->hessian(tables_->shape(), elements, entries.slots.data(), values.data());
-  for (int i = 0; i < unknowns_; ++i) gradient[i] = desk.work[i * lanes_ + lane];
+  for (int i = 0; i < unknowns_; ++i) gradient[i] = buffers.work[i * lanes_ + lane];
   std::fill(hessian.begin(), hessian.end(), 0.0);
   for (std::size_t e = 0; e < entries.row.size(); ++e)
     hessian[static_cast<std::size_t>(entries.row[e]) * unknowns_ + entries.column[e]] =
@@ -280,13 +281,13 @@ double DiscreteAction::parameter_slope(const Path& path, int parameter, AlignedD
   shape.mass_count = shape.gyroscopic_count = shape.linear_count = 0;
   mixed.resize(batches_ * sizes_.vector);
   const int count = static_cast<int>(sizes_.points);
-  Desk& desk = desks_.front();
+  Buffers& buffers = buffers_.front();
   double sum = 0;
   for (int b = 0; b < batches_; ++b) {
-    const ElementBatch elements = batch(path, b, desk);
+    const ElementBatch elements = batch(path, b, buffers);
     assembly_->expand(shape, elements);
-    lagrangian_->sensitivity({count, count, elements.q, elements.v, elements.t}, parameter, desk.rows.data(),
-                             desk.scratch);
+    lagrangian_->sensitivity({count, count, elements.q, elements.v, elements.t}, parameter,
+                             buffers.rows.data(), buffers.scratch);
     double* const action = sums(b, of_action);
     assembly_->gradient(shape, elements, action, mixed.data() + b * sizes_.vector, nullptr);
     for (int lane = 0; lane < std::min(lanes_, elements_ - b * lanes_); ++lane) sum += action[lane];

@@ -110,7 +110,7 @@ class DiscreteAction {
 
   /// ∂x_u/∂x_e of inner unknown u of element k by the ends e (q_a, then q_b), at fields[u*2n + e], by the
   /// elimination that evaluate() made.
-  void unfold(int k, std::span<double> fields) const;
+  void inner_by_ends(int k, std::span<double> fields) const;
 
   /// Rows of the remainder at the quadrature points of a batch, as Lagrangian::evaluate returns them.
   const double* rows(const Path& path, int batch, Order order);
@@ -126,17 +126,17 @@ class DiscreteAction {
   double* sums(int b, Sum sum) { return sums_.data() + b * sizes_.sums + sum * lanes_; }
   const double* sums(int b, Sum sum) const { return sums_.data() + b * sizes_.sums + sum * lanes_; }
   /// What one batch is evaluated on; each thread has its own.
-  struct Desk {
+  struct Buffers {
     Scratch scratch;
     AlignedDoubles q, v, t, rows, work;
   };
   template <class Evaluate, class Gather>
   void for_batches(const Evaluate& evaluate, const Gather& gather);
-  ElementBatch batch(const Path& path, int b, Desk& desk);
-  void play(const ElementBatch& batch, Order order, Desk& desk);
-  void condense(const Path& path, int b, Desk& desk);
-  void set_desks(bool condense);
-  void make_room(Desk& desk) const;
+  ElementBatch batch(const Path& path, int b, Buffers& buffers);
+  void play(const ElementBatch& batch, Order order, Buffers& buffers);
+  void condense(const Path& path, int b, Buffers& buffers);
+  void set_buffers(bool condense);
+  void make_room(Buffers& buffers) const;
   void evaluate_border(const Path& path, const ElementBatch& elements, double* row, double* corner);
   void assemble_gradient(const ElementBatch& elements, int b, double* gradient);
   void keep_gradient(int b, const double* gradient);
@@ -177,7 +177,7 @@ class DiscreteAction {
   bool changed_ = false;  ///< its change is taken in its place
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
   Sizes sizes_{};
-  std::vector<Desk> desks_;                    // the first of the thread that calls
+  std::vector<Buffers> buffers_;               // the first of the thread that calls
   AlignedDoubles matrices_, inverses_, sums_;  // of every batch
   AlignedDoubles entries_;
   std::vector<double> raw_nodes_, start_gradient_, end_gradient_;

@@ -182,12 +182,12 @@ void JacobiFields::find(SecondVariation& variation, int k, int count) {
   samples_.clear();
   samples_.push_back({0, VectorXd::Constant(eigenvalues_.size(), first)});
   samples_.push_back({1, eigenvalues_});
-  for (int i = 0; i < count; ++i) times_.push_back(crossing(variation, k, i));
+  for (int i = 0; i < count; ++i) times_.push_back(time_of_zero(variation, k, i));
   std::sort(times_.begin(), times_.end());
 }
 
 /// Where eigenvalue `index` is zero; what is evaluated on the way brackets those that follow.
-double JacobiFields::crossing(SecondVariation& variation, int k, int index) {
+double JacobiFields::time_of_zero(SecondVariation& variation, int k, int index) {
   const Sample *low = &samples_.front(), *high = &samples_[1];
   for (const Sample& sample : samples_) {
     const bool before = sample.values[index] > 0;

@@ -40,7 +40,7 @@ class JacobiFields {
   Eigen::MatrixXd orthonormal(const Eigen::VectorXd& unit) const;
   Eigen::MatrixXd form(SecondVariation& variation, int k, double tau);
   void find(SecondVariation& variation, int k, int count);
-  double crossing(SecondVariation& variation, int k, int index);
+  double time_of_zero(SecondVariation& variation, int k, int index);
   void carry(const Piece& piece);
 
   bool normalised_ = false;

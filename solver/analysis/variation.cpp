@@ -213,9 +213,9 @@ void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> p
 }
 
 /// Makes the inner fields of piece k, from the factor that eliminated the inner unknowns.
-const Eigen::MatrixXd& SecondVariation::unfold(int k) {
-  Eigen::MatrixXd& unfolded = unfolded_[k];
-  if (unfolded.size() > 0) return unfolded;
+const Eigen::MatrixXd& SecondVariation::inner_by_ends(int k) {
+  Eigen::MatrixXd& fields = inner_by_ends_[k];
+  if (fields.size() > 0) return fields;
   if (evaluated_ != pieces_[k].first) {
     batch_.clear();
     for (int i = pieces_[k].first; i < count() && pieces_[i].first == pieces_[k].first; ++i)
@@ -227,19 +227,19 @@ const Eigen::MatrixXd& SecondVariation::unfold(int k) {
   if (kept_ + inner * 2 * n > most_kept) forget();
   kept_ += inner * 2 * n;
   fields_.resize(inner, 2 * n);
-  action_.unfold(element, {fields_.data(), static_cast<std::size_t>(fields_.size())});
-  unfolded = fields_;
-  return unfolded;
+  action_.inner_by_ends(element, {fields_.data(), static_cast<std::size_t>(fields_.size())});
+  fields = fields_;
+  return fields;
 }
 
 void SecondVariation::forget() {
-  unfolded_.assign(pieces_.size(), {});
+  inner_by_ends_.assign(pieces_.size(), {});
   kept_ = 0;
 }
 
 void SecondVariation::fields(int k, double tau, Eigen::MatrixXd& from_start, Eigen::MatrixXd& from_end) {
   const int n = coordinates();
-  const Eigen::MatrixXd& unfolded = unfold(k);
+  const Eigen::MatrixXd& inner = inner_by_ends(k);
   from_start = (1 - tau) * Eigen::MatrixXd::Identity(n, n);
   from_end = tau * Eigen::MatrixXd::Identity(n, n);
   const Barycentric& at = lobatto_barycentric(scheme_->degree);
@@ -249,8 +249,8 @@ void SecondVariation::fields(int k, double tau, Eigen::MatrixXd& from_start, Eig
   for (int j = 1; j < scheme_->degree; ++j) {
     const double value =
         node == at.nodes.end() ? at.weights[j] / (tau - at.nodes[j]) / sum : tau == at.nodes[j];
-    from_start += value * unfolded.middleRows((j - 1) * n, n).leftCols(n);
-    from_end += value * unfolded.middleRows((j - 1) * n, n).rightCols(n);
+    from_start += value * inner.middleRows((j - 1) * n, n).leftCols(n);
+    from_end += value * inner.middleRows((j - 1) * n, n).rightCols(n);
   }
 }
 

@@ -82,7 +82,7 @@ class SecondVariation {
   bool resolved(const DiscreteAction& action, int count, double allowed);
   void keep(const DiscreteAction& action, std::span<const Part> parts);
   bool take(const Condensed& condensed);
-  const Eigen::MatrixXd& unfold(int k);
+  const Eigen::MatrixXd& inner_by_ends(int k);
   void forget();
 
   std::shared_ptr<const Lagrangian> lagrangian_;
@@ -104,7 +104,7 @@ class SecondVariation {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> fields_;
   std::size_t kept_ = 0;
   std::vector<Eigen::MatrixXd>
-      unfolded_;  ///< of each piece, or empty: inner unknowns, (s − 1) n × 2n, by x_a, x_b
+      inner_by_ends_;  ///< of each piece, or empty: inner unknowns, (s − 1) n × 2n, by x_a, x_b
 };
 
 }  // namespace extremal

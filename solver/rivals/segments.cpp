@@ -27,7 +27,7 @@ Segments::Segments(const Problem& problem, int segments)
       conditions_(problem),
       flow_(*problem.lagrangian),
       lane_flow_(*problem.lagrangian),
-      convoy_(lane_flow_),
+      integrator_(lane_flow_),
       first_steps_(std::max(segments, 1), 0.0),
       first_tolerances_(std::max(segments, 1), 1.0) {
   if (segments < 1) throw std::invalid_argument(fmt::format("segments = {}; need at least 1", segments));
@@ -102,12 +102,12 @@ void Segments::free_start(Course& course) {
   basis_ = complement(rows);
 }
 
-/// Each segment's variations are dealt out to `split` legs.
+/// Each segment's variations are dealt out to `split` spans.
 void Segments::load(const Course& course, int split, int columns) {
   const std::size_t size = static_cast<std::size_t>(2 * n_), block = size * (1 + columns);
   initial_.assign(block * split * segments_, 0.0);
   final_.resize(initial_.size());
-  legs_.assign(static_cast<std::size_t>(split) * segments_, {});
+  spans_.assign(static_cast<std::size_t>(split) * segments_, {});
   for (int k = 0; k < segments_; ++k)
     for (int part = 0; part < split; ++part) {
       const std::size_t index = static_cast<std::size_t>(k) * split + part;
@@ -120,12 +120,12 @@ void Segments::load(const Course& course, int split, int columns) {
         if (k > 0 && seed < 2 * n_) variation[seed] = 1;
       }
       const double T = course.duration;
-      legs_[index] = {.start = T * k / segments_,
-                      .end = k + 1 == segments_ ? T : T * (k + 1) / segments_,
-                      .initial = start,
-                      .final = final_.data() + index * block,
-                      .first_step = first_steps_[k],
-                      .tolerance = first_tolerances_[k]};
+      spans_[index] = {.start = T * k / segments_,
+                       .end = k + 1 == segments_ ? T : T * (k + 1) / segments_,
+                       .initial = start,
+                       .final = final_.data() + index * block,
+                       .first_step = first_steps_[k],
+                       .tolerance = first_tolerances_[k]};
     }
 }
 
@@ -135,10 +135,10 @@ bool Segments::unload(const Course& course, int split, int columns) {
   blocks_.transition.resize(columns > 0 ? segments_ : blocks_.transition.size());
   right_.assign(segments_ + 1, Eigen::VectorXd::Zero(2 * n_));
   for (int k = 0; k < segments_; ++k) {
-    const Leg& leg = legs_[static_cast<std::size_t>(k) * split];
-    first_steps_[k] = leg.first_step;
-    first_tolerances_[k] = leg.tolerance;
-    ends_.col(k) = Eigen::Map<const Eigen::VectorXd>(leg.final, 2 * n_);
+    const MotionSpan& span = spans_[static_cast<std::size_t>(k) * split];
+    first_steps_[k] = span.first_step;
+    first_tolerances_[k] = span.tolerance;
+    ends_.col(k) = Eigen::Map<const Eigen::VectorXd>(span.final, 2 * n_);
     if (k + 1 < segments_) right_[k] = course.states.col(k + 1) - ends_.col(k);
     if (columns == 0) continue;
     const int width = static_cast<int>(k == 0 ? basis_.cols() : 2 * n_);
@@ -208,7 +208,7 @@ bool Segments::evaluate(const Course& course, double tolerance, bool with_variat
   const int columns = with_variations ? (wanted + split - 1) / split : 0;
   if (columns > 0) split = (wanted + columns - 1) / columns;
   load(course, split, columns);
-  if (!convoy_.run(legs_, columns, tolerance, most_steps)) return false;
+  if (!integrator_.run(spans_, columns, tolerance, most_steps)) return false;
   if (!unload(course, split, columns)) return false;
   if (with_variations) end_slopes(course);
   close(course);

@@ -6,8 +6,8 @@
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
 #include "rivals/almost_block_diagonal.hpp"
+#include "rivals/batch_dop853.hpp"
 #include "rivals/conditions.hpp"
-#include "rivals/convoy.hpp"
 
 /// \file A motion in segments, each from a state of its own: the equations of single and multiple shooting.
 
@@ -44,7 +44,7 @@ class Segments {
   };
   Correction correct() const;
 
-  int steps() const { return convoy_.steps(); }
+  int steps() const { return integrator_.steps(); }
   Eigen::VectorXd velocity(const Eigen::VectorXd& state, double t);
 
  private:
@@ -60,8 +60,8 @@ class Segments {
   EndConditions conditions_;
   Flow flow_;
   LaneFlow lane_flow_;
-  Convoy convoy_;
-  std::vector<Leg> legs_;
+  BatchDop853 integrator_;
+  std::vector<MotionSpan> spans_;
   std::vector<double> first_steps_, first_tolerances_;
   std::vector<double> initial_, final_;
   Eigen::MatrixXd basis_;   ///< directions that the start may move in, 2n × their number

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <utility>
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
@@ -51,6 +53,41 @@ Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Work
   return outcome;
 }
 
+/// The solution that a path is, or why there is none.
+Solution judged(const Problem& problem, const SolveOptions& options, const Outcome& outcome, Workspace& w) {
+  return outcome.status == Status::converged ? accept(problem, options, outcome, w)
+                                             : explain_failure(problem, options, outcome, w);
+}
+
+/// The orbit by its part; nothing where the whole is to be searched for. `spent` becomes the steps taken.
+std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions& options, Workspace& w,
+                                      int& spent) {
+  const Reduction& reduction = *problem.reduction;
+  Outcome outcome = solve_part(reduction, options, w);
+  spent = outcome.iterations;
+  // If roundoff hides an extremal on its part, so it does on the whole.
+  if (outcome.hidden) return judged(reduction.part, options, outcome, w);
+  if (outcome.status != Status::converged) return std::nullopt;
+  std::optional<Solution> solution = judged(problem, options, outcome, w);
+  std::swap(outcome.part, w.spare);
+  std::swap(outcome.path, w.spare_whole);
+  return solution->converged() ? std::move(solution) : std::nullopt;
+}
+
+/// As the options ask: with a scheme of their own, by the part of a symmetric orbit, or by a search.
+Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  if (options.scheme) return judged(problem, options, PinnedSolve(problem, options, w).run(), w);
+  int spent = 0;
+  if (problem.reduction)
+    if (std::optional<Solution> solution = solve_by_part(problem, options, w, spent))
+      return *std::move(solution);
+  Acceptance acceptance(problem, options, w);
+  Search search(problem, options, w);
+  Solution solution = acceptance.result(search.run(&acceptance));
+  solution.iterations += spent;
+  return solution;
+}
+
 }  // namespace
 
 struct Solver::Memory {
@@ -73,35 +110,11 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.push_back(step);
     if (options.progress) options.progress(step);
   };
-  const auto completed = [&](Solution solution) {
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    solution.history = std::move(history);
-    solution.seconds_solve = seconds - solution.seconds_analyse;
-    return solution;
-  };
-  const auto judged = [&](const Problem& solved, const Outcome& outcome) {
-    return outcome.status == Status::converged ? accept(solved, options, outcome, w)
-                                               : explain_failure(solved, options, outcome, w);
-  };
-  if (options.scheme) return completed(judged(problem, PinnedSolve(problem, recording, w).run()));
-  int spent = 0;
-  if (const Reduction* reduction = problem.reduction.get()) {
-    Outcome outcome = solve_part(*reduction, recording, w);
-    // If roundoff hides an extremal on its part, so it does on the whole.
-    if (outcome.hidden) return completed(judged(reduction->part, outcome));
-    if (outcome.status == Status::converged) {
-      Solution solution = judged(problem, outcome);
-      std::swap(outcome.part, w.spare);
-      std::swap(outcome.path, w.spare_whole);
-      if (solution.converged()) return completed(std::move(solution));
-    }
-    spent = outcome.iterations;
-  }
-  Acceptance acceptance(problem, options, w);
-  Search search(problem, recording, w);
-  Solution solution = acceptance.result(search.run(&acceptance));
-  solution.iterations += spent;
-  return completed(std::move(solution));
+  Solution solution = solve_once(problem, recording, w);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  solution.history = std::move(history);
+  solution.seconds_solve = seconds - solution.seconds_analyse;
+  return solution;
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {

@@ -184,7 +184,7 @@ TEST_P(Elimination, IsThatOfTheDenseMatrix) {
 
       for (int k : {0, 7, 10}) {
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> fields(inner, 2 * n);
-        d.action.unfold(k, {fields.data(), std::size_t(fields.size())});
+        d.action.inner_by_ends(k, {fields.data(), std::size_t(fields.size())});
         const Eigen::MatrixXd lower = before[k].hessian.bottomLeftCorner(2 * n, inner);
         const Eigen::MatrixXd expected = -factors[k].solve(lower.transpose());
         EXPECT_LE((fields - expected).cwiseAbs().maxCoeff(),

@@ -5,7 +5,7 @@
 
 #include "motion/flow.hpp"
 #include "rivals/almost_block_diagonal.hpp"
-#include "rivals/convoy.hpp"
+#include "rivals/batch_dop853.hpp"
 #include "rivals/lane_flow.hpp"
 #include "rivals/problems.hpp"
 
@@ -75,61 +75,61 @@ TEST(LaneFlow, ALostLaneLosesNoOther) {
     }
 }
 
-TEST(Convoy, LegsOfManyLengths) {
-  // q = sin t from t = 0: 20 legs on fewer lanes, each with the variation by p, which is sin t too.
+TEST(BatchDop853, SpansOfManyLengths) {
+  // q = sin t from t = 0: 20 spans on fewer lanes, each with the variation by p, which is sin t too.
   const auto system = oscillator();
   LaneFlow flow(*system);
-  Convoy convoy(flow);
+  BatchDop853 integrator(flow);
   const std::vector<double> initial = {0, 1, 0, 1};
   std::vector<double> final(20 * 4);
-  std::vector<Leg> legs(20);
+  std::vector<MotionSpan> spans(20);
   for (int k = 0; k < 20; ++k)
-    legs[k] = {
+    spans[k] = {
         .start = 0, .end = 0.1 + k * k * 0.05, .initial = initial.data(), .final = final.data() + 4 * k};
-  ASSERT_TRUE(convoy.run(legs, 1, 1e-12, 1000));
+  ASSERT_TRUE(integrator.run(spans, 1, 1e-12, 1000));
   for (int k = 0; k < 20; ++k) {
-    EXPECT_TRUE(legs[k].complete);
-    EXPECT_NEAR(final[4 * k], std::sin(legs[k].end), 2e-11) << k;
-    EXPECT_NEAR(final[4 * k + 3], std::cos(legs[k].end), 2e-11) << k;
-    EXPECT_GT(legs[k].first_step, 0);
+    EXPECT_TRUE(spans[k].complete);
+    EXPECT_NEAR(final[4 * k], std::sin(spans[k].end), 2e-11) << k;
+    EXPECT_NEAR(final[4 * k + 3], std::cos(spans[k].end), 2e-11) << k;
+    EXPECT_GT(spans[k].first_step, 0);
   }
   // The step found fit is where the next run begins.
-  const int before = legs[19].steps;
-  ASSERT_TRUE(convoy.run(legs, 1, 1e-12, 1000));
-  EXPECT_LT(legs[19].steps, before);
+  const int before = spans[19].steps;
+  ASSERT_TRUE(integrator.run(spans, 1, 1e-12, 1000));
+  EXPECT_LT(spans[19].steps, before);
 }
 
-TEST(Convoy, ErrorFollowsTheTolerance) {
+TEST(BatchDop853, ErrorFollowsTheTolerance) {
   const auto system = kepler();
   LaneFlow flow(*system);
-  Convoy convoy(flow);
+  BatchDop853 integrator(flow);
   // e = 0.6 from pericentre to apocentre.
   const std::vector<double> initial = {0.4, 0, 0, 2};
   std::vector<double> final(4);
   int steps = 0;
   for (const double tolerance : {1e-4, 1e-7, 1e-10, 1e-13}) {
-    Leg leg{.start = 0, .end = std::acos(-1.0), .initial = initial.data(), .final = final.data()};
-    ASSERT_TRUE(convoy.run({&leg, 1}, 0, tolerance, 1000));
+    MotionSpan span{.start = 0, .end = std::acos(-1.0), .initial = initial.data(), .final = final.data()};
+    ASSERT_TRUE(integrator.run({&span, 1}, 0, tolerance, 1000));
     EXPECT_NEAR(final[0], -1.6, 100 * tolerance);
-    EXPECT_GT(leg.steps, steps);
-    steps = leg.steps;
+    EXPECT_GT(span.steps, steps);
+    steps = span.steps;
   }
 }
 
-TEST(Convoy, SaysWhatCannotBeIntegrated) {
+TEST(BatchDop853, SaysWhatCannotBeIntegrated) {
   const auto central = trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + 1.0 / abs(q[0]); });
   LaneFlow flow(*central);
-  Convoy convoy(flow);
+  BatchDop853 integrator(flow);
   // Free fall from 1 reaches the centre after π/(2√2) = 1.11.
   const std::vector<double> initial = {1, 0};
   std::vector<double> final(4);
-  std::vector<Leg> legs(2);
+  std::vector<MotionSpan> spans(2);
   for (int k = 0; k < 2; ++k)
-    legs[k] = {.start = 0, .end = 1.0 + k, .initial = initial.data(), .final = final.data() + 2 * k};
-  EXPECT_FALSE(convoy.run(legs, 0, 1e-10, 100000));
-  EXPECT_FALSE(legs[1].complete);
-  EXPECT_TRUE(convoy.run({legs.data(), 1}, 0, 1e-10, 100000));
-  EXPECT_FALSE(convoy.run({legs.data(), 1}, 0, 1e-10, 3));
+    spans[k] = {.start = 0, .end = 1.0 + k, .initial = initial.data(), .final = final.data() + 2 * k};
+  EXPECT_FALSE(integrator.run(spans, 0, 1e-10, 100000));
+  EXPECT_FALSE(spans[1].complete);
+  EXPECT_TRUE(integrator.run({spans.data(), 1}, 0, 1e-10, 100000));
+  EXPECT_FALSE(integrator.run({spans.data(), 1}, 0, 1e-10, 3));
 }
 
 TEST(AlmostBlockDiagonal, AgainstADenseSystem) {

@@ -8,8 +8,10 @@
 
 namespace extremal::laws {
 
-/// Acceptance of the first path that meets the tolerance, where a solve would go on after a refusal.
+/// Acceptance of the first path that meets the tolerance, where a solve would go on after a refusal. With a
+/// scheme that is given a solve has no other.
 inline Solution first_judged(const Problem& problem, const SolveOptions& options) {
+  if (options.scheme) return Solver().solve(problem, options);
   Workspace w;
   w.levels.bind(problem.lagrangian);
   Search search(problem, options, w);

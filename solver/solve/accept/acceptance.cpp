@@ -58,24 +58,21 @@ void read_path(const Problem& problem, const Path& path, const Outcome& outcome,
   read_equations(problem, path, outcome, w.iteration, solution);
 }
 
-/// A path as it was judged, with its survey where L does not depend on t.
+/// What a path was found to be, beside its solution: its survey where L does not depend on t.
 struct Examined {
-  Solution solution;
   std::optional<Survey> survey = {};
   bool hopeless = false;
-
-  void refuse(const Refusal& refusal) {
-    solution.status = refusal.status;
-    solution.message = refusal.message;
-    hopeless = refusal.hopeless;
-  }
 };
+
+Examined refused(Refusal refusal, Solution& solution) {
+  solution.status = refusal.status;
+  solution.message = std::move(refusal.message);
+  return {.hopeless = refusal.hopeless};
+}
 
 /// Reads a solution off a path, and refuses it where equations or elements fail.
 Examined examine(const Problem& problem, const SolveOptions& options, const Path& path,
-                 const Outcome& outcome, Workspace& w) {
-  Examined result;
-  Solution& solution = result.solution;
+                 const Outcome& outcome, Workspace& w, Solution& solution) {
   solution.status = outcome.status;
   solution.message = outcome.message;
   solution.error_estimate = outcome.error;
@@ -83,14 +80,12 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
   read_path(problem, path, outcome, w, solution);
-  if (const auto fails = equations_fail(problem, options, path, *outcome.tables, w.iteration, solution)) {
-    result.refuse(*fails);
-    return result;
-  }
-  result.survey = observe_energy(*problem.lagrangian, solution);
-  if (const auto fails =
+  if (auto fails = equations_fail(problem, options, path, *outcome.tables, w.iteration, solution))
+    return refused(*std::move(fails), solution);
+  Examined result{observe_energy(*problem.lagrangian, solution)};
+  if (auto fails =
           elements_fail(problem, options, outcome, path, result.survey, w.iteration.action(), solution))
-    result.refuse(*fails);
+    result.hopeless = refused(*std::move(fails), solution).hopeless;
   return result;
 }
 
@@ -130,23 +125,24 @@ Part examine_part(const SolveOptions& options, const Outcome& outcome, Workspace
 
 /// All but minimality, stability and conjugate ends; `path` becomes the path if it was polished.
 Examined examine_all(const Problem& problem, const SolveOptions& options, const Outcome& outcome,
-                     Workspace& w, std::optional<Path>& path, QuadratureCheck& check) {
+                     Workspace& w, std::optional<Path>& path, QuadratureCheck& check, Solution& solution) {
   std::optional<Part> part;
   if (outcome.reduction) part = examine_part(options, outcome, w);
   if (part) path = std::move(part->whole);
-  Examined found = examine(problem, options, path ? *path : outcome.path, outcome, w);
-  if (!found.solution.converged()) return found;
+  Examined found = examine(problem, options, path ? *path : outcome.path, outcome, w, solution);
+  if (!solution.converged()) return found;
   if (part) {
     check = part->check;
     const double roundoff = momentum_roundoff * w.iteration.action().momentum_scale();
     check.unlike = !(residual_under_finer(problem, path ? *path : outcome.path, outcome, w) <=
                      residual_growth * part->residual + roundoff);
   } else {
-    check = check_quadrature(problem, outcome.path, outcome, found.solution, w);
+    check = check_quadrature(problem, outcome.path, outcome, solution, w);
     path = polished(options, outcome, outcome.path, check, w);
     if (path) {
-      found = examine(problem, options, *path, outcome, w);
-      if (found.solution.converged()) check = check_quadrature(problem, *path, outcome, found.solution, w);
+      solution = {};
+      found = examine(problem, options, *path, outcome, w, solution);
+      if (solution.converged()) check = check_quadrature(problem, *path, outcome, solution, w);
     }
   }
   const double range = found.survey ? *std::max_element(found.survey->p.begin(), found.survey->p.end())
@@ -163,18 +159,13 @@ Solution without_path(const Solution& solution) {
   return refused;
 }
 
-/// A solution, or why there is none and whether another guess would help.
-struct Judged {
-  Solution solution;
-  bool hopeless;
-};
-
-Judged judged(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
+/// Sets the solution; returns whether another guess would not help where there is none.
+bool judge_path(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w,
+                Solution& solution) {
   const auto start = Clock::now();
   QuadratureCheck check;
   std::optional<Path> better;
-  Examined examined = examine_all(problem, options, found, w, better, check);
-  Solution& solution = examined.solution;
+  const Examined examined = examine_all(problem, options, found, w, better, check, solution);
   const Path& path = better ? *better : found.path;
   if (solution.converged()) {
     const double distance = read_minimality(problem, options, w.variation, solution);
@@ -190,35 +181,38 @@ Judged judged(const Problem& problem, const SolveOptions& options, const Outcome
   solution.iterations = found.iterations;
   w.iteration.forget();
   solution.seconds_analyse = seconds_since(start);
-  return {std::move(solution), examined.hopeless || conjugate};
+  return examined.hopeless || conjugate;
 }
 
 }  // namespace
 
 Solution accept(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w) {
-  return judged(problem, options, found, w).solution;
+  Solution solution;
+  judge_path(problem, options, found, w, solution);
+  return solution;
 }
 
 Acceptance::Acceptance(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem), options_(options), w_(workspace) {}
 
 Acceptance::Verdict Acceptance::judge(const Outcome& found) {
-  auto [solution, hopeless] = judged(problem_, options_, found, w_);
+  const bool first = !solution_;
+  std::optional<Solution> later;
+  Solution& solution = (first ? solution_ : later).emplace();
+  const bool hopeless = judge_path(problem_, options_, found, w_, solution);
   seconds_ += solution.seconds_analyse;
   const bool accepted = solution.converged();
-  if (accepted || !solution_) solution_ = std::move(solution);
+  if (accepted && !first) solution_ = std::move(later);
   return accepted ? Verdict::accepted : hopeless ? Verdict::hopeless : Verdict::refused;
 }
 
 Solution Acceptance::result(const Outcome& last) {
-  if (!solution_) {
-    Solution failed = explain_failure(problem_, options_, last, w_);
-    seconds_ += failed.seconds_analyse;
-    return failed;
-  }
-  solution_->iterations = last.iterations;
-  solution_->seconds_analyse = seconds_;
-  return *std::exchange(solution_, std::nullopt);
+  Solution result = solution_ ? *std::move(solution_) : explain_failure(problem_, options_, last, w_);
+  if (!solution_) seconds_ += result.seconds_analyse;
+  solution_.reset();
+  result.iterations = last.iterations;
+  result.seconds_analyse = seconds_;
+  return result;
 }
 
 }  // namespace extremal

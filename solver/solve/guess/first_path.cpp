@@ -7,15 +7,11 @@
 #include "linear/dense.hpp"
 #include "solve/guess/loop.hpp"
 #include "solve/newton/ends.hpp"
+#include "solve/guess/limits.hpp"
 
 namespace extremal {
 
-namespace {
-
-/// A path so much larger than the guess has run away.
-constexpr double runaway = 100;
-
-}  // namespace
+using namespace limits::first_path;
 
 std::vector<double> extents(const Path& path, double negligible) {
   const std::size_t n = path.coordinates();

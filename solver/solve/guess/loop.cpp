@@ -1,4 +1,5 @@
 #include "solve/guess/loop.hpp"
+#include "solve/guess/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,24 +10,13 @@
 
 namespace extremal {
 
+using namespace limits::loop;
+
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using std::numbers::pi;
-
-/// Frequencies are taken from 2πk with k at most this.
-constexpr int most_turns = 12;
-/// Frequencies that differ less are one.
-constexpr double same_frequency = 1e-6;
-/// Of an eigenvalue of R: the modulus of others than symmetries differs from 1 by more.
-constexpr double unit_modulus = 1e-6;
-/// The constant part of a loop, in units of the moving part.
-constexpr double offset = 0.3;
-/// Points at which a loop is measured.
-constexpr int samples = 96;
-/// Steps of the size, two octaves of four steps either way from that of a guess, ten without one.
-constexpr int steps_an_octave = 4, octaves_of_guess = 2, most_octaves = 10;
 
 /// R x + c = x + d with R d = d: paths that close in the simplest way are x + τ d. The x nearest to `mean`.
 struct SimplePath {

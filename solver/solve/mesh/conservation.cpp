@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include "solve/mesh/roundoff.hpp"
+#include "solve/mesh/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::conservation;
 
-/// Ratio of the drift to the errors that explain it.
-constexpr double margin = 10;
-/// Roundings of the terms of the energy, one for each that is summed up, and of q.
-constexpr double roundoff_of_terms = 2e3 * unit_roundoff, roundoff_of_q = 8 * unit_roundoff;
+namespace {
 
 double largest(const std::vector<double>& values) {
   double most = 0;

@@ -1,4 +1,5 @@
 #include "solve/mesh/plan.hpp"
+#include "solve/mesh/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,16 +9,9 @@
 
 namespace extremal {
 
+using namespace limits::plan;
+
 namespace {
-
-/// Spare elements, since densities are estimates.
-constexpr double spare = 1.1;
-/// Another mesh must promise to be so much cheaper: the path has to be moved to it, and its distances are
-/// less certain than the measure of the present elements.
-constexpr double worth_moving = 0.75;
-
-/// A batch of elements up to this degree is not worth planning again.
-constexpr int cheap_degree = 10;
 
 double batches(double elements) { return std::ceil(elements / simd_lanes()); }
 

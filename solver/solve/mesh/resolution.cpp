@@ -5,21 +5,13 @@
 
 #include "machine/simd.hpp"
 #include "solve/mesh/roundoff.hpp"
+#include "solve/mesh/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::resolution;
 
-/// Coefficients are known to so many roundings of the extent of their element.
-constexpr double noise = 8 * unit_roundoff;
-/// Squares of how much smaller one coefficient may be expected than the last, of all coordinates together.
-/// Where all of one is in the coefficients before, another's seem to fall faster than they do: what falls by
-/// more than `fast` is judged by the coordinate with the largest of the last.
-constexpr double fastest = 1e-6, fast = 1e-4, slowest = 0.95;
-/// A range this much smaller than the coordinates is roundoff.
-constexpr double negligible = 1e-12;
-/// Velocities are not asked for more digits than this share of the mean speed gives.
-constexpr double nearly_uniform = 1e-3;
+namespace {
 
 /// Legendre coefficient k of every coordinate, over the elements of a batch: n × lanes.
 void coefficients(const double* x, const SchemeTables& tables, int width, int k, double* out) {

@@ -1,15 +1,14 @@
 #include "solve/periodic/repetition.hpp"
+#include "solve/periodic/limits.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace extremal {
 
-namespace {
+using namespace limits::repetition;
 
-/// Entries of R^m − 1 that are zero: R may come from a formula with as many digits.
-constexpr double zero_entry = 1e-9;
-constexpr int most_segments = 64;
+namespace {
 
 /// The path beyond T.
 class Continued {

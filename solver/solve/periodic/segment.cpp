@@ -6,20 +6,16 @@
 #include <numeric>
 
 #include "solve/periodic/repetition.hpp"
+#include "solve/periodic/limits.hpp"
 
 namespace extremal {
+
+using namespace limits::segment;
 
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr int most_parts = 12;
-/// Candidates for one more symmetry.
-constexpr int most_draws = 60;
-/// Values of L at points of chance, relative.
-constexpr double same = 1e-10;
-constexpr int points = 8, most_points = 40;
 
 /// "x[3]": x and 3; "x": x and 0.
 std::pair<std::string, int> parse(const std::string& name) {

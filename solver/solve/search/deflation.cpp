@@ -4,18 +4,11 @@
 #include <cmath>
 
 #include "solve/mesh/resolution.hpp"
+#include "solve/search/limits.hpp"
 
 namespace extremal {
 
-namespace {
-
-constexpr int most_steps = 40;
-/// Of a step, and where plain Newton takes over; root mean square by the extent of the path.
-constexpr double longest = 0.5, short_step = 0.02;
-/// A path this much larger than at first has run away.
-constexpr double runaway = 1e3;
-
-}  // namespace
+using namespace limits::deflation;
 
 DeflatedNewton::DeflatedNewton(const Problem& problem, Path& path, Workspace& workspace,
                                std::function<bool()> count)

@@ -5,21 +5,16 @@
 
 #include "machine/simd.hpp"
 #include "solve/mesh/resolution.hpp"
+#include "solve/search/limits.hpp"
 
 namespace extremal {
+
+using namespace limits::descent;
 
 namespace {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Block = Eigen::Map<const Matrix>;
-
-/// Relative to the range: a longer step may land beyond the barrier that the guess avoids.
-constexpr double longest_step = 0.3;
-/// The action must fall by this part of the decrease that its slope predicts.
-constexpr double sufficient = 1e-4;
-constexpr double shortest = 0x1p-40;
-/// Relative to the range: minima this well known let the ends of windows move; and an extremal.
-constexpr double nearly_minimal = 0.03, close = 1e-3;
 
 }  // namespace
 

@@ -6,15 +6,13 @@
 #include <vector>
 
 #include "solve/mesh/roundoff.hpp"
+#include "solve/search/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::distinct;
 
-/// Errors are estimates; they and the tolerance may be exceeded by this factor.
-constexpr double margin = 10;
-/// Of the size of the problem: a path smaller than this is at rest.
-constexpr double rest = 1e-3;
+namespace {
 
 /// Largest range of a coordinate over the nodes, or its largest absolute value where that is negligible.
 double extent(const Trajectory& trajectory) {

@@ -6,26 +6,15 @@
 #include "motion/sample.hpp"
 #include "solve/homotopy/end_homotopy.hpp"
 #include "solve/search/search.hpp"
+#include "solve/search/limits.hpp"
 
 /// \file Motions from the start, continued to the end that they miss.
 
 namespace extremal {
 
-namespace {
+using namespace limits::from_motions;
 
-/// Of an integrator's step, relative: a guess need not be better.
-constexpr double step_error = 1e-8;
-constexpr int most_integrator_steps = 1000, samples_a_step = 16;
-/// So many of its steps evaluate L about as often as one of Newton's.
-constexpr int steps_a_count = 8;
-/// Added to the mean velocity, in turn: of the extent of the guess times the frequency along it.
-constexpr double speeds[] = {0.3, 1, 0.1, 2};
-/// Durations that are free, in turn: of the guess.
-constexpr double durations[] = {1, 0.7, 1.5};
-constexpr unsigned most_motions = 1000;
-/// Newton steps for a velocity of given energy, and how near they come, relative.
-constexpr int most_energy_steps = 30;
-constexpr double energy_error = 1e-9;
+namespace {
 
 /// Scales a velocity so that q'·∂L/∂q' − L is the energy: its derivative by the logarithm of the scale is
 /// q'·(∂²L/∂q'∂q')q'. False if no scale does.

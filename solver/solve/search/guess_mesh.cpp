@@ -4,33 +4,15 @@
 #include "machine/simd.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/search/search.hpp"
+#include "solve/search/limits.hpp"
 
 /// \file Elements for a guess.
 
 namespace extremal {
 
-namespace {
+using namespace limits::guess_mesh;
 
-/// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.
-constexpr double longest_element = 2.0;
-/// Elements follow a guess to this, relative to its range, a motion to between these by the tolerance; they
-/// follow velocities to so many times that, and become at most so many at a time.
-constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
-constexpr double guess_floor = 0.25;
-constexpr int most_passes = 10, highest_guess_degree = 12;
-/// Elements of a first mesh, at least; whole batches are taken.
-constexpr int least_first_elements = 4;
-/// Samples of a motion, elements that follow it, and their degree.
-constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
-constexpr int kept_degree = 7;
-/// A path of chance that needs more elements than this comes too near a singularity.
-constexpr int most_launched = 128;
-/// A singularity is near where elements differ so much.
-constexpr double collision = 100;
-/// A mesh whose elements differ less than this is not worth starting again for.
-constexpr double mild_grading = 3;
-/// Tries to move the default guess to where L is finite.
-constexpr unsigned most_bends = 8;
+namespace {
 
 /// So many elements at least.
 int whole_batches(double elements) {

@@ -2,15 +2,13 @@
 
 #include "machine/simd.hpp"
 #include "solve/search/deflation.hpp"
+#include "solve/search/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::loop_search;
 
-/// Symmetries in use at most.
-constexpr std::size_t most_symmetries = 16;
-/// Of the effort of one solve, for each loop.
-constexpr double share = 0.3;
+namespace {
 
 constexpr const char* from_loop = "newton from a random loop";
 constexpr const char* from_symmetric_loop = "newton from a random symmetric loop";

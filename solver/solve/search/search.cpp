@@ -9,19 +9,13 @@
 #include "solve/homotopy/duration_homotopy.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/search/descent.hpp"
+#include "solve/search/limits.hpp"
 
 namespace extremal {
 
-namespace {
+using namespace limits::search;
 
-/// Newton steps from guesses, and those times unknowns of the first mesh: their cost.
-constexpr int most_steps = 4000;
-constexpr double most_work = 1e7;
-constexpr double least_steps = 100;
-/// Starts with noise that are cheaper than other durations are; and at most.
-constexpr unsigned first_noises = 8, most_noises = 10000, collision_noises = 100;
-/// Of the guess's extent, in turn.
-constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
+namespace {
 
 constexpr const char* from_guess = "newton from the guess";
 

@@ -14,26 +14,15 @@
 #include "solve/periodic/stability.hpp"
 #include "solve/search/deflation.hpp"
 #include "solve/search/distinct.hpp"
+#include "solve/search/limits.hpp"
 
 namespace extremal {
+
+using namespace limits::several;
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Elements of a family keep the accuracy that is needed to land.
-constexpr int family_degree = 6, elements_a_turn = 8;
-/// Guesses tried before families are traced, and each time between.
-constexpr unsigned guesses = 8;
-/// Of the effort that one solve may take, for each extremal that is new.
-constexpr double patience = 3;
-/// So many in a row without a new extremal are enough.
-constexpr int most_in_vain = 100;
-/// Random loops tried instead, and in vain.
-constexpr unsigned loops = 1200;
-constexpr int most_loops_in_vain = 1200;
-/// Rows of the boundary relation that are varied, at most.
-constexpr int most_rows = 12;
 
 /// Noise of growing size and of few modes and many.
 Bend bend_of(unsigned seed) {

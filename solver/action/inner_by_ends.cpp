@@ -6,7 +6,7 @@
 namespace extremal {
 
 /// Lᵀ x = −L_eᵀ, row by row from the last: x_j = −Σ_{i>j} L_ij x_i, where x is the identity at the ends.
-void DiscreteAction::unfold(int k, std::span<double> fields) const {
+void DiscreteAction::inner_by_ends(int k, std::span<double> fields) const {
   const Fronts& fronts = condensation_->fronts;
   const std::size_t batch = k / lanes_, lane = k % lanes_, columns = 2 * n_;
   const double *matrix = this->matrix(batch) + lane,

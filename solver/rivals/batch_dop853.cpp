@@ -1,4 +1,4 @@
-#include "rivals/convoy.hpp"
+#include "rivals/batch_dop853.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double retreat = 0.25;
 constexpr double shortest_start = 1e-6;
 /// The error of a step is of this order in its length.
 constexpr double order = 8;
-/// So many steps before the end of a leg, what is left is divided evenly.
+/// So many steps before the end of a span, what is left is divided evenly.
 constexpr double last_steps = 3;
 
 int count(const std::vector<LaneStage>& stages) { return static_cast<int>(stages.size()); }
@@ -30,34 +30,34 @@ constexpr dop853::Row<double> error3 = third_order_error();
 
 }  // namespace
 
-Convoy::Convoy(LaneFlow& flow)
+BatchDop853::BatchDop853(LaneFlow& flow)
     : flow_(flow), kernels_(flow.kernels()), t_(lanes_), h_(lanes_), stage_t_(lanes_), sums_(2 * lanes_) {}
 
-void Convoy::resize(int columns) {
+void BatchDop853::resize(int columns) {
   rows_ = static_cast<std::size_t>(2 * flow_.coordinates()) * (1 + columns);
   y_.resize(rows_ * lanes_);
   next_.resize(rows_ * lanes_);
   k_.resize(rows_ * lanes_ * dop853::stages);
 }
 
-bool Convoy::under_way() const {
-  return std::any_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.leg != nullptr; });
+bool BatchDop853::under_way() const {
+  return std::any_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.span != nullptr; });
 }
 
-bool Convoy::run(std::span<Leg> legs, int columns, double tolerance, int most_steps) {
-  if (legs.empty()) return true;
+bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps) {
+  if (spans.empty()) return true;
   resize(columns);
   tolerance_ = tolerance;
   most_steps_ = most_steps;
   failed_ = false;
   waiting_.clear();
-  for (std::size_t k = legs.size(); k-- > 0;) waiting_.push_back(&legs[k]);
+  for (std::size_t k = spans.size(); k-- > 0;) waiting_.push_back(&spans[k]);
   for (int l = 0; l < lanes_; ++l) {
-    // A lane without a leg of its own stays where the first one starts.
+    // A lane without a span of its own stays where the first one starts.
     const bool idle = waiting_.empty();
-    if (idle) waiting_.push_back(&legs.front());
-    take_leg(l);
-    if (idle) lane_[l].leg = nullptr;
+    if (idle) waiting_.push_back(&spans.front());
+    take_span(l);
+    if (idle) lane_[l].span = nullptr;
   }
   choose_first_steps();
   while (under_way()) {
@@ -68,26 +68,26 @@ bool Convoy::run(std::span<Leg> legs, int columns, double tolerance, int most_st
   return !failed_;
 }
 
-void Convoy::take_leg(int l) {
-  Leg& leg = *waiting_.back();
+void BatchDop853::take_span(int l) {
+  MotionSpan& span = *waiting_.back();
   waiting_.pop_back();
-  for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes_ + l] = leg.initial[r];
-  leg.complete = false;
-  leg.steps = 0;
-  const double longer = leg.first_step > 0 ? std::pow(tolerance_ / leg.tolerance, 1 / order) : 0;
-  lane_[l] = {&leg, leg.start, leg.first_step * longer, false, false};
+  for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes_ + l] = span.initial[r];
+  span.complete = false;
+  span.steps = 0;
+  const double longer = span.first_step > 0 ? std::pow(tolerance_ / span.tolerance, 1 / order) : 0;
+  lane_[l] = {&span, span.start, span.first_step * longer, false, false};
 }
 
 /// For lanes that know none: a part of the time in which q or p would change by its own size.
-void Convoy::choose_first_steps() {
-  if (std::none_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.leg && lane.h == 0; })) return;
+void BatchDop853::choose_first_steps() {
+  if (std::none_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.span && lane.h == 0; })) return;
   const int n = flow_.coordinates();
   for (int l = 0; l < lanes_; ++l) t_[l] = lane_[l].t;
   flow_.slope(t_.data(), y_.data(), 0, k_.data());
   for (int l = 0; l < lanes_; ++l) {
     Lane& lane = lane_[l];
-    if (!lane.leg || lane.h > 0) continue;
-    lane.h = lane.leg->end - lane.t;
+    if (!lane.span || lane.h > 0) continue;
+    lane.h = lane.span->end - lane.t;
     for (const int begin : {0, n}) {
       double value = 0, slope = 0;
       for (int r = begin; r < begin + n; ++r) {
@@ -97,29 +97,29 @@ void Convoy::choose_first_steps() {
       if (value > 0 && slope > 0)
         lane.h = std::min(lane.h, 2 * std::pow(tolerance_, 1 / order) * value / slope);
     }
-    lane.h = std::max(lane.h, shortest_start * (lane.leg->end - lane.t));
+    lane.h = std::max(lane.h, shortest_start * (lane.span->end - lane.t));
   }
 }
 
-void Convoy::plan_steps() {
+void BatchDop853::plan_steps() {
   for (int l = 0; l < lanes_; ++l) {
     Lane& lane = lane_[l];
     t_[l] = lane.t;
     h_[l] = 0;
-    if (!lane.leg) continue;
-    const double left = lane.leg->end - lane.t, steps = std::ceil(left / lane.h * (1 - 1e-10));
+    if (!lane.span) continue;
+    const double left = lane.span->end - lane.t, steps = std::ceil(left / lane.h * (1 - 1e-10));
     lane.last = steps <= 1;
     h_[l] = lane.last ? left : steps <= last_steps ? left / steps : lane.h;
   }
 }
 
-void Convoy::list(const dop853::Row<double>& row, std::vector<LaneStage>& stages) const {
+void BatchDop853::list(const dop853::Row<double>& row, std::vector<LaneStage>& stages) const {
   stages.clear();
   for (int j = 0; j < dop853::stages; ++j)
     if (row[j] != 0) stages.push_back({row[j], k_.data() + j * rows_ * lanes_});
 }
 
-void Convoy::step(int columns) {
+void BatchDop853::step(int columns) {
   const auto combine = [&](const dop853::Row<double>& row) {
     list(row, stages_);
     kernels_.combine(y_.data(), h_.data(), stages_.data(), count(stages_), next_.data(),
@@ -136,7 +136,7 @@ void Convoy::step(int columns) {
 }
 
 /// Hairer, Nørsett and Wanner (10.17): |h| e5² / √(e5² + 0.01 e3²), in units of the tolerance.
-void Convoy::judge() {
+void BatchDop853::judge() {
   const int n = flow_.coordinates();
   std::fill(sums_.begin(), sums_.end(), 0.0);
   list(dop853::error5<double>, stages_);
@@ -150,23 +150,23 @@ void Convoy::judge() {
   }
   bool taken = false;
   for (int l = 0; l < lanes_; ++l) {
-    if (!lane_[l].leg) continue;
+    if (!lane_[l].span) continue;
     const double sum5 = sums_[l], sum3 = sums_[lanes_ + l];
     judge_lane(l, sum5 == 0 ? 0 : h_[l] * sum5 / std::sqrt((sum5 + 0.01 * sum3) * 2 * n));
     if (failed_) return fail();
-    if (!lane_[l].leg && !waiting_.empty()) {
-      take_leg(l);
+    if (!lane_[l].span && !waiting_.empty()) {
+      take_span(l);
       taken = true;
     }
   }
   if (taken) choose_first_steps();
 }
 
-void Convoy::judge_lane(int l, double error) {
+void BatchDop853::judge_lane(int l, double error) {
   Lane& lane = lane_[l];
   const double h = h_[l];
   failed_ =
-      h <= 4 * std::numeric_limits<double>::epsilon() * std::abs(lane.t) || ++lane.leg->steps > most_steps_;
+      h <= 4 * std::numeric_limits<double>::epsilon() * std::abs(lane.t) || ++lane.span->steps > most_steps_;
   if (failed_) return;
   const bool known = std::isfinite(error);
   const double best = !known ? retreat : error > 0 ? safety * std::pow(error, -1 / order) : most_growth;
@@ -177,29 +177,29 @@ void Convoy::judge_lane(int l, double error) {
     return;
   }
   const double planned = h * (lane.rejected ? std::min(factor, 1.0) : factor);
-  if (lane.t == lane.leg->start) {
-    lane.leg->first_step = planned;
-    lane.leg->tolerance = tolerance_;
+  if (lane.t == lane.span->start) {
+    lane.span->first_step = planned;
+    lane.span->tolerance = tolerance_;
   }
   lane.h = planned;
   lane.rejected = false;
-  lane.t = lane.last ? lane.leg->end : lane.t + h;
+  lane.t = lane.last ? lane.span->end : lane.t + h;
   accept(l);
 }
 
-void Convoy::accept(int l) {
+void BatchDop853::accept(int l) {
   Lane& lane = lane_[l];
   if (!lane.last) {
     for (std::size_t r = 0; r < rows_; ++r) y_[r * lanes_ + l] = next_[r * lanes_ + l];
     return;
   }
-  for (std::size_t r = 0; r < rows_; ++r) lane.leg->final[r] = next_[r * lanes_ + l];
-  lane.leg->complete = true;
-  lane.leg = nullptr;
+  for (std::size_t r = 0; r < rows_; ++r) lane.span->final[r] = next_[r * lanes_ + l];
+  lane.span->complete = true;
+  lane.span = nullptr;
 }
 
-void Convoy::fail() {
-  for (Lane& lane : lane_) lane.leg = nullptr;
+void BatchDop853::fail() {
+  for (Lane& lane : lane_) lane.span = nullptr;
   waiting_.clear();
 }
 

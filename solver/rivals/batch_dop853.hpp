@@ -12,7 +12,7 @@
 namespace extremal {
 
 /// A piece of motion.
-struct Leg {
+struct MotionSpan {
   double start = 0, end = 0;
   const double* initial = nullptr;  ///< (q, p), then its variations, 2n each
   double* final = nullptr;          ///< the same at the end
@@ -23,27 +23,27 @@ struct Leg {
 };
 
 /// Lanes, each with its own time, step length and error control; a lane that has finished takes the
-/// next leg. Error and step length are those of the state without its variations.
-class Convoy {
+/// next span. Error and step length are those of the state without its variations.
+class BatchDop853 {
  public:
   /// `flow` must outlive it.
-  explicit Convoy(LaneFlow& flow);
+  explicit BatchDop853(LaneFlow& flow);
 
-  /// Integrates every leg, with `columns` variations each, to an error of a step relative to the largest |q|
-  /// and |p|. False if one could not be completed. `most_steps` is for each leg.
-  bool run(std::span<Leg> legs, int columns, double tolerance, int most_steps);
+  /// Integrates every span, with `columns` variations each, to an error of a step relative to the largest |q|
+  /// and |p|. False if one could not be completed. `most_steps` is for each span.
+  bool run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps);
 
   int steps() const { return steps_; }  ///< of all lanes together, in all
 
  private:
   struct Lane {
-    Leg* leg = nullptr;
+    MotionSpan* span = nullptr;
     double t = 0, h = 0;  ///< h: as planned
-    bool last = false;    ///< the step being taken ends the leg
+    bool last = false;    ///< the step being taken ends the span
     bool rejected = false;
   };
   void resize(int columns);
-  void take_leg(int l);
+  void take_span(int l);
   void choose_first_steps();
   void plan_steps();
   void step(int columns);
@@ -58,7 +58,7 @@ class Convoy {
   const LaneKernels& kernels_;
   const int lanes_ = simd_lanes();
   Lane lane_[most_lanes];
-  std::vector<Leg*> waiting_;  ///< the next one last
+  std::vector<MotionSpan*> waiting_;  ///< the next one last
   AlignedDoubles y_, next_, k_, t_, h_, stage_t_, sums_;
   std::vector<LaneStage> stages_, others_;
   std::size_t rows_ = 0;

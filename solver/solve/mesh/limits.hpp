@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solve/mesh/roundoff.hpp"
+
+/// \file The numbers by which elements are measured and planned.
+
+namespace extremal::limits {
+
+namespace conservation {
+
+/// Ratio of the drift to the errors that explain it.
+inline constexpr double margin = 10;
+/// Roundings of the terms of the energy, one for each that is summed up, and of q.
+inline constexpr double roundoff_of_terms = 2e3 * unit_roundoff, roundoff_of_q = 8 * unit_roundoff;
+
+}  // namespace conservation
+
+namespace plan {
+
+/// Spare elements, since densities are estimates.
+inline constexpr double spare = 1.1;
+/// Another mesh must promise to be so much cheaper: the path has to be moved to it, and its distances are
+/// less certain than the measure of the present elements.
+inline constexpr double worth_moving = 0.75;
+/// A batch of elements up to this degree is not worth planning again.
+inline constexpr int cheap_degree = 10;
+
+}  // namespace plan
+
+namespace resolution {
+
+/// Coefficients are known to so many roundings of the extent of their element.
+inline constexpr double noise = 8 * unit_roundoff;
+/// Squares of how much smaller one coefficient may be expected than the last, of all coordinates together.
+/// Where all of one is in the coefficients before, another's seem to fall faster than they do: what falls by
+/// more than `fast` is judged by the coordinate with the largest of the last.
+inline constexpr double fastest = 1e-6, fast = 1e-4, slowest = 0.95;
+/// A range this much smaller than the coordinates is roundoff.
+inline constexpr double negligible = 1e-12;
+/// Velocities are not asked for more digits than this share of the mean speed gives.
+inline constexpr double nearly_uniform = 1e-3;
+
+}  // namespace resolution
+
+}  // namespace extremal::limits

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solve/mesh/roundoff.hpp"
+
+/// \file The numbers by which orbits are compared.
+
+namespace extremal::limits {
+
+namespace repetition {
+
+/// Entries of R^m − 1 that are zero: R may come from a formula with as many digits.
+inline constexpr double zero_entry = 1e-9;
+inline constexpr int most_segments = 64;
+
+}  // namespace repetition
+
+namespace segment {
+
+inline constexpr int most_parts = 12;
+/// Candidates for one more symmetry.
+inline constexpr int most_draws = 60;
+/// Values of L at points of chance, relative.
+inline constexpr double same = 1e-10;
+inline constexpr int points = 8, most_points = 40;
+
+}  // namespace segment
+
+}  // namespace extremal::limits

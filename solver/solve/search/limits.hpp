@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solve/mesh/roundoff.hpp"
+
+/// \file The numbers by which guesses are tried.
+
+namespace extremal::limits {
+
+namespace deflation {
+
+inline constexpr int most_steps = 40;
+/// Of a step, and where plain Newton takes over; root mean square by the extent of the path.
+inline constexpr double longest = 0.5, short_step = 0.02;
+/// A path this much larger than at first has run away.
+inline constexpr double runaway = 1e3;
+
+}  // namespace deflation
+
+namespace descent {
+
+/// Relative to the range: a longer step may land beyond the barrier that the guess avoids.
+inline constexpr double longest_step = 0.3;
+/// The action must fall by this part of the decrease that its slope predicts.
+inline constexpr double sufficient = 1e-4;
+inline constexpr double shortest = 0x1p-40;
+/// Relative to the range: minima this well known let the ends of windows move; and an extremal.
+inline constexpr double nearly_minimal = 0.03, close = 1e-3;
+
+}  // namespace descent
+
+namespace distinct {
+
+/// Errors are estimates; they and the tolerance may be exceeded by this factor.
+inline constexpr double margin = 10;
+/// Of the size of the problem: a path smaller than this is at rest.
+inline constexpr double rest = 1e-3;
+
+}  // namespace distinct
+
+namespace from_motions {
+
+/// Of an integrator's step, relative: a guess need not be better.
+inline constexpr double step_error = 1e-8;
+inline constexpr int most_integrator_steps = 1000, samples_a_step = 16;
+/// So many of its steps evaluate L about as often as one of Newton's.
+inline constexpr int steps_a_count = 8;
+/// Added to the mean velocity, in turn: of the extent of the guess times the frequency along it.
+inline constexpr double speeds[] = {0.3, 1, 0.1, 2};
+/// Durations that are free, in turn: of the guess.
+inline constexpr double durations[] = {1, 0.7, 1.5};
+inline constexpr unsigned most_motions = 1000;
+/// Newton steps for a velocity of given energy, and how near they come, relative.
+inline constexpr int most_energy_steps = 30;
+inline constexpr double energy_error = 1e-9;
+
+}  // namespace from_motions
+
+namespace guess_mesh {
+
+/// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.
+inline constexpr double longest_element = 2.0;
+/// Elements follow a guess to this, relative to its range, a motion to between these by the tolerance; they
+/// follow velocities to so many times that, and become at most so many at a time.
+inline constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
+inline constexpr double guess_floor = 0.25;
+inline constexpr int most_passes = 10, highest_guess_degree = 12;
+/// Elements of a first mesh, at least; whole batches are taken.
+inline constexpr int least_first_elements = 4;
+/// Samples of a motion, elements that follow it, and their degree.
+inline constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
+inline constexpr int kept_degree = 7;
+/// A path of chance that needs more elements than this comes too near a singularity.
+inline constexpr int most_launched = 128;
+/// A singularity is near where elements differ so much.
+inline constexpr double collision = 100;
+/// A mesh whose elements differ less than this is not worth starting again for.
+inline constexpr double mild_grading = 3;
+/// Tries to move the default guess to where L is finite.
+inline constexpr unsigned most_bends = 8;
+
+}  // namespace guess_mesh
+
+namespace loop_search {
+
+/// Symmetries in use at most.
+inline constexpr std::size_t most_symmetries = 16;
+/// Of the effort of one solve, for each loop.
+inline constexpr double share = 0.3;
+
+}  // namespace loop_search
+
+namespace search {
+
+/// Newton steps from guesses, and those times unknowns of the first mesh: their cost.
+inline constexpr int most_steps = 4000;
+inline constexpr double most_work = 1e7;
+inline constexpr double least_steps = 100;
+/// Starts with noise that are cheaper than other durations are; and at most.
+inline constexpr unsigned first_noises = 8, most_noises = 10000, collision_noises = 100;
+/// Of the guess's extent, in turn.
+inline constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
+
+}  // namespace search
+
+namespace several {
+
+/// Elements of a family keep the accuracy that is needed to land.
+inline constexpr int family_degree = 6, elements_a_turn = 8;
+/// Guesses tried before families are traced, and each time between.
+inline constexpr unsigned guesses = 8;
+/// Of the effort that one solve may take, for each extremal that is new.
+inline constexpr double patience = 3;
+/// So many in a row without a new extremal are enough.
+inline constexpr int most_in_vain = 100;
+/// Random loops tried instead, and in vain.
+inline constexpr unsigned loops = 1200;
+inline constexpr int most_loops_in_vain = 1200;
+/// Rows of the boundary relation that are varied, at most.
+inline constexpr int most_rows = 12;
+
+}  // namespace several
+
+}  // namespace extremal::limits
