@@ -53,22 +53,30 @@ Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Work
   return outcome;
 }
 
-/// The solution that a path is, or why there is none.
-Solution judged(const Problem& problem, const SolveOptions& options, const Outcome& outcome, Workspace& w) {
-  return outcome.status == Status::converged ? accept(problem, options, outcome, w)
-                                             : explain_failure(problem, options, outcome, w);
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The solution that a path is, or why there is none; found since `start`.
+Solution judged(const Problem& problem, const SolveOptions& options, const Outcome& outcome, Workspace& w,
+                Clock::time_point start) {
+  const double seconds = seconds_since(start);
+  Solution solution = outcome.status == Status::converged ? accept(problem, options, outcome, w)
+                                                          : explain_failure(problem, options, outcome, w);
+  solution.seconds_solve = seconds;
+  return solution;
 }
 
 /// The orbit by its part; nothing where the whole is to be searched for. `spent` becomes the steps taken.
 std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions& options, Workspace& w,
-                                      int& spent) {
+                                      Clock::time_point start, int& spent) {
   const Reduction& reduction = *problem.reduction;
   Outcome outcome = solve_part(reduction, options, w);
   spent = outcome.iterations;
   // If roundoff hides an extremal on its part, so it does on the whole.
-  if (outcome.hidden) return judged(reduction.part, options, outcome, w);
+  if (outcome.hidden) return judged(reduction.part, options, outcome, w, start);
   if (outcome.status != Status::converged) return std::nullopt;
-  std::optional<Solution> solution = judged(problem, options, outcome, w);
+  std::optional<Solution> solution = judged(problem, options, outcome, w, start);
   std::swap(outcome.part, w.spare);
   std::swap(outcome.path, w.spare_whole);
   return solution->converged() ? std::move(solution) : std::nullopt;
@@ -76,14 +84,19 @@ std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions
 
 /// As the options ask: with a scheme of their own, by the part of a symmetric orbit, or by a search.
 Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w) {
-  if (options.scheme) return judged(problem, options, PinnedSolve(problem, options, w).run(), w);
+  const auto start = Clock::now();
+  w.levels.bind(problem.lagrangian);
+  if (options.scheme) return judged(problem, options, PinnedSolve(problem, options, w).run(), w, start);
   int spent = 0;
   if (problem.reduction)
-    if (std::optional<Solution> solution = solve_by_part(problem, options, w, spent))
+    if (std::optional<Solution> solution = solve_by_part(problem, options, w, start, spent))
       return *std::move(solution);
   Acceptance acceptance(problem, options, w);
   Search search(problem, options, w);
-  Solution solution = acceptance.result(search.run(&acceptance));
+  const Outcome& last = search.run(&acceptance);
+  const double seconds = seconds_since(start) - acceptance.seconds();
+  Solution solution = acceptance.result(last);
+  solution.seconds_solve = seconds;
   solution.iterations += spent;
   return solution;
 }
@@ -100,9 +113,6 @@ Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
 Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
-  Workspace& w = memory_->workspace;
-  const auto start = Clock::now();
-  w.levels.bind(problem.lagrangian);
   std::vector<Iteration> history;
   history.reserve(32);
   SolveOptions recording = options;
@@ -110,10 +120,8 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.push_back(step);
     if (options.progress) options.progress(step);
   };
-  Solution solution = solve_once(problem, recording, w);
-  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  Solution solution = solve_once(problem, recording, memory_->workspace);
   solution.history = std::move(history);
-  solution.seconds_solve = seconds - solution.seconds_analyse;
   return solution;
 }
 

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "linear/dense.hpp"
+#include "solve/guess/limits.hpp"
 #include "solve/guess/loop.hpp"
 #include "solve/newton/ends.hpp"
-#include "solve/guess/limits.hpp"
 
 namespace extremal {
 

@@ -2,8 +2,6 @@
 
 #include <cstddef>
 
-#include "solve/mesh/roundoff.hpp"
-
 /// \file The numbers of first paths.
 
 namespace extremal::limits {

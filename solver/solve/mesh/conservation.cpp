@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/mesh/roundoff.hpp"
 #include "solve/mesh/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
-#include "solve/mesh/roundoff.hpp"
 #include "solve/mesh/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 

@@ -2,8 +2,6 @@
 
 #include <cstddef>
 
-#include "solve/mesh/roundoff.hpp"
-
 /// \file The numbers by which orbits are compared.
 
 namespace extremal::limits {

@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include "solve/periodic/repetition.hpp"
 #include "solve/periodic/limits.hpp"
+#include "solve/periodic/repetition.hpp"
 
 namespace extremal {
 

@@ -5,8 +5,8 @@
 #include "motion/flow.hpp"
 #include "motion/sample.hpp"
 #include "solve/homotopy/end_homotopy.hpp"
-#include "solve/search/search.hpp"
 #include "solve/search/limits.hpp"
+#include "solve/search/search.hpp"
 
 /// \file Motions from the start, continued to the end that they miss.
 

@@ -3,8 +3,8 @@
 
 #include "machine/simd.hpp"
 #include "solve/guess/starting_ends.hpp"
-#include "solve/search/search.hpp"
 #include "solve/search/limits.hpp"
+#include "solve/search/search.hpp"
 
 /// \file Elements for a guess.
 
