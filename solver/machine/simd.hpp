@@ -30,7 +30,8 @@ namespace extremal {
 /// x86-64, x86-64-v3 (AVX2) and x86-64-v4 (AVX-512), or NEON.
 enum class SimdLevel { EXTREMAL_FOR_EACH_LEVEL(EXTREMAL_ENUMERATOR) };
 
-/// Doubles in a register of the widest level.
+/// Doubles in a register of the widest level. Meshes have multiples of as many elements at every level, so
+/// that the mesh, and with it the result, does not depend on the level but for roundoff.
 inline constexpr int most_lanes = 8;
 
 /// The best level of this processor, or the one that EXTREMAL_SIMD forces by name.

@@ -72,7 +72,7 @@ class Discretisation {
     Path p = path;
     const int n = tables.coordinates(), inner = tables.inner();
     if (u < inner) {
-      p.x(k / 8)[u * 8 + k % 8] += step;
+      p.x(k / simd_lanes())[u * simd_lanes() + k % simd_lanes()] += step;
     } else {
       const int node = k + (u - inner) / n, a = (u - inner) % n;
       p.set_node(node, a, p.node(node)[a] + step);
@@ -222,7 +222,8 @@ TEST(DiscreteAction, DerivativesWithRespectToParameters) {
             e.action.element_hessian(d.path, k, hessian, gradient);
             return gradient[u];
           };
-          EXPECT_NEAR(mixed[(k / 8 * m + u) * 8 + k % 8], difference(gradient_at, 1e-3), 1e-10)
+          EXPECT_NEAR(mixed[(k / simd_lanes() * m + u) * simd_lanes() + k % simd_lanes()],
+                      difference(gradient_at, 1e-3), 1e-10)
               << scheme.name;
         }
     }

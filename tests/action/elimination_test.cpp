@@ -109,7 +109,7 @@ class Elements {
     std::uniform_real_distribution<double> noise(-1, 1);
     const int n = tables.coordinates(), m = tables.unknowns();
     std::vector<double> step(std::size_t(path.elements() + 1) * n);
-    AlignedDoubles inner(std::size_t(path.batches()) * m * 8);
+    AlignedDoubles inner(std::size_t(path.batches()) * m * simd_lanes());
     for (double& x : step) x = 0.5 * noise(random_);
     for (double& x : inner) x = 0.1 * noise(random_);
     path.add(step, inner, 1);
@@ -121,18 +121,18 @@ class Elements {
     const ElementTables::Entries& entries = tables.entries();
     std::vector<Dense> result(path.elements());
     action.visit(path, true, [&](int batch, const BatchValues& values) {
-      for (int k = 8 * batch; k < std::min(8 * batch + 8, path.elements()); ++k) {
+      for (int k = simd_lanes() * batch; k < std::min(simd_lanes() * (batch + 1), path.elements()); ++k) {
         Dense& d = result[k];
-        const int lane = k % 8;
+        const int lane = k % simd_lanes();
         d.hessian.setZero(m, m);
         for (std::size_t e = 0; e < entries.row.size(); ++e)
           d.hessian(entries.row[e], entries.column[e]) = d.hessian(entries.column[e], entries.row[e]) =
-              values.entries[e * 8 + lane];
+              values.entries[e * simd_lanes() + lane];
         d.gradient.resize(m);
         d.border.resize(m);
         for (int u = 0; u < m; ++u) {
-          d.gradient[u] = values.gradient[u * 8 + lane];
-          d.border[u] = values.border[u * 8 + lane];
+          d.gradient[u] = values.gradient[u * simd_lanes() + lane];
+          d.border[u] = values.border[u * simd_lanes() + lane];
         }
       }
     });
@@ -209,7 +209,8 @@ TEST_P(Elimination, IsThatOfTheDenseMatrix) {
             -factors[k].solve(g + lower.transpose() * ends + 0.3 * before[k].border.head(inner));
         const double allowed = 1e-13 * amplified / d.action.nodes.pivot_ratio * (1 + x.cwiseAbs().maxCoeff());
         for (int u = 0; u < inner; ++u)
-          ASSERT_NEAR(step[(k / 8 * m + u) * 8 + k % 8], x[u], allowed) << what << " element " << k;
+          ASSERT_NEAR(step[(k / simd_lanes() * m + u) * simd_lanes() + k % simd_lanes()], x[u], allowed)
+              << what << " element " << k;
         reduced.segment(k * n, 2 * n) += after[k].gradient.tail(2 * n) - lower * factors[k].solve(g);
       }
       const double allowed =

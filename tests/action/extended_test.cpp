@@ -77,10 +77,10 @@ TEST(Extended, IsTheGradientToRoundoff) {
                     1e-12 * scale);
       }
       action.visit(d.path, false, [&](int batch, const BatchValues& values) {
-        for (int k = 8 * batch; k < std::min(8 * batch + 8, elements); ++k)
+        for (int k = simd_lanes() * batch; k < std::min(simd_lanes() * (batch + 1), elements); ++k)
           for (int u = 0; u < inner; ++u)
-            EXPECT_NEAR(to_double(extended.values().inner[k * inner + u]), values.gradient[u * 8 + k % 8],
-                        1e-11 * scale);
+            EXPECT_NEAR(to_double(extended.values().inner[k * inner + u]),
+                        values.gradient[u * simd_lanes() + k % simd_lanes()], 1e-11 * scale);
       });
     }
 }
@@ -108,13 +108,14 @@ TEST(Extended, FeelsForcesThatAreDifferences) {
   for (const Path* path : {&d.path, &shifted})
     action.visit(*path, false, [&](int batch, const BatchValues& values) {
       for (int u = 0; u < d.tables.inner(); ++u) {
-        const double g = values.gradient[u * 8], before = path == &d.path ? g : plain[batch * 10 + u];
+        const double g = values.gradient[u * simd_lanes()],
+                     before = path == &d.path ? g : plain[batch * 10 + u];
         if (path == &d.path) plain.push_back(g);
         plain_change = std::max(plain_change, std::abs(g - before));
       }
     });
   double change = 0;
-  for (int k = 0; k < elements; k += 8)
+  for (int k = 0; k < elements; k += simd_lanes())
     for (int u = 0; u < d.tables.inner(); ++u)
       change = std::max(change, std::abs(to_double(here.values().inner[k * d.tables.inner() + u] -
                                                    there.values().inner[k * d.tables.inner() + u])));
@@ -132,7 +133,7 @@ TEST(Extended, ChangesByTheSecondVariation) {
       std::mt19937 random(5);
       std::uniform_real_distribution<double> uniform(-1, 1);
       std::vector<double> nodes((elements + 1) * n);
-      AlignedDoubles step(static_cast<std::size_t>(d.path.batches()) * m * 8);
+      AlignedDoubles step(static_cast<std::size_t>(d.path.batches()) * m * simd_lanes());
       for (double& x : nodes) x = uniform(random);
       for (double& x : step) x = uniform(random);
       ExtendedGradient extended;
@@ -145,7 +146,8 @@ TEST(Extended, ChangesByTheSecondVariation) {
       for (int k = 0; k < elements; ++k) {
         action.element_hessian(d.path, k, hessian, gradient);
         const auto change = [&](int u) {
-          return u < inner ? step[(k / 8 * m + u) * 8 + k % 8] : nodes[k * n + u - inner];
+          return u < inner ? step[(k / simd_lanes() * m + u) * simd_lanes() + k % simd_lanes()]
+                           : nodes[k * n + u - inner];
         };
         for (int i = 0; i < m; ++i) {
           double sum = 0;
@@ -167,7 +169,7 @@ TEST(Extended, ChangesWithTheDuration) {
   Discretised d(lobatto(5), *lagrangian);
   const double by = 1e-5;
   const std::vector<double> nodes((elements + 1) * d.tables.coordinates());
-  const AlignedDoubles step(static_cast<std::size_t>(d.path.batches()) * d.tables.unknowns() * 8);
+  const AlignedDoubles step(static_cast<std::size_t>(d.path.batches()) * d.tables.unknowns() * simd_lanes());
   ExtendedGradient extended, longer;
   ASSERT_TRUE(extended.evaluate(*lagrangian, d.tables, d.path));
   extended.evaluate_change(*lagrangian, d.path, {nodes, step, by});

@@ -13,7 +13,8 @@ using namespace limits::plan;
 
 namespace {
 
-double batches(double elements) { return std::ceil(elements / simd_lanes()); }
+/// Batches of the widest level.
+double batches(double elements) { return std::ceil(elements / most_lanes); }
 
 }  // namespace
 
@@ -86,7 +87,7 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
     least = worth_moving * cost(keep, present);
   }
   // One batch cannot become fewer, and a low degree not much lower.
-  if (least < INFINITY && present <= simd_lanes() && keep <= cheap_degree) return best;
+  if (least < INFINITY && present <= most_lanes && keep <= cheap_degree) return best;
   locate(resolution);
   int moved = 0;
   double count = 0;
@@ -107,7 +108,7 @@ Plan Planner::plan(const Resolution& resolution, std::span<const double> mesh, c
     density_.add(0.5 * (mesh[k] + mesh[k + 1]), density);
     if (k + 1 == decays_.size()) density_.add(1, density);
   }
-  return {moved, density_.mesh(simd_lanes() * static_cast<int>(batches(count)), 0)};
+  return {moved, density_.mesh(most_lanes * static_cast<int>(batches(count)), 0)};
 }
 
 }  // namespace extremal

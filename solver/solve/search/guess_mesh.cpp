@@ -12,19 +12,9 @@ namespace extremal {
 
 using namespace limits::guess_mesh;
 
-namespace {
-
-/// So many elements at least.
-int whole_batches(double elements) {
-  return simd_lanes() * static_cast<int>(std::ceil(elements / simd_lanes()));
-}
-
-}  // namespace
-
 int Search::first_elements(const Frequency& frequency) {
-  const double wanted =
-      std::clamp<double>(frequency.phase() / longest_element, least_first_elements, most_first_elements);
-  return whole_batches(wanted);
+  const double wanted = std::min<double>(frequency.phase() / longest_element, most_first_elements);
+  return most_lanes * std::max(1, static_cast<int>(std::ceil(wanted / most_lanes)));
 }
 
 void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree) {
@@ -37,7 +27,7 @@ void Search::start(const std::vector<double>& mesh, const Bend& bend, int degree
 /// is finite on it.
 Search::GuessKind Search::begin() {
   ends_ = starting_ends(*guess_);
-  mesh_ = uniform_mesh(whole_batches(least_first_elements));
+  mesh_ = uniform_mesh(most_lanes);
   for (unsigned seed = 0; seed <= most_bends; ++seed) {
     bend_ = {0.1 * seed, seed};
     start(mesh_, bend_);
@@ -65,7 +55,7 @@ Search::GuessKind Search::begin() {
 bool Search::mesh_of_motion() {
   const std::vector<double>& tau = guess_->guess.tau;
   const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
-  const std::size_t elements = (wanted / simd_lanes() + 1) * simd_lanes();
+  const std::size_t elements = (wanted / most_lanes + 1) * most_lanes;
   const bool many = wanted >= least_kept && wanted <= most_kept;
   const bool collides = w_.frequency.grading(guess_floor) > collision;
   if (!many && !(collides && elements < static_cast<std::size_t>(path_.elements()))) return false;

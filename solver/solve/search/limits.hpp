@@ -66,8 +66,6 @@ inline constexpr double longest_element = 2.0;
 inline constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
 inline constexpr double guess_floor = 0.25;
 inline constexpr int most_passes = 10, highest_guess_degree = 12;
-/// Elements of a first mesh, at least; whole batches are taken.
-inline constexpr int least_first_elements = 4;
 /// Samples of a motion, elements that follow it, and their degree.
 inline constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
 inline constexpr int kept_degree = 7;
