@@ -13,7 +13,7 @@ namespace extremal::app {
 namespace {
 
 /// One line that is written over, on a terminal.
-void show(const ComparisonRow& row) {
+void show_row(const ComparisonRow& row) {
   fmt::print(stderr, "\r\x1b[K{} at tolerance {:.0e}", row.method, row.tolerance);
   std::fflush(stderr);
 }
@@ -25,7 +25,7 @@ int compare(const CompareArguments& a) {
   const Study study = load(a.scene, a.sets);
   CompareOptions options;
   const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
-  if (terminal) options.progress = show;
+  if (terminal) options.progress = show_row;
   const Comparison found = extremal::compare(study, options);
   if (terminal) fmt::print(stderr, "\r\x1b[K");
   if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, found); });

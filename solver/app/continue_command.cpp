@@ -14,7 +14,7 @@ namespace extremal::app {
 namespace {
 
 /// One line that is written over, on a terminal.
-void show(const BranchPoint& point) {
+void show_point(const BranchPoint& point) {
   fmt::print(stderr, "\r\x1b[K{:.10g}, duration {:.6g}, action {:.6g}", point.parameter,
              point.solution.duration(), point.solution.action);
   std::fflush(stderr);
@@ -27,7 +27,7 @@ int follow(const ContinueArguments& a) {
   const Study study = load(a.scene, a.sets);
   const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   std::function<void(const BranchPoint&)> progress;
-  if (terminal) progress = show;
+  if (terminal) progress = show_point;
   const FollowedBranch branch = extremal::follow(study, progress);
   if (terminal) fmt::print(stderr, "\r\x1b[K");
   if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, branch); });

@@ -11,8 +11,6 @@ namespace extremal {
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-
 /// Parts this much larger than the solution they add up to cost digits that refinement brings back.
 constexpr double cancellation = 4;
 
@@ -91,7 +89,7 @@ bool Border::factor(Chain& a, double deflated) {
   if (!finite_) return false;
   lu_.compute(schur_);
   const double smallest = lu_.matrixLU().diagonal().cwiseAbs().minCoeff();
-  return regular_ = smallest > 64 * eps * std::sqrt(double(order()));
+  return regular_ = smallest > 64 * machine_epsilon * std::sqrt(double(order()));
 }
 
 /// Block elimination in place, given how to solve with the scaled S. Returns how much larger A'⁻¹ b was
@@ -150,7 +148,8 @@ int Border::solve_least_norm(const Chain& a, double* x, int columns, double thre
   if (extended_ == 0) return a.solve(x, columns), 0;
   const SingularValues svd = singular_value_decomposition(schur_);
   const Eigen::VectorXd& values = svd.values;
-  const int rank = int((values.array() > std::max(threshold, 64 * eps)).count()), null = extended_ - rank;
+  const int rank = int((values.array() > std::max(threshold, 64 * machine_epsilon)).count()),
+            null = extended_ - rank;
   // Null vectors of the whole: x = −A'⁻¹ [C E] y for y in the null space of S; on the left likewise.
   const auto whole = [&](const RowMatrix& w, const Eigen::MatrixXd& vectors) {
     const Eigen::MatrixXd y = unit_.cwiseInverse().asDiagonal() * vectors.rightCols(null);
@@ -188,7 +187,7 @@ Inertia Border::inertia(double threshold) const {
   if (!symmetric_) throw std::logic_error("border: an unsymmetric border has no inertia");
   Inertia result = chain_inertia_;
   if (extended_ == 0) return result;
-  const double zero = std::max(threshold, 64 * eps * std::sqrt(double(order())));
+  const double zero = std::max(threshold, 64 * machine_epsilon * std::sqrt(double(order())));
   const Eigen::MatrixXd s = (schur_ + schur_.transpose()) / 2;
   const Eigen::VectorXd values = symmetric_eigenvalues(s);
   for (double v : values) ++(v > zero ? result.positive : v < -zero ? result.negative : result.zero);

@@ -17,7 +17,6 @@ namespace extremal {
 
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 /// Growth beyond which solutions are refined, and beyond which refinement is not trusted to bring back what
 /// it costs.
@@ -87,7 +86,7 @@ bool SparseSymmetric::Work::factor_pivoted() {
     status = umfpack_di_numeric(full.begin.data(), full.row.data(), full_value.data(), symbolic, &numeric,
                                 control, info);
   if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
-  return status == UMFPACK_OK && info[UMFPACK_RCOND] > eps;
+  return status == UMFPACK_OK && info[UMFPACK_RCOND] > machine_epsilon;
 }
 
 void SparseSymmetric::Work::multiply(const double* from, double* to) const {
@@ -153,7 +152,7 @@ bool SparseSymmetric::factor() {
   std::fill(w.value.begin(), w.value.end(), 0.0);
   for (std::size_t k = 0; k < w.entry.size(); ++k) w.value[w.pattern.slot[k]] += w.entry[k];
   w.equilibrate();
-  const double roundoff = 64 * eps * std::sqrt(double(w.n));
+  const double roundoff = 64 * machine_epsilon * std::sqrt(double(w.n));
   const SupernodalFactor::Growth& growth = w.plain.growth();
   const bool plain = w.plain.factor(w.value, 0) && growth.most <= wild && growth.cancellation * roundoff < 1;
   w.pivoted = !plain;
@@ -195,7 +194,7 @@ Inertia SparseSymmetric::inertia() {
     const SupernodalFactor::Growth above = w.plain.growth();
     const bool trusted = first && w.plain.factor(w.value, -shift);
     const SupernodalFactor::Growth& below = w.plain.growth();
-    if (!trusted || 16 * eps * std::max(above.most, below.most) > shift) continue;
+    if (!trusted || 16 * machine_epsilon * std::max(above.most, below.most) > shift) continue;
     return {below.inertia.positive, above.inertia.negative,
             w.n - below.inertia.positive - above.inertia.negative};
   }

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 /// Singular values below this, relative, are zero: entries are good to roundoff.
 constexpr double null = 1e-9;
 /// Entries of a symmetry below this are zero: where it leaves a path as it is, roundoff would move it.
-constexpr double roundoff = 1e-12;
+constexpr double negligible = 1e-12;
 /// Points beyond as many as there are unknowns (twice as many where they are at several places), and how many
 /// may be lost where L is not finite.
 constexpr int spare_points = 8, most_tries = 8;
@@ -138,7 +138,7 @@ class Equations {
     for (Eigen::Index k = rank; k < columns_; ++k) {
       // A P = Q (T 0; 0 0) Z: the last rows of Z span the null space of A P.
       VectorXd x = qr.colsPermutation() * qr.matrixZ().row(k).transpose();
-      x = (x.array().abs() < roundoff).select(0, x);
+      x = (x.array().abs() < negligible).select(0, x);
       Generator generator;
       generator.matrix.assign(std::size_t(n_) * n_, 0);
       std::copy_n(x.data(), matrices_, generator.matrix.data());

@@ -12,12 +12,12 @@ namespace extremal {
 namespace {
 
 /// Of 1, 2 and 5 times a power of ten, the first step that leaves at most `count` intervals.
-struct Step {
+struct TickStep {
   int leading = 1, power = 0;
   double size() const { return leading * std::pow(10.0, power); }
 };
 
-Step round_step(double length, double count) {
+TickStep round_step(double length, double count) {
   const double wanted = length / std::max(count, 1.0);
   const int power = static_cast<int>(std::floor(std::log10(wanted)));
   const double mantissa = wanted / std::pow(10.0, power);
@@ -47,7 +47,7 @@ Axis make_axis(const std::string& label, double low, double high, double count) 
   if (!(low < high) || !std::isfinite(high - low)) {
     throw std::invalid_argument(fmt::format("an axis from {} to {} cannot be drawn", low, high));
   }
-  const Step step = round_step(high - low, count);
+  const TickStep step = round_step(high - low, count);
   const double largest = std::max(std::abs(low), std::abs(high));
   const int magnitude = static_cast<int>(std::floor(std::log10(largest)));
   const int exponent = magnitude >= 5 || magnitude < -2 ? magnitude : 0;

@@ -9,8 +9,8 @@ namespace extremal {
 
 namespace {
 
-constexpr double margin = 0.06, height = 420;
-constexpr Colour ink = 0x22262C, third_colour = 0x009E73;
+constexpr double room = 0.06, height = 420;
+constexpr Colour dark = 0x22262C, third_colour = 0x009E73;
 /// Orbits drawn, and points of each.
 constexpr std::size_t most_orbits = 14, samples = 400;
 
@@ -37,7 +37,7 @@ struct Kinds {
 };
 
 Axis axis(const std::string& label, const std::vector<const Column*>& values, double pixels) {
-  const Extent range = extent(values, margin);
+  const Extent range = extent(values, room);
   return make_axis(label, range.low, range.high, pixels / 75);
 }
 
@@ -63,7 +63,7 @@ void add_marks(const FollowedBranch& branch, const Column& x, const Column& y, P
   std::set<PointKind> seen;
   const auto style = [](PointKind kind) -> std::pair<Colour, Shape> {
     if (kind == PointKind::period_doubling) return {third_colour, Shape::disc};
-    return {ink, kind == PointKind::fold ? Shape::disc : Shape::ring};
+    return {dark, kind == PointKind::fold ? Shape::disc : Shape::ring};
   };
   for (std::size_t k = 0; k < x.size(); ++k) {
     const PointKind kind = branch.points[k].kind;
@@ -140,7 +140,7 @@ Panel orbit_panel(const std::vector<std::vector<Column>>& solutions, const std::
       xs.push_back(&solution[pair.across]);
       ys.push_back(&solution[pair.up]);
     }
-  Extent x = extent(xs, margin), y = extent(ys, margin);
+  Extent x = extent(xs, room), y = extent(ys, room);
   const bool places = pairs[0].across != 0;
   if (places && std::max(x.size(), y.size()) <= greatest_elongation * std::min(x.size(), y.size())) {
     box.width = std::clamp(box.height * x.size() / y.size(), 0.6 * box.height, 1.4 * box.height);

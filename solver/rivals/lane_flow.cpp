@@ -12,8 +12,8 @@ namespace extremal {
 namespace {
 
 constexpr int most_iterations = 20;
-/// ∂L/∂q' agrees with p to roundoff; from below `near` the next step of Newton ends in it.
-constexpr double roundoff = 2e-15, near = 1e-8, acceptable = 1e-12;
+/// ∂L/∂q' agrees with p to roundoff; from below `quadratic` the next step of Newton ends in it.
+constexpr double roundoff = 2e-15, quadratic = 1e-8, acceptable = 1e-12;
 
 }  // namespace
 
@@ -130,7 +130,7 @@ bool LaneFlow::correct_velocity(const double* p, double& before) {
   for (const LaneEntry& e : vv_)
     std::copy_n(e.value, lanes_, factors_.data() + static_cast<std::size_t>(e.row * n_ + e.column) * lanes_);
   kernels_.factor(factors_.data(), n_);
-  if (worst <= roundoff || (before <= near && worst <= acceptable)) return false;
+  if (worst <= roundoff || (before <= quadratic && worst <= acceptable)) return false;
   before = worst;
   kernels_.solve(factors_.data(), n_, work_.data(), 1, 0);
   for (int i = 0; i < n_ * lanes_; ++i) {

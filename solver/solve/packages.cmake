@@ -22,3 +22,6 @@ if(EXTREMAL_IPOPT)
 else()
   set_source_files_properties(solve/external/interior_point.cpp PROPERTIES HEADER_FILE_ONLY ON)
 endif()
+# Hot, or with limits of their own by the names of another file's.
+set_source_files_properties(solve/mesh/resolution.cpp solve/adapt/refinement.cpp solve/accept/quadrature_check.cpp
+    solve/accept/conjugate_ends.cpp solve/search/search.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

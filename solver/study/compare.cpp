@@ -33,12 +33,6 @@ int repeats(double budget, double seconds) {
   return seconds > 0 ? static_cast<int>(std::clamp(budget / seconds, 1.0, double(most_repeats))) : 1;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 class Comparer {
  public:
   Comparer(const Study& study, const CompareOptions& options)

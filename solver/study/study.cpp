@@ -90,12 +90,6 @@ void check_memory(const Study& study) {
                     study.scene, n, elements, degree, byte_text(needed), byte_text(available)));
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
-}
-
 /// What solve() returns the last time, with the medians of the times it took.
 template <class Solve>
 std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solve) {
@@ -120,6 +114,12 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
 
 Study load(const std::string& path, const std::vector<std::string>& sets) {
   const auto begin = Clock::now();

@@ -38,4 +38,7 @@ Solution run(const Study& study, int repeat = 1);
 /// The same for study.solutions extremals, as Solver::solve_all returns them.
 std::vector<Solution> run_all(const Study& study, int repeat = 1);
 
+/// Of times of repeated runs, at least one.
+double median(std::vector<double> values);
+
 }  // namespace extremal

@@ -1,3 +1,5 @@
+# Replaces operator new.
+set_source_files_properties(system/allocations.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 # The tape at every instruction set, where the processor has it.
 foreach(level IN LISTS EXTREMAL_LEVELS)
   add_test(NAME system.tape.${level} COMMAND ${target} --gtest_filter=Tape.*:*EverySystem*)
