@@ -57,10 +57,8 @@ TEST(Layers, SolverReachesNothingBesideIt) {
 
 TEST(Layers, ThePageOfSolverNamesEveryFolder) {
   const std::string page = read(root() / "solver/README.md");
-  for (const std::string& place : house::layers().order) {
-    const std::string name = place.substr(place.rfind('/') + 1);
-    EXPECT_NE(page.find(fmt::format("| [{}]({}) |", name, place)), std::string::npos) << place;
-  }
+  for (const std::string& folder : house::layers().order)
+    EXPECT_NE(page.find(fmt::format("| [{}](", folder)), std::string::npos) << folder;
 }
 
 }  // namespace
