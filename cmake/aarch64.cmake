@@ -9,6 +9,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(CMAKE_CXX_FLAGS_INIT "-isystem ${EXTREMAL_ARM_ROOT}/usr/include -isystem ${EXTREMAL_ARM_ROOT}/usr/include/aarch64-linux-gnu")
 set(libraries ${EXTREMAL_ARM_ROOT}/usr/lib/aarch64-linux-gnu)
 string(CONCAT CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,${libraries}"
        ":${libraries}/blas:${libraries}/lapack")
