@@ -3,7 +3,7 @@ SCENE = problems/scenes/cr3bp.toml
 # Where `make install` installs; the program looks for system files there.
 PREFIX = /usr/local
 
-.PHONY: configure build demo test bench debug asan ubsan sanitize gallery reference format install packages clean
+.PHONY: configure build demo test bench debug asan ubsan sanitize gallery reference format install package packages clean
 
 configure: packages
 	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) >build/configure.log 2>&1 || { \
@@ -46,6 +46,13 @@ format:
 
 install: build
 	@cmake --install build/release
+
+# build/extremal_VERSION_ARCHITECTURE.deb
+package: PREFIX = /usr
+package: configure
+	@cmake --build --preset release --target extremal_pages extremal_solve extremal_rivals extremal_study extremal_report
+	@cd build/release && cpack -B .. >cpack.log || { cat cpack.log; exit 1; }
+	@ls build/*.deb
 
 packages:
 	@mkdir -p build

@@ -37,3 +37,15 @@ file(GLOB find_modules cmake/Find*.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/extremalConfig.cmake ${PROJECT_BINARY_DIR}/extremalConfigVersion.cmake
         ${find_modules} DESTINATION ${package_dir})
 install(EXPORT extremalTargets NAMESPACE extremal:: DESTINATION ${package_dir})
+
+# `make package`: one Debian package of all of it.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "Extremal <extremal@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION math)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+include(CPack)

@@ -202,7 +202,7 @@ void ElementTables::list_places() {
 
 const ElementTables::Condensation& ElementTables::condensation() const {
   if (condensation_) return *condensation_;
-  condensation_.emplace(Fronts(shape_), std::vector<int>());
+  condensation_ = Condensation{Fronts(shape_), {}};
   for (const Place& p : places_) {
     const int at = condensation_->fronts.place(p.row, p.column);
     condensation_->slots.push_back(p.twice ? ~at : at);

@@ -51,7 +51,8 @@ bool may_double(const BranchStep& step) {
 
 /// Test by test, in their order; all together where pairs of multipliers have met or parted.
 std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
-  const auto& [from, to, length] = step;
+  const auto& from = step.from;
+  const auto& to = step.to;
   const bool same = from.doubling_tests.size() == to.doubling_tests.size();
   const std::size_t count = same ? from.doubling_tests.size() : 1;
   std::vector<Event> found;
@@ -60,7 +61,7 @@ std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, c
       return same && tests.size() == count ? tests[k] : product(tests);
     };
     const auto test = [&] { return of(read_doubling_tests(tracker)); };
-    std::vector<Sample> samples = {{0, of(from.doubling_tests)}, {length, of(to.doubling_tests)}};
+    std::vector<Sample> samples = {{0, of(from.doubling_tests)}, {step.length, of(to.doubling_tests)}};
     if (const auto level = same ? level_point(step, k) : std::nullopt)
       if (const auto between = dip(tracker, from, samples[0], samples[1], *level, test))
         samples.insert(samples.begin() + 1, *between);

@@ -20,7 +20,7 @@ const ElementTables& Levels::bound(Level& level) {
 
 const ElementTables& Levels::at(int degree) {
   auto& level = levels_[degree];
-  if (!level) level = std::make_unique<Level>(&SchemeTables::of_lobatto(degree));
+  if (!level) level = std::make_unique<Level>(Level{.scheme = &SchemeTables::of_lobatto(degree)});
   return bound(*level);
 }
 
@@ -31,7 +31,8 @@ const ElementTables& Levels::finer(const SchemeTables& rule) {
     Scheme scheme = gauss(rule.degree);
     scheme.points = points;
     auto own = std::make_unique<SchemeTables>(scheme);
-    level = std::make_unique<Level>(own.get(), std::move(own));
+    const SchemeTables* const tables = own.get();
+    level = std::make_unique<Level>(Level{.scheme = tables, .own = std::move(own)});
   }
   return bound(*level);
 }
