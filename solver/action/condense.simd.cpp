@@ -2,7 +2,7 @@
 #include "action/elimination.hpp"
 #include "machine/lanes.hpp"
 
-/// \file Elimination of the inner unknowns of eight elements side by side.
+/// \file Elimination of the inner unknowns of a batch of elements, one in each lane.
 
 namespace extremal::EXTREMAL_LEVEL {
 

@@ -2,7 +2,7 @@
 
 #include "machine/simd.hpp"
 
-/// \file The innermost loops of the method: eight elements side by side, one a lane. Plain data only,
+/// \file The innermost loops of the method: a batch of elements, one in each lane. Plain data only,
 /// because the same header serves the kernels of every instruction set.
 ///
 /// In an element of length h, with τ in [0, 1], the trajectory is
@@ -56,7 +56,7 @@ struct ElementShape {
   const EntryView* hessian;  ///< (z, z) of each Hessian row, value unused
 };
 
-/// A batch of eight elements: every pointer is to groups of eight doubles. Inner unknowns first:
+/// A batch of elements: every pointer is to groups of one double for each lane. Inner unknowns first:
 /// x[J*n + a] = d_j for inner J; then q_a; then Δ = q_b − q_a in place of q_b.
 struct ElementBatch {
   const double* h;      ///< 1
@@ -68,7 +68,7 @@ struct ElementBatch {
   const double* rows;   ///< rows of the remainder × points: value, gradient, Hessian
 };
 
-/// Points, gradient and Hessian of a batch. Each entry is a group of eight.
+/// Points, gradient and Hessian of a batch. Each entry is a group.
 struct Assembly {
   /// x -> q, q', t at the quadrature points.
   void (*expand)(const ElementShape&, const ElementBatch&);

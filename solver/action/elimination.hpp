@@ -2,8 +2,8 @@
 
 #include "machine/simd.hpp"
 
-/// \file Elimination of the inner unknowns of eight elements side by side. Plain data only, because the same
-/// header serves the kernels of every instruction set.
+/// \file Elimination of the inner unknowns of a batch of elements, a lane each. Plain data only, because the
+/// same header serves the kernels of every instruction set.
 ///
 /// The multifrontal LDLᵀ (Duff and Reid, ACM TOMS 9 (1983) 302) with an order that is known beforehand and
 /// without pivoting. A front eliminates the inner unknowns of some coordinates, its pivots. Its panel holds
@@ -14,7 +14,7 @@
 namespace extremal {
 
 /// Part of the rows below the pivots as columns: those that are pivots of one later front, or those of the
-/// ends. All places are numbers of groups of eight.
+/// ends. All places are numbers of groups.
 struct FrontTarget {
   int begin, end;     ///< of the front's rows
   const int* row;     ///< where row `begin`, begin + 1, … goes; up to the front's last, and two for vectors

@@ -2,8 +2,8 @@
 
 #include "machine/simd.hpp"
 
-/// \file Kernels that carry eight motions side by side, one a lane. Kernels include this: no inline functions
-/// here. Rows are groups of eight doubles, aligned to 64 bytes.
+/// \file Kernels that carry motions side by side, one in each lane. Kernels include this: no inline functions
+/// here. Rows are groups of one double for each lane, aligned to their size.
 
 namespace extremal {
 
@@ -30,7 +30,7 @@ struct LaneKernels {
   void (*add_transposed)(const LaneEntry* entries, int count, const double* x, double* y, int columns,
                          long x_stride, long y_stride);
   /// Sums over a block of rows of (Σ first × slope / s)² and (Σ second × slope / s)², where s is `tolerance`
-  /// times the largest of y and next there; added to sums[0 … 7] and sums[8 … 15].
+  /// times the largest of y and next there; added to the first and the second group of `sums`.
   void (*add_errors)(const double* y, const double* next, const LaneStage* first, int first_count,
                      const LaneStage* second, int second_count, double tolerance, double* sums, int rows);
   /// LDLᵀ of n × n rows [i*n + j], i >= j, in place, with inverted pivots; and the solve for blocks of n

@@ -56,7 +56,7 @@ struct Instruction {
   unsigned s;           ///< scalar
 };
 
-/// Plays `length` instructions on `batches` of eight points each. operands[k] is the first
+/// Plays `length` instructions on `batches` of one point for each lane. operands[k] is the first
 /// point of operand k, aligned to 64 bytes.
 using Player = void (*)(const Instruction* code, int length, double* const* operands, const double* scalars,
                         int batches);
