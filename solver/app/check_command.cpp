@@ -17,8 +17,11 @@ std::string coordinates_text(const System& system) {
 
 std::vector<std::string> parameter_texts(const System& system) {
   std::vector<std::string> texts;
-  for (const auto& [name, parameter] : system.parameters)
-    texts.push_back(parameter_text(name, parameter.value, parameter.list));
+  for (const auto& [name, parameter] : system.parameters) {
+    std::vector<std::string> values;
+    for (const double value : parameter.value) values.push_back(fmt::format("{}", value));
+    texts.push_back(parameter_text(name, values, parameter.list));
+  }
   return texts;
 }
 
@@ -28,14 +31,20 @@ std::string boundary_text(const Problem& problem) {
   return fmt::format("{} conditions on {} end values, {} natural", rows, 2 * n, problem.ends.free);
 }
 
-/// The end values that the boundary relation does not fix, of one end.
+/// The end values that the boundary relation does not fix, of one end, with the momenta there where each is
+/// natural by itself.
 std::string open_text(const Problem& problem, bool at_end) {
   constexpr std::size_t most = 12;
   const int n = problem.coordinates();
+  const bool coupled = std::ssize(problem.ends.z) > problem.ends.free;
   std::vector<std::string> names;
-  for (int a = 0; a < n; ++a)
-    if (!problem.ends.fixed[at_end ? n + a : a])
-      names.push_back(fmt::format("{}({})", problem.names[a], at_end ? "T" : "0"));
+  for (int a = 0; a < n; ++a) {
+    const int e = at_end ? n + a : a;
+    if (problem.ends.fixed[e]) continue;
+    const double p = problem.boundary.momenta.empty() ? 0 : problem.boundary.momenta[e];
+    names.push_back(coupled ? fmt::format("{}({})", problem.names[a], at_end ? "T" : "0")
+                            : fmt::format("{} (p_{} = {})", problem.names[a], problem.names[a], p));
+  }
   if (names.empty()) return "none";
   if (names.size() > most) names[most] = fmt::format("… {} in all", names.size());
   names.resize(std::min(names.size(), most + 1));
@@ -45,7 +54,7 @@ std::string open_text(const Problem& problem, bool at_end) {
 void print_ends(const Problem& problem) {
   line("boundary", boundary_text(problem));
   if (problem.periodic || problem.ends.free == 0) return;
-  line("not fixed",
+  line("natural ends",
        fmt::format("at the start {}; at the end {}", open_text(problem, false), open_text(problem, true)));
 }
 

@@ -13,6 +13,7 @@
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/suggestion.hpp"
+#include "study/usage.hpp"
 
 namespace extremal {
 namespace {
@@ -65,17 +66,27 @@ Problem read_problem(const Scene& scene, const System& system) {
   return problem;
 }
 
-Study load_checked(const std::string& path, const std::vector<std::string>& sets) {
-  const Scene scene = read_scene(path, sets);
+Study make_study(const Scene& scene, Purpose purpose) {
   Study study;
-  study.scene = path;
+  study.scene = scene.path;
   study.title = scene.title;
   study.system = make_system(scene.system);
+  check_parameters_used(scene);
   study.options = read_options(scene.solve);
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);
-  if (scene.continuation) study.continuation = read_continued(scene, study.system, study.problem);
+  if (scene.continuation && purpose == Purpose::family)
+    study.continuation = read_continued(scene, study.system, study.problem);
   return study;
+}
+
+Study load_checked(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
+  const Scene scene = read_scene(path, sets);
+  try {
+    return make_study(scene, purpose);
+  } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
+    throw at_its_place(scene.system, e);
+  }
 }
 
 /// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
@@ -121,9 +132,9 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-Study load(const std::string& path, const std::vector<std::string>& sets) {
+Study load(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
   const auto begin = Clock::now();
-  Study study = with_suggestion([&] { return load_checked(path, sets); });
+  Study study = with_suggestion([&] { return load_checked(path, sets, purpose); });
   study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
   return study;
 }
