@@ -23,7 +23,14 @@ bool is_coordinate(const std::string& name, const System& system) {
   return std::ranges::any_of(system.coordinates, [&](const Coordinate& c) { return c.name == stem; });
 }
 
-/// "start" or "end" entry by entry; that of one element comes before that of its array.
+/// Sets an entry. One of --set for an element takes the place of that of its array.
+void put(const Quantity*& entry, const Quantity& given, const std::string& name) {
+  if (entry && given.at.source && given.at.source->numbered)
+    throw SceneError(given.at, fmt::format("'{}' is given by its whole array already; leave one of them out", name));
+  entry = &given;
+}
+
+/// "start" or "end" coordinate by coordinate.
 EndEntries read_entries(const std::vector<Assignment>& table, const char* end, const System& system) {
   EndEntries entries(system.names.size());
   for (const bool whole : {true, false})
@@ -37,8 +44,9 @@ EndEntries read_entries(const std::vector<Assignment>& table, const char* end, c
       const Range range = range_of(momentum ? a.name.substr(2) : a.name, a.name_at, system);
       if (range.array != whole) continue;
       for_each_value(a, range, [&](int coordinate, const Quantity& q, int index) {
-        (momentum ? entries[coordinate].momentum : entries[coordinate].value) = &q;
-        entries[coordinate].index = index;
+        EndEntry& entry = entries[coordinate];
+        put(momentum ? entry.momentum : entry.value, q, a.name);
+        entry.index = index;
       });
     }
   return entries;
@@ -79,7 +87,8 @@ void add_condition(const Text& text, const System& system, PlacedRelation& relat
       placed(text, [&](const std::string& s) { return end_equation(s, system, "conditions"); });
   if (!equation.affine)
     throw SceneError(position(text, 0),
-                     "a condition must be linear in the end values; use 'where' for one that is not");
+                     "a condition must be linear in the end values; one that is not can close a free duration: "
+                     "'where' with duration = \"free\" and a guess of it");
   const int row = relation.relation.add_row(-equation.constant);
   for (const Triplet& entry : equation.coefficients) relation.relation.add(row, entry.column, entry.value);
   relation.rows.push_back(position(text, 0));

@@ -47,6 +47,10 @@ Range range_of(const std::string& name, const Location& at, const System& system
   }
   std::vector<std::string> coordinates;
   for (const Coordinate& c : system.coordinates) coordinates.push_back(c.name);
+  if (const std::string meant = velocity_meant(stem, system.coordinates); !meant.empty())
+    throw SceneError(at, fmt::format("unknown coordinate '{}'; velocities are written \"{}'\", and only "
+                                     "'state' in [guess] holds them",
+                                     name, meant));
   keys.insert(keys.end(), coordinates.begin(), coordinates.end());
   constexpr std::size_t most_shown = 12;
   const std::string known =

@@ -60,6 +60,7 @@ Problem read_problem(const Scene& scene, const System& system) {
     throw SceneError(scene.boundary.at, e.what());
   }
   check_regular(problem, scene.system.lagrangian->at);
+  if (scene.boundary.energy) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
   if (!scene.boundary.map.empty())
     check_symmetry(read_closure(scene.boundary, system), problem, scene.boundary.map.front().name_at);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "system/formula_names.hpp"
@@ -213,9 +214,21 @@ class Resolver {
       mend = "; known are sum";
       for (const Function& function : functions()) mend += fmt::format(" {}", function.name);
     }
+    if (kind_ == Kind::lagrangian && !velocity_mend(name, call).empty()) mend = velocity_mend(name, call);
     if (name == "t") mend = "; the time cannot stand here";
     if (name == "T") mend = "; T is the duration only in a guess, and in x(T) in a condition";
     stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80), mend));
+  }
+
+  /// For dx/dt, x_dot, v_x, diff(x, t) and the like.
+  std::string velocity_mend(const std::string& name, bool call) const {
+    constexpr std::array derivatives{"diff", "dot", "ddt", "der", "deriv", "derivative", "D", "d"};
+    std::string coordinate = velocity_meant(name, names_.coordinates);
+    const bool other = call ? std::ranges::find(derivatives, name) != derivatives.end() : name == "dt";
+    if (other && !names_.coordinates.empty()) coordinate = names_.coordinates.front().name;
+    if (coordinate.empty()) return {};
+    const bool array = names_.find(coordinate)->array;
+    return fmt::format("; velocities are written {}{}'", coordinate, array ? "[1]" : "");
   }
 
   /// Properties of a node from those of its children.
