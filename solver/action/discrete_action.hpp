@@ -25,9 +25,9 @@ struct NodeEquations {
   std::vector<double> gradient;     ///< (N + 1) × n, condensed
   std::vector<double> border;       ///< (N + 1) × n: t
   double border_gradient = 0;       ///< ∂S/∂T, condensed
-  /// What must be added to the gradients by q(0) and q(T) (2n; or empty), and by T: momenta that are given, and
-  /// of gradients in extended precision numbers that cancel in the equations of the ends, and would take the
-  /// digits of what is left with them.
+  /// What must be added to the gradients by q(0) and q(T) (2n; or empty), and by T: momenta that are given,
+  /// and of gradients in extended precision numbers that cancel in the equations of the ends, and would take
+  /// the digits of what is left with them.
   std::vector<double> end_parts;
   double border_part = 0;
   double corner = 0;       ///< τ
@@ -57,8 +57,8 @@ class DiscreteAction {
   /// was given.
   void substitute(const Lagrangian& lagrangian, const ElementTables& tables);
 
-  /// Until reset() the ends have given momenta (2n; empty: none), which must outlive it: `nodes` and imbalance()
-  /// are derivatives of S_h + p(0)·q(0) − p(T)·q(T).
+  /// Until reset() the ends have given momenta (2n; empty: none), which must outlive it: `nodes` and
+  /// imbalance() are derivatives of S_h + p(0)·q(0) − p(T)·q(T).
   void give_momenta(std::span<const double> momenta) { momenta_ = momenta; }
   std::span<const double> momenta() const { return momenta_; }
 

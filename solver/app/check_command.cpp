@@ -31,19 +31,17 @@ std::string boundary_text(const Problem& problem) {
   return fmt::format("{} conditions on {} end values, {} natural", rows, 2 * n, problem.ends.free);
 }
 
-/// The end values that the boundary relation does not fix, of one end, with the momenta there where each is
-/// natural by itself.
+/// The end values that the boundary relation does not fix, of one end, with the momenta that are given there.
 std::string open_text(const Problem& problem, bool at_end) {
   constexpr std::size_t most = 12;
   const int n = problem.coordinates();
-  const bool coupled = std::ssize(problem.ends.z) > problem.ends.free;
   std::vector<std::string> names;
   for (int a = 0; a < n; ++a) {
     const int e = at_end ? n + a : a;
     if (problem.ends.fixed[e]) continue;
     const double p = problem.boundary.momenta.empty() ? 0 : problem.boundary.momenta[e];
-    names.push_back(coupled ? fmt::format("{}({})", problem.names[a], at_end ? "T" : "0")
-                            : fmt::format("{} (p_{} = {})", problem.names[a], problem.names[a], p));
+    names.push_back(fmt::format("{}({})", problem.names[a], at_end ? "T" : "0"));
+    if (p != 0) names.back() += fmt::format(" with p_{} = {}", problem.names[a], p);
   }
   if (names.empty()) return "none";
   if (names.size() > most) names[most] = fmt::format("… {} in all", names.size());
@@ -54,7 +52,7 @@ std::string open_text(const Problem& problem, bool at_end) {
 void print_ends(const Problem& problem) {
   line("boundary", boundary_text(problem));
   if (problem.periodic || problem.ends.free == 0) return;
-  line("natural ends",
+  line("not fixed",
        fmt::format("at the start {}; at the end {}", open_text(problem, false), open_text(problem, true)));
 }
 

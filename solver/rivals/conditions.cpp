@@ -50,8 +50,8 @@ void EndConditions::add_relation(const EndStates& ends, Values& values) const {
   }
 }
 
-/// δS = p(T)·δq(T) − p(0)·δq(0), less that of the momenta that are given, vanishes for every end that the relation
-/// leaves free.
+/// δS = p(T)·δq(T) − p(0)·δq(0), less that of the momenta that are given, vanishes for every end that the
+/// relation leaves free.
 void EndConditions::add_natural(const EndStates& ends, Values& values) const {
   for (const Triplet& z : problem_.ends.z) {
     const int row = problem_.boundary.rows + z.column;

@@ -34,6 +34,15 @@ std::string readable(std::string_view description) {
   return "this string is not closed on its line, or contains a control character";
 }
 
+bool is_value(const std::string& text) {
+  try {
+    toml::parse("x = " + text);
+    return true;
+  } catch (const toml::parse_error&) {
+    return false;
+  }
+}
+
 /// The value at an error of the parser that is a text or a formula without quotes, and where it begins; empty
 /// if it is none.
 std::pair<std::string, Location> unquoted(const Location& at) {
@@ -57,7 +66,7 @@ std::pair<std::string, Location> unquoted(const Location& at) {
   }
   while (end > begin && std::strchr(" \t", text[end - 1])) --end;
   const std::string value(text.substr(begin, end - begin));
-  if (value.find_first_of("=\"") != value.npos) return {};
+  if (value.find_first_of("=\"") != value.npos || is_value(value)) return {};
   return {value, {at.source, at.line, static_cast<int>(begin) + 1}};
 }
 
@@ -132,7 +141,8 @@ std::pair<toml::array*, std::size_t> element_named(toml::table& table, std::stri
 void set_element(toml::array& list, std::size_t number, toml::node&& value, const std::string& key,
                  const Location& at) {
   if (number < 1 || number > list.size())
-    throw SceneError(at, fmt::format("'{}' is out of range: the list has elements 1 to {}", key, list.size()));
+    throw SceneError(at,
+                     fmt::format("'{}' is out of range: the list has elements 1 to {}", key, list.size()));
   const auto place = list.erase(list.begin() + static_cast<std::ptrdiff_t>(number) - 1);
   list.insert(place, std::move(value));
 }

@@ -29,10 +29,12 @@ constexpr KeyRecord keys[] = {
      "Names of the coordinates. `q[n]` declares `q[1]` to `q[n]`; n is a number or a formula of parameters.",
      R"(coordinates = ["r", "q[3]"])"},
     {"system", "parameters", Kind::quantities, "none",
-     "Constants for the formulas: numbers, or formulas of other parameters. One that nothing uses is an error.",
+     "Constants for the formulas: numbers, or formulas of other parameters. One that nothing uses is an "
+     "error.",
      "parameters = { mu = 0.1, m = [\"1 - mu\", \"mu\"] }", true},
     {"system", "definitions", Kind::text, "none",
-     "Named parts of formulas, in any order. `X'` is the velocity of a definition `X`, `X(0)` its value at an "
+     "Named parts of formulas, in any order. `X'` is the velocity of a definition `X`, `X(0)` its value at "
+     "an "
      "end. One that is not used costs nothing.",
      "definitions = { r = \"sqrt(x^2 + y^2)\" }", true},
     {"system", "lagrangian", Kind::text, "required without `use`",
@@ -47,8 +49,10 @@ constexpr KeyRecord keys[] = {
     {"system", "force", Kind::text, "", "", "", true, false},
 
     {"boundary", "start", Kind::quantities, "none",
-     "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or momenta "
-     "∂L/∂x', as `p_x`. A coordinate of which neither is given has zero momentum there: the natural condition.",
+     "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
+     "momenta "
+     "∂L/∂x', as `p_x`. A coordinate of which neither is given has zero momentum there: the natural "
+     "condition.",
      R"(start = { x = 1.0, p_y = 0.3, q = "0.1*i", "q[3]" = 1.0 })", true},
     {"boundary", "end", Kind::quantities, "none", "The same at t = T.",
      R"(end = { x = "-mu", "q[2]" = 0.5 })", true},

@@ -26,7 +26,8 @@ bool is_coordinate(const std::string& name, const System& system) {
 /// Sets an entry. One of --set for an element takes the place of that of its array.
 void put(const Quantity*& entry, const Quantity& given, const std::string& name) {
   if (entry && given.at.source && given.at.source->numbered)
-    throw SceneError(given.at, fmt::format("'{}' is given by its whole array already; leave one of them out", name));
+    throw SceneError(given.at,
+                     fmt::format("'{}' is given by its whole array already; leave one of them out", name));
   entry = &given;
 }
 
@@ -36,10 +37,11 @@ EndEntries read_entries(const std::vector<Assignment>& table, const char* end, c
   for (const bool whole : {true, false})
     for (const Assignment& a : table) {
       if (a.name.ends_with('\''))
-        throw SceneError(a.name_at,
-                         fmt::format("\"{0}\" is a velocity, and '{1}' holds coordinates and momenta (p_{2} = "
-                                     "∂L/∂{0}); an initial state is a guess: state = {{ \"{0}\" = … }} in [guess]",
-                                     a.name, end, a.name.substr(0, a.name.size() - 1)));
+        throw SceneError(
+            a.name_at,
+            fmt::format("\"{0}\" is a velocity, and '{1}' holds coordinates and momenta (p_{2} = "
+                        "∂L/∂{0}); an initial state is a guess: state = {{ \"{0}\" = … }} in [guess]",
+                        a.name, end, a.name.substr(0, a.name.size() - 1)));
       const bool momentum = a.name.starts_with("p_") && !is_coordinate(a.name, system);
       const Range range = range_of(momentum ? a.name.substr(2) : a.name, a.name_at, system);
       if (range.array != whole) continue;
@@ -57,10 +59,11 @@ void check_entries(const EndEntries& start, const EndEntries& end, const System&
   const auto both = [](const EndEntry& e) { return e.value && e.momentum; };
   const auto none = [](const EndEntry& e) { return !e.value && !e.momentum; };
   if (std::ranges::all_of(start, both) && std::ranges::all_of(end, none))
-    throw SceneError(start.front().momentum->at,
-                     "every coordinate and every momentum at the start, and nothing at the end, are initial data; "
-                     "solving from them is not available yet: give conditions at the end for as many, and the "
-                     "state in [guess]");
+    throw SceneError(
+        start.front().momentum->at,
+        "every coordinate and every momentum at the start, and nothing at the end, are initial data; "
+        "solving from them is not available yet: give conditions at the end for as many, and the "
+        "state in [guess]");
   for (const EndEntries* entries : {&start, &end})
     if (const auto twice = std::ranges::find_if(*entries, both); twice != entries->end())
       throw SceneError(
@@ -86,9 +89,10 @@ void add_condition(const Text& text, const System& system, PlacedRelation& relat
   const EndEquation equation =
       placed(text, [&](const std::string& s) { return end_equation(s, system, "conditions"); });
   if (!equation.affine)
-    throw SceneError(position(text, 0),
-                     "a condition must be linear in the end values; one that is not can close a free duration: "
-                     "'where' with duration = \"free\" and a guess of it");
+    throw SceneError(
+        position(text, 0),
+        "a condition must be linear in the end values; one that is not can close a free duration: "
+        "'where' with duration = \"free\" and a guess of it");
   const int row = relation.relation.add_row(-equation.constant);
   for (const Triplet& entry : equation.coefficients) relation.relation.add(row, entry.column, entry.value);
   relation.rows.push_back(position(text, 0));
@@ -118,10 +122,9 @@ Closure read_closure(const BoundaryTable& boundary, const System& system) {
   Closure closure(system.names.size());
   for (std::size_t a = 0; a < closure.size(); ++a) closure[a].coefficients = {{0, static_cast<int>(a), 1.0}};
   for (const Assignment& line : boundary.map)
-    for_each_value(line, range_of(line.name, line.name_at, system),
-                   [&](int a, const Quantity& value, int index) {
-                     closure[a] = read_form(value, system, index);
-                   });
+    for_each_value(
+        line, range_of(line.name, line.name_at, system),
+        [&](int a, const Quantity& value, int index) { closure[a] = read_form(value, system, index); });
   return closure;
 }
 

@@ -67,9 +67,10 @@ bool is_length(const Problem& problem) {
 
 [[noreturn]] void refuse_irregular(const Problem& problem, int coordinate, const Location& at) {
   if (is_length(problem))
-    throw SceneError(at,
-                     "the Lagrangian is homogeneous of degree one in the velocities: it determines the path, but "
-                     "not the speed along it; take L^2/2, whose extremals are the same curves");
+    throw SceneError(
+        at,
+        "the Lagrangian is homogeneous of degree one in the velocities: it determines the path, but "
+        "not the speed along it; take L^2/2, whose extremals are the same curves");
   throw SceneError(
       at, fmt::format("the Lagrangian is not regular: its second derivative by the velocities is singular, "
                       "so the momenta do not determine {}'",
@@ -202,13 +203,13 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
       points.next(unused, v);
       bounded = convex(v);
     }
-    const double least =
-        -evaluate_at(*problem.lagrangian, {q, n}, rest, 0, Order::value, scratch).value;
+    const double least = -evaluate_at(*problem.lagrangian, {q, n}, rest, 0, Order::value, scratch).value;
     if (bounded && energy < least - roundoff * std::max(std::abs(energy), std::abs(least)))
       throw SceneError(
-          at, fmt::format("energy = {}, but at the {} ({}) it is at least {:.6g}, its value at rest; raise it, or "
-                          "move this end",
-                          energy, end ? "end" : "start", point_text(problem, q), least));
+          at, fmt::format(
+                  "energy = {}, but at the {} ({}) it is at least {:.6g}, its value at rest; raise it, or "
+                  "move this end",
+                  energy, end ? "end" : "start", point_text(problem, q), least));
   }
 }
 

@@ -63,11 +63,11 @@ void for_each_value(const Assignment& assignment, const Range& range,
   const int given = static_cast<int>(assignment.values.size());
   const bool for_all = range.array && !assignment.list;
   if (for_all && !assignment.values.front().formula())
-    throw SceneError(assignment.at,
-                     fmt::format("'{0}' has {1} elements; give a list of {1} values, a formula in the index "
-                                 "i (\"{2}\" for all alike), or \"{0}[1]\" = … for one element",
-                                 assignment.name, range.count,
-                                 std::get<double>(assignment.values.front().value)));
+    throw SceneError(
+        assignment.at,
+        fmt::format("'{0}' has {1} elements; give a list of {1} values, a formula in the index "
+                    "i (\"{2}\" for all alike), or \"{0}[1]\" = … for one element",
+                    assignment.name, range.count, std::get<double>(assignment.values.front().value)));
   if (!range.array && assignment.list)
     throw SceneError(assignment.at,
                      fmt::format("'{}' is one number; found a list of {}", assignment.name, given));

@@ -22,8 +22,8 @@ auto placed(const Text& text, Function&& f) {
   }
 }
 
-/// The number, or the value of the formula, where `index` > 0 with the index i. Throws SceneError if it is not
-/// finite.
+/// The number, or the value of the formula, where `index` > 0 with the index i. Throws SceneError if it is
+/// not finite.
 double evaluate(const Quantity& quantity, const Vocabulary& vocabulary, int index = 0);
 
 /// A coordinate or an element of an array: q[first] … q[first + count - 1].
@@ -38,9 +38,9 @@ struct Range {
 Range range_of(const std::string& name, const Location& at, const System& system,
                std::vector<std::string> keys = {});
 
-/// Calls f(coordinate, value, index) for each element that the assignment sets; one formula serves all elements
-/// of an array. The index is that of the element, 0 without an array. Throws SceneError if the number of values
-/// is wrong.
+/// Calls f(coordinate, value, index) for each element that the assignment sets; one formula serves all
+/// elements of an array. The index is that of the element, 0 without an array. Throws SceneError if the
+/// number of values is wrong.
 void for_each_value(const Assignment& assignment, const Range& range,
                     const std::function<void(int, const Quantity&, int)>& f);
 

@@ -58,8 +58,9 @@ struct ParameterEntry {
   bool list = false;
 };
 
-/// The values of parameters, each after those that its formulas need. Where a FormulaError comes from is named
-/// "parameters.m[2]" for the second value of m, or "definitions.r". Throws FormulaError, also for a cycle.
+/// The values of parameters, each after those that its formulas need. Where a FormulaError comes from is
+/// named "parameters.m[2]" for the second value of m, or "definitions.r". Throws FormulaError, also for a
+/// cycle.
 std::map<std::string, ParameterText> evaluate_parameters(
     const std::map<std::string, ParameterEntry>& entries,
     const std::map<std::string, std::string>& definitions);

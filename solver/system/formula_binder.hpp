@@ -61,7 +61,7 @@ class Binder {
   const Names& names_;
   LagrangianGraph& target_;
   Evaluator evaluator_;
-  bool at_end_ = false;  ///< in a definition at T
+  bool at_end_ = false;                                        ///< in a definition at T
   std::unordered_map<std::uint64_t, std::uint32_t> uniforms_;  ///< bits of a number -> global input
   std::vector<double> indices_;
   int unrolling_ = 0;

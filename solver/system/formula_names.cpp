@@ -143,8 +143,7 @@ void Names::declare(const std::map<std::string, ParameterText>& texts,
 Names names_of(const SystemText& text) {
   Names names;
   names.declare(text.parameters, text.active);
-  for (std::size_t k = 0; k < text.coordinates.size(); ++k)
-    declare_coordinate(names, text, k);
+  for (std::size_t k = 0; k < text.coordinates.size(); ++k) declare_coordinate(names, text, k);
   if (names.elements == 0) throw FormulaError("no coordinates; need at least 1", "coordinates", 0);
   names.declare(text.definitions);
   for (Formula& definition : names.definitions) definition = parse(definition.text, definition.where);

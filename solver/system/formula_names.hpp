@@ -61,11 +61,12 @@ Names names_of(const SystemText& text);
 
 Names names_of(Kind kind, const Vocabulary& vocabulary);
 
-/// Gives every name in the formula its meaning, and likewise in all definitions that it needs, which are parsed
-/// for that.
+/// Gives every name in the formula its meaning, and likewise in all definitions that it needs, which are
+/// parsed for that.
 void resolve(Formula& formula, Names& names);
 
-/// Makes i = `index` known to a formula, unless it is 0, and resolves that. Returns the values of the indices.
+/// Makes i = `index` known to a formula, unless it is 0, and resolves that. Returns the values of the
+/// indices.
 std::vector<double> resolve_at(Formula& formula, Names& names, int index);
 
 }  // namespace extremal::formula

@@ -33,10 +33,10 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 std::string velocity_meant(const std::string& name, std::span<const Coordinate> coordinates) {
   for (const Coordinate& c : coordinates)
-    for (const auto& [before, after] : {std::pair("d", ""), std::pair("d", "dt"), std::pair("d", "_dt"),
-                                        std::pair("v", ""), std::pair("v_", ""), std::pair("", "_dot"),
-                                        std::pair("", "dot"), std::pair("dot_", ""), std::pair("", "_t"),
-                                        std::pair("", "_prime")})
+    for (const auto& [before, after] :
+         {std::pair("d", ""), std::pair("d", "dt"), std::pair("d", "_dt"), std::pair("v", ""),
+          std::pair("v_", ""), std::pair("", "_dot"), std::pair("", "dot"), std::pair("dot_", ""),
+          std::pair("", "_t"), std::pair("", "_prime")})
       if (name == before + c.name + after) return c.name;
   return {};
 }

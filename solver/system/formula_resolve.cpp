@@ -176,6 +176,9 @@ class Resolver {
     const bool index = std::find(indices_.begin(), indices_.end(), name) != indices_.end();
     if (known == nullptr && !index) unknown(node, name);
     const bool definition = known != nullptr && known->meaning == Meaning::definition;
+    const Syntax& argument = child(node, node.indexed);
+    if (!index && argument.form == Form::reference && formula_.name(argument) == "t")
+      stop(node, fmt::format("write {0}{1} for {0}{1}(t)", spelled(name, *known), node.velocity ? "'" : ""));
     if (index || (known->meaning != Meaning::coordinate && !definition) || kind_ != Kind::condition)
       stop(node, fmt::format("'{}' is {}, not a function; write {}*(…) to multiply", name,
                              kind_of(index ? Meaning::index : known->meaning),
@@ -184,7 +187,7 @@ class Resolver {
       stop(node, fmt::format("\"{}'\" is a velocity; conditions hold between coordinates", name));
     if (node.indexed) visit(formula_.children(node)[0].node);
     check_index(node, name, *known);
-    const Syntax& when = child(node, node.indexed);
+    const Syntax& when = argument;
     const bool start = when.form == Form::number && when.value == 0;
     const bool end = when.form == Form::reference && !when.indexed && formula_.name(when) == "T";
     if (node.count != 1u + node.indexed || (!start && !end))

@@ -33,7 +33,8 @@ TEST_F(Command, AFailureIsToldOnce) {
   for (const std::string search : {"", "[search]\nsolutions = 3\n"}) {
     const Outcome o = solve(
         "[system]\ncoordinates = [\"q\"]\nlagrangian = \"q'^2/2 - exp(q)\"\n[boundary]\nstart = { q = 0 }\n"
-        "end = { q = 0 }\nduration = 4\n" + search);
+        "end = { q = 0 }\nduration = 4\n" +
+        search);
     EXPECT_EQ(o.exit, 1) << o.out;
     const std::string message = o.error.substr(0, o.error.find('\n')).substr(o.error.rfind(": ") + 2);
     EXPECT_EQ(o.out.find(message), std::string::npos) << o.out;
@@ -55,14 +56,14 @@ TEST_F(Command, SolveLeavesAContinuationAside) {
 TEST_F(Command, MomentaThatAreGiven) {
   std::string scene = pendulum;
   scene.replace(scene.find("q = 0.0 }"), 9, "p_q = \"1.3736908728527137\" }");
-  const Outcome o = solve(scene, {"--output", "r.json", "--at", "0"});
+  const Outcome o = solve(scene + "[guess]\nq = \"1.5*t/T\"\n", {"--output", "r.json", "--at", "0"});
   ASSERT_EQ(o.exit, 0) << o.error;
   EXPECT_NE(o.out.find("1 natural condition"), std::string::npos) << o.out;
   const Json r = Json::parse(read_text(folder / "r.json"));
   EXPECT_NEAR(r["samples"]["q"][0].get<double>(), 0, 1e-9);
   EXPECT_NEAR(r["momentum_start"]["q"].get<double>(), pendulum_slope, 1e-10);
   const Outcome checked = extremal({"check", "scene.toml"});
-  EXPECT_NE(checked.out.find("natural ends   at the start q (p_q = 1.3736908728527137); at the end none"),
+  EXPECT_NE(checked.out.find("not fixed      at the start q(0) with p_q = 1.3736908728527137; at the end none"),
             std::string::npos)
       << checked.out;
   EXPECT_EQ(extremal({"compare", "scene.toml", "--quiet"}).exit, 0);

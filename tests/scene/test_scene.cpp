@@ -24,7 +24,8 @@ TEST_F(SceneFiles, TextsWithoutQuotes) {
             "scene.toml:7:12: texts and formulas are written in quotes: \"2*pi\"");
   EXPECT_EQ(refused("duration = 2", "duration = sqrt(2)"),
             "scene.toml:7:12: texts and formulas are written in quotes: \"sqrt(2)\"");
-  EXPECT_EQ(refused("q = 1 }", "q = -pi/2 }"), "scene.toml:6:11: texts and formulas are written in quotes: \"-pi/2\"");
+  EXPECT_EQ(refused("q = 1 }", "q = -pi/2 }"),
+            "scene.toml:6:13: texts and formulas are written in quotes: \"-pi/2\"");
   EXPECT_EQ(refused("[\"q\"]", "[q]"), "scene.toml:2:16: texts and formulas are written in quotes: \"q\"");
 }
 

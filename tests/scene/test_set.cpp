@@ -38,9 +38,10 @@ TEST_F(SceneFiles, SetOfAnElementOfAList) {
   std::string lists = pendulum;
   lists.replace(lists.find("[boundary]"), 0, "parameters = { m = [1, 2, 3] }\n");
   lists += "[guess]\nstate = { q = 1, \"q'\" = [4, 5] }\n";
-  const Scene scene = read_scene(write("scene.toml", lists), {"system.parameters.m[2]=7", "guess.state.q[2]'=8",
-                                                             "system.coordinates[1]=q[n]", "system.parameters.n=2",
-                                                             "system.parameters.m[3]=2*n"});
+  const Scene scene =
+      read_scene(write("scene.toml", lists),
+                 {"system.parameters.m[2]=7", "guess.state.q[2]'=8", "system.coordinates[1]=q[n]",
+                  "system.parameters.n=2", "system.parameters.m[3]=2*n"});
   const Assignment& m = scene.system.parameters[0];
   EXPECT_EQ(std::get<double>(m.values[0].value), 1.0);
   EXPECT_EQ(std::get<double>(m.values[1].value), 7.0);

@@ -188,22 +188,25 @@ TEST(GivenMomenta, OscillatorAtBothEnds) {
   EXPECT_LT(distance(s.trajectory, truth), 1e-12);
   EXPECT_NEAR(s.momentum_start[0], a, 1e-13);
   EXPECT_NEAR(s.momentum_end[0], b, 1e-13);
-  EXPECT_EQ(s.morse_index, solve(with_ends(systems::oscillator(w), T, [](auto&) {}), within(1e-12)).morse_index);
+  EXPECT_EQ(s.morse_index,
+            solve(with_ends(systems::oscillator(w), T, [](auto&) {}), within(1e-12)).morse_index);
   for (const Scheme& scheme : schemes_and_families()) {
     const Solution discrete = solve(given, pinned(scheme, 32));
     EXPECT_NEAR(discrete.momentum_start[0], a, 1e-12) << scheme.name;
     EXPECT_NEAR(discrete.momentum_end[0], b, 1e-12) << scheme.name;
-    EXPECT_LT(node_distance(discrete.trajectory, s.trajectory), one_sided(scheme) ? 0.1 : 0.01) << scheme.name;
+    EXPECT_LT(node_distance(discrete.trajectory, s.trajectory), one_sided(scheme) ? 0.1 : 0.01)
+        << scheme.name;
   }
 }
 
-/// The extremal between the ends that one with given momenta has found is the same. Chains of 2 and of 90 sites,
-/// dense and sparse, by each method.
+/// The extremal between the ends that one with given momenta has found is the same. Chains of 2 and of 90
+/// sites, dense and sparse, by each method.
 TEST(GivenMomenta, ExtremalIsThatBetweenItsEnds) {
   for (const int n : {2, 90}) {
     const auto lagrangian = trace(n, [n](auto q, auto v, auto) {
       auto sum = v[0] * v[0] * 0.0;
-      for (int i = 0; i < n; ++i) sum = sum + v[i] * v[i] / 2.0 - q[i] * q[i] / 2.0 + q[i] * q[i] * q[i] * q[i] / 20.0;
+      for (int i = 0; i < n; ++i)
+        sum = sum + v[i] * v[i] / 2.0 - q[i] * q[i] / 2.0 + q[i] * q[i] * q[i] * q[i] / 20.0;
       for (int i = 0; i + 1 < n; ++i) sum = sum - (q[i + 1] - q[i]) * (q[i + 1] - q[i]) / 4.0;
       return sum;
     });

@@ -43,9 +43,10 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(start("\"q[0]\" = 0"), "scene.toml:7:11: 'q[0]' is out of range: 'q' has elements 1 to 3");
   EXPECT_EQ(start("\"x[1]\" = 0"), "scene.toml:7:11: 'x' is not an array; write 'x' in place of 'x[1]'");
   EXPECT_EQ(start("q = [1, 2]"), "scene.toml:7:15: 'q' has 3 elements; found 2 values");
-  EXPECT_EQ(start("q = 1"),
-            "scene.toml:7:15: 'q' has 3 elements; give a list of 3 values, a formula in the index i (\"1\" for all "
-            "alike), or \"q[1]\" = … for one element");
+  EXPECT_EQ(
+      start("q = 1"),
+      "scene.toml:7:15: 'q' has 3 elements; give a list of 3 values, a formula in the index i (\"1\" for all "
+      "alike), or \"q[1]\" = … for one element");
   EXPECT_EQ(start("x = [1, 2]"), "scene.toml:7:15: 'x' is one number; found a list of 2");
   EXPECT_EQ(start("x = \"1/0\""), "scene.toml:7:16: the value is not finite");
   EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 1"),
@@ -54,18 +55,22 @@ TEST_F(Scenes, EndsThatAreWrong) {
             "scene.toml:7:24: 'x' and 'p_x' are both given at this end; leave one of them out, it follows");
   EXPECT_EQ(start("x = 0, q = \"0*i\", p_x = 1, p_q = [1, 2, 3]").substr(0, 40),
             "scene.toml:7:37: every coordinate and eve");
-  EXPECT_EQ(start("\"x'\" = 1"),
-            "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); an "
-            "initial state is a guess: state = { \"x'\" = … } in [guess]");
+  EXPECT_EQ(
+      start("\"x'\" = 1"),
+      "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); an "
+      "initial state is a guess: state = { \"x'\" = … } in [guess]");
   EXPECT_EQ(start("p_y = 1").substr(0, 37), "scene.toml:7:11: unknown coordinate '");
-  EXPECT_EQ(start("v_x = 1"), "scene.toml:7:11: unknown coordinate 'v_x'; velocities are written \"x'\", and only "
-                              "'state' in [guess] holds them");
+  EXPECT_EQ(start("v_x = 1"),
+            "scene.toml:7:11: unknown coordinate 'v_x'; velocities are written \"x'\", and only "
+            "'state' in [guess] holds them");
 }
 
 TEST_F(Scenes, EndsOfArraysAreFormulasInTheIndex) {
-  const Study s = study(masses + "[boundary]\nstart = { q = \"k*i\", p_x = 0.5 }\nend = { p_q = [\"k\", 2, \"-i\"] }\n"
-                                 "duration = \"k + m[2]\"\n",
-                        {"boundary.start.q[2]=-1"});
+  const Study s =
+      study(masses +
+                "[boundary]\nstart = { q = \"k*i\", p_x = 0.5 }\nend = { p_q = [\"k\", 2, \"-i\"] }\n"
+                "duration = \"k + m[2]\"\n",
+            {"boundary.start.q[2]=-1"});
   EXPECT_EQ(fixed(s, 1), 4.0);
   EXPECT_EQ(fixed(s, 2), -1.0);
   EXPECT_EQ(fixed(s, 3), 12.0);
@@ -87,10 +92,11 @@ TEST_F(Scenes, DefinitionsStandInEveryFormula) {
 }
 
 TEST_F(Scenes, ErrorsOfDefinitionsPointToThem) {
-  EXPECT_EQ(message("[system]\ncoordinates = [\"x\"]\ndefinitions = { d = \"2*dd\" }\nlagrangian = \"x'^2/2\"\n"
-                    "[boundary]\nstart = { x = \"d\" }\nduration = 1\n")
-                .substr(0, 38),
-            "scene.toml:3:24: unknown name 'dd'; di");
+  EXPECT_EQ(
+      message("[system]\ncoordinates = [\"x\"]\ndefinitions = { d = \"2*dd\" }\nlagrangian = \"x'^2/2\"\n"
+              "[boundary]\nstart = { x = \"d\" }\nduration = 1\n")
+          .substr(0, 38),
+      "scene.toml:3:24: unknown name 'dd'; di");
 }
 
 TEST_F(Scenes, ParametersThatNothingUses) {

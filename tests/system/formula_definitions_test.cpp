@@ -35,12 +35,14 @@ TEST(FormulaDefinitions, VelocitiesOfSumsAndOfDefinitionsOfDefinitions) {
 }
 
 TEST(FormulaDefinitions, AreNumbersWhereNumbersStand) {
-  const Vocabulary vocabulary({{"l", {{2}}}, {"g", {{8}}}},
-                              {{"omega", "sqrt(g/l)"}, {"period", "2*pi/omega"}, {"T", "3*l"}, {"decay", "exp(-t/l)"}});
+  const Vocabulary vocabulary(
+      {{"l", {{2}}}, {"g", {{8}}}},
+      {{"omega", "sqrt(g/l)"}, {"period", "2*pi/omega"}, {"T", "3*l"}, {"decay", "exp(-t/l)"}});
   EXPECT_DOUBLE_EQ(number("period/2 + i", vocabulary, "duration", 3), std::acos(-1.0) / 2 + 3);
   EXPECT_DOUBLE_EQ(number("T", vocabulary, "duration"), 6);
   const std::vector<double> times{0, 1, 3};
-  const std::vector<double> found = tabulate("decay*T", vocabulary, 5, times, 0, "guess");  // T is the duration
+  const std::vector<double> found =
+      tabulate("decay*T", vocabulary, 5, times, 0, "guess");  // T is the duration
   for (int k = 0; k < 3; ++k) EXPECT_DOUBLE_EQ(found[k], 5 * std::exp(-times[k] / 2));
   EXPECT_EQ(error_of([&] { number("decay", vocabulary, "duration"); }),
             "the definition 'decay' depends on t, which cannot stand here | duration | 0");
@@ -72,12 +74,14 @@ TEST(FormulaParameters, AreEvaluatedByDependence) {
 }
 
 TEST(FormulaParameters, CyclesAndUnknownNamesAreNamed) {
-  const auto refused = [](const Parameters& parameters, const std::map<std::string, std::string>& definitions = {}) {
+  const auto refused = [](const Parameters& parameters,
+                          const std::map<std::string, std::string>& definitions = {}) {
     return error_of([&] { evaluate_parameters(parameters, definitions); });
   };
   EXPECT_EQ(refused({{"a", {{"2*b"}}}, {"b", {{"c + 1"}}}, {"c", {{"a"}}}}),
             "parameters form a cycle: a -> b -> c -> a | parameters.c[1] | 0");
-  EXPECT_EQ(refused({{"a", {{"2*d"}}}}, {{"d", "1 + a"}}), "parameters form a cycle: a -> d -> a | definitions.d | 4");
+  EXPECT_EQ(refused({{"a", {{"2*d"}}}}, {{"d", "1 + a"}}),
+            "parameters form a cycle: a -> d -> a | definitions.d | 4");
   EXPECT_EQ(refused({{"m", {{1.0, "2*mu"}, true}}, {"nu", {{1.0}}}}).substr(0, 17), "unknown name 'mu'");
   EXPECT_EQ(refused({{"a", {{"1/0"}}}}), "the value is not finite | parameters.a[1] | 0");
 }

@@ -89,8 +89,9 @@ TEST(FormulaNames, UnknownNamesAreMended) {
   EXPECT_EQ(refused("q'[1]"), "the index stands before the prime: q[…]' | lagrangian | 2");
   EXPECT_EQ(refused("x''"), "a second \"'\"; formulas know first derivatives only | lagrangian | 2");
   EXPECT_EQ(refused("t'"), "'t' has no velocity; only coordinates and definitions have | lagrangian | 0");
-  EXPECT_EQ(refused("mu'"),
-            "'mu' is a parameter and has no velocity; only coordinates and definitions have | lagrangian | 0");
+  EXPECT_EQ(
+      refused("mu'"),
+      "'mu' is a parameter and has no velocity; only coordinates and definitions have | lagrangian | 0");
   EXPECT_EQ(refused("kinetic'"),
             "'kinetic' has velocities in it, so \"kinetic'\" would need second derivatives | lagrangian | 0");
   EXPECT_EQ(refused("pi[1]"), "'pi' is one number and takes no index | lagrangian | 0");
@@ -106,6 +107,7 @@ TEST(FormulaNames, VelocitiesInOtherNotations) {
   for (const char* name : {"dx/dt", "dx", "x_dot", "xdot", "v_x", "vx", "diff(x, t)", "x_t"})
     EXPECT_EQ(refused(std::string(name) + "*1"), "velocities are written x'") << name;
   EXPECT_EQ(refused("q_dot[2]^2"), "velocities are written q[1]'");
+  EXPECT_EQ(refused("x'(t)^2"), "write x' for x'(t) | lagrangian | 0");
 }
 
 TEST(FormulaNames, IndicesOfSumsAreChecked) {

@@ -3,6 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numeric>
+#include <span>
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/accept/conjugate_ends.hpp"
@@ -18,7 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-bool singular_mass(const Problem& problem, const std::vector<double>& q) {
+using Point = std::span<const double>;
+
+bool singular_mass(const Problem& problem, Point q) {
   const int n = problem.coordinates();
   const std::vector<double> v(n, 0.1);
   Scratch scratch;
@@ -40,20 +45,78 @@ std::vector<double> middle_of_guess(const Problem& problem) {
   return q;
 }
 
+/// The end, where every coordinate is fixed; else nothing.
+Point fixed_end(const Problem& problem, bool end) {
+  const std::size_t n = problem.coordinates(), first = end ? n : 0;
+  const auto begin = problem.ends.fixed.begin() + static_cast<std::ptrdiff_t>(first);
+  const bool fixed = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(n), [](char f) { return f; });
+  return fixed ? Point(problem.ends.offset).subspan(first, n) : Point();
+}
+
+std::string place_of(const Problem& problem, Point q) {
+  std::string place;
+  for (std::size_t a = 0; a < std::min<std::size_t>(q.size(), most_named); ++a)
+    place += fmt::format("{}{} = {:.6g}", a ? ", " : "",
+                         problem.names.empty() ? fmt::format("q[{}]", a + 1) : problem.names[a], q[a]);
+  return place + (q.size() > most_named ? ", …" : "");
+}
+
+/// An end where L is not finite at rest nor at speeds along each axis, or an end that no motion reaches in
+/// time: where L is finite at rest, but not at the mean velocity between the ends.
+std::string unreachable(const Problem& problem) {
+  const std::size_t n = problem.coordinates();
+  const double duration = problem.duration.value;
+  Scratch scratch;
+  const auto finite = [&](Point q, const std::vector<double>& v, double t) {
+    return std::isfinite(evaluate_at(*problem.lagrangian, q, v, t, Order::value, scratch).value);
+  };
+  for (const bool end : {false, true}) {
+    const Point q = fixed_end(problem, end);
+    if (q.empty()) continue;
+    std::vector<double> v(n, 0);
+    bool somewhere = finite(q, v, end ? duration : 0);
+    for (std::size_t a = 0; a < n && !somewhere; ++a)
+      for (const double speed : {-1.0, 1.0}) {
+        v[a] = speed;
+        somewhere = somewhere || finite(q, v, end ? duration : 0);
+      }
+    if (!somewhere)
+      return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
+                         place_of(problem, q));
+  }
+  const Point start = fixed_end(problem, false), end = fixed_end(problem, true);
+  if (start.empty() || end.empty() || problem.duration.free) return {};
+  std::vector<double> mean(n);
+  for (std::size_t a = 0; a < n; ++a) mean[a] = (end[a] - start[a]) / duration;
+  if (finite(start, mean, 0) || finite(end, mean, duration)) return {};
+  return fmt::format(
+      "L is not finite at the mean velocity between the ends, {:.6g}: they may be out of reach in this "
+      "duration; "
+      "try a longer one, or ends nearer to each other",
+      std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0)));
+}
+
 /// Why a solve may have failed before it began; empty if nothing is found.
 std::string irregularity(const Problem& problem) {
   const int n = problem.coordinates();
   if (n > most_coordinates) return {};
+  if (std::string reason = unreachable(problem); !reason.empty()) return reason;
+  for (const bool end : {false, true})
+    if (const Point q = fixed_end(problem, end); !q.empty() && singular_mass(problem, q))
+      return fmt::format(
+          "the mass matrix ∂²L/∂q'∂q' is singular at the {}, {}: momenta do not determine velocities there; "
+          "move "
+          "this end, or take other coordinates",
+          end ? "end" : "start", place_of(problem, q));
   std::vector<double> q = middle_of_guess(problem);
   if (!singular_mass(problem, q)) return {};
-  std::string place;
-  for (int a = 0; a < n; ++a)
-    place += fmt::format("{}{} = {:.6g}", a ? ", " : "", problem.names.empty() ? "q" : problem.names[a], q[a]);
+  const std::string place = place_of(problem, q);
   for (int a = 0; a < n; ++a) q[a] += aside * (1 + std::abs(q[a])) * (a + 1) / n;
   if (singular_mass(problem, q))
     return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
   return fmt::format(
-      "the mass matrix ∂²L/∂q'∂q' is singular on the guess, at {}, though not beside it; try a guess that avoids "
+      "the mass matrix ∂²L/∂q'∂q' is singular on the guess, at {}, though not beside it; try a guess that "
+      "avoids "
       "such points",
       place);
 }
