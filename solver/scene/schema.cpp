@@ -34,8 +34,7 @@ constexpr KeyRecord keys[] = {
      "parameters = { mu = 0.1, m = [\"1 - mu\", \"mu\"] }", true},
     {"system", "definitions", Kind::text, "none",
      "Named parts of formulas, in any order. `X'` is the velocity of a definition `X`, `X(0)` its value at "
-     "an "
-     "end. One that is not used costs nothing.",
+     "an end. One that is not used costs nothing.",
      "definitions = { r = \"sqrt(x^2 + y^2)\" }", true},
     {"system", "lagrangian", Kind::text, "required without `use`",
      "Formula of L in coordinates, velocities (`x'`), `t`, parameters and definitions.",
@@ -50,10 +49,9 @@ constexpr KeyRecord keys[] = {
 
     {"boundary", "start", Kind::quantities, "none",
      "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
-     "momenta "
-     "∂L/∂x', as `p_x`. A coordinate of which neither is given has zero momentum there: the natural "
+     "momenta ∂L/∂x', as `p_x`. A coordinate of which neither is given has zero momentum there: the natural "
      "condition.",
-     R"(start = { x = 1.0, p_y = 0.3, q = "0.1*i", "q[3]" = 1.0 })", true},
+     R"(start = { x = 1.0, p_y = 0.3, q = "0.1*i" })", true},
     {"boundary", "end", Kind::quantities, "none", "The same at t = T.",
      R"(end = { x = "-mu", "q[2]" = 0.5 })", true},
     {"boundary", "duration", Kind::quantity, "required", R"(T > 0, or `"free"` with `energy` or `where`.)",

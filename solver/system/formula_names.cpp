@@ -57,7 +57,8 @@ void declare_coordinate(Names& names, const SystemText& system, std::size_t k) {
   Coordinate coordinate{std::string(formula.name(root)), names.elements, 1, root.indexed};
   if (root.indexed) {
     formula.root = formula.children(root)[0].node;
-    Names constants = names_of(Kind::number, {system.parameters, system.definitions});
+    const Vocabulary vocabulary(system.parameters, system.definitions);
+    Names constants = names_of(Kind::number, vocabulary);
     std::vector<double> indices = resolve_at(formula, constants, 0);
     const long count = Evaluator(constants).integer(formula, formula.root, indices, "the size of an array");
     if (count < 1)
@@ -136,7 +137,7 @@ void Names::declare(const std::map<std::string, ParameterText>& texts,
     check_value(name, text, "parameters." + name);
     const int id = static_cast<int>(parameters.size()), count = static_cast<int>(text.value.size());
     declare(name, {Meaning::parameter, id, count, text.list}, "parameters." + name);
-    parameters.push_back(text.value);
+    parameters.push_back(&text.value);
   }
 }
 

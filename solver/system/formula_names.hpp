@@ -39,10 +39,10 @@ struct Known {
 struct Names {
   Kind kind = Kind::number;
   std::vector<Coordinate> coordinates;
-  int elements = 0;                   ///< of all coordinates together
-  std::vector<Parameter> parameters;  ///< by Known::id
-  std::vector<double> active;         ///< values, by Known::id
-  std::vector<Formula> definitions;   ///< by Known::id; without nodes: not parsed yet
+  int elements = 0;                          ///< of all coordinates together
+  std::vector<const Parameter*> parameters;  ///< by Known::id; those of the vocabulary, which outlives this
+  std::vector<double> active;                ///< values, by Known::id
+  std::vector<Formula> definitions;          ///< by Known::id; without nodes: not parsed yet
   std::map<std::string, Known, std::less<>> table;
   std::vector<std::string> indices;  ///< known outside every sum: i in formulas of an array
 

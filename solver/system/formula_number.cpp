@@ -67,6 +67,7 @@ double Evaluator::value(const Formula& formula, std::uint32_t id, std::vector<do
     case Form::power:
       return std::pow(part(0), part(1));
     case Form::call: {
+      if (node.meaning != Meaning::none) return reference(formula, node, indices);  // a definition at an end
       const double first = part(0);
       return scalar::apply(node.op, first, links.size() > 1 ? part(1) : 0.0);
     }
@@ -98,7 +99,7 @@ double Evaluator::reference(const Formula& formula, const Syntax& node, std::vec
     case Meaning::duration:
       return duration;
     case Meaning::parameter: {
-      const Parameter& list = names_.parameters[node.id];
+      const Parameter& list = *names_.parameters[node.id];
       return list[node.indexed ? element(formula, node, static_cast<int>(list.size()), indices) : 0];
     }
     case Meaning::definition:

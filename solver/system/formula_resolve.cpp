@@ -362,7 +362,7 @@ std::vector<double> resolve_at(Formula& formula, Names& names, int index) {
     for (const Syntax& node : formula.nodes)
       if (node.meaning == Meaning::index && formula.name(node) == "i")
         fail(formula, node.offset,
-             fmt::format("'i' is the index of the element and {0}; rename {0}", kind_of(known->meaning)));
+             fmt::format("'i' is the index of the element and {}; rename that one", kind_of(known->meaning)));
   return {static_cast<double>(index)};
 }
 

@@ -53,15 +53,13 @@ std::vector<Case> cases() {
        "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(1 + x^2)*sqrt(x'^2 + y'^2)\"\n"
        "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 1, y = 1 }\nduration = 1\n",
        "scene.toml:3:14: the Lagrangian is homogeneous of degree one in the velocities: it determines the "
-       "path, but "
-       "not the speed along it; take L^2/2, whose extremals are the same curves\n"},
+       "path, but not the speed along it; take L^2/2, whose extremals are the same curves\n"},
       {"EnergyBelowThatOfAnEnd",
        "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\n"
        "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = \"free\"\nenergy = 0.1\n[guess]\nduration "
        "= 1\n",
        "scene.toml:8:10: energy = 0.1, but at the end (x = 1) it is at least 0.5, its value at rest; raise "
-       "it, or "
-       "move this end\n"},
+       "it, or move this end\n"},
       {"ConditionThatIsNotLinear", chain + "conditions = [\"q[1](0)^2 = 1\"]\nduration = 1\n",
        "scene.toml:5:16: a condition must be linear in the end values; one that is not can close a free "
        "duration: "},

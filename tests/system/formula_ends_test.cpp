@@ -115,6 +115,7 @@ TEST(FormulaEnds, DefinitionsHaveValuesAtTheEnds) {
   EXPECT_EQ(equation.function(start, end, gradient), (16 + 6) - (1 + 3) - 4);
   EXPECT_EQ(gradient, (std::vector<double>{-2 - 4, 0, -1, 8, 0, 1}));
   EXPECT_TRUE(end_equation("half(T) = c", system, "conditions").affine);
+  EXPECT_EQ(end_equation("x(T) = c(0)", system, "conditions").constant, -4);
   const auto refused = [&](const std::string& text) {
     return error_of([&] { end_equation(text, system, "where"); });
   };

@@ -155,7 +155,7 @@ TEST(FormulaNumber, NestingIsBounded) {
 
 TEST(FormulaNumber, ParametersAreChecked) {
   const auto refused = [](const std::string& name, ParameterText text) {
-    return error_of([&] { number("1", {{name, text}}, "duration"); });
+    return error_of([&] { number("1", std::map<std::string, ParameterText>{{name, text}}, "duration"); });
   };
   EXPECT_EQ(refused("2m", {{1}}),
             "'2m' is not a name: it takes letters, digits and _, and no digit first | parameters.2m | 0");
@@ -191,7 +191,7 @@ TEST(FormulaNumber, GuessesAreTabulated) {
   EXPECT_EQ(error_of([&] {
               tabulate("1 + i", {{"i", {{7}}}}, 2, times, 1, "guess.x");
             }),
-            "'i' is the index of the element and a parameter; rename the parameter | guess.x | 4");
+            "'i' is the index of the element and a parameter; rename that one | guess.x | 4");
   EXPECT_EQ(tabulate("1 + i", {{"i", {{7}}}}, 2, {}, 0, "guess.x"), std::vector<double>{});
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/accept/conjugate_ends.hpp"
@@ -75,11 +76,13 @@ std::string unreachable(const Problem& problem) {
     if (q.empty()) continue;
     std::vector<double> v(n, 0);
     bool somewhere = finite(q, v, end ? duration : 0);
-    for (std::size_t a = 0; a < n && !somewhere; ++a)
-      for (const double speed : {-1.0, 1.0}) {
+    for (std::size_t a = 0; a < n && !somewhere; ++a) {
+      for (const double speed : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
         v[a] = speed;
         somewhere = somewhere || finite(q, v, end ? duration : 0);
       }
+      v[a] = 0;
+    }
     if (!somewhere)
       return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
                          place_of(problem, q));
@@ -91,8 +94,7 @@ std::string unreachable(const Problem& problem) {
   if (finite(start, mean, 0) || finite(end, mean, duration)) return {};
   return fmt::format(
       "L is not finite at the mean velocity between the ends, {:.6g}: they may be out of reach in this "
-      "duration; "
-      "try a longer one, or ends nearer to each other",
+      "duration; try a longer one, or ends nearer to each other",
       std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0)));
 }
 
@@ -101,24 +103,21 @@ std::string irregularity(const Problem& problem) {
   const int n = problem.coordinates();
   if (n > most_coordinates) return {};
   if (std::string reason = unreachable(problem); !reason.empty()) return reason;
-  for (const bool end : {false, true})
-    if (const Point q = fixed_end(problem, end); !q.empty() && singular_mass(problem, q))
-      return fmt::format(
-          "the mass matrix ∂²L/∂q'∂q' is singular at the {}, {}: momenta do not determine velocities there; "
-          "move "
-          "this end, or take other coordinates",
-          end ? "end" : "start", place_of(problem, q));
-  std::vector<double> q = middle_of_guess(problem);
-  if (!singular_mass(problem, q)) return {};
-  const std::string place = place_of(problem, q);
-  for (int a = 0; a < n; ++a) q[a] += aside * (1 + std::abs(q[a])) * (a + 1) / n;
-  if (singular_mass(problem, q))
-    return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
-  return fmt::format(
-      "the mass matrix ∂²L/∂q'∂q' is singular on the guess, at {}, though not beside it; try a guess that "
-      "avoids "
-      "such points",
-      place);
+  const std::vector<double> middle = middle_of_guess(problem);
+  const std::pair<const char*, Point> points[] = {
+      {"start", fixed_end(problem, false)}, {"end", fixed_end(problem, true)}, {"guess", middle}};
+  for (const auto& [where, q] : points) {
+    if (q.empty() || !singular_mass(problem, q)) continue;
+    std::vector<double> beside(q.begin(), q.end());
+    for (int a = 0; a < n; ++a) beside[a] += aside * (1 + std::abs(q[a])) * (a + 1) / n;
+    if (singular_mass(problem, beside))
+      return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
+    return fmt::format(
+        "the mass matrix ∂²L/∂q'∂q' is singular at {}, a point of the {}, though not beside it: momenta do "
+        "not determine velocities there; avoid it, or take other coordinates",
+        place_of(problem, q), where);
+  }
+  return {};
 }
 
 }  // namespace
