@@ -22,7 +22,7 @@ void show_row(const ComparisonRow& row) {
 
 int compare(const CompareArguments& a) {
   const bool table = !on_standard_output(a.output, "") && !a.quiet;
-  const Study study = load(a.scene, a.sets);
+  const Study study = load(a.scene, a.sets, Purpose::solution);
   CompareOptions options;
   const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   if (terminal) options.progress = show_row;

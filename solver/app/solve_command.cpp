@@ -102,7 +102,7 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
 int solve(const SolveArguments& a) {
   const bool table = !on_standard_output(a.output, a.csv) && !a.quiet;
   const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
-  Study study = load(a.scene, a.sets);
+  Study study = load(a.scene, a.sets, Purpose::solution);
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
 
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};

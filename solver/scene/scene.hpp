@@ -43,7 +43,7 @@ struct SystemTable {
   Location at;
   std::optional<Text> use;
   std::vector<Text> coordinates;
-  std::vector<Assignment> parameters;  ///< numbers only
+  std::vector<Assignment> parameters;
   std::vector<Definition> definitions;
   std::optional<Text> lagrangian;
   std::optional<Number> curvature;

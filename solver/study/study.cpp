@@ -13,6 +13,7 @@
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/suggestion.hpp"
+#include "study/usage.hpp"
 
 namespace extremal {
 namespace {
@@ -59,23 +60,34 @@ Problem read_problem(const Scene& scene, const System& system) {
     throw SceneError(scene.boundary.at, e.what());
   }
   check_regular(problem, scene.system.lagrangian->at);
+  if (scene.boundary.energy) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
   if (!scene.boundary.map.empty())
     check_symmetry(read_closure(scene.boundary, system), problem, scene.boundary.map.front().name_at);
   return problem;
 }
 
-Study load_checked(const std::string& path, const std::vector<std::string>& sets) {
-  const Scene scene = read_scene(path, sets);
+Study make_study(const Scene& scene, Purpose purpose) {
   Study study;
-  study.scene = path;
+  study.scene = scene.path;
   study.title = scene.title;
   study.system = make_system(scene.system);
+  check_parameters_used(scene);
   study.options = read_options(scene.solve);
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);
-  if (scene.continuation) study.continuation = read_continued(scene, study.system, study.problem);
+  if (scene.continuation && purpose == Purpose::family)
+    study.continuation = read_continued(scene, study.system, study.problem);
   return study;
+}
+
+Study load_checked(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
+  const Scene scene = read_scene(path, sets);
+  try {
+    return make_study(scene, purpose);
+  } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
+    throw at_its_place(scene.system, e);
+  }
 }
 
 /// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
@@ -121,9 +133,9 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-Study load(const std::string& path, const std::vector<std::string>& sets) {
+Study load(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
   const auto begin = Clock::now();
-  Study study = with_suggestion([&] { return load_checked(path, sets); });
+  Study study = with_suggestion([&] { return load_checked(path, sets, purpose); });
   study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
   return study;
 }

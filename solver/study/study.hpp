@@ -27,8 +27,12 @@ struct Study {
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 
+/// What a scene is read for: [continuation] is left aside where one solution is wanted.
+enum class Purpose { solution, family };
+
 /// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column.
-Study load(const std::string& path, const std::vector<std::string>& sets = {});
+Study load(const std::string& path, const std::vector<std::string>& sets = {},
+           Purpose purpose = Purpose::family);
 
 /// Solves `repeat` times from the same guess with one Solver. The solution is the last one's; its seconds
 /// are the medians. Throws std::invalid_argument if repeat < 1 and std::length_error where the least

@@ -16,7 +16,8 @@ class Evaluator {
  public:
   explicit Evaluator(const Names& names) : names_(names), definitions_(names.definitions.size()) {}
 
-  double time = 0, duration = 0;
+  double duration = 0;
+  void set_time(double time);
 
   /// `indices` holds the value of each index known at the node, outermost first.
   double value(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
@@ -44,7 +45,8 @@ class Evaluator {
   };
 
   const Names& names_;
-  std::vector<Cached> definitions_;
+  std::vector<Cached> definitions_;  ///< at time_
+  double time_ = 0;
   std::size_t work_ = 0;
 };
 

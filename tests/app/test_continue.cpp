@@ -12,7 +12,7 @@ namespace {
 /// Bratu's problem, from the lower branch; λ = 3.513830719 is its fold.
 const std::string bratu =
     "[system]\ncoordinates = [\"q\"]\nparameters = { lambda = 1.0, m = [1.0, 2.0] }\n"
-    "lagrangian = \"q'^2/2 - lambda*exp(q)\"\n"
+    "lagrangian = \"m[1]*q'^2/2 - lambda*exp(q)\"\n"
     "[boundary]\nstart = { q = 0.0 }\nend = { q = 0.0 }\nduration = 1.0\n"
     "[continuation]\nparameter = \"lambda\"\nto = 4.0\npoints = 30\n";
 

@@ -222,13 +222,15 @@ const Outcome& Search::run(Acceptance* acceptance) {
       result = Refinement::Result::converged;
     } else {
       outcome_.status = Status::iteration_limit;
-      outcome_.message = fmt::format(
-          "{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or a shorter "
-          "duration",
-          outcome_.iterations, failure,
-          met_.contains(Met::other_durations) ? ", through other durations" : "",
-          met_.contains(Met::noise) ? ", from smooth noise" : "",
-          met_.contains(Met::motions) ? ", from motions that miss the end" : "");
+      outcome_.message =
+          fmt::format("{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or {}",
+                      outcome_.iterations, failure,
+                      met_.contains(Met::other_durations) ? ", through other durations" : "",
+                      met_.contains(Met::noise) ? ", from smooth noise" : "",
+                      met_.contains(Met::motions) ? ", from motions that miss the end" : "",
+                      problem_.duration.energy ? "another one of the duration, or another energy"
+                      : problem_.duration.free ? "another one of the duration"
+                                               : "a shorter duration");
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =
