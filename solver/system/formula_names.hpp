@@ -25,6 +25,7 @@ enum class Kind {
   guess,       ///< t, T, and the index i
   map,         ///< coordinates
   condition,   ///< end values x(0), x(T)
+  quantity,    ///< end values x(0), x'(T)
   lagrangian,  ///< coordinates, velocities, t, definitions
 };
 

@@ -61,6 +61,7 @@ double Evaluator::value(const Formula& formula, std::uint32_t id, std::vector<do
     case Form::power:
       return std::pow(part(0), part(1));
     case Form::call: {
+      if (node.meaning != Meaning::none) return end_value(formula, node, indices);
       const double first = part(0);
       return scalar::apply(node.op, first, links.size() > 1 ? part(1) : 0.0);
     }
@@ -124,6 +125,14 @@ double Evaluator::series(const Formula& formula, const Syntax& node, std::vector
   return sum;
 }
 
+double Evaluator::end_value(const Formula& formula, const Syntax& node, std::vector<double>& indices) {
+  const Coordinate& declared = names_.coordinates[node.id];
+  const bool start = node.meaning == Meaning::start;
+  const std::span<const double> values =
+      start ? (node.velocity ? ends.v_start : ends.q_start) : (node.velocity ? ends.v_end : ends.q_end);
+  return values[declared.first + (node.indexed ? element(formula, node, declared.count, indices) : 0)];
+}
+
 double Evaluator::finite(const Formula& formula, std::uint32_t node, std::vector<double>& indices) {
   const double result = value(formula, node, indices);
   const Syntax& syntax = formula.nodes[node];
@@ -164,6 +173,26 @@ double number(const std::string& text, const std::map<std::string, ParameterText
   resolve(formula, names);
   std::vector<double> indices;
   return Evaluator(names).finite(formula, formula.root, indices);
+}
+
+EndQuantity end_quantity(const std::string& text, const System& system,
+                         const std::map<std::string, double>& further, const std::string& where) {
+  using namespace formula;
+  std::map<std::string, ParameterText> parameters = system.parameters;
+  for (const auto& [name, value] : further) parameters.try_emplace(name, ParameterText{{value}, false});
+  const auto names = std::make_shared<Names>(names_of(Kind::quantity, parameters, system.coordinates));
+  const auto formula = std::make_shared<Formula>(parse(text, where));
+  resolve(*formula, *names);
+  return [names, formula](const EndValues& ends, const std::map<std::string, double>& values) {
+    Names at = *names;
+    for (const auto& [name, value] : values)
+      if (const Known* known = at.find(name); known != nullptr && known->meaning == Meaning::parameter)
+        at.parameters[known->id].front() = value;
+    Evaluator evaluator(at);
+    evaluator.ends = ends;
+    std::vector<double> indices;
+    return evaluator.value(*formula, formula->root, indices);
+  };
 }
 
 std::vector<double> tabulate(const std::string& text, const std::map<std::string, ParameterText>& parameters,

@@ -10,13 +10,15 @@
 
 namespace extremal::formula {
 
-/// Evaluates resolved formulas of numbers, parameters and indices (and of t, T in a guess). The work of
+/// Evaluates resolved formulas of numbers, parameters and indices (and of t, T in a guess, end values in a
+/// quantity). The work of
 /// all evaluations together is bounded: sums may be long, but nothing may hang.
 class Evaluator {
  public:
   explicit Evaluator(const Names& names) : names_(names), definitions_(names.definitions.size()) {}
 
   double time = 0, duration = 0;
+  EndValues ends = {};
 
   /// `indices` holds the value of each index known at the node, outermost first.
   double value(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
@@ -37,6 +39,7 @@ class Evaluator {
  private:
   double reference(const Formula& formula, const Syntax& node, std::vector<double>& indices);
   double series(const Formula& formula, const Syntax& node, std::vector<double>& indices);
+  double end_value(const Formula& formula, const Syntax& node, std::vector<double>& indices);
 
   struct Cached {
     bool known = false;

@@ -106,6 +106,9 @@ class Resolver {
       if (names_.kind == Kind::condition)
         stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values",
                                spelled(name, known)));
+      if (names_.kind == Kind::quantity)
+        stop(node, fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values",
+                               spelled(name, known)));
       if (names_.kind == Kind::number || names_.kind == Kind::guess)
         stop(node, fmt::format("'{}' is a coordinate; only parameters can stand here", name));
       if (node.velocity && names_.kind == Kind::map)
@@ -146,11 +149,12 @@ class Resolver {
     const Known* known = names_.find(name);
     const bool index = std::find(indices_.begin(), indices_.end(), name) != indices_.end();
     if (known == nullptr && !index) unknown(node, name);
-    if (index || known->meaning != Meaning::coordinate || names_.kind != Kind::condition)
+    const bool ends = names_.kind == Kind::condition || names_.kind == Kind::quantity;
+    if (index || known->meaning != Meaning::coordinate || !ends)
       stop(node, fmt::format("'{}' is {}, not a function; write {}*(…) to multiply", name,
                              kind_of(index ? Meaning::index : known->meaning),
                              index ? name : spelled(name, *known)));
-    if (node.velocity)
+    if (node.velocity && names_.kind == Kind::condition)
       stop(node, fmt::format("\"{}'\" is a velocity; conditions hold between coordinates", name));
     if (node.indexed) visit(formula_.children(node)[0].node);
     check_index(node, name, *known);
@@ -170,7 +174,7 @@ class Resolver {
     std::vector<std::string> known;
     if (!call) known = indices_;
     for (const auto& [other, meaning] : names_.table)
-      if (!call || names_.kind == Kind::condition) known.push_back(other);
+      if (!call || names_.kind == Kind::condition || names_.kind == Kind::quantity) known.push_back(other);
     for (const Function& function : functions()) known.emplace_back(function.name);
     known.insert(known.end(), {"sum", "pi"});
     const std::string nearest = nearest_name(name, known);
