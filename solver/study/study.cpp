@@ -71,6 +71,8 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   study.scene = path;
   study.title = scene.title;
   study.system = make_system(scene.system);
+  study.axes = scene.system.axes;
+  study.centres = scene.system.centres;
   study.options = read_options(scene.solve);
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);
