@@ -18,8 +18,9 @@ namespace extremal::app {
 namespace {
 
 constexpr int csv_samples = 201;
-/// A picture has so many equal steps, and so many in each element: these are short where the motion is fast.
-constexpr int plot_steps = 800, element_steps = 8;
+/// A picture has so many equal steps, and so many in each element, which is short where the motion is fast;
+/// of elements that are many, fewer.
+constexpr int plot_steps = 800, element_steps = 8, most_element_steps = 20'000;
 
 /// One line that is written over, on a terminal.
 class Progress {
@@ -87,10 +88,10 @@ void write_csv_of(const std::string& path, const Study& study, const Result& res
 Samples drawn(const Study& study, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
   std::vector<double> times = equal_times(plot_steps + 1, solution.duration());
+  const int steps = std::min(element_steps, most_element_steps / trajectory.elements());
   for (int k = 0; k < trajectory.elements(); ++k)
-    for (int i = 0; i < element_steps; ++i)
-      times.push_back(trajectory.times[k] +
-                      (trajectory.times[k + 1] - trajectory.times[k]) * i / element_steps);
+    for (int i = 0; i < steps; ++i)
+      times.push_back(trajectory.times[k] + (trajectory.times[k + 1] - trajectory.times[k]) * i / steps);
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return sample(study.problem, trajectory, times);

@@ -99,8 +99,8 @@ std::optional<Bodies> bodies(const std::vector<std::string>& names) {
     }
     if (result.axes.size() > 1) return result;
   }
-  // Any two coordinates span a plane.
-  if (names.size() == 2) return Bodies{names, {{0, 1}}, {""}, false};
+  // Any two coordinates span a plane; those of one array are of one kind.
+  if (names.size() == 2) return Bodies{names, {{0, 1}}, {""}, families(names).size() == 1};
   return std::nullopt;
 }
 

@@ -157,9 +157,13 @@ class Script {
     place(panel);
     if (panel.axes) axes(panel);
     for (const Note& note : panel.notes) {
+      // To the left where there is no room to the right.
+      const double right = panel.x.place(note.x) * panel.box.width + text_width(note.text) + 12;
+      const char* align = !note.beside              ? "center"
+                          : right > panel.box.width ? "right offset -0.8,0.5"
+                                                    : "left offset 0.8,0.5";
       add("set label {} at graph {:.5f},{:.5f} {} textcolor rgb {}\n", quoted(note.text),
-          panel.x.place(note.x), panel.y.place(note.y), note.beside ? "left offset 0.8,0.5" : "center",
-          hexadecimal(quiet_ink));
+          panel.x.place(note.x), panel.y.place(note.y), align, hexadecimal(quiet_ink));
     }
     if (!panel.caption.empty())
       label(panel.caption, panel.box.left + panel.box.width / 2, panel.box.top - 14, "center", ink);

@@ -26,7 +26,7 @@ struct Bodies {
   std::vector<std::string> axes;                 ///< two or three names
   std::vector<std::vector<std::size_t>> places;  ///< of each body, its coordinate along each axis
   std::vector<std::string> names;                ///< of the bodies; of a lone one empty
-  bool lengths = true;                           ///< false: two coordinates of any kind
+  bool lengths = true;                           ///< false: two coordinates, perhaps of different kinds
 };
 
 /// Of the largest extent: a coordinate that varies by less does not move.

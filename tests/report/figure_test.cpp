@@ -180,6 +180,7 @@ TEST(Bodies, OfNames) {
   const auto angles = bodies({"a", "b"});
   ASSERT_TRUE(angles);
   EXPECT_FALSE(angles->lengths);
+  EXPECT_TRUE(bodies(elements("theta", 2))->lengths);
   for (const Texts& names :
        {Texts{"a", "b", "c"}, elements("theta", 3), elements("x", 3), Texts{"x", "y", "phi"},
         joined(elements("x", 3), elements("y", 2)), Texts{"x", "x'", "y"}})
@@ -381,11 +382,11 @@ FollowedBranch parabola() {
     point.solution.morse_index = a > 1;
     branch.points.push_back(point);
   };
-  for (const double a : {0.1, 0.3, 0.5, 0.8, 1.0, 1.3, 1.7})
+  for (const double a : {0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.55, 1.7})
     add(a, 0, a == 1 ? PointKind::fold : a == 0.5 ? PointKind::branch : PointKind::regular);
   add(0.6, 1, PointKind::regular);
   add(0.7, 1, PointKind::regular);
-  branch.branches = {{.points = 7}, {.origin = 2, .points = 2}};
+  branch.branches = {{.points = 13}, {.origin = 3, .points = 2}};
   return branch;
 }
 

@@ -59,9 +59,9 @@ TEST_F(Annotations, CentresThatMoveWithAContinuedParameterAreLeftOut) {
 
 TEST_F(Annotations, AreRefusedWithTheirPlace) {
   EXPECT_EQ(refusal("axes = [\"x\"]\n"),
-            "two.toml:3:9: an entry of 'axes' names coordinates and their unit, as \"x, y: km\"");
+            "two.toml:3:10: an entry of 'axes' names coordinates and their unit, as \"x, y: km\"");
   EXPECT_EQ(refusal("axes = [\"x, yy: m\"]\n"), "two.toml:3:13: there is no axis 'yy'; did you mean 'y'?");
   EXPECT_EQ(refusal("centres = [\"0, 0, 0\"]\n"),
-            "two.toml:3:12: a centre has one formula for each coordinate: 2 are wanted, 3 given");
+            "two.toml:3:13: a centre has one formula for each coordinate: 2 are wanted, 3 given");
   EXPECT_EQ(refusal("centres = [\"0, nu\"]\n"), "two.toml:3:16: unknown name 'nu'; did you mean 'mu'?");
 }
