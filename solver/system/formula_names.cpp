@@ -57,8 +57,10 @@ void declare_coordinate(Names& names, const SystemText& system, std::size_t k) {
   Coordinate coordinate{std::string(formula.name(root)), names.elements, 1, root.indexed};
   if (root.indexed) {
     formula.root = formula.children(root)[0].node;
-    const Vocabulary vocabulary(system.parameters, system.definitions);
-    Names constants = names_of(Kind::number, vocabulary);
+    Names constants;
+    constants.declare(system.parameters, system.active);
+    for (const Coordinate& earlier : names.coordinates) constants.declare(earlier, where);
+    constants.declare(system.definitions);
     std::vector<double> indices = resolve_at(formula, constants, 0);
     const long count = Evaluator(constants).integer(formula, formula.root, indices, "the size of an array");
     if (count < 1)

@@ -210,7 +210,7 @@ TEST(GivenMomenta, ExtremalIsThatBetweenItsEnds) {
       for (int i = 0; i + 1 < n; ++i) sum = sum - (q[i + 1] - q[i]) * (q[i + 1] - q[i]) / 4.0;
       return sum;
     });
-    const Problem given = with_ends(lagrangian, 1.5, [n](auto& r) {
+    const Problem given = with_ends(lagrangian, 0.7, [n](auto& r) {
       for (int i = 0; i < n; ++i) {
         if (i % 2 == 0)
           r.give_momentum(i, false, 0.3 * std::cos(i));
@@ -225,13 +225,15 @@ TEST(GivenMomenta, ExtremalIsThatBetweenItsEnds) {
       options.method = method;
       const Solution s = solve(given, options);
       for (int i = 0; i < n; ++i) {
-        if (i % 2 == 0) EXPECT_NEAR(s.momentum_start[i], 0.3 * std::cos(i), 1e-11) << n;
+        if (i % 2 == 0) {
+          EXPECT_NEAR(s.momentum_start[i], 0.3 * std::cos(i), 1e-11) << n;
+        }
         EXPECT_NEAR(s.momentum_end[i], i % 3 == 0 ? -0.2 : 0, 1e-11) << n;
       }
-      const Values start = at(s.trajectory, 0).q, end = at(s.trajectory, 1.5).q;
-      const Solution between = solve(fixed_ends(lagrangian, start, end, 1.5), within(1e-11));
+      const Values start = at(s.trajectory, 0).q, end = at(s.trajectory, 0.7).q;
+      const Solution between = solve(fixed_ends(lagrangian, start, end, 0.7), within(1e-11));
       EXPECT_LT(largest_difference(between.momentum_start, s.momentum_start), 1e-9) << n;
-      EXPECT_LT(largest_difference(at(between.trajectory, 0.7).q, at(s.trajectory, 0.7).q), 1e-9) << n;
+      EXPECT_LT(largest_difference(at(between.trajectory, 0.3).q, at(s.trajectory, 0.3).q), 1e-9) << n;
     }
   }
 }
