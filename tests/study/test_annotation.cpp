@@ -16,6 +16,8 @@ const std::string path =
     "[system]\nuse = \"two\"\n[boundary]\nstart = { x = 0.5, y = 0 }\nend = { x = 0.5, y = 1 }\nduration = "
     "1\n";
 
+}  // namespace
+
 class Annotations : public Scenes {
  protected:
   Annotation of(const std::string& about, const std::string& scene = path) {
@@ -32,8 +34,6 @@ class Annotations : public Scenes {
     return "accepted";
   }
 };
-
-}  // namespace
 
 TEST_F(Annotations, UnitsAndCentres) {
   const Annotation found =

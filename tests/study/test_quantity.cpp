@@ -18,6 +18,8 @@ const std::string spring =
     "[boundary]\nstart = { x = 1, q = [0, 0] }\nend = { x = 2, q = [3, 5] }\nduration = 1\n"
     "[continuation]\nparameter = \"k\"\nto = 1.5\npoints = 8\n";
 
+}  // namespace
+
 class Quantities : public Scenes {
  protected:
   void SetUp() override {
@@ -36,8 +38,6 @@ class Quantities : public Scenes {
   Study made;
   FollowedBranch branch;
 };
-
-}  // namespace
 
 TEST_F(Quantities, AreFormulasOfEndValues) {
   const BranchQuantity found = quantity(made, branch, "x'(0) + q[2](T)*c - 1/k");
