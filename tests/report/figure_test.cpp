@@ -398,7 +398,7 @@ TEST(BranchLayout, ADiagramAndSolutionsWithAKey) {
   const Panel& diagram = figure.panels[0];
   EXPECT_EQ(diagram.x.label, "lambda (N)");
   EXPECT_EQ(diagram.y.label, "q(T)");
-  EXPECT_EQ(planes(figure), (Texts{"lambda (N)-q(T)", "t/T-q", "t/T-", "view"}));
+  EXPECT_EQ(planes(figure), (Texts{"lambda (N)-q(T)", "t/T-q", "t/T-q", "view"}));
   EXPECT_EQ(figure.panels[2].caption, "branch at 0.75");
   ASSERT_EQ(keys(figure), 1u);
   EXPECT_EQ(figure.panels.back().key->scale.label, "lambda (N)");
