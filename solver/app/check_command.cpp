@@ -3,6 +3,7 @@
 
 #include "app/commands.hpp"
 #include "app/lines.hpp"
+#include "study/annotation.hpp"
 #include "study/inspection.hpp"
 
 namespace extremal::app {
@@ -101,6 +102,7 @@ void print_worst(const Study& study, const char* order, const WorstDerivative& w
 
 int check(const CheckArguments& arguments) {
   const Study study = load(arguments.scene, arguments.sets);
+  annotation(study);  // refuses what the system file says wrongly of pictures
   const Inspection found = inspect(study);
   const DerivativeCheck& derivatives = found.derivatives;
   if (!study.title.empty()) line("title", study.title);

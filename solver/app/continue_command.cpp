@@ -8,6 +8,7 @@
 #include "report/branch.hpp"
 #include "report/plot.hpp"
 #include "study/continued.hpp"
+#include "study/quantity.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
@@ -20,11 +21,23 @@ void show_point(const BranchPoint& point) {
   std::fflush(stderr);
 }
 
+/// The formula of --quantity, before anything is computed.
+void check_shown(const ContinueArguments& a, const Study& study) {
+  if (a.plot.empty()) throw OptionError("--quantity says what --plot shows; give a file to --plot");
+  try {
+    check_quantity(study, a.quantity);
+  } catch (const FormulaError& e) {
+    throw OptionError(fmt::format("--quantity: '{}': column {}: {}", a.quantity, e.offset + 1, e.what()));
+  }
+}
+
 }  // namespace
 
 int follow(const ContinueArguments& a) {
   const bool table = !on_standard_output(a.output, a.csv) && !a.quiet;
   const Study study = load(a.scene, a.sets);
+  const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
+  if (!a.quantity.empty()) check_shown(a, study);
   const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
   std::function<void(const BranchPoint&)> progress;
   if (terminal) progress = show_point;
@@ -36,7 +49,8 @@ int follow(const ContinueArguments& a) {
     return Exit::not_converged;
   }
   if (!a.csv.empty()) write_output(a.csv, [&](std::ostream& out) { write_csv(out, branch); });
-  if (!a.plot.empty()) write_plot(a.plot, branch);
+  if (!a.plot.empty())
+    write_plot(a.plot, BranchPicture{branch, quantity(study, branch, a.quantity), annotation});
   if (table) fmt::print("{}", summary(branch));
   return Exit::done;
 }

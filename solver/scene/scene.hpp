@@ -47,6 +47,7 @@ struct SystemTable {
   std::vector<Definition> definitions;
   std::optional<Text> lagrangian;
   std::optional<Number> curvature;
+  std::vector<Text> axes, centres;  ///< of [about], as written
 };
 
 struct BoundaryTable {

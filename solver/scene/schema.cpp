@@ -111,7 +111,7 @@ constexpr KeyRecord keys[] = {
      "switch = true"},
 
     {"system file", "about", Kind::note, "none",
-     "Texts about the system. The first is shown by `extremal list`.",
+     "Texts about the system. The first is shown by `extremal list`; pictures use `axes` and `centres`.",
      R"(about = { summary = "Plane pendulum", units = "kg, m, s" })", true},
     {"system file", "system", Kind::table, "required", "The table `[system]` of a scene, without `use`.",
      R"(system = { coordinates = ["x"], lagrangian = "x'^2/2" })"},

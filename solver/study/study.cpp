@@ -73,6 +73,8 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.title = scene.title;
   study.system = make_system(scene.system);
   check_parameters_used(scene);
+  study.axes = scene.system.axes;
+  study.centres = scene.system.centres;
   study.options = read_options(scene.solve);
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);

@@ -24,6 +24,7 @@ struct Study {
   SolveOptions options;
   int solutions = 0;  ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
+  std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 

@@ -88,6 +88,19 @@ System compile(const SystemText& text);
 double number(const std::string& formula, const Vocabulary& vocabulary, const std::string& where,
               int index = 0);
 
+/// Coordinates and velocities at both ends, n entries each.
+struct EndValues {
+  std::span<const double> q_start, v_start, q_end, v_end;
+};
+
+/// The value of a formula at the ends of a trajectory, perhaps not finite; `values` replaces numbers by name.
+using EndQuantity = std::function<double(const EndValues& ends, const std::map<std::string, double>& values)>;
+
+/// A formula of end values x(0), x[2]'(T), also of definitions, of parameters, and of `further` numbers where
+/// the system has no parameter or definition of that name. `where` names the text in errors.
+EndQuantity end_quantity(const std::string& formula, const System& system,
+                         const std::map<std::string, double>& further, const std::string& where);
+
 /// A guess x(t) as a formula of t, T, parameters, definitions of t alone and the index, as above. Returns the
 /// values at each of `times`.
 std::vector<double> tabulate(const std::string& formula, const Vocabulary& vocabulary, double duration,

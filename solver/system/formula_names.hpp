@@ -25,6 +25,7 @@ enum class Kind {
   guess,       ///< t, T
   map,         ///< coordinates
   condition,   ///< end values x(0), x(T)
+  quantity,    ///< end values x(0), x'(T)
   lagrangian,  ///< coordinates, velocities, t; definitions are formulas of this kind
 };
 

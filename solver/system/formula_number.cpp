@@ -67,7 +67,7 @@ double Evaluator::value(const Formula& formula, std::uint32_t id, std::vector<do
     case Form::power:
       return std::pow(part(0), part(1));
     case Form::call: {
-      if (node.meaning != Meaning::none) return reference(formula, node, indices);  // a definition at an end
+      if (node.meaning != Meaning::none) return reference(formula, node, indices);  // at an end
       const double first = part(0);
       return scalar::apply(node.op, first, links.size() > 1 ? part(1) : 0.0);
     }
@@ -102,9 +102,14 @@ double Evaluator::reference(const Formula& formula, const Syntax& node, std::vec
       const Parameter& list = *names_.parameters[node.id];
       return list[node.indexed ? element(formula, node, static_cast<int>(list.size()), indices) : 0];
     }
+    case Meaning::coordinate:
+    case Meaning::start:
+    case Meaning::end:
+      return end_value(formula, node, indices);
     case Meaning::definition:
     case Meaning::definition_start:
     case Meaning::definition_end: {
+      if (names_.kind == Kind::quantity) return end_definition(node);
       if (node.velocity) return 0;  // of a number
       Cached& cached = definitions_[node.id];
       if (!cached.known) {
@@ -132,6 +137,25 @@ double Evaluator::series(const Formula& formula, const Syntax& node, std::vector
   }
   indices.pop_back();
   return sum;
+}
+
+/// A coordinate within a definition is that of the end at which the definition is read.
+double Evaluator::end_value(const Formula& formula, const Syntax& node, std::vector<double>& indices) {
+  const Coordinate& declared = names_.coordinates[node.id];
+  const bool last = node.meaning == Meaning::coordinate ? at_end_ : node.meaning == Meaning::end;
+  const std::span<const double> values =
+      last ? (node.velocity ? ends.v_end : ends.q_end) : (node.velocity ? ends.v_start : ends.q_start);
+  return values[declared.first + (node.indexed ? element(formula, node, declared.count, indices) : 0)];
+}
+
+double Evaluator::end_definition(const Syntax& node) {
+  const bool before = at_end_;
+  if (node.meaning != Meaning::definition) at_end_ = node.meaning == Meaning::definition_end;
+  const Formula& definition = names_.definitions[node.id];
+  std::vector<double> none;
+  const double result = value(definition, definition.root, none);
+  at_end_ = before;
+  return result;
 }
 
 double Evaluator::finite(const Formula& formula, std::uint32_t node, std::vector<double>& indices) {
@@ -172,6 +196,33 @@ double number(const std::string& text, const Vocabulary& vocabulary, const std::
   Formula formula = parse(text, where);
   std::vector<double> indices = resolve_at(formula, names, index);
   return Evaluator(names).finite(formula, formula.root, indices);
+}
+
+EndQuantity end_quantity(const std::string& text, const System& system,
+                         const std::map<std::string, double>& further, const std::string& where) {
+  using namespace formula;
+  // What formula and names refer to lives as long as the quantity.
+  struct Read {
+    Vocabulary vocabulary;
+    Names names;
+    Formula formula;
+  };
+  const auto read = std::make_shared<Read>(Read{system, {}, parse(text, where)});
+  for (const auto& [name, value] : further)
+    if (!system.definitions.contains(name))
+      read->vocabulary.parameters.try_emplace(name, ParameterText{{value}, false});
+  read->names = names_of(Kind::quantity, read->vocabulary);
+  resolve(read->formula, read->names);
+  return [read](const EndValues& ends, const std::map<std::string, double>& values) {
+    for (const auto& [name, value] : values)
+      if (const auto known = read->vocabulary.parameters.find(name);
+          known != read->vocabulary.parameters.end())
+        known->second.value.front() = value;
+    Evaluator evaluator(read->names);
+    evaluator.ends = ends;
+    std::vector<double> indices;
+    return evaluator.value(read->formula, read->formula.root, indices);
+  };
 }
 
 std::vector<double> tabulate(const std::string& text, const Vocabulary& vocabulary, double duration,

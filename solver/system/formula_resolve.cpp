@@ -108,6 +108,9 @@ class Resolver {
       if (kind_ == Kind::condition)
         stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values",
                                spelled(name, known)));
+      if (kind_ == Kind::quantity)
+        stop(node, fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values",
+                               spelled(name, known)));
       if (kind_ == Kind::number || kind_ == Kind::guess)
         stop(node, fmt::format("'{}' is a coordinate; only parameters can stand here", name));
       if (node.velocity && kind_ == Kind::map)
@@ -135,6 +138,9 @@ class Resolver {
       stop(node, fmt::format("'{0}' has velocities in it, so \"{0}'\" would need second derivatives", name));
     if (kind_ == Kind::condition && (reads & of_coordinates))
       stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values", name));
+    if (kind_ == Kind::quantity && (reads & ~of_time))
+      stop(node,
+           fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values", name));
     const std::uint8_t allowed = kind_ == Kind::lagrangian ? 0xff
                                  : kind_ == Kind::map      ? of_coordinates
                                  : kind_ == Kind::guess    ? of_time
@@ -175,15 +181,16 @@ class Resolver {
     const Known* known = names_.find(name);
     const bool index = std::find(indices_.begin(), indices_.end(), name) != indices_.end();
     if (known == nullptr && !index) unknown(node, name);
+    const bool ends = kind_ == Kind::condition || kind_ == Kind::quantity;
     const bool definition = known != nullptr && known->meaning == Meaning::definition;
     const Syntax& argument = child(node, node.indexed);
     if (!index && argument.form == Form::reference && formula_.name(argument) == "t")
       stop(node, fmt::format("write {0}{1} for {0}{1}(t)", spelled(name, *known), node.velocity ? "'" : ""));
-    if (index || (known->meaning != Meaning::coordinate && !definition) || kind_ != Kind::condition)
+    if (index || (known->meaning != Meaning::coordinate && !definition) || !ends)
       stop(node, fmt::format("'{}' is {}, not a function; write {}*(…) to multiply", name,
                              kind_of(index ? Meaning::index : known->meaning),
                              index ? name : spelled(name, *known)));
-    if (node.velocity)
+    if (node.velocity && kind_ == Kind::condition)
       stop(node, fmt::format("\"{}'\" is a velocity; conditions hold between coordinates", name));
     if (node.indexed) visit(formula_.children(node)[0].node);
     check_index(node, name, *known);
@@ -195,7 +202,11 @@ class Resolver {
     node.id = known->id;
     node.meaning = definition ? (start ? Meaning::definition_start : Meaning::definition_end)
                               : (start ? Meaning::start : Meaning::end);
-    if (definition && root_of(node).reads & ~of_coordinates)
+    if (definition && kind_ == Kind::quantity && node.velocity)
+      stop(node, fmt::format("\"{}'\" is the velocity of a definition; only those of coordinates stand here",
+                             name));
+    const std::uint8_t allowed = kind_ == Kind::quantity ? of_coordinates | of_velocities : of_coordinates;
+    if (definition && root_of(node).reads & ~allowed)
       stop(node, fmt::format("the definition '{}' depends on {}; conditions hold between coordinates", name,
                              root_of(node).reads & of_velocities ? "velocities" : "t"));
   }
@@ -207,7 +218,7 @@ class Resolver {
     std::vector<std::string> known;
     if (!call) known = indices_;
     for (const auto& [other, meaning] : names_.table)
-      if (!call || kind_ == Kind::condition) known.push_back(other);
+      if (!call || kind_ == Kind::condition || kind_ == Kind::quantity) known.push_back(other);
     for (const Function& function : functions()) known.emplace_back(function.name);
     known.insert(known.end(), {"sum", "pi"});
     const std::string nearest = nearest_name(name, known);

@@ -70,6 +70,19 @@ TEST_F(Command, ContinuesAFamily) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 31);
 }
 
+TEST_F(Command, APlotShowsTheQuantityAsked) {
+  write("scene.toml", bratu_with("points = 30", "points = 6"));
+  const Outcome o = extremal({"continue", "scene.toml", "--plot", "b.svg", "--quantity", "q'(0)/lambda"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  EXPECT_NE(read_text(folder / "b.svg").find("q'(0)/lambda"), std::string::npos);
+  ASSERT_EQ(extremal({"continue", "scene.toml", "--plot", "b.svg"}).exit, 0);
+  EXPECT_NE(read_text(folder / "b.svg").find("amplitude of q"), std::string::npos);
+  EXPECT_EQ(extremal({"continue", "scene.toml", "--plot", "b.svg", "--quantity", "q'(0)/lamda"}).error,
+            "error: --quantity: 'q'(0)/lamda': column 7: unknown name 'lamda'; did you mean 'lambda'?\n");
+  EXPECT_EQ(extremal({"continue", "scene.toml", "--quantity", "q'(0)"}).error,
+            "error: --quantity says what --plot shows; give a file to --plot\n");
+}
+
 TEST_F(Command, ContinuesToTheValueAsked) {
   write("scene.toml", bratu_with("to = 4.0", "to = 2.0"));
   const Outcome o = extremal({"continue", "scene.toml", "--output", "b.json"});
