@@ -377,7 +377,7 @@ TEST(Layout, LargeSystemsMakeBoundedFigures) {
 FollowedBranch parabola() {
   FollowedBranch branch{.title = "Fold", .parameter = "lambda", .names = {"q"}, .points = {}, .branches = {}};
   const auto add = [&](double a, int number, PointKind kind) {
-    BranchPoint point{.parameter = 1 - (a - 1) * (a - 1), .kind = kind, .branch = number};
+    BranchPoint point{.parameter = 1 - (a - 1) * (a - 1), .kind = kind, .branch = number, .solution = {}};
     point.solution.trajectory = {.coordinates = 1, .degree = 1, .times = {0, 1}, .nodes = {0, a}};
     point.solution.morse_index = a > 1;
     branch.points.push_back(point);
