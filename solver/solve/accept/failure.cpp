@@ -134,7 +134,8 @@ Solution explain_failure(const Problem& problem, const SolveOptions& options, co
              failed_at_conjugate_ends(problem, trajectory_of(last.path), w.variation)) {
     solution.status = Status::conjugate_ends;
     solution.message =
-        "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
+        "the ends seem to be conjugate: there is no extremal or a family of them; move an end or change the "
+        "duration (" +
         last.message + ")";
   }
   solution.strategy = last.strategy;

@@ -69,8 +69,8 @@ bool ResidualTest::passed(const Problem& problem, const NewtonIteration& newton,
 
 std::string ResidualTest::message() const {
   return fmt::format(
-      "the iteration came to rest where a residual of {:.1e} of the largest momentum is left: there is no "
-      "extremal near, or the second variation is nearly singular; try another guess",
+      "Newton's method stopped with a residual of {:.1e} of the largest momentum: there is no extremal near, "
+      "or the second variation is nearly singular; try another guess",
       share_);
 }
 
