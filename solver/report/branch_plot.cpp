@@ -219,6 +219,8 @@ Figure layout(const FollowedBranch& branch) {
   return figure;
 }
 
-void write_plot(const std::string& path, const FollowedBranch& branch) { write_figure(path, layout(branch)); }
+std::string plot_image(const std::string& path, const FollowedBranch& branch) {
+  return plot_image(path, layout(branch));
+}
 
 }  // namespace extremal

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "report/file.hpp"
 #include "report/result.hpp"
 
 /// \file Samples as a picture.
@@ -23,7 +24,8 @@ struct Picture {
 /// work is begun whose result would be plotted.
 void check_plot_path(const std::string& path);
 
-/// Draws with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows from the names:
+/// The bytes of a file drawn with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows
+/// from the names:
 ///  - one coordinate: it and its velocity against time;
 ///  - two: the path in the plane, equal scales, beside both against time;
 ///  - three: the path in space and its projections;
@@ -33,11 +35,17 @@ void check_plot_path(const std::string& path);
 /// Further solutions are drawn with up to three coordinates; of more coordinates only the first is, and the
 /// title says so.
 /// Throws std::invalid_argument for columns that do not fit the names, std::runtime_error if gnuplot is
-/// missing or fails or the path cannot be written.
-void write_plot(const std::string& path, const Picture& picture);
+/// missing or fails.
+std::string plot_image(const std::string& path, const Picture& picture);
 
 struct Figure;
-/// Draws a figure; throws in the same way.
-void write_figure(const std::string& path, const Figure& figure);
+/// The bytes of a figure's file; throws in the same way.
+std::string plot_image(const std::string& path, const Figure& figure);
+
+/// Writes what plot_image() of its subject draws. Throws std::runtime_error if the path cannot be written.
+template <class Subject>
+void write_plot(const std::string& path, const Subject& subject) {
+  write_files({{path, plot_image(path, subject)}});
+}
 
 }  // namespace extremal

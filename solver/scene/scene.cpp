@@ -122,9 +122,14 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
 
   Scene scene;
   scene.path = path;
+  scene.files = {path};
   scene.title = document.root["title"].value_or(std::string());
   scene.system = read_system_table(document, *table(document, "system", true));
-  if (scene.system.use) scene.system = merge(read_system(*scene.system.use, path), scene.system);
+  if (scene.system.use) {
+    SystemTable used = read_system(*scene.system.use, path);
+    if (used.at.source) scene.files.push_back(used.at.source->name);
+    scene.system = merge(std::move(used), scene.system);
+  }
   scene.boundary = read_boundary_table(document, *table(document, "boundary", true));
   if (const auto* guess = table(document, "guess", false)) scene.guess = read_guess_table(document, *guess);
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);

@@ -91,6 +91,7 @@ struct ContinuationTable {
 
 struct Scene {
   std::string path;
+  std::vector<std::string> files;  ///< that were read: the scene, and the system file that it uses
   std::string title;
   SystemTable system;
   BoundaryTable boundary;

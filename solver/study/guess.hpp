@@ -14,6 +14,9 @@ namespace extremal {
 /// Throws SceneError.
 void read_guess(const Scene& scene, const System& system, Problem& problem);
 
+/// The path of the file that the guess names, which is looked up beside the scene.
+std::string guess_path(const Scene& scene);
+
 /// q(t) as a file gives it, row by row: q[k*n + a].
 struct SampledFile {
   std::vector<double> t;

@@ -69,6 +69,8 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   const Scene scene = read_scene(path, sets);
   Study study;
   study.scene = path;
+  study.files = scene.files;
+  if (scene.guess.file) study.files.push_back(guess_path(scene));
   study.title = scene.title;
   study.system = make_system(scene.system);
   study.options = read_options(scene.solve);

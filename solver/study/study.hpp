@@ -17,8 +17,9 @@ namespace extremal {
 
 /// A scene made ready: tape, boundary relation and sampled guess stand.
 struct Study {
-  std::string scene;  ///< its path, as given
-  std::string title;  ///< may be empty
+  std::string scene;               ///< its path, as given
+  std::vector<std::string> files;  ///< that it was read from: itself, a system file, a guess
+  std::string title;               ///< may be empty
   System system;
   Problem problem;
   SolveOptions options;
