@@ -29,7 +29,10 @@ std::string output_refusal(const std::string& path) {
   fs::path place = path;
   if (fs::is_directory(place, error)) return fmt::format("'{}' is a folder; a file is needed", path);
   if (!place.has_filename()) return fmt::format("'{}' names a folder; a file is needed", path);
-  if (!fs::exists(place, error)) {
+  const bool there = fs::exists(place, error);
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+    return fmt::format("'{}' cannot be written: {}", path, error.message());
+  if (!there) {
     do place = place.has_parent_path() ? place.parent_path() : fs::path(".");
     while (!fs::exists(place, error));
     if (!fs::is_directory(place, error)) return fmt::format("'{}' is not a folder", place.string());

@@ -26,6 +26,8 @@ const char* status(BranchEnd end) {
     case BranchEnd::limit:
     case BranchEnd::too_short:
       return name(Status::no_solution_near);
+    case BranchEnd::budget:
+      return name(Status::iteration_limit);
     case BranchEnd::none:
     case BranchEnd::not_started:
       return name(Status::not_converged);

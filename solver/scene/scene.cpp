@@ -77,6 +77,9 @@ void check_solve(const SolveTable& solve) {
   if (solve.tolerance && !(solve.tolerance->value > 0 && solve.tolerance->value < 1))
     throw SceneError(solve.tolerance->at,
                      fmt::format("tolerance = {}; need more than 0 and less than 1", solve.tolerance->value));
+  if (solve.budget && !(solve.budget->value > 0))
+    throw SceneError(solve.budget->at,
+                     fmt::format("budget = {}; need more than 0 seconds", solve.budget->value));
   if (solve.elements && !(solve.elements->value >= 1 && solve.elements->value <= 1e9))
     throw SceneError(solve.elements->at,
                      fmt::format("elements = {}; need 1 to 1000000000", solve.elements->value));

@@ -73,7 +73,8 @@ struct SolveTable {
   std::optional<Number> tolerance;
   std::optional<Text> scheme;
   std::optional<Number> elements;
-  std::optional<Text> method;  ///< one of method_records()
+  std::optional<Number> budget;  ///< s
+  std::optional<Text> method;    ///< one of method_records()
 };
 
 struct SearchTable {

@@ -88,7 +88,7 @@ std::string guess_path(const Scene& scene) {
   return (std::filesystem::path(scene.path).parent_path() / scene.guess.file->value).string();
 }
 
-void read_guess(const Scene& scene, const System& system, Problem& problem) {
+void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem) {
   const GuessTable& table = scene.guess;
   if (table.file) {
     SampledFile samples = read_samples(guess_path(scene), system.names);
@@ -99,7 +99,7 @@ void read_guess(const Scene& scene, const System& system, Problem& problem) {
   }
   if (problem.duration.free) problem.duration.value = guessed_duration(table, system, 0);
   if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
-  if (table.state) integrate_state(*table.state, system, table.at, problem);
+  if (table.state) integrate_state(*table.state, system, table.at, deadline, problem);
 }
 
 }  // namespace extremal

@@ -41,7 +41,7 @@ bool Search::collapsed() const {
 Search::Pursuit Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
   outcome_.elsewhere = strategy != from_guess;
-  run_external_solver(options_.method, problem_, refinement_.tables(), path_,
+  run_external_solver(options_.method, problem_, refinement_.tables(), path_, options_.deadline,
                       [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
@@ -229,6 +229,11 @@ const Outcome& Search::run(Acceptance* acceptance) {
           met_.contains(Met::other_durations) ? ", through other durations" : "",
           met_.contains(Met::noise) ? ", from smooth noise" : "",
           met_.contains(Met::motions) ? ", from motions that miss the end" : "");
+      if (options_.deadline.passed())
+        outcome_.message = fmt::format(
+            "{} (solve.budget) is spent after {} Newton steps ({}); raise it, or try a better guess or a "
+            "shorter duration",
+            options_.deadline.budget_text(), outcome_.iterations, failure);
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =
