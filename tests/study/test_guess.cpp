@@ -134,3 +134,27 @@ TEST_F(Scenes, GuessFromAStateThatEndsInACollision) {
       0u)
       << text;
 }
+
+TEST_F(Scenes, GuessFromAStateOfTooManyOscillations) {
+  const std::string text = message(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - 1e10*x^2/2\"\n[boundary]\nstart = { x = 1 }\n"
+      "duration = 1000\n[guess]\nstate = { x = 1 }\n");
+  EXPECT_EQ(text.rfind("scene.toml:7:1: the motion from guess.state makes about 1.6e+07 oscillations", 0), 0u)
+      << text;
+}
+
+TEST_F(Scenes, GuessFromAStateNeedsARegularMass) {
+  EXPECT_EQ(message("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x' + y')^2/2\"\n[boundary]\n"
+                    "duration = 1\n[guess]\nstate = { x = 1 }\n")
+                .rfind("scene.toml:3:14: the Lagrangian is not regular", 0),
+            0u);
+}
+
+TEST_F(Scenes, GuessFilesOfListsAreNoCsv) {
+  for (const char* text : {"[[[[", "[1, 2]"}) {
+    write("guess.json", text);
+    const std::string what = message(masses + ends + "[guess]\nfile = \"guess.json\"\n");
+    EXPECT_EQ(what.find("column"), std::string::npos) << what;
+    EXPECT_EQ(what.rfind("guess.json: this ", 0), 0u) << what;
+  }
+}

@@ -229,11 +229,6 @@ const Outcome& Search::run(Acceptance* acceptance) {
           met_.contains(Met::other_durations) ? ", through other durations" : "",
           met_.contains(Met::noise) ? ", from smooth noise" : "",
           met_.contains(Met::motions) ? ", from motions that miss the end" : "");
-      if (options_.deadline.passed())
-        outcome_.message = fmt::format(
-            "{} (solve.budget) is spent after {} Newton steps ({}); raise it, or try a better guess or a "
-            "shorter duration",
-            options_.deadline.budget_text(), outcome_.iterations, failure);
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =
@@ -250,6 +245,13 @@ const Outcome& Search::run(Acceptance* acceptance) {
     outcome_.message =
         "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "
         "family of them; move an end or the duration";
+  }
+  if (outcome_.status != Status::converged && options_.deadline.passed()) {
+    outcome_.status = Status::iteration_limit;
+    outcome_.message = fmt::format(
+        "{} (solve.budget) is spent, in Newton steps: {}; raise it, or try a better guess or a shorter "
+        "duration",
+        options_.deadline.budget_text(), outcome_.iterations);
   }
   acceptance_ = nullptr;
   return outcome_;
