@@ -176,7 +176,7 @@ class PointCheck {
 
 }  // namespace
 
-DerivativeCheck check_derivatives(const Problem& problem) {
+DerivativeCheck check_derivatives(const Problem& problem, const Deadline& deadline) {
   const int variables = 2 * problem.coordinates();
   DerivativeCheck check;
   check.columns = std::min(variables, std::clamp(most_work / variables, 4, most_columns));
@@ -187,9 +187,16 @@ DerivativeCheck check_derivatives(const Problem& problem) {
   for (int k = 0; k < points_tried && check.points < points_wanted; ++k) {
     const double t = nearby.next(q, v);
     if (!point.load(q, v, t)) continue;
+    if (check.points > 0 && deadline.passed()) break;
     ++check.points;
-    for (int c = 0; c < check.columns; ++c)
-      point.compare(static_cast<int>(std::int64_t(c) * variables / check.columns), check);
+    const int columns = check.columns;
+    for (int c = 0; c < columns; ++c) {
+      if (c > 0 && deadline.passed()) {
+        if (check.points == 1) check.columns = c;
+        break;
+      }
+      point.compare(static_cast<int>(std::int64_t(c) * variables / columns), check);
+    }
   }
   return check;
 }

@@ -112,16 +112,24 @@ TEST_F(Outputs, AFileAtItsLimitOfSizeLeavesTheOldOne) {
   EXPECT_EQ(after, before);
 }
 
-/// Chains that no verb is done with at once.
-const std::string chain =
-    "[system]\ncoordinates = [\"x[40]\"]\n"
-    "lagrangian = \"sum(i, 1, 40, x[i]'^2/2 + cos(x[i])) - sum(i, 1, 39, (x[i+1] - x[i])^4/4)\"\n"
-    "[boundary]\nstart = { x = 0 }\nend = { x = \"i\" }\nduration = 60.0\n"
-    "[continuation]\nparameter = \"duration\"\nto = 600.0\npoints = 1000\n";
+/// A chain that no verb is done with at once.
+std::string chain() {
+  std::string start, end;
+  for (int i = 1; i <= 40; ++i) {
+    start += fmt::format("{}0", i > 1 ? ", " : "");
+    end += fmt::format("{}{}", i > 1 ? ", " : "", i);
+  }
+  return fmt::format(
+      "[system]\ncoordinates = [\"x[40]\"]\n"
+      "lagrangian = \"sum(i, 1, 40, x[i]'^2/2 + cos(x[i])) - sum(i, 1, 39, (x[i+1] - x[i])^4/4)\"\n"
+      "[boundary]\nstart = {{ x = [{}] }}\nend = {{ x = [{}] }}\nduration = 60.0\n"
+      "[continuation]\nparameter = \"duration\"\nto = 600.0\npoints = 1000\n",
+      start, end);
+}
 
 TEST_F(Outputs, AnInterruptEndsEveryVerbAtOnceAndLeavesNothing) {
   using namespace std::chrono_literals;
-  write("chain.toml", chain);
+  write("chain.toml", chain());
   fs::create_directory(folder / "temporary");
   ::setenv("TMPDIR", (folder / "temporary").c_str(), 1);
   for (const int signal : {SIGINT, SIGTERM})
@@ -146,7 +154,7 @@ TEST_F(Outputs, AnInterruptEndsEveryVerbAtOnceAndLeavesNothing) {
 
 TEST_F(Outputs, TheBudgetEndsEveryVerb) {
   using namespace std::chrono_literals;
-  write("chain.toml", chain);
+  write("chain.toml", chain());
   for (const std::vector<std::string>& more :
        std::vector<std::vector<std::string>>{{"solve"},
                                              {"solve", "--set", "solve.method=ipopt"},
