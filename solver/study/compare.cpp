@@ -87,6 +87,8 @@ class Comparer {
                                     study.options.tolerance, found.pieces);
       return;
     }
+    if (deadline().passed())
+      result_.message += fmt::format("; {} (solve.budget) is spent; raise it", deadline().budget_text());
     result_.message = "no reference: " + result_.message;
   }
 

@@ -91,6 +91,7 @@ std::string guess_path(const Scene& scene) {
 void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem) {
   const GuessTable& table = scene.guess;
   if (table.file) {
+    if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
     SampledFile samples = read_samples(guess_path(scene), system.names);
     if (problem.duration.free)
       problem.duration.value = guessed_duration(table, system, samples.t.back() - samples.t.front());

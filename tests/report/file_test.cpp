@@ -4,26 +4,14 @@
 #include <sys/stat.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 #include <thread>
 
+#include "report/folders.hpp"
 #include "report/temporary_folder.hpp"
 
 namespace extremal {
 namespace {
 namespace fs = std::filesystem;
-
-std::string content(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
-std::size_t entries(const std::string& path) {
-  return std::distance(fs::directory_iterator(path), fs::directory_iterator());
-}
 
 TEST(Files, AreWrittenAllOrNone) {
   const TemporaryFolder folder;
@@ -34,7 +22,7 @@ TEST(Files, AreWrittenAllOrNone) {
                std::runtime_error);
   EXPECT_THROW(write_files({{folder / "a", "other"}, {folder / "a/c", "below a file"}}), std::runtime_error);
   EXPECT_EQ(content(folder / "a"), "one");
-  EXPECT_EQ(entries(folder.path()), 2u);
+  EXPECT_EQ(entries(folder.path()).size(), 2u);
 }
 
 TEST(Files, ANameMayBeAsLongAsNamesCanBe) {
@@ -48,7 +36,7 @@ TEST(Files, ANameMayBeAsLongAsNamesCanBe) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("name too long"), std::string::npos) << error.what();
   }
-  EXPECT_EQ(entries(folder.path()), 1u);
+  EXPECT_EQ(entries(folder.path()).size(), 1u);
 }
 
 TEST(Files, APipeGetsMoreThanItHolds) {
