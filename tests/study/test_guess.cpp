@@ -86,7 +86,7 @@ TEST_F(Scenes, GuessFromAResult) {
             "r.json: this result has no samples; solve with --samples to write some");
   write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0, null]}}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
-            "r.json: 'x' of the samples is not a list of numbers");
+            "r.json: 'x' of the samples is not a list of finite numbers");
   write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0]}}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
             "r.json: the samples have 2 times and 1 values of 'x'");

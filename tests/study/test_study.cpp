@@ -158,7 +158,9 @@ TEST_F(Scenes, TheBudgetIsPositiveAndEndsWhatDoesNotConverge) {
   EXPECT_EQ(study(masses + ends, {"solve.budget=0.5"}).budget, 0.5);
   EXPECT_EQ(message(masses + ends + "[solve]\nbudget = 0\n"),
             "scene.toml:11:10: budget = 0; need more than 0 seconds");
-  Study s = study(masses + ends);
+  Study s = study(
+      "[system]\ncoordinates = [\"q\"]\nlagrangian = \"q'^2/2 + cos(q)\"\n[boundary]\n"
+      "start = { q = 0 }\nend = { q = 3 }\nduration = 60\n");
   s.options.deadline = Deadline(0);
   while (!s.options.deadline.passed()) {
   }

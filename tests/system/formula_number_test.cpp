@@ -128,7 +128,8 @@ TEST(FormulaNumber, ValuesOutOfRangeAreRefusedWithTheNumbers) {
   EXPECT_EQ(refusal("m[n/8]"), "the index of 'm' is 0.5, not an integer | duration | 2");
   EXPECT_EQ(refusal("sum(i, 1, n, m[i + 1])"),
             "m[5] is out of range: 'm' has 4 elements, counted from 1 (at i = 4) | duration | 13");
-  EXPECT_EQ(refusal("m[1 + 1e-300]"), "1 is an integer only by rounding; write it in integers | duration | 4");
+  EXPECT_EQ(refusal("m[1 + 1e-300]"),
+            "1 is an integer only by rounding; write it in integers | duration | 4");
   EXPECT_EQ(refusal("sum(i, 1, 2, m[i + 1e-300])"),
             "1 is an integer only by rounding (at i = 1); write it in integers | duration | 17");
   EXPECT_EQ(refusal("sum(i, 1, 2, m[3*i/3])"), "");
