@@ -20,7 +20,7 @@ namespace {
 using namespace extremal;
 
 constexpr int most_steps = 200, most_points = 3, most_solutions = 2;
-constexpr double budget = 0.5;  // s, in an instrumented build
+constexpr double budget = 0.1;  // s
 /// Coordinates whose problem is solved, and whose derivatives are checked.
 constexpr int most_coordinates = 12;
 
