@@ -3,7 +3,7 @@ SCENE = problems/scenes/cr3bp.toml
 # Where `make install` installs; the program looks for system files there.
 PREFIX = /usr/local
 
-.PHONY: configure build demo test bench debug asan ubsan sanitize gallery reference format install package packages clean
+.PHONY: configure build demo test bench debug asan ubsan sanitize fuzz gallery reference format install package packages clean
 
 configure: packages
 	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) >build/configure.log 2>&1 || { \
@@ -26,6 +26,19 @@ debug asan ubsan sanitize: packages
 	@cmake --preset $@
 	@cmake --build --preset $@
 	@ctest --preset $@
+
+asan sanitize fuzz: export ASAN_OPTIONS = detect_leaks=1
+
+# Scenes by libFuzzer for so many seconds, from those of problems/ and from what it kept before; a scene that fails
+# is left in build/fuzz/found.
+FUZZ_SECONDS = 3600
+fuzz: packages
+	@.ci/packages .ci/checks.txt
+	@cmake --preset fuzz
+	@cmake --build --preset fuzz
+	@mkdir -p build/fuzz/kept build/fuzz/found
+	@build/fuzz/fuzz_scene -max_total_time=$(FUZZ_SECONDS) -timeout=60 -rss_limit_mb=4096 -max_len=4096 -fork=2 \
+	  -dict=tests/fuzz/scene.dict -artifact_prefix=build/fuzz/found/ build/fuzz/kept problems/scenes tests/data/refused
 
 bench: build
 	@for name in $(filter-out never_wrong data,$(notdir $(patsubst %/,%,$(wildcard bench/*/)))); do \

@@ -3,6 +3,7 @@
 
 #include "app/commands.hpp"
 #include "app/lines.hpp"
+#include "app/terminal.hpp"
 #include "study/annotation.hpp"
 #include "study/inspection.hpp"
 
@@ -116,9 +117,9 @@ int check(const CheckArguments& arguments) {
   print_worst(study, "first", derivatives.gradient);
   print_worst(study, "second", derivatives.hessian);
   if (derivatives.agree()) return Exit::done;
-  fmt::print(stderr, "error: {}: {}\n", arguments.scene,
-             derivatives.points ? "derivatives and difference quotients do not agree"
-                                : "L is not finite at any point that was tried");
+  print_error(fmt::format("{}: {}", arguments.scene,
+                          derivatives.points ? "derivatives and difference quotients do not agree"
+                                             : "L is not finite at any point that was tried"));
   return Exit::not_converged;
 }
 

@@ -11,6 +11,8 @@
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
 #include "app/pages.hpp"
+#include "app/terminal.hpp"
+#include "report/text.hpp"
 #include "study/inspection.hpp"
 #include "study/suggestion.hpp"
 
@@ -189,7 +191,7 @@ void CommandLine::add_help() {
     if (!page)
       throw OptionError(fmt::format("there is no command '{}'{}", command_, suggestion(command_, names())));
     const std::string usage = page == &app_ ? app_.get_name() : app_.get_name() + " " + command_;
-    fmt::print("{}", app_.get_formatter()->make_help(page, usage, CLI::AppFormatMode::Normal));
+    print(app_.get_formatter()->make_help(page, usage, CLI::AppFormatMode::Normal));
     return Exit::done;
   });
   command.add_option("COMMAND", command_, "one of the commands")->type_name("");
@@ -198,15 +200,15 @@ void CommandLine::add_help() {
 /// What an installation holds beside the program; left out of the help.
 void CommandLine::add_pages() {
   CLI::App& man = add("man", "print the manual page", "man > extremal.1", [this] {
-    fmt::print("{}", manual_page(record()));
+    print(manual_page(record()));
     return Exit::done;
   });
   man.group("");
   CLI::App& completion = add("completion", "print the completion of a shell", "completion bash", [this] {
     if (shell_ == "systems")
-      for (const CatalogueEntry& system : catalogue().systems) fmt::print("{}\n", system.name);
+      for (const CatalogueEntry& system : catalogue().systems) print(visible(system.name, false) + "\n");
     else
-      fmt::print("{}", shell_ == "zsh" ? zsh_completion(record()) : bash_completion(record()));
+      print(shell_ == "zsh" ? zsh_completion(record()) : bash_completion(record()));
     return Exit::done;
   });
   completion.group("");
@@ -307,8 +309,8 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
 
 int CommandLine::run(int argc, char** argv) {
   if (argc < 2)
-    throw OptionError(fmt::format("no command\nUsage: extremal COMMAND [options], COMMAND is one of {}\n{}",
-                                  fmt::join(names(), ", "), app_.get_footer()));
+    throw UsageError("no command", fmt::format("Usage: extremal COMMAND [options], COMMAND is one of {}\n{}",
+                                               fmt::join(names(), ", "), app_.get_footer()));
   if (argv[1][0] != '-' && !find(argv[1])) refuse_first_word(argc, argv);
   try {
     app_.parse(argc, argv);

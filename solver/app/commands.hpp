@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file The commands. Each returns the exit code and throws where it refuses.
@@ -14,6 +15,12 @@ enum Exit : int { done = 0, not_converged = 1, refused = 2 };
 /// An option that cannot be used. what() names it, with the numbers.
 struct OptionError : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// The same with lines of help below.
+struct UsageError : OptionError {
+  std::string help;
+  UsageError(const std::string& message, std::string help) : OptionError(message), help(std::move(help)) {}
 };
 
 struct SolveArguments {

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
+#include "app/terminal.hpp"
 #include "report/comparison.hpp"
 #include "report/plot.hpp"
 #include "study/compare.hpp"
@@ -12,27 +12,32 @@
 namespace extremal::app {
 namespace {
 
-/// One line that is written over, on a terminal.
-void show_row(const ComparisonRow& row) {
-  fmt::print(stderr, "\r\x1b[K{} at tolerance {:.0e}", row.method, row.tolerance);
-  std::fflush(stderr);
+std::string progress_text(const ComparisonRow& row) {
+  return fmt::format("{} at tolerance {:.0e}", row.method, row.tolerance);
+}
+
+Comparison compared(const Study& study, bool quiet) {
+  const ProgressLine progress(!quiet);
+  CompareOptions options;
+  options.progress = progress.callback<ComparisonRow>(progress_text);
+  return extremal::compare(study, options);
 }
 
 }  // namespace
 
 int compare(const CompareArguments& a) {
-  const bool table = !on_standard_output(a.output, "") && !a.quiet;
+  const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
   const Study study = load(a.scene, a.sets, Purpose::solution);
-  CompareOptions options;
-  const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
-  if (terminal) options.progress = show_row;
-  const Comparison found = extremal::compare(study, options);
-  if (terminal) fmt::print(stderr, "\r\x1b[K");
-  if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, found); });
-  if (!a.plot.empty() && found.any()) write_plot(a.plot, found);
-  if (table) fmt::print("{}", summary(found));
+  outputs.keep(study.files);
+  const Comparison found = compared(study, a.quiet);
+  std::vector<FileContent> files;
+  if (!a.output.empty())
+    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, found); })});
+  if (!a.plot.empty() && found.any()) files.push_back({a.plot, plot_image(a.plot, found)});
+  Outputs::write(std::move(files));
+  if (!outputs.on_standard_output() && !a.quiet) print(summary(found));
   if (found.any()) return Exit::done;
-  fmt::print(stderr, "error: {}: {}\n", a.scene, found.message);
+  print_error(fmt::format("{}: {}", a.scene, found.message));
   return Exit::not_converged;
 }
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
+#include "app/terminal.hpp"
 #include "report/branch.hpp"
 #include "report/plot.hpp"
 #include "study/continued.hpp"
@@ -14,11 +14,28 @@
 namespace extremal::app {
 namespace {
 
-/// One line that is written over, on a terminal.
-void show_point(const BranchPoint& point) {
-  fmt::print(stderr, "\r\x1b[K{:.10g}, duration {:.6g}, action {:.6g}", point.parameter,
-             point.solution.duration(), point.solution.action);
-  std::fflush(stderr);
+std::string progress_text(const BranchPoint& point) {
+  return fmt::format("{:.10g}, duration {:.6g}, action {:.6g}", point.parameter, point.solution.duration(),
+                     point.solution.action);
+}
+
+FollowedBranch followed(const Study& study, bool quiet) {
+  const ProgressLine progress(!quiet);
+  return extremal::follow(study, progress.callback<BranchPoint>(progress_text));
+}
+
+void write_outputs(const ContinueArguments& a, const Study& study, const FollowedBranch& branch,
+                   const Annotation& annotation) {
+  std::vector<FileContent> files;
+  if (!a.output.empty())
+    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, branch); })});
+  const bool any = !branch.points.empty();
+  if (any && !a.csv.empty())
+    files.push_back({a.csv, text_of([&](std::ostream& out) { write_csv(out, branch); })});
+  if (any && !a.plot.empty())
+    files.push_back(
+        {a.plot, plot_image(a.plot, BranchPicture{branch, quantity(study, branch, a.quantity), annotation})});
+  Outputs::write(std::move(files));
 }
 
 /// The formula of --quantity, before anything is computed.
@@ -34,24 +51,18 @@ void check_shown(const ContinueArguments& a, const Study& study) {
 }  // namespace
 
 int follow(const ContinueArguments& a) {
-  const bool table = !on_standard_output(a.output, a.csv) && !a.quiet;
+  const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--plot", a.plot}});
   const Study study = load(a.scene, a.sets);
+  outputs.keep(study.files);
   const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
   if (!a.quantity.empty()) check_shown(a, study);
-  const bool terminal = !a.quiet && ::isatty(STDERR_FILENO);
-  std::function<void(const BranchPoint&)> progress;
-  if (terminal) progress = show_point;
-  const FollowedBranch branch = extremal::follow(study, progress);
-  if (terminal) fmt::print(stderr, "\r\x1b[K");
-  if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, branch); });
+  const FollowedBranch branch = followed(study, a.quiet);
+  write_outputs(a, study, branch, annotation);
   if (branch.points.empty()) {
-    fmt::print(stderr, "error: {}: {}\n", a.scene, branch.branches.front().message);
+    print_error(fmt::format("{}: {}", a.scene, branch.branches.front().message));
     return Exit::not_converged;
   }
-  if (!a.csv.empty()) write_output(a.csv, [&](std::ostream& out) { write_csv(out, branch); });
-  if (!a.plot.empty())
-    write_plot(a.plot, BranchPicture{branch, quantity(study, branch, a.quantity), annotation});
-  if (table) fmt::print("{}", summary(branch));
+  if (!outputs.on_standard_output() && !a.quiet) print(summary(branch));
   return Exit::done;
 }
 

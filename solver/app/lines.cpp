@@ -5,9 +5,14 @@
 
 #include <algorithm>
 
+#include "app/terminal.hpp"
+#include "report/text.hpp"
+
 namespace extremal::app {
 
-void line(const std::string& label, const std::string& text) { fmt::print("{:<14} {}\n", label, text); }
+void line(const std::string& label, const std::string& text) {
+  print(fmt::format("{:<14} {}\n", label, visible(text, false)));
+}
 
 void lines(const std::string& label, const std::vector<std::string>& texts) {
   for (std::size_t k = 0; k < texts.size(); ++k) line(k == 0 ? label : "", texts[k]);

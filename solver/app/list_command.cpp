@@ -5,23 +5,26 @@
 
 #include "app/commands.hpp"
 #include "app/lines.hpp"
+#include "app/terminal.hpp"
+#include "report/text.hpp"
 #include "study/inspection.hpp"
 
 namespace extremal::app {
 namespace {
 
-void print(const char* title, const std::vector<CatalogueEntry>& entries) {
+void print_entries(const char* title, const std::vector<CatalogueEntry>& entries) {
   std::size_t width = 0;
   for (const CatalogueEntry& e : entries) width = std::max(width, e.name.size());
-  fmt::print("{}\n", title);
-  for (const CatalogueEntry& e : entries) fmt::print("  {:<{}}  {}\n", e.name, width, e.help);
+  print(fmt::format("{}\n", title));
+  for (const CatalogueEntry& e : entries)
+    print(fmt::format("  {:<{}}  {}\n", visible(e.name, false), width, visible(e.help, false)));
 }
 
 int list_all() {
   const Catalogue found = catalogue();
-  print("Systems (system.use); one of them: extremal list SYSTEM", found.systems);
-  print("\nSchemes (solve.scheme)", found.schemes);
-  print("\nMethods (solve.method)", found.methods);
+  print_entries("Systems (system.use); one of them: extremal list SYSTEM", found.systems);
+  print_entries("\nSchemes (solve.scheme)", found.schemes);
+  print_entries("\nMethods (solve.method)", found.methods);
   return Exit::done;
 }
 

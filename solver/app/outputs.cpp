@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <iostream>
+#include <utility>
 
 #include "app/commands.hpp"
-#include "report/file.hpp"
 #include "report/gnuplot.hpp"
 #include "report/plot.hpp"
+#include "report/text.hpp"
 
 namespace extremal::app {
 namespace fs = std::filesystem;
@@ -28,7 +29,10 @@ std::string output_refusal(const std::string& path) {
   fs::path place = path;
   if (fs::is_directory(place, error)) return fmt::format("'{}' is a folder; a file is needed", path);
   if (!place.has_filename()) return fmt::format("'{}' names a folder; a file is needed", path);
-  if (!fs::exists(place, error)) {
+  const bool there = fs::exists(place, error);
+  if (error && error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory)
+    return fmt::format("'{}' cannot be written: {}", path, error.message());
+  if (!there) {
     do place = place.has_parent_path() ? place.parent_path() : fs::path(".");
     while (!fs::exists(place, error));
     if (!fs::is_directory(place, error)) return fmt::format("'{}' is not a folder", place.string());
@@ -47,16 +51,37 @@ std::string plot_refusal(const std::string& path) {
   return output_refusal(path);
 }
 
-bool on_standard_output(const std::string& output, const std::string& csv) {
-  if (output == standard_output && csv == standard_output)
-    throw OptionError("--output - and --csv - exclude each other: there is one standard output");
-  return output == standard_output || csv == standard_output;
+Outputs::Outputs(std::vector<OutputOption> options) : options_(std::move(options)) {
+  std::erase_if(options_, [](const OutputOption& option) { return option.path.empty(); });
+  for (auto b = options_.begin(); b != options_.end(); ++b)
+    for (auto a = options_.begin(); a != b; ++a) {
+      if (a->path == standard_output && b->path == standard_output)
+        throw OptionError(
+            fmt::format("{} - and {} - exclude each other: there is one standard output", a->name, b->name));
+      if (same_file(a->path, b->path))
+        throw OptionError(
+            fmt::format("{} and {} name one file, '{}'; each needs its own", a->name, b->name, b->path));
+    }
 }
 
-void write_output(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  if (path != standard_output) return write_file(path, write);
-  write(std::cout);
-  if (!std::cout.flush()) throw std::runtime_error("standard output cannot be written");
+bool Outputs::on_standard_output() const {
+  return std::any_of(options_.begin(), options_.end(),
+                     [](const OutputOption& option) { return option.path == standard_output; });
+}
+
+void Outputs::keep(const std::vector<std::string>& files) const {
+  for (const OutputOption& option : options_)
+    for (const std::string& file : files)
+      if (same_file(option.path, file))
+        throw OptionError(
+            fmt::format("{} '{}' would replace '{}', from which the scene is read; name another file",
+                        option.name, option.path, file));
+}
+
+void Outputs::write(std::vector<FileContent> files) {
+  for (FileContent& file : files)
+    if (file.path == standard_output) file.content = visible(file.content, true);
+  write_files(files);
 }
 
 }  // namespace extremal::app

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <functional>
-#include <iosfwd>
 #include <string>
+#include <vector>
+
+#include "report/file.hpp"
 
 /// \file Where results go: a file, or standard output for the path "-".
 
@@ -15,11 +16,28 @@ std::string output_refusal(const std::string& path);
 /// The same for a plot, whose suffix must be one that gnuplot can draw, and gnuplot be there.
 std::string plot_refusal(const std::string& path);
 
-/// Whether one of the outputs is standard output: nothing else is printed there then. Throws OptionError if
-/// both are.
-bool on_standard_output(const std::string& output, const std::string& csv);
+/// An option that names a file, and the path; empty where it is not wanted.
+struct OutputOption {
+  const char* name;
+  std::string path;
+};
 
-/// Lets `write` fill the file, or standard output. Throws std::runtime_error if it cannot be written.
-void write_output(const std::string& path, const std::function<void(std::ostream&)>& write);
+/// The outputs of a command.
+class Outputs {
+ public:
+  /// Throws OptionError where two name one file, or both standard output.
+  explicit Outputs(std::vector<OutputOption> options);
+
+  /// Whether one of them is standard output: nothing else is printed there then.
+  bool on_standard_output() const;
+  /// Throws OptionError where one of them is one of these files.
+  void keep(const std::vector<std::string>& files) const;
+
+  /// Writes all of these or none. Throws std::runtime_error if one cannot be written.
+  static void write(std::vector<FileContent> files);
+
+ private:
+  std::vector<OutputOption> options_;
+};
 
 }  // namespace extremal::app

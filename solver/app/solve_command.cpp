@@ -1,12 +1,12 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
 #include "app/sampling.hpp"
+#include "app/terminal.hpp"
 #include "report/csv.hpp"
 #include "report/json.hpp"
 #include "report/plot.hpp"
@@ -22,25 +22,10 @@ constexpr int csv_samples = 201;
 /// of elements that are many, fewer.
 constexpr int plot_steps = 800, element_steps = 8, most_element_steps = 20'000;
 
-/// One line that is written over, on a terminal.
-class Progress {
- public:
-  explicit Progress(bool wanted) : shown_(wanted && ::isatty(STDERR_FILENO)) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
-  }
-  std::function<void(const Iteration&)> callback() const {
-    if (!shown_) return {};
-    return [](const Iteration& i) {
-      fmt::print(stderr, "\r\x1b[K{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements,
-                 i.degree, i.residual, i.step);
-      std::fflush(stderr);
-    };
-  }
-
- private:
-  bool shown_;
-};
+std::string progress_text(const Iteration& i) {
+  return fmt::format("{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements, i.degree,
+                     i.residual, i.step);
+}
 
 /// Samples for --samples or --at; none where neither is given.
 std::optional<Samples> wanted_samples(const SolveArguments& a, const std::vector<double>& at,
@@ -73,11 +58,11 @@ Samples sampled(const Study& study, const Result& result, int count) {
   return sample(study.problem, result.solution.trajectory, equal_times(count, result.solution.duration()));
 }
 
-void write_csv_of(const std::string& path, const Study& study, const Result& result) {
+std::string csv_of(const Study& study, const Result& result) {
   const auto samples = [&](const Result& each) {
     return each.samples ? *each.samples : sampled(study, each, csv_samples);
   };
-  write_output(path, [&](std::ostream& out) {
+  return text_of([&](std::ostream& out) {
     if (!result.solutions) return write_csv(out, samples(result), result.names);
     std::vector<Samples> all;
     for (const Result& each : *result.solutions) all.push_back(samples(each));
@@ -112,26 +97,31 @@ Picture picture_of(const Study& study, const Result& result, const Annotation& a
 
 void write_outputs(const SolveArguments& a, const Study& study, const Result& result,
                    const Annotation& annotation) {
-  if (!a.output.empty()) write_output(a.output, [&](std::ostream& out) { write_json(out, result); });
-  if (!result.solution.converged()) return;
-  if (!a.csv.empty()) write_csv_of(a.csv, study, result);
-  if (!a.plot.empty()) write_plot(a.plot, picture_of(study, result, annotation));
+  std::vector<FileContent> files;
+  if (!a.output.empty())
+    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
+  const bool converged = result.solution.converged();
+  if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
+  if (converged && !a.plot.empty()) files.push_back({a.plot, plot_image(a.plot, picture_of(study, result, annotation))});
+  Outputs::write(std::move(files));
 }
 
 }  // namespace
 
 int solve(const SolveArguments& a) {
-  const bool table = !on_standard_output(a.output, a.csv) && !a.quiet;
+  const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--plot", a.plot}});
+  const bool table = !outputs.on_standard_output() && !a.quiet;
   const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
   Study study = load(a.scene, a.sets, Purpose::solution);
+  outputs.keep(study.files);
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
   const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
 
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
   if (!study.problem.periodic) result.natural_conditions = study.problem.ends.free;
   {
-    const Progress progress(!a.quiet && a.repeat == 1);
-    study.options.progress = progress.callback();
+    const ProgressLine progress(!a.quiet && a.repeat == 1);
+    study.options.progress = progress.callback<Iteration>(progress_text);
     if (study.solutions == 0)
       result.solution = run(study, a.repeat);
     else
@@ -140,9 +130,9 @@ int solve(const SolveArguments& a) {
   const bool converged = result.solution.converged();
   if (converged && study.solutions == 0) result.samples = wanted_samples(a, at, study, result.solution);
   write_outputs(a, study, result, annotation);
-  if (table) fmt::print("{}", summary(result));
+  if (table) print(summary(result));
   if (!converged)
-    fmt::print(stderr, "error: {}: {}: {}\n", a.scene, name(result.solution.status), result.solution.message);
+    print_error(fmt::format("{}: {}: {}", a.scene, name(result.solution.status), result.solution.message));
   return converged ? Exit::done : Exit::not_converged;
 }
 

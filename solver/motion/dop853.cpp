@@ -108,6 +108,7 @@ Integrated DormandPrince<T>::accept_step(T& t, std::span<T> y, T end, const Inte
   // Too short a step is what an end close by has left behind.
   if (std::abs(h_) <= least || (end - t) * h_ < 0) h_ = first_step(t, y, end - t, options);
   for (bool after_rejection = false;; after_rejection = true) {
+    if (options.deadline.passed()) return Integrated::deadline;
     const bool last = std::abs(end - t) <= std::abs(h_) * (1 + 1e-12);
     const T h = last ? end - t : h_;
     if (!last && std::abs(h_) <= least) return Integrated::step_underflow;

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "machine/deadline.hpp"
+
 /// \file Integration of ordinary differential equations by the method of Dormand and Prince of order 8.
 
 namespace extremal {
@@ -13,7 +15,7 @@ namespace extremal {
 template <class T>
 using RightHandSide = std::function<bool(T t, std::span<const T> y, std::span<T> slope)>;
 
-enum class Integrated { done, step_underflow, step_limit };
+enum class Integrated { done, step_underflow, step_limit, deadline };
 
 struct IntegrationOptions {
   double tolerance = 1e-12;  ///< error of a step relative to the largest component of a block
@@ -22,6 +24,7 @@ struct IntegrationOptions {
   std::array<double, 2> least = {0, 0};
   int controlled = 0;  ///< the first components, whose error sets the step; 0: all
   int max_steps = 1000000;
+  Deadline deadline = {};
 };
 
 /// In double or long double.

@@ -9,7 +9,6 @@
 #include <ostream>
 
 #include "report/figure.hpp"
-#include "report/file.hpp"
 #include "report/result.hpp"
 #include "report/text.hpp"
 
@@ -27,6 +26,8 @@ const char* status(BranchEnd end) {
     case BranchEnd::limit:
     case BranchEnd::too_short:
       return name(Status::no_solution_near);
+    case BranchEnd::budget:
+      return name(Status::iteration_limit);
     case BranchEnd::none:
     case BranchEnd::not_started:
       return name(Status::not_converged);
@@ -137,10 +138,6 @@ void write_json(std::ostream& out, const FollowedBranch& branch) {
       << "\n";
 }
 
-void write_json(const std::string& path, const FollowedBranch& branch) {
-  write_file(path, [&](std::ostream& out) { write_json(out, branch); });
-}
-
 void write_csv(std::ostream& out, const FollowedBranch& branch) {
   std::string text = "branch,parameter,duration,energy,action,morse_index,nullity,kind";
   const std::size_t count = periodic(branch) ? 2 * branch.names.size() : 0;
@@ -163,10 +160,6 @@ void write_csv(std::ostream& out, const FollowedBranch& branch) {
     text += "\n";
   }
   out << text;
-}
-
-void write_csv(const std::string& path, const FollowedBranch& branch) {
-  write_file(path, [&](std::ostream& out) { write_csv(out, branch); });
 }
 
 std::string summary(const FollowedBranch& branch) {

@@ -17,14 +17,11 @@ namespace extremal {
 /// message are those of the branch that was asked for, number 0; "origin" is the number of the point, counted
 /// from 0, that another one begins next to.
 void write_json(std::ostream& out, const FollowedBranch& branch);
-/// The same into a file. Throws std::runtime_error with the path if it cannot be written.
-void write_json(const std::string& path, const FollowedBranch& branch);
 
 /// A line for each point: branch, parameter, duration, energy, action, morse_index, nullity, kind, then
 /// coordinates and velocities at the start; for periodic orbits real and imaginary parts of the multipliers.
 /// Cells that are not known stay empty.
 void write_csv(std::ostream& out, const FollowedBranch& branch);
-void write_csv(const std::string& path, const FollowedBranch& branch);
 
 /// A table of the points, why each branch ended, and how well the derivatives of the action are met.
 std::string summary(const FollowedBranch& branch);
@@ -39,8 +36,8 @@ struct BranchPicture {
 /// A bifurcation diagram: periodic orbits coloured by their stability, others by whether their index is zero,
 /// with folds, crossings and period doublings marked. Between the points that were found, which are dots, the
 /// curve is interpolated. Beside it some solutions of each branch, coloured by the number that varies: paths
-/// in the plane or in space, else the coordinate that moves most against time. Throws as write_plot of a
+/// in the plane or in space, else the coordinate that moves most against time. Throws as plot_image of a
 /// trajectory does, and std::invalid_argument without points.
-void write_plot(const std::string& path, const BranchPicture& picture);
+std::string plot_image(const std::string& path, const BranchPicture& picture);
 
 }  // namespace extremal

@@ -170,8 +170,8 @@ Figure layout(const BranchPicture& picture) {
   return figure;
 }
 
-void write_plot(const std::string& path, const BranchPicture& picture) {
-  write_figure(path, layout(picture));
+std::string plot_image(const std::string& path, const BranchPicture& picture) {
+  return plot_image(path, layout(picture));
 }
 
 }  // namespace extremal

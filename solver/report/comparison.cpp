@@ -6,7 +6,6 @@
 #include <ostream>
 
 #include "report/figure.hpp"
-#include "report/file.hpp"
 #include "report/text.hpp"
 
 namespace extremal {
@@ -39,10 +38,6 @@ void write_json(std::ostream& out, const Comparison& comparison) {
   Json rows = Json::array();
   for (const ComparisonRow& row : comparison.rows) rows.push_back(object(row));
   out << Json{{"reference", reference(comparison)}, {"rows", std::move(rows)}}.dump(2) << "\n";
-}
-
-void write_json(const std::string& path, const Comparison& comparison) {
-  write_file(path, [&](std::ostream& out) { write_json(out, comparison); });
 }
 
 std::string summary(const Comparison& comparison) {

@@ -12,13 +12,11 @@ namespace extremal {
 /// {"reference", "rows": [{"method", "tolerance", "seconds", "error", "status"}]}; the reference is null
 /// where there is none, an error where none is known.
 void write_json(std::ostream& out, const Comparison& comparison);
-/// The same into a file. Throws std::runtime_error with the path if it cannot be written.
-void write_json(const std::string& path, const Comparison& comparison);
 
 /// The reference in a line or two, and a table of the rows.
 std::string summary(const Comparison& comparison);
 
-/// Time against error, both logarithmic, a curve for each method. Throws as write_plot of a trajectory does.
-void write_plot(const std::string& path, const Comparison& comparison);
+/// Time against error, both logarithmic, a curve for each method. Throws as plot_image of a trajectory does.
+std::string plot_image(const std::string& path, const Comparison& comparison);
 
 }  // namespace extremal

@@ -81,8 +81,8 @@ Figure layout(const Comparison& comparison) {
   return figure;
 }
 
-void write_plot(const std::string& path, const Comparison& comparison) {
-  write_figure(path, layout(comparison));
+std::string plot_image(const std::string& path, const Comparison& comparison) {
+  return plot_image(path, layout(comparison));
 }
 
 }  // namespace extremal

@@ -1,20 +1,16 @@
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <ostream>
 #include <sstream>
 #include <stdexcept>
 
-#include "report/file.hpp"
 #include "report/gnuplot.hpp"
-#include "report/temporary_folder.hpp"
 
 namespace extremal {
 
@@ -24,21 +20,51 @@ namespace {
   throw std::runtime_error("gnuplot draws the plots and was not found: apt install gnuplot-nox");
 }
 
-std::string content(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
+/// A file in memory, without a name.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const char* label) : descriptor_(::memfd_create(label, MFD_CLOEXEC)) {
+    if (descriptor_ < 0) refuse("make a file for gnuplot");
+  }
+  ~MemoryFile() { ::close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  void write(const std::string& text) {
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
+      if (count < 0 && errno != EINTR) refuse("write gnuplot's commands");
+      if (count > 0) done += static_cast<std::size_t>(count);
+    }
+    ::lseek(descriptor_, 0, SEEK_SET);
+  }
+  std::string content() const {
+    std::string text(::lseek(descriptor_, 0, SEEK_END), '\0');
+    for (std::size_t done = 0; done < text.size();) {
+      const ssize_t count =
+          ::pread(descriptor_, text.data() + done, text.size() - done, static_cast<off_t>(done));
+      if (count == 0 || (count < 0 && errno != EINTR)) refuse("read what gnuplot has drawn");
+      if (count > 0) done += static_cast<std::size_t>(count);
+    }
+    return text;
+  }
+
+ private:
+  [[noreturn]] static void refuse(const char* what) {
+    throw std::runtime_error(fmt::format("cannot {}: {}", what, std::strerror(errno)));
+  }
+  int descriptor_;
+};
 
 /// What the child does between fork and exec.
 class FileActions {
  public:
-  FileActions(const std::string& folder, const char* log) {
+  FileActions(const MemoryFile& in, const MemoryFile& out, const MemoryFile& log) {
     posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log, O_WRONLY | O_CREAT | O_APPEND, 0600);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&actions_, in.descriptor(), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions_, out.descriptor(), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions_, log.descriptor(), STDERR_FILENO);
   }
   ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
   FileActions(const FileActions&) = delete;
@@ -50,11 +76,10 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
-/// Runs `gnuplot -d SCRIPT` (-d: default settings, no start-up files) in the folder; whether it ended well.
-bool run_gnuplot(const std::string& folder, const char* script, const char* log) {
-  std::string arguments[] = {"gnuplot", "-d", script};
-  char* argv[] = {arguments[0].data(), arguments[1].data(), arguments[2].data(), nullptr};
-  const FileActions actions(folder, log);
+/// Runs `gnuplot -d` (default settings, no start-up files); whether it ended well.
+bool run_gnuplot(const FileActions& actions) {
+  std::string arguments[] = {"gnuplot", "-d"};
+  char* argv[] = {arguments[0].data(), arguments[1].data(), nullptr};
   pid_t child = 0;
   const int error = posix_spawnp(&child, "gnuplot", actions.get(), nullptr, argv, environ);
   if (error == ENOENT) refuse_missing_gnuplot();
@@ -86,13 +111,12 @@ void require_gnuplot() {
 }
 
 std::string draw(const Figure& figure, Format format) {
-  const TemporaryFolder folder;
-  write_file(folder / "script", [&](std::ostream& out) { out << gnuplot_script(figure, format, "figure"); });
-  const bool ended_well = run_gnuplot(folder.path(), "script", "log");
-  std::string image = content(folder / "figure");
-  if (!ended_well || image.empty()) {
-    throw std::runtime_error("gnuplot failed: " + printable(content(folder / "log"), 400));
-  }
+  MemoryFile script("script"), drawing("drawing"), log("log");
+  script.write(gnuplot_script(figure, format));
+  const bool ended_well = run_gnuplot(FileActions(script, drawing, log));
+  std::string image = drawing.content();
+  if (!ended_well || image.empty())
+    throw std::runtime_error("gnuplot failed: " + printable(log.content(), 400));
   if (format == Format::pdf) reset_date(image);
   return image;
 }

@@ -95,13 +95,13 @@ Box whole_pixels(const Box& box) {
 /// which gnuplot rounds, so that values of any size draw alike.
 class Script {
  public:
-  Script(const Figure& figure, Format format, const std::string& output)
+  Script(const Figure& figure, Format format)
       : figure_(figure),
         width_(std::round(figure.width)),
         height_(std::round(figure.height)),
         sizes_(sizes_of(format)) {
     terminal(format);
-    add("set output {}\nset encoding utf8\nset key off\nset multiplot\n", quoted(output));
+    add("set encoding utf8\nset key off\nset multiplot\n");
     add("set cbrange [0:1]\n");
     header();
     for (const Panel& panel : figure.panels) draw(panel);
@@ -341,8 +341,6 @@ class Script {
 
 }  // namespace
 
-std::string gnuplot_script(const Figure& figure, Format format, const std::string& output) {
-  return Script(figure, format, output).text();
-}
+std::string gnuplot_script(const Figure& figure, Format format) { return Script(figure, format).text(); }
 
 }  // namespace extremal

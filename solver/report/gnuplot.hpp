@@ -10,15 +10,16 @@ namespace extremal {
 
 enum class Format { svg, png, pdf };
 
-/// The commands that draw a figure into the file `output` of the working directory. Every text is a quoted
-/// literal in which gnuplot substitutes nothing.
-std::string gnuplot_script(const Figure& figure, Format format, const std::string& output);
+/// The commands that draw a figure onto standard output. Every text is a quoted literal in which gnuplot
+/// substitutes nothing.
+std::string gnuplot_script(const Figure& figure, Format format);
 
 /// Throws std::runtime_error unless gnuplot is on the PATH: to be called before the work that is plotted.
 void require_gnuplot();
 
-/// Bytes of the drawn file. gnuplot runs without a shell, without start-up files and without anything to
-/// print to, in a temporary folder that is removed. Throws std::runtime_error if it is missing or fails.
+/// Bytes of the drawn file. gnuplot runs without a shell and without start-up files; what it reads and writes
+/// are files in memory without a name, so that an interrupt leaves nothing behind. Throws std::runtime_error
+/// if it is missing or fails.
 std::string draw(const Figure& figure, Format format);
 
 }  // namespace extremal

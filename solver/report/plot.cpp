@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
 #include <stdexcept>
 
-#include "report/file.hpp"
 #include "report/gnuplot.hpp"
 #include "report/layout.hpp"
 
@@ -59,20 +57,18 @@ void check(const Picture& picture, const Samples& samples) {
 
 void check_plot_path(const std::string& path) { format_of(path); }
 
-void write_figure(const std::string& path, const Figure& figure) {
-  const std::string image = draw(figure, format_of(path));
-  write_file(path,
-             [&](std::ostream& out) { out.write(image.data(), static_cast<std::streamsize>(image.size())); });
+std::string plot_image(const std::string& path, const Figure& figure) {
+  return draw(figure, format_of(path));
 }
 
-void write_plot(const std::string& path, const Picture& picture) {
+std::string plot_image(const std::string& path, const Picture& picture) {
   format_of(path);
   check(picture, picture.samples);
   for (const Samples& other : picture.others) check(picture, other);
   if (!picture.others.empty() && picture.actions.size() != picture.others.size() + 1)
     throw std::invalid_argument(fmt::format("cannot plot {} solutions with {} actions",
                                             picture.others.size() + 1, picture.actions.size()));
-  write_figure(path, layout(picture));
+  return plot_image(path, layout(picture));
 }
 
 }  // namespace extremal

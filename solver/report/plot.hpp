@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "report/file.hpp"
 #include "report/result.hpp"
 #include "study/annotation.hpp"
 
@@ -26,7 +27,8 @@ struct Picture {
 /// work is begun whose result would be plotted.
 void check_plot_path(const std::string& path);
 
-/// Draws with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows from the names:
+/// The bytes of a file drawn with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows
+/// from the names:
 ///  - one coordinate: it and its velocity against time;
 ///  - x and y, or two coordinates: the path in the plane, beside both against time;
 ///  - x, y and z: the path in space and its projections; where it keeps to a plane or a line, that;
@@ -35,11 +37,17 @@ void check_plot_path(const std::string& path);
 ///  - all else: each coordinate or array against time.
 /// Several solutions are drawn over each other, coloured by their actions; orbits, several bodies and maps in
 /// a panel for each solution. Throws std::invalid_argument for columns that do not fit the names,
-/// std::runtime_error if gnuplot is missing or fails or the path cannot be written.
-void write_plot(const std::string& path, const Picture& picture);
+/// std::runtime_error if gnuplot is missing or fails.
+std::string plot_image(const std::string& path, const Picture& picture);
 
 struct Figure;
-/// Draws a figure; throws in the same way.
-void write_figure(const std::string& path, const Figure& figure);
+/// The bytes of a figure's file; throws in the same way.
+std::string plot_image(const std::string& path, const Figure& figure);
+
+/// Writes what plot_image() of its subject draws. Throws std::runtime_error if the path cannot be written.
+template <class Subject>
+void write_plot(const std::string& path, const Subject& subject) {
+  write_files({{path, plot_image(path, subject)}});
+}
 
 }  // namespace extremal

@@ -44,7 +44,8 @@ bool BatchDop853::under_way() const {
   return std::any_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.span != nullptr; });
 }
 
-bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps) {
+bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
+                      const Deadline& deadline) {
   if (spans.empty()) return true;
   resize(columns);
   tolerance_ = tolerance;
@@ -64,6 +65,10 @@ bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance
     plan_steps();
     step(columns);
     judge();
+    if (deadline.passed()) {
+      failed_ = true;
+      fail();
+    }
   }
   return !failed_;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "machine/aligned.hpp"
+#include "machine/deadline.hpp"
 #include "motion/dop853_tableau.hpp"
 #include "rivals/lane_flow.hpp"
 
@@ -31,7 +32,8 @@ class BatchDop853 {
 
   /// Integrates every span, with `columns` variations each, to an error of a step relative to the largest |q|
   /// and |p|. False if one could not be completed. `most_steps` is for each span.
-  bool run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps);
+  bool run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
+           const Deadline& deadline = {});
 
   int steps() const { return steps_; }  ///< of all lanes together, in all
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Appends to a flight the states at ascending times >= t, from (q, q') at t. False where it stopped.
 bool carry(Flow& flow, double t, std::span<const double> q, std::span<const double> v,
-           std::span<const double> times, double tolerance, Flight& flight) {
+           std::span<const double> times, double tolerance, const Deadline& deadline, Flight& flight) {
   const std::size_t n = q.size();
   std::vector<double> y(2 * n), velocity(n);
   std::copy(q.begin(), q.end(), y.begin());
@@ -23,7 +23,8 @@ bool carry(Flow& flow, double t, std::span<const double> q, std::span<const doub
   if (!flow.momentum(q, v, t, now.subspan(n))) return false;
   Dop853 integrator([&flow](double at, auto state, auto slope) { return flow.slope(at, state, slope); },
                     static_cast<int>(2 * n));
-  const IntegrationOptions options{.tolerance = tolerance, .block = static_cast<int>(n)};
+  const IntegrationOptions options{
+      .tolerance = tolerance, .block = static_cast<int>(n), .deadline = deadline};
   for (const double time : times) {
     if (integrator.advance(flight.reached, y, time, options) != Integrated::done) return false;
     if (!flow.velocity(now.first(n), now.subspan(n), time, velocity)) return false;
@@ -49,12 +50,12 @@ Flight fly(const Lagrangian& lagrangian, std::span<const double> q, std::span<co
   check_times(times);
   Flow flow(lagrangian);
   Flight flight;
-  flight.complete = carry(flow, 0, q, v, times, tolerance, flight);
+  flight.complete = carry(flow, 0, q, v, times, tolerance, {}, flight);
   return flight;
 }
 
-Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const double> times,
-              double tolerance) {
+Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const double> times, double tolerance,
+              const Deadline& deadline) {
   check_times(times);
   const std::size_t n = lagrangian.structure().coordinates;
   if (!shot.converged() || (!times.empty() && times.back() > shot.duration()))
@@ -67,7 +68,7 @@ Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const do
     const bool last = k + 2 == shot.times.size();
     const auto end = last ? times.end() : std::lower_bound(next, times.end(), shot.times[k + 1]);
     const std::span<const double> q(shot.q.data() + k * n, n), v(shot.v.data() + k * n, n);
-    if (!carry(flow, shot.times[k], q, v, {next, end}, tolerance, flight)) return flight;
+    if (!carry(flow, shot.times[k], q, v, {next, end}, tolerance, deadline, flight)) return flight;
     next = end;
   }
   flight.complete = true;

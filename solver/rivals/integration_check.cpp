@@ -245,8 +245,10 @@ std::string IntegrationCheck::run_piece(double& t, double limit, const Integrati
     if (result.steps == options_.max_steps)
       return fmt::format("{} steps of the integrator end at t = {:.9g}", result.steps, t);
     ++result.steps;
-    if (integrator_.accept_step(t, y_, std::min(limit, near), integration) != Integrated::done)
-      return fmt::format("it cannot be integrated beyond t = {:.9g}", t);
+    const Integrated taken = integrator_.accept_step(t, y_, std::min(limit, near), integration);
+    if (taken == Integrated::deadline)
+      return fmt::format("{} is spent at t = {:.9g}", options_.deadline.budget_text(), t);
+    if (taken != Integrated::done) return fmt::format("it cannot be integrated beyond t = {:.9g}", t);
     const double grown = growth(), share = grown > first ? (allowed - first) / (grown - first) : INFINITY;
     if (grown > allowed) {
       near = before > start ? before : start + (t - start) * std::clamp(share, most_cut, least_cut);
@@ -269,7 +271,8 @@ std::string IntegrationCheck::run(Verification& result) {
       .block = static_cast<int>(n_),
       // At rest or at the origin p or q all but vanishes, and is known only to roundoff of what makes it up.
       .least = {scales_.q, scales_.p},
-      .controlled = static_cast<int>(2 * n_)};
+      .controlled = static_cast<int>(2 * n_),
+      .deadline = options_.deadline};
   auto end = options_.ends.begin();
   for (double t = 0; t < duration;) {
     const std::string failure =

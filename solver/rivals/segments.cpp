@@ -20,10 +20,11 @@ std::span<const double> view(const Eigen::VectorXd& x) {
 
 }  // namespace
 
-Segments::Segments(const Problem& problem, int segments)
+Segments::Segments(const Problem& problem, int segments, const Deadline& deadline)
     : problem_(problem),
       n_(problem.coordinates()),
       segments_(segments),
+      deadline_(deadline),
       conditions_(problem),
       flow_(*problem.lagrangian),
       lane_flow_(*problem.lagrangian),
@@ -208,7 +209,7 @@ bool Segments::evaluate(const Course& course, double tolerance, bool with_variat
   const int columns = with_variations ? (wanted + split - 1) / split : 0;
   if (columns > 0) split = (wanted + columns - 1) / columns;
   load(course, split, columns);
-  if (!integrator_.run(spans_, columns, tolerance, most_steps)) return false;
+  if (!integrator_.run(spans_, columns, tolerance, most_steps, deadline_)) return false;
   if (!unload(course, split, columns)) return false;
   if (with_variations) end_slopes(course);
   close(course);

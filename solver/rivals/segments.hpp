@@ -23,7 +23,7 @@ class Segments {
  public:
   /// `problem` must outlive it. Throws std::invalid_argument for less than one segment or a singular constant
   /// mass.
-  Segments(const Problem& problem, int segments);
+  Segments(const Problem& problem, int segments, const Deadline& deadline = {});
 
   /// Positions and velocities of the guess; what the problem demands of its start alone is met. False if L is
   /// not finite there.
@@ -57,6 +57,7 @@ class Segments {
 
   const Problem& problem_;
   const int n_, segments_;
+  const Deadline deadline_;
   EndConditions conditions_;
   Flow flow_;
   LaneFlow lane_flow_;

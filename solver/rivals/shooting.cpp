@@ -26,7 +26,7 @@ class Shooter {
   Shooter(const Problem& problem, const ShootingOptions& options)
       : problem_(problem),
         options_(options),
-        segments_(problem, options.segments),
+        segments_(problem, options.segments, options.deadline),
         final_(problem.periodic ? std::min(precise, margin * options.tolerance) : margin * options.tolerance),
         tolerance_(problem.periodic ? final_ : std::max(final_, loose)) {}
 
@@ -105,12 +105,17 @@ class Shooter {
 
   Shot finish(Status status, std::string message) {
     const int n = problem_.coordinates();
+    if (status != Status::converged && options_.deadline.passed()) {
+      status = Status::iteration_limit;
+      message =
+          fmt::format("{} is spent after {} iterations", options_.deadline.budget_text(), shot_.iterations);
+    }
     shot_.status = status;
     shot_.steps = segments_.steps();
     if (status == Status::converged)
       message = fmt::format("{} segment{}, {} iterations", options_.segments,
                             options_.segments > 1 ? "s" : "", shot_.iterations);
-    if (status == Status::iteration_limit)
+    if (status == Status::iteration_limit && message.empty())
       message = fmt::format("a correction of {:.3g} is left after {} iterations", shot_.correction,
                             shot_.iterations);
     shot_.message = std::move(message);

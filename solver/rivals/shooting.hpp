@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/deadline.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
 
@@ -28,6 +29,7 @@ struct ShootingOptions {
   double tolerance = 1e-9;  ///< of the last correction of q, relative to the largest range or value
   int segments = 1;         ///< 1: single shooting
   int max_iterations = 50;
+  Deadline deadline = {};
 };
 
 /// Pessimistic until proved otherwise.
@@ -52,6 +54,6 @@ Shot shoot(const Problem& problem, const ShootingOptions& options = {});
 
 /// The motion found, at ascending times in [0, T]: each from the start of its segment.
 Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const double> times,
-              double tolerance = 1e-13);
+              double tolerance = 1e-13, const Deadline& deadline = {});
 
 }  // namespace extremal

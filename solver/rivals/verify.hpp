@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/deadline.hpp"
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
 
@@ -17,6 +18,7 @@ struct VerifyOptions {
   double growth = 5;  ///< a piece ends before the errors allowed at its start could grow more, seen in q
   std::vector<double> ends = {};  ///< pieces end at these times in (0, T], ascending, instead
   int max_steps = 100000;         ///< of the integrator, in all
+  Deadline deadline = {};
 };
 
 /// Each number in units of what the tolerance allows: for q, tolerance × the largest range of a coordinate;

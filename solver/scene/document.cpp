@@ -27,11 +27,15 @@ std::string quoted(std::string_view s) {
   return out;
 }
 
-/// What the parser says, but for a string without its closing quote: it blames the end of the line.
+/// What the parser says, but for a string without its closing quote, where it blames the end of the line, and
+/// for its limits, which it gives by the names of its macros.
 std::string readable(std::string_view description) {
-  if (description.find("unescaped control characters") == std::string_view::npos)
-    return std::string(description);
-  return "this string is not closed on its line, or contains a control character";
+  const auto has = [&](const char* part) { return description.find(part) != std::string_view::npos; };
+  if (has("unescaped control characters"))
+    return "this string is not closed on its line, or contains a control character";
+  if (has("TOML_MAX_NESTED_VALUES"))
+    return fmt::format("lists and tables stand more than {} deep in each other", TOML_MAX_NESTED_VALUES);
+  return std::string(description);
 }
 
 bool is_value(const std::string& text) {
@@ -122,7 +126,7 @@ toml::table parse_setting(const Setting& setting, const std::shared_ptr<Source>&
   try {
     return parse(quoted(setting.value));
   } catch (const toml::parse_error& e) {
-    throw SceneError({source, 0, 0}, std::string(e.description()));
+    throw SceneError({source, 0, 0}, readable(e.description()));
   }
 }
 

@@ -77,6 +77,9 @@ void check_solve(const SolveTable& solve) {
   if (solve.tolerance && !(solve.tolerance->value > 0 && solve.tolerance->value < 1))
     throw SceneError(solve.tolerance->at,
                      fmt::format("tolerance = {}; need more than 0 and less than 1", solve.tolerance->value));
+  if (solve.budget && !(solve.budget->value > 0))
+    throw SceneError(solve.budget->at,
+                     fmt::format("budget = {}; need more than 0 seconds", solve.budget->value));
   if (solve.elements && !(solve.elements->value >= 1 && solve.elements->value <= 1e9))
     throw SceneError(solve.elements->at,
                      fmt::format("elements = {}; need 1 to 1000000000", solve.elements->value));
@@ -122,9 +125,14 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
 
   Scene scene;
   scene.path = path;
+  scene.files = {path};
   scene.title = document.root["title"].value_or(std::string());
   scene.system = read_system_table(document, *table(document, "system", true));
-  if (scene.system.use) scene.system = merge(read_system(*scene.system.use, path), scene.system);
+  if (scene.system.use) {
+    SystemTable used = read_system(*scene.system.use, path);
+    if (used.at.source) scene.files.push_back(used.at.source->name);
+    scene.system = merge(std::move(used), scene.system);
+  }
   scene.boundary = read_boundary_table(document, *table(document, "boundary", true));
   if (const auto* guess = table(document, "guess", false)) scene.guess = read_guess_table(document, *guess);
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);

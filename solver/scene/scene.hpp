@@ -74,7 +74,8 @@ struct SolveTable {
   std::optional<Number> tolerance;
   std::optional<Text> scheme;
   std::optional<Number> elements;
-  std::optional<Text> method;  ///< one of method_records()
+  std::optional<Number> budget;  ///< s
+  std::optional<Text> method;    ///< one of method_records()
 };
 
 struct SearchTable {
@@ -92,6 +93,7 @@ struct ContinuationTable {
 
 struct Scene {
   std::string path;
+  std::vector<std::string> files;  ///< that were read: the scene, and the system file that it uses
   std::string title;
   SystemTable system;
   BoundaryTable boundary;

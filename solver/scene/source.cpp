@@ -158,14 +158,18 @@ std::shared_ptr<const Source> read_source(const std::string& path) {
   auto source = std::make_shared<Source>();
   source->name = path;
   const auto refuse = [&](const std::string& message) { throw SceneError({source, 0, 0}, message); };
+  if (path.empty()) {
+    source->name = "''";
+    refuse("the name of the file is empty");
+  }
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) refuse_missing(source);
-  if (!fs::exists(status)) refuse(error.message());
+  if (!fs::exists(status)) refuse(fmt::format("cannot be found: {}", error.message()));
   if (fs::is_directory(status)) refuse("is a directory; a file is needed");
   if (!fs::is_regular_file(status)) refuse("is not a regular file");
   const auto size = fs::file_size(path, error);
-  if (error) refuse(error.message());
+  if (error) refuse(fmt::format("its size cannot be read: {}", error.message()));
   if (size > largest_file)
     refuse(fmt::format("has {} bytes; at most {} (16 MiB) are read", size, largest_file));
   if (size == 0) refuse("the file is empty");

@@ -17,8 +17,8 @@ namespace {
 /// Tolerances tried for the reference, from the tightest on, powers of ten.
 constexpr int tightest = -14, loosest = -6;
 constexpr int most_repeats = 1001;
-/// A method whose last run took so many seconds is not run at tighter tolerances.
-constexpr double patience = 60;
+/// Of the steps of a motion that was shot, relative, where it is compared.
+constexpr double precise = 1e-13;
 
 struct ShootingMethod {
   const char* name;
@@ -29,8 +29,8 @@ constexpr ShootingMethod shooting_methods[] = {{"single shooting", 1, 500},
                                                {"multiple shooting, 8 segments", 8, 40},
                                                {"multiple shooting, 32 segments", 32, 40}};
 
-int repeats(double budget, double seconds) {
-  return seconds > 0 ? static_cast<int>(std::clamp(budget / seconds, 1.0, double(most_repeats))) : 1;
+int repeats(double row_seconds, double seconds) {
+  return seconds > 0 ? static_cast<int>(std::clamp(row_seconds / seconds, 1.0, double(most_repeats))) : 1;
 }
 
 class Comparer {
@@ -38,6 +38,7 @@ class Comparer {
   Comparer(const Study& study, const CompareOptions& options)
       : study_(study),
         options_(options),
+        total_(deadline_of(study)),
         shifts_(study.problem.periodic && study.problem.lagrangian->structure().autonomous) {
     study_.options.elements = 0;
     study_.options.progress = nullptr;
@@ -45,25 +46,37 @@ class Comparer {
   }
 
   Comparison run() {
+    std::vector<ShootingMethod> shooting(std::begin(shooting_methods), std::end(shooting_methods));
+    std::erase_if(shooting, [this](const ShootingMethod& method) {
+      return study_.problem.coordinates() > method.most_coordinates;
+    });
+    int parties = 2 + static_cast<int>(shooting.size());
+    share_among(parties--);
     find_reference();
+    share_among(parties--);
     run_method([this](double tolerance) { return solve(tolerance); });
-    for (const ShootingMethod& method : shooting_methods)
-      if (study_.problem.coordinates() <= method.most_coordinates)
-        run_method([&](double tolerance) { return shoot_row(method, tolerance); });
+    for (const ShootingMethod& method : shooting) {
+      share_among(parties--);
+      run_method([&](double tolerance) { return shoot_row(method, tolerance); });
+    }
     return result_;
   }
 
  private:
+  /// Of what is left of the budget, for the next of so many.
+  void share_among(int parties) { study_.options.deadline = total_.share(1.0 / parties); }
+  const Deadline& deadline() const { return study_.options.deadline; }
+
   void find_reference() {
     Study study = study_;
     study.options.scheme.reset();
-    for (int power = tightest; power <= loosest; ++power) {
+    for (int power = tightest; power <= loosest && !deadline().passed(); ++power) {
       study.options.tolerance = std::pow(10.0, power);
       Solution solution = extremal::run(study);
       result_.message = solution.message;
       if (!solution.converged()) continue;
-      const Verification found =
-          verify(study.problem, solution.trajectory, {.tolerance = study.options.tolerance});
+      const Verification found = verify(study.problem, solution.trajectory,
+                                        {.tolerance = study.options.tolerance, .deadline = deadline()});
       result_.message = found.message;
       if (!found.verified) continue;
       reference_ = std::move(solution.trajectory);
@@ -74,22 +87,24 @@ class Comparer {
                                     study.options.tolerance, found.pieces);
       return;
     }
+    if (deadline().passed())
+      result_.message += fmt::format("; {} (solve.budget) is spent; raise it", deadline().budget_text());
     result_.message = "no reference: " + result_.message;
   }
 
   template <class Run>
   void run_method(const Run& run) {
     for (const double tolerance : options_.tolerances) {
+      if (deadline().passed()) return;
       result_.rows.push_back(run(tolerance));
       if (options_.progress) options_.progress(result_.rows.back());
-      if (result_.rows.back().seconds > patience) return;
     }
   }
 
   ComparisonRow solve(double tolerance) {
     study_.options.tolerance = tolerance;
     Solution solution = extremal::run(study_);
-    if (const int more = repeats(options_.budget, solution.seconds_solve + solution.seconds_analyse);
+    if (const int more = repeats(options_.row_seconds, solution.seconds_solve + solution.seconds_analyse);
         more > 1)
       solution = extremal::run(study_, more);
     const std::string scheme = study_.options.scheme ? ", " + study_.options.scheme->name : "";
@@ -105,14 +120,16 @@ class Comparer {
     double spent = 0;
     do {
       const auto start = Clock::now();
-      shot = shoot(study_.problem, {.tolerance = tolerance, .segments = method.segments});
+      shot = shoot(study_.problem,
+                   {.tolerance = tolerance, .segments = method.segments, .deadline = deadline()});
       seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
       spent += seconds.back();
-    } while (spent < options_.budget && seconds.size() < most_repeats);
+    } while (spent < options_.row_seconds && seconds.size() < most_repeats);
     ComparisonRow row{method.name, tolerance, median(std::move(seconds)), std::nullopt, shot.status};
     if (shot.converged() && result_.reference)
       row.error = error({shot.duration(), [&](const std::vector<double>& times) {
-                           Flight flight = follow(*study_.problem.lagrangian, shot, times);
+                           Flight flight =
+                               follow(*study_.problem.lagrangian, shot, times, precise, deadline());
                            return MotionSamples{std::move(flight.q), std::move(flight.v)};
                          }});
     if (shot.converged() && result_.reference && !row.error) row.status = Status::not_converged;
@@ -128,6 +145,7 @@ class Comparer {
 
   Study study_;
   const CompareOptions& options_;
+  const Deadline total_;
   bool shifts_;
   Trajectory reference_;
   Comparison result_;

@@ -38,14 +38,15 @@ struct Comparison {
 
 struct CompareOptions {
   std::vector<double> tolerances = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
-  double budget = 0.05;  ///< seconds of repetitions for a row; every row is run once at least
+  double row_seconds = 0.05;  ///< of repetitions for a row; every row is run once at least
   std::function<void(const ComparisonRow&)> progress;
 };
 
 /// Solves the scene at each tolerance, with its own scheme if it names one, and by single and multiple
-/// shooting from the same guess; shooting with many coordinates is left out, and so is what follows a run of
-/// minutes. Errors are the largest at 401 equal times, and never below the reference's own; where the scene
-/// is periodic and a shift in time changes nothing, after the shift that makes them least.
+/// shooting from the same guess; shooting with many coordinates is left out. The budget of the study is
+/// shared by the reference and the methods, and what one of them leaves goes to the next. Errors are the
+/// largest at 401 equal times, and never below the reference's own; where the scene is periodic and a shift
+/// in time changes nothing, after the shift that makes them least.
 Comparison compare(const Study& study, const CompareOptions& options = {});
 
 }  // namespace extremal

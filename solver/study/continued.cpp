@@ -136,7 +136,9 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
     throw std::invalid_argument(
         study.scene + ": the table [continuation] is missing; it names the parameter and its last value");
   const Continued& continued = *study.continuation;
-  Diagram diagram(continued.family, {study.options, continued.points, continued.switching});
+  SolveOptions options = study.options;
+  options.deadline = deadline_of(study);
+  Diagram diagram(continued.family, {std::move(options), continued.points, continued.switching});
   FollowedBranch followed;
   followed.title = study.title;
   followed.parameter = continued.parameter;

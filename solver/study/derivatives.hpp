@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/deadline.hpp"
 #include "problem/problem.hpp"
 
 /// \file The derivatives of a Lagrangian against differences of its values, for people who doubt them.
@@ -30,6 +31,7 @@ struct DerivativeCheck {
 
 /// At points about the guess. Derivatives that the structure says vanish are checked to vanish. Of the terms
 /// that are quadratic in the velocities only the rest of L is evaluated, and checked.
-DerivativeCheck check_derivatives(const Problem& problem);
+/// After the deadline differences by further variables are left out.
+DerivativeCheck check_derivatives(const Problem& problem, const Deadline& deadline = {});
 
 }  // namespace extremal

@@ -63,10 +63,6 @@ void tabulate_formulas(const GuessTable& table, const System& system, Problem& p
   }
 }
 
-std::string beside(const std::string& scene, const std::string& file) {
-  return (std::filesystem::path(scene).parent_path() / file).string();
-}
-
 /// Times scaled linearly onto [0, 1].
 void use_samples(SampledFile&& samples, Guess& guess) {
   const double first = samples.t.front(), length = samples.t.back() - first;
@@ -84,10 +80,15 @@ double guessed_duration(const GuessTable& table, const System& system, double of
 
 }  // namespace
 
-void read_guess(const Scene& scene, const System& system, Problem& problem) {
+std::string guess_path(const Scene& scene) {
+  return (std::filesystem::path(scene.path).parent_path() / scene.guess.file->value).string();
+}
+
+void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem) {
   const GuessTable& table = scene.guess;
   if (table.file) {
-    SampledFile samples = read_samples(beside(scene.path, table.file->value), system.names);
+    if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
+    SampledFile samples = read_samples(guess_path(scene), system.names);
     if (problem.duration.free)
       problem.duration.value = guessed_duration(table, system, samples.t.back() - samples.t.front());
     use_samples(std::move(samples), problem.guess);
@@ -95,7 +96,7 @@ void read_guess(const Scene& scene, const System& system, Problem& problem) {
   }
   if (problem.duration.free) problem.duration.value = guessed_duration(table, system, 0);
   if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
-  if (table.state) integrate_state(*table.state, system, table.at, problem);
+  if (table.state) integrate_state(*table.state, system, table.at, deadline, problem);
 }
 
 }  // namespace extremal

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "machine/deadline.hpp"
 #include "problem/problem.hpp"
 #include "scene/scene.hpp"
 #include "system/formula.hpp"
@@ -11,8 +12,11 @@ namespace extremal {
 /// The guess that a scene gives: formulas tabulated, a file, or a state integrated; nothing where it gives
 /// none. `problem` has its relation, its ends and, unless free, its duration; a free one is set. A coordinate
 /// without a formula takes the line between its fixed ends, a constant with one of them, zero with none.
-/// Throws SceneError.
-void read_guess(const Scene& scene, const System& system, Problem& problem);
+/// A state is integrated until the deadline. Throws SceneError.
+void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem);
+
+/// The path of the file that the guess names, which is looked up beside the scene.
+std::string guess_path(const Scene& scene);
 
 /// q(t) as a file gives it, row by row: q[k*n + a].
 struct SampledFile {
@@ -25,8 +29,9 @@ struct SampledFile {
 SampledFile read_samples(const std::string& path, const std::vector<std::string>& names);
 
 /// The motion from the state at t = 0 that `values` give ("x" and "x'"; zero where not named), over the
-/// problem's duration. Throws SceneError, at `at` where it cannot be integrated that far.
+/// problem's duration. Throws SceneError, at `at` where it cannot be integrated that far: until the deadline,
+/// in memory there is, and in as many steps as elements can follow.
 void integrate_state(const std::vector<Assignment>& values, const System& system, const Location& at,
-                     Problem& problem);
+                     const Deadline& deadline, Problem& problem);
 
 }  // namespace extremal

@@ -95,9 +95,11 @@ SampledFile read_json(const SourcePointer& source, const std::vector<std::string
   for (const std::string& name : names) {
     const auto column = found->find(name);
     if (column == found->end()) throw SceneError(whole, fmt::format("the samples have no '{}'", name));
-    const bool numbers = column->is_array() && std::all_of(column->begin(), column->end(),
-                                                           [](const Json& x) { return x.is_number(); });
-    if (!numbers) throw SceneError(whole, fmt::format("'{}' of the samples is not a list of numbers", name));
+    const bool numbers = column->is_array() && std::all_of(column->begin(), column->end(), [](const Json& x) {
+                           return x.is_number() && std::isfinite(x.get<double>());
+                         });
+    if (!numbers)
+      throw SceneError(whole, fmt::format("'{}' of the samples is not a list of finite numbers", name));
     columns.push_back(column->get<std::vector<double>>());
     if (columns.back().size() != columns.front().size())
       throw SceneError(whole, fmt::format("the samples have {} times and {} values of '{}'",
@@ -117,7 +119,7 @@ SampledFile read_samples(const std::string& path, const std::vector<std::string>
   std::vector<std::string> wanted{"t"};
   wanted.insert(wanted.end(), names.begin(), names.end());
   const std::size_t first = source->text.find_first_not_of(" \t\r\n");
-  const bool json = first != std::string::npos && source->text[first] == '{';
+  const bool json = first != std::string::npos && (source->text[first] == '{' || source->text[first] == '[');
   const SampledFile samples = json ? read_json(source, wanted) : read_csv(source, wanted);
   const Location whole{source, 0, 0};
   if (samples.t.size() < 2)

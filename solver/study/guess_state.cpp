@@ -2,6 +2,7 @@
 #include <qd/dd_real.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "motion/extended_flow.hpp"
@@ -9,7 +10,9 @@
 #include "motion/flow.hpp"
 #include "motion/sample.hpp"
 #include "problem/closing.hpp"
+#include "solve/search/limits.hpp"
 #include "study/guess.hpp"
+#include "study/memory.hpp"
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -38,6 +41,12 @@ constexpr int samples_a_step = 64;
 /// Roundoff of so many steps is amplified by the encounters that they follow.
 constexpr std::size_t many_steps = 750;
 
+/// Elements that follow more steps than these are not made (limits::guess_mesh); and a guess takes at most
+/// this part of memory, as it is copied.
+constexpr std::size_t most_steps =
+    limits::guess_mesh::most_kept * limits::guess_mesh::samples_an_element / samples_a_step;
+constexpr double memory_share = 1.0 / 8;
+
 /// Of the integrator's steps, relative: what they err by is amplified until the end, or until the motion is
 /// known better.
 template <class Real>
@@ -45,16 +54,72 @@ constexpr double tolerance = 1e-14;
 template <>
 constexpr double tolerance<Extended> = 1e-17;
 
+/// What bounds the integration of a state, and refuses it.
+struct Bounds {
+  const Problem& problem;
+  Deadline deadline;
+  Location at;
+
+  int steps() const {
+    const double of_step = samples_a_step * sizeof(double) * (problem.coordinates() + 1.0);
+    return static_cast<int>(std::min<double>(most_steps, memory_share * available_bytes() / of_step));
+  }
+
+  /// The motion was followed from `from` as far as the samples go.
+  [[noreturn]] void refuse(const SampledMotion& samples, double from, int steps_taken) const {
+    if (samples.tau.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
+    const double reached = samples.tau.back() * problem.duration.value;
+    if (deadline.passed())
+      throw SceneError(
+          at, fmt::format("{} (solve.budget) is spent at t = {:.6g} of the motion from guess.state; raise "
+                          "it, or shorten the duration",
+                          deadline.budget_text(), reached));
+    if (steps_taken < steps())
+      throw SceneError(
+          at, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}", reached));
+    const double duration = problem.duration.value, followed = std::abs(reached - from);
+    throw SceneError(
+        at,
+        fmt::format(
+            "the motion from guess.state makes about {:.2g} oscillations in the duration {:.6g}; {} steps "
+            "of the integrator, the most that elements can follow, lead over {:.2g} of them; shorten the "
+            "duration",
+            oscillations(samples) * duration / followed, duration, steps_taken, oscillations(samples)));
+  }
+
+ private:
+  /// Half the number of turning points of the coordinate that turns most often.
+  double oscillations(const SampledMotion& samples) const {
+    const std::size_t n = problem.coordinates();
+    std::size_t most = 0;
+    for (std::size_t a = 0; a < n; ++a) {
+      std::size_t turns = 0;
+      double before = 0;
+      for (std::size_t k = n + a; k < samples.q.size(); k += n) {
+        const double change = samples.q[k] - samples.q[k - n];
+        turns += change * before < 0;
+        if (change != 0) before = change;
+      }
+      most = std::max(most, turns);
+    }
+    return 0.5 * static_cast<double>(most);
+  }
+};
+
 template <class Real, class AnyFlow>
-SampledMotion sample(const InitialState& state, double from, double to, const Problem& problem,
-                     const Location& at, const Anchor<Real>& anchor = {}) {
+SampledMotion sample(const InitialState& state, double from, double to, const Bounds& bounds,
+                     const Anchor<Real>& anchor = {}) {
   SampledMotion samples;
-  const MotionSampling options{tolerance<Real>, samples_a_step, problem.duration.value};
-  if (sample_motion<Real>(AnyFlow(*problem.lagrangian), state.q, state.v, from, to, options, samples, anchor))
-    return samples;
-  if (samples.tau.empty()) throw SceneError(at, "L is not finite at the initial state of the guess");
-  throw SceneError(at, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}",
-                                   samples.tau.back() * problem.duration.value));
+  int taken = 0;
+  const auto more = [&, most = bounds.steps()](int steps) {
+    taken = steps;
+    return steps < most && !bounds.deadline.passed();
+  };
+  const MotionSampling options{tolerance<Real>, samples_a_step, bounds.problem.duration.value, more};
+  const Lagrangian& lagrangian = *bounds.problem.lagrangian;
+  if (!sample_motion<Real>(AnyFlow(lagrangian), state.q, state.v, from, to, options, samples, anchor))
+    bounds.refuse(samples, from, taken);
+  return samples;
 }
 
 /// The same motion in twice the precision, from where samples begin anew.
@@ -102,14 +167,13 @@ class ExactMotion {
 };
 
 /// Where it takes many steps, with as many digits as L can be evaluated in.
-SampledMotion motion_from(const InitialState& state, double from, double to, const Problem& problem,
-                          const Location& at) {
-  SampledMotion samples = sample<double, Flow>(state, from, to, problem, at);
-  const Lagrangian& lagrangian = *problem.lagrangian;
+SampledMotion motion_from(const InitialState& state, double from, double to, const Bounds& bounds) {
+  SampledMotion samples = sample<double, Flow>(state, from, to, bounds);
+  const Lagrangian& lagrangian = *bounds.problem.lagrangian;
   if (samples.tau.size() <= many_steps * samples_a_step || !ExtendedFlow<DoubleDouble>::suits(lagrangian))
     return samples;
   ExactMotion exact(state, from, lagrangian);
-  return sample<Extended, ExtendedFlow<Extended>>(state, from, to, problem, at, std::ref(exact));
+  return sample<Extended, ExtendedFlow<Extended>>(state, from, to, bounds, std::ref(exact));
 }
 
 /// Where an orbit that closes arrives.
@@ -139,16 +203,17 @@ void add_halves(const SampledMotion& first, const SampledMotion& second, Guess& 
 }  // namespace
 
 void integrate_state(const std::vector<Assignment>& values, const System& system, const Location& at,
-                     Problem& problem) {
+                     const Deadline& deadline, Problem& problem) {
+  const Bounds bounds{problem, deadline, at};
   const InitialState state = read_state(values, system);
   const double duration = problem.duration.value;
   if (problem.periodic) {
-    const SampledMotion first = motion_from(state, 0, duration / 2, problem, at);
+    const SampledMotion first = motion_from(state, 0, duration / 2, bounds);
     const SampledMotion second =
-        motion_from(closed(closing_map(problem), state), duration, duration / 2, problem, at);
+        motion_from(closed(closing_map(problem), state), duration, duration / 2, bounds);
     add_halves(first, second, problem.guess);
   } else {
-    SampledMotion samples = motion_from(state, 0, duration, problem, at);
+    SampledMotion samples = motion_from(state, 0, duration, bounds);
     problem.guess.tau = std::move(samples.tau);
     problem.guess.q = std::move(samples.q);
   }

@@ -38,7 +38,7 @@ Inspection inspect(const Study& study) {
     ++(e.row < n ? found.qq : e.column < n ? found.vq : found.vv);
   }
   found.tapes = tapes_of(*study.system.lagrangian);
-  found.derivatives = check_derivatives(study.problem);
+  found.derivatives = check_derivatives(study.problem, deadline_of(study));
   return found;
 }
 

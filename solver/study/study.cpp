@@ -45,7 +45,7 @@ SolveOptions read_options(const SolveTable& table) {
   return options;
 }
 
-Problem read_problem(const Scene& scene, const System& system) {
+Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
   problem.names = system.names;
@@ -53,7 +53,10 @@ Problem read_problem(const Scene& scene, const System& system) {
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
   set_relation(scene.boundary, system, problem);
   problem.duration = read_duration(scene.boundary, system);
-  read_guess(scene, system, problem);
+  // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
+  if (scene.guess.state && system.lagrangian->structure().quadratic)
+    check_regular(problem, scene.system.lagrangian->at);
+  read_guess(scene, system, deadline, problem);
   try {
     problem = make_problem(std::move(problem));
   } catch (const std::invalid_argument& e) {
@@ -67,17 +70,34 @@ Problem read_problem(const Scene& scene, const System& system) {
   return problem;
 }
 
+/// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
+void check_memory(const Scene& scene, const Study& study) {
+  const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
+  const int degree = study.options.scheme ? study.options.scheme->degree : 2;
+  const double needed = solve_bytes(study.problem.lagrangian->structure(), elements, degree);
+  const double available = available_bytes();
+  if (needed > available)
+    throw SceneError(
+        scene.solve.elements ? scene.solve.elements->at : scene.system.at,
+        fmt::format("{} coordinates and {} elements of degree {} need {} of memory; {} are available", n,
+                    elements, degree, byte_text(needed), byte_text(available)));
+}
+
 Study make_study(const Scene& scene, Purpose purpose) {
   Study study;
   study.scene = scene.path;
+  study.files = scene.files;
+  if (scene.guess.file) study.files.push_back(guess_path(scene));
   study.title = scene.title;
   study.system = make_system(scene.system);
   check_parameters_used(scene);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;
   study.options = read_options(scene.solve);
+  if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
-  study.problem = read_problem(scene, study.system);
+  study.problem = read_problem(scene, study.system, Deadline(study.budget));
+  check_memory(scene, study);
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;
@@ -92,27 +112,16 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   }
 }
 
-/// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
-void check_memory(const Study& study) {
-  const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
-  const int degree = study.options.scheme ? study.options.scheme->degree : 2;
-  const double needed = solve_bytes(study.problem.lagrangian->structure(), elements, degree);
-  const double available = available_bytes();
-  if (needed > available)
-    throw std::length_error(
-        fmt::format("{}: {} coordinates and {} elements of degree {} need {} of memory; {} are available",
-                    study.scene, n, elements, degree, byte_text(needed), byte_text(available)));
-}
-
 /// What solve() returns the last time, with the medians of the times it took.
 template <class Solve>
 std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solve) {
   if (repeat < 1) throw std::invalid_argument(fmt::format("repeat = {}; need at least 1", repeat));
-  check_memory(study);
   std::vector<Solution> solutions;
   std::vector<std::vector<double>> solving, analysing;  // for each solution, of each time
-  for (int k = 0; k < repeat; ++k) {
-    solutions = solve();
+  SolveOptions options = study.options;
+  for (int k = 0; k < repeat && !(k > 0 && options.deadline.passed()); ++k) {
+    options.deadline = deadline_of(study);
+    solutions = solve(options);
     solving.resize(solutions.size());
     analysing.resize(solutions.size());
     for (std::size_t i = 0; i < solutions.size(); ++i) {
@@ -135,6 +144,8 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
+Deadline deadline_of(const Study& study) { return Deadline(study.budget).or_earlier(study.options.deadline); }
+
 Study load(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
   const auto begin = Clock::now();
   Study study = with_suggestion([&] { return load_checked(path, sets, purpose); });
@@ -144,14 +155,18 @@ Study load(const std::string& path, const std::vector<std::string>& sets, Purpos
 
 Solution run(const Study& study, int repeat) {
   Solver solver;
-  const auto solve = [&] { return std::vector<Solution>{solver.solve(study.problem, study.options)}; };
-  return repeated(study, repeat, solve).front();
+  return repeated(study, repeat,
+                  [&](const SolveOptions& options) {
+                    return std::vector<Solution>{solver.solve(study.problem, options)};
+                  })
+      .front();
 }
 
 std::vector<Solution> run_all(const Study& study, int repeat) {
   Solver solver;
-  return repeated(study, repeat,
-                  [&] { return solver.solve_all(study.problem, study.options, study.solutions); });
+  return repeated(study, repeat, [&](const SolveOptions& options) {
+    return solver.solve_all(study.problem, options, study.solutions);
+  });
 }
 
 }  // namespace extremal

@@ -17,12 +17,14 @@ namespace extremal {
 
 /// A scene made ready: tape, boundary relation and sampled guess stand.
 struct Study {
-  std::string scene;  ///< its path, as given
-  std::string title;  ///< may be empty
+  std::string scene;               ///< its path, as given
+  std::vector<std::string> files;  ///< that it was read from: itself, a system file, a guess
+  std::string title;               ///< may be empty
   System system;
   Problem problem;
   SolveOptions options;
-  int solutions = 0;  ///< so many extremals are wanted; 0: the one reached from the guess
+  double budget = 60;  ///< seconds after which a verb tries nothing further; options.deadline may be earlier
+  int solutions = 0;   ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   double seconds_read = 0;  ///< from opening the file until this was ready
@@ -31,13 +33,17 @@ struct Study {
 /// What a scene is read for: [continuation] is left aside where one solution is wanted.
 enum class Purpose { solution, family };
 
-/// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column.
+/// When work on a study that begins now is to end.
+Deadline deadline_of(const Study& study);
+
+/// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column, also where
+/// the least that a solve needs exceeds the memory there is.
 Study load(const std::string& path, const std::vector<std::string>& sets = {},
            Purpose purpose = Purpose::family);
 
-/// Solves `repeat` times from the same guess with one Solver. The solution is the last one's; its seconds
-/// are the medians. Throws std::invalid_argument if repeat < 1 and std::length_error where the least
-/// that the solve needs exceeds the memory there is.
+/// Solves `repeat` times from the same guess with one Solver, each time within the budget; where that is
+/// spent, no more times. The solution is the last one's; its seconds are the medians. Throws
+/// std::invalid_argument if repeat < 1.
 Solution run(const Study& study, int repeat = 1);
 
 /// The same for study.solutions extremals, as Solver::solve_all returns them.

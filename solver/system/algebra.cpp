@@ -112,13 +112,16 @@ Scaled Algebra::reciprocal(Scaled a) {
   return power(a, -2);
 }
 
-/// A power from repeated products of the smallest one: of base^(-1/2) if there is a square root.
+/// A power from repeated products of the smallest one: of base^(-1/2) if there is a square root. Each is
+/// built once, so that the powers 1 … k take a time of order k log k.
 NodeId Algebra::power_node(Power p) {
   if (p.halves == 2) return p.base;
+  const std::uint64_t key = std::uint64_t{p.base} << 32 | static_cast<std::uint32_t>(p.halves);
+  if (const auto known = powers_.find(key); known != powers_.end()) return known->second;
   const bool odd = p.halves % 2 != 0;
   NodeId result = 0;
   if (p.halves == 1) {
-    rooted_.insert(p.base);
+    if (rooted_.insert(p.base).second) powers_.clear();  // others are built of the root from here on
     result = graph_.unary(Op::sqrt, p.base);
   } else if (p.halves == -1) {
     result = graph_.div(one_, power_node({p.base, 1}));
@@ -132,6 +135,7 @@ NodeId Algebra::power_node(Power p) {
     result = graph_.mul(power_node({p.base, p.halves - half}), power_node({p.base, half}));
   }
   remember(result, 1, {p});
+  powers_.emplace(key, result);
   return result;
 }
 

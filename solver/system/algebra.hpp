@@ -72,9 +72,10 @@ class Algebra {
   Graph& graph_;
   NodeId one_;
   std::vector<bool> uniform_inputs_;
-  std::vector<bool> uniform_;                     ///< by node, as far as known
-  std::unordered_map<NodeId, Product> products_;  ///< of the nodes that are products
-  std::unordered_set<NodeId> rooted_;             ///< nodes whose square root is in the graph
+  std::vector<bool> uniform_;                         ///< by node, as far as known
+  std::unordered_map<NodeId, Product> products_;      ///< of the nodes that are products
+  std::unordered_set<NodeId> rooted_;                 ///< nodes whose square root is in the graph
+  std::unordered_map<std::uint64_t, NodeId> powers_;  ///< by base and halves
 };
 
 }  // namespace extremal

@@ -214,23 +214,24 @@ NodeId Graph::power(NodeId a, NodeId b) {
   return exponent < 0 ? div(constant(1), result) : result;
 }
 
+/// Users before arguments, in a time that grows with the nodes of f, however many the graph has.
 std::vector<NodeId> nodes_of(const Graph& graph, NodeId f) {
-  std::vector<std::uint64_t> marked(f / 64 + 1);
-  const auto mark = [&](NodeId id) { marked[id / 64] |= std::uint64_t{1} << id % 64; };
-  mark(f);
-  std::vector<NodeId> nodes;
-  for (std::size_t word = marked.size(); word-- > 0;) {  // users before arguments
-    while (marked[word] != 0) {
-      const int bit = 63 - std::countl_zero(marked[word]);
-      marked[word] ^= std::uint64_t{1} << bit;
-      const auto id = static_cast<NodeId>(64 * word + bit);
-      nodes.push_back(id);
-      const Node& node = graph[id];
-      if (arity(node.op) > 0) mark(node.a);
-      if (arity(node.op) > 1) mark(node.b);
-    }
+  std::vector<NodeId> waiting{f}, nodes;
+  const auto wait = [&](NodeId id) {
+    waiting.push_back(id);
+    std::ranges::push_heap(waiting);
+  };
+  while (!waiting.empty()) {
+    const NodeId id = waiting.front();
+    std::ranges::pop_heap(waiting);
+    waiting.pop_back();
+    if (!nodes.empty() && nodes.back() == id) continue;  // an argument of several
+    nodes.push_back(id);
+    const Node& node = graph[id];
+    if (arity(node.op) > 0) wait(node.a);
+    if (arity(node.op) > 1) wait(node.b);
   }
-  std::reverse(nodes.begin(), nodes.end());
+  std::ranges::reverse(nodes);
   return nodes;
 }
 

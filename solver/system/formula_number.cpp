@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -167,9 +168,46 @@ double Evaluator::finite(const Formula& formula, std::uint32_t node, std::vector
   return result;
 }
 
+/// Whether the value is one of integer arithmetic, by the form of the formula.
+bool Evaluator::whole(const Formula& formula, std::uint32_t id) {
+  const Syntax& node = formula.nodes[id];
+  const auto parts = [&](bool inverse) {
+    return std::ranges::all_of(formula.children(node), [&](Link link) {
+      return (inverse || !link.inverse) && whole(formula, link.node);
+    });
+  };
+  switch (node.form) {
+    case Form::number:
+      return node.value == std::floor(node.value);
+    case Form::reference:
+      return node.meaning == Meaning::index;
+    case Form::negative:
+    case Form::total:
+      return parts(true);
+    case Form::product:
+      return parts(false);
+    default:
+      return false;
+  }
+}
+
+/// Without rounding: i + 1e-300 is i in floating-point numbers only.
+double Evaluator::exact(const Formula& formula, std::uint32_t id, std::vector<double>& indices) {
+  if (whole(formula, id)) return value(formula, id, indices);
+  std::feclearexcept(FE_INEXACT);
+  const double result = value(formula, id, indices);
+  if (result == std::floor(result) && std::fetestexcept(FE_INEXACT)) {
+    const Syntax& node = formula.nodes[id];
+    fail(formula, node.offset,
+         fmt::format("{} is an integer only by rounding{}; write it in integers", result,
+                     circumstances(formula, node, indices)));
+  }
+  return result;
+}
+
 long Evaluator::integer(const Formula& formula, std::uint32_t node, std::vector<double>& indices,
                         std::string_view what) {
-  const double result = value(formula, node, indices);
+  const double result = exact(formula, node, indices);
   const Syntax& syntax = formula.nodes[node];
   if (result != std::floor(result) || !(std::abs(result) <= largest_integer))
     fail(formula, syntax.offset,
@@ -180,7 +218,7 @@ long Evaluator::integer(const Formula& formula, std::uint32_t node, std::vector<
 int Evaluator::element(const Formula& formula, const Syntax& node, int count, std::vector<double>& indices) {
   const std::uint32_t child = formula.children(node)[0].node;
   const std::string_view name = formula.name(node);
-  const double result = value(formula, child, indices);
+  const double result = exact(formula, child, indices);
   if (result >= 1 && result <= count && result == std::floor(result)) return static_cast<int>(result) - 1;
   const long index = integer(formula, child, indices, fmt::format("the index of '{}'", name));
   fail(formula, node.offset,

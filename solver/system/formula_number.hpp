@@ -38,6 +38,8 @@ class Evaluator {
   void spend(const Formula& formula, const Syntax& node, std::size_t amount);
 
  private:
+  static bool whole(const Formula& formula, std::uint32_t node);
+  double exact(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
   double reference(const Formula& formula, const Syntax& node, std::vector<double>& indices);
   double series(const Formula& formula, const Syntax& node, std::vector<double>& indices);
   double end_value(const Formula& formula, const Syntax& node, std::vector<double>& indices);

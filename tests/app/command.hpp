@@ -45,8 +45,8 @@ class Command : public ::testing::Test {
     std::ofstream(folder / name, std::ios::binary) << content;
   }
 
-  /// Runs `extremal ARGUMENTS` in the folder, killed after 60 s of processor time.
-  Outcome extremal(const std::vector<std::string>& arguments) {
+  /// Starts `extremal ARGUMENTS` in the folder, killed after 60 s of processor time.
+  pid_t start(const std::vector<std::string>& arguments) {
     const std::string program = std::string(EXTREMAL_BINARY_DIR) + "/extremal";
     std::vector<char*> argv{const_cast<char*>(program.c_str())};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
@@ -62,11 +62,15 @@ class Command : public ::testing::Test {
       ::execv(program.c_str(), argv.data());
       ::_exit(127);
     }
+    return child;
+  }
+  Outcome finish(pid_t child) {
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(out),
-            read_text(error)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(folder / "stdout"),
+            read_text(folder / "stderr")};
   }
+  Outcome extremal(const std::vector<std::string>& arguments) { return finish(start(arguments)); }
   Outcome solve(const std::string& scene, std::vector<std::string> options = {}) {
     write("scene.toml", scene);
     options.insert(options.begin(), {"solve", "scene.toml"});

@@ -26,7 +26,7 @@ std::vector<Vertex> drawn(const Function& y) {
   }
   panel.curves.push_back(curve);
   const Figure figure{.width = 400, .height = 400, .title = "", .panels = {panel}};
-  const std::string script = gnuplot_script(figure, Format::svg, "out");
+  const std::string script = gnuplot_script(figure, Format::svg);
   const std::string start = "$d0 << EOD\n";
   std::istringstream in(script.substr(script.find(start) + start.size()));
   std::vector<Vertex> vertices;

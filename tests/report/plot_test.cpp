@@ -11,6 +11,7 @@
 #include <optional>
 #include <sstream>
 
+#include "report/folders.hpp"
 #include "report/sample_results.hpp"
 #include "report/temporary_folder.hpp"
 #include "report/well_formed.hpp"
@@ -30,19 +31,6 @@ Picture arc(const std::string& title, const std::vector<std::string>& names) {
   }
   picture.samples.v = picture.samples.p = picture.samples.q;
   return picture;
-}
-
-std::string content(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-std::vector<std::string> entries(const std::string& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    names.push_back(entry.path().filename());
-  return names;
 }
 
 /// Sets a variable of the environment for as long as it lives.

@@ -145,5 +145,12 @@ TEST(Table, RefusesARowOfAnotherLength) {
   }
 }
 
+TEST(Text, ControlCharactersBecomeVisible) {
+  EXPECT_EQ(visible("a\nb\x1b[31m\t\u009b\u202e\xff é", false),
+            "a\\nb\\u001b[31m\\u0009\\u009b\\u202e\uFFFD é");
+  EXPECT_EQ(visible("a\nb\r", true), "a\nb\\u000d");
+  EXPECT_EQ(visible(std::string("a\0b", 3), true), "a\\u0000b");
+}
+
 }  // namespace
 }  // namespace extremal

@@ -48,7 +48,7 @@ TEST(Deviation, OfWhatBreaksOff) {
 using Comparing = Scenes;
 
 TEST_F(Comparing, ErrorsFollowTolerances) {
-  CompareOptions options{.tolerances = {1e-4, 1e-8}, .budget = 0, .progress = nullptr};
+  CompareOptions options{.tolerances = {1e-4, 1e-8}, .row_seconds = 0, .progress = nullptr};
   int shown = 0;
   options.progress = [&](const ComparisonRow&) { ++shown; };
   const Comparison found = compare(study(oscillator), options);
@@ -67,7 +67,7 @@ TEST_F(Comparing, ErrorsFollowTolerances) {
 
 TEST_F(Comparing, NothingWithoutAReference) {
   const Comparison found = compare(study(oscillator, {"boundary.duration=pi"}),
-                                   {.tolerances = {1e-6}, .budget = 0, .progress = {}});
+                                   {.tolerances = {1e-6}, .row_seconds = 0, .progress = {}});
   EXPECT_FALSE(found.reference);
   EXPECT_FALSE(found.any());
   EXPECT_EQ(found.rows.front().status, Status::conjugate_ends);

@@ -86,7 +86,7 @@ TEST_F(Scenes, GuessFromAResult) {
             "r.json: this result has no samples; solve with --samples to write some");
   write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0, null]}}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
-            "r.json: 'x' of the samples is not a list of numbers");
+            "r.json: 'x' of the samples is not a list of finite numbers");
   write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0]}}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
             "r.json: the samples have 2 times and 1 values of 'x'");
@@ -133,4 +133,28 @@ TEST_F(Scenes, GuessFromAStateThatEndsInACollision) {
       text.rfind("scene.toml:7:1: the initial state of the guess cannot be integrated beyond t = 1.1107", 0),
       0u)
       << text;
+}
+
+TEST_F(Scenes, GuessFromAStateOfTooManyOscillations) {
+  const std::string text = message(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - 1e10*x^2/2\"\n[boundary]\nstart = { x = 1 }\n"
+      "duration = 1000\n[guess]\nstate = { x = 1 }\n");
+  EXPECT_EQ(text.rfind("scene.toml:7:1: the motion from guess.state makes about 1.6e+07 oscillations", 0), 0u)
+      << text;
+}
+
+TEST_F(Scenes, GuessFromAStateNeedsARegularMass) {
+  EXPECT_EQ(message("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x' + y')^2/2\"\n[boundary]\n"
+                    "duration = 1\n[guess]\nstate = { x = 1 }\n")
+                .rfind("scene.toml:3:14: the Lagrangian is not regular", 0),
+            0u);
+}
+
+TEST_F(Scenes, GuessFilesOfListsAreNoCsv) {
+  for (const char* text : {"[[[[", "[1, 2]"}) {
+    write("guess.json", text);
+    const std::string what = message(masses + ends + "[guess]\nfile = \"guess.json\"\n");
+    EXPECT_EQ(what.find("column"), std::string::npos) << what;
+    EXPECT_EQ(what.rfind("guess.json: this ", 0), 0u) << what;
+  }
 }

@@ -123,19 +123,59 @@ TEST(Memory, SolveIsLinearInElementsAndRefusedBeyondWhatThereIs) {
   EXPECT_EQ(byte_text(12), "12 B");
 }
 
-TEST_F(Scenes, WhatDoesNotFitIntoMemoryIsRefused) {
-  const Study s = study(
+TEST_F(Scenes, WhatDoesNotFitIntoMemoryIsRefusedWhenItIsRead) {
+  const std::string chain =
       "[system]\ncoordinates = [\"q[1000]\"]\nlagrangian = \"sum(i, 1, 1000, q[i]'^2/2 - "
-      "q[i]^2/2)\"\n[boundary]\nduration = 1\n"
-      "[solve]\nscheme = \"lobatto(8)\"\nelements = 100000000\n");
-  try {
-    run(s);
-    FAIL();
-  } catch (const std::length_error& e) {
-    const double needed = solve_bytes(s.system.lagrangian->structure(), 100000000, 8);
-    EXPECT_GT(needed, 1e15);
-    EXPECT_EQ(e.what(), s.scene + ": 1000 coordinates and 100000000 elements of degree 8 need " +
-                            byte_text(needed) + " of memory; " + byte_text(available_bytes()) +
-                            " are available");
+      "q[i]^2/2)\"\n[boundary]\nduration = 1\n[solve]\nscheme = \"lobatto(8)\"\n";
+  const double needed = solve_bytes(study(chain).system.lagrangian->structure(), 100000000, 8);
+  EXPECT_GT(needed, 1e15);
+  EXPECT_EQ(message(chain + "elements = 100000000\n"),
+            "scene.toml:8:12: 1000 coordinates and 100000000 elements of degree 8 need " + byte_text(needed) +
+                " of memory; " + byte_text(available_bytes()) + " are available");
+}
+
+TEST_F(Scenes, DifferencesFollowFunctionsOfAnyScale) {
+  const auto product = [](const std::string& factor, int count) {
+    std::string text = factor;
+    for (int k = 1; k < count; ++k) text += "*" + factor;
+    return text;
+  };
+  const std::string boundary = "[boundary]\nstart = { x = 0.9 }\nend = { x = 1.1 }\nduration = 1\n";
+  for (const std::string& potential :
+       {product("x", 100), product("x", 1000), product("x", 10000), product("(1 + sin(x)/100)", 10000),
+        std::string("sum(k, 1, 10000, sin(k*x))"), std::string("1e20*x^2"),
+        std::string("exp(1e4*x - 1e4)")}) {
+    const Study s =
+        study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - " + potential + "\"\n" + boundary);
+    const DerivativeCheck check = check_derivatives(s.problem);
+    EXPECT_TRUE(check.agree()) << potential.substr(0, 20) << " " << check.gradient.error << " "
+                               << check.hessian.error;
   }
+}
+
+TEST_F(Scenes, TheBudgetIsPositiveAndEndsWhatDoesNotConverge) {
+  EXPECT_EQ(study(masses + ends).budget, 60);
+  EXPECT_EQ(study(masses + ends, {"solve.budget=0.5"}).budget, 0.5);
+  EXPECT_EQ(message(masses + ends + "[solve]\nbudget = 0\n"),
+            "scene.toml:11:10: budget = 0; need more than 0 seconds");
+  Study s = study(
+      "[system]\ncoordinates = [\"q\"]\nlagrangian = \"q'^2/2 + cos(q)\"\n[boundary]\n"
+      "start = { q = 0 }\nend = { q = 3 }\nduration = 60\n");
+  s.options.deadline = Deadline(0);
+  while (!s.options.deadline.passed()) {
+  }
+  const Solution solution = run(s);
+  EXPECT_EQ(solution.status, Status::iteration_limit);
+  EXPECT_EQ(solution.message.rfind("the budget of 0 s (solve.budget) is spent, in Newton steps: ", 0), 0u)
+      << solution.message;
+}
+
+TEST_F(Scenes, KnowTheFilesThatTheyWereReadFrom) {
+  write("used.toml", "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n");
+  write("guess.csv", "t,x\n0,0\n2,1\n");
+  const Study s = study("[system]\nuse = \"used\"\n" + ends + "[guess]\nfile = \"guess.csv\"\n");
+  ASSERT_EQ(s.files.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(fs::path(s.files[k]).filename(),
+              (std::vector<fs::path>{"scene.toml", "used.toml", "guess.csv"})[k]);
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <complex>
 #include <random>
 
@@ -134,6 +135,27 @@ TEST_F(Derivative, OfLongProductsAndDeepSumsNeedsNoStack) {
   EXPECT_LT(g.size() - before, 40u * inputs.size());
   const std::vector<double> ones(2000, 1.0);
   EXPECT_EQ(evaluate(g, partials[1234], std::span<const double>(ones)), 1);
+}
+
+/// x · x · … and its kind: a power takes the time of its logarithm, however it was written.
+TEST(Gradient, LongProductsTakeTimeThatGrowsLikeTheirLength) {
+  const auto nodes = [](int factors) {
+    Graph g;
+    const NodeId x = g.input(0), root = g.unary(Op::sqrt, g.add(x, g.constant(1)));
+    NodeId product = x, quotient = g.constant(1), roots = root;
+    for (int k = 1; k < factors; ++k) {
+      product = g.mul(product, x);
+      quotient = g.div(quotient, g.add(x, g.constant(2)));
+      roots = g.mul(roots, root);
+    }
+    const std::vector<std::uint32_t> inputs = {0};
+    const NodeId slope = gradient(g, g.add(g.add(product, quotient), roots), inputs)[0];
+    gradient(g, slope, inputs);
+    return static_cast<double>(g.size());
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_LT(nodes(20000) / nodes(10000), 2.5);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 }  // namespace

@@ -129,6 +129,11 @@ TEST(FormulaNumber, ValuesOutOfRangeAreRefusedWithTheNumbers) {
   EXPECT_EQ(refusal("m[n/8]"), "the index of 'm' is 0.5, not an integer | duration | 2");
   EXPECT_EQ(refusal("sum(i, 1, n, m[i + 1])"),
             "m[5] is out of range: 'm' has 4 elements, counted from 1 (at i = 4) | duration | 13");
+  EXPECT_EQ(refusal("m[1 + 1e-300]"),
+            "1 is an integer only by rounding; write it in integers | duration | 2");
+  EXPECT_EQ(refusal("sum(i, 1, 2, m[i + 1e-300])"),
+            "1 is an integer only by rounding (at i = 1); write it in integers | duration | 15");
+  EXPECT_EQ(refusal("sum(i, 1, 2, m[3*i/3])"), "no error");
   EXPECT_EQ(refusal("sum(i, 1, a, i)"), "the upper bound of a sum is 2.5, not an integer | duration | 10");
   EXPECT_EQ(refusal("1/0"), "the value is not finite | duration | 0");
   EXPECT_EQ(refusal("1 + log(-1)"), "the value is not finite | duration | 0");

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "action/scheme.hpp"
+#include "machine/deadline.hpp"
 #include "solution/solution.hpp"
 #include "solve/external/method.hpp"
 
@@ -17,6 +18,7 @@ struct SolveOptions {
   int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
   Method method = Method::newton;
   int max_iterations = 8000;  ///< Newton steps in all, restarts from other guesses included
+  Deadline deadline = {};     ///< after which nothing further is tried
   std::function<void(const Iteration&)> progress;
 };
 

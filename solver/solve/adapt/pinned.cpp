@@ -33,7 +33,7 @@ NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, do
   const NewtonReport report = converge(w_.iteration, path, tables, {goal, most_steps}, [&] {
     if (&tables == &w_.pinned) outcome_.record(w_.iteration, options_);
     cost += step * w_.iteration.burden();
-    return cost < most;
+    return cost < most && !options_.deadline.passed();
   });
   cost_ += cost;
   return report;
@@ -85,7 +85,7 @@ bool PinnedSolve::solve_discrete(int elements) {
     }
     if (!again) {
       magnitude_ = scales(path_, w_.pinned).magnitude;
-      run_external_solver(options_.method, problem_, w_.pinned, path_,
+      run_external_solver(options_.method, problem_, w_.pinned, path_, options_.deadline,
                           [this] { return ++outcome_.iterations < options_.max_iterations; });
     }
     ResidualTest test;
@@ -180,6 +180,13 @@ Outcome PinnedSolve::run() {
   double least = INFINITY;
   int of_least = elements;
   for (;; before = outcome_.error) {
+    if (options_.deadline.passed()) {
+      outcome_.status = Status::iteration_limit;
+      outcome_.message =
+          fmt::format("{} (solve.budget) is spent at {} elements; raise it, or loosen the tolerance",
+                      options_.deadline.budget_text(), elements);
+      break;
+    }
     if (!solve_discrete(elements)) {
       if (options_.elements > 0 || elements >= 256 || cost_ > most_cost) break;
       elements *= 4;

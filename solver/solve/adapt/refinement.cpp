@@ -70,6 +70,7 @@ Refinement::Result Refinement::pursue() {
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < amplified_roundoff;
     // Nor do they help an orbit that has shrunk onto an equilibrium: its range has no digits.
     const bool shrunk = may_shrink && scales(path_, *tables_).range <= at_rest * first_range;
+    if (options_.deadline.passed()) return Result::failed;
     if (hopeless || shrunk || 2 * path_.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",
                                      path_.elements(), path_.degree(), options_.tolerance);
@@ -219,6 +220,7 @@ Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
   measure();
   const double finest = spare * options_.tolerance;
   for (int plans = 0;; ++plans) {
+    if (options_.deadline.passed()) return Attempt::failed;
     const bool risen = mesh_kept_ && path_.degree() == highest_degree;
     if (plans == most_plans || (plans > 0 && risen)) return Attempt::refine;
     // Finer elements than one more step makes use of would be wasted.

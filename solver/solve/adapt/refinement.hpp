@@ -32,7 +32,9 @@ class Refinement {
     share_ = share;
   }
   int steps_left() const { return most_steps_ - outcome_.attempts; }
-  bool exhausted() const { return outcome_.attempts >= most_steps_ || cost_ >= affordable(); }
+  bool exhausted() const {
+    return outcome_.attempts >= most_steps_ || cost_ >= affordable() || options_.deadline.passed();
+  }
 
   static constexpr int first_degree = 4;
   /// An orbit so much smaller than its guess is at rest.

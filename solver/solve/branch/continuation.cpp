@@ -156,7 +156,7 @@ bool Continuation::step() {
   BranchState& state = tracker_.state;
   std::swap(state, from_);
   for (;; length_ *= shortening) {
-    if (length_ < least_length) return give_up(from_);
+    if (length_ < least_length || options_.solve.deadline.passed()) return give_up(from_);
     if (tracker_.reach_smoothly(from_, length_)) break;
   }
   const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
@@ -190,6 +190,9 @@ void Continuation::check_action() {
 
 bool Continuation::give_up(const BranchState& from) {
   const double varied = from.varied, graded = grading(from.path);
+  if (const Deadline& deadline = options_.solve.deadline; deadline.passed())
+    return stop(BranchEnd::budget, fmt::format("at {:.8g} {} (solve.budget) is spent; raise it", varied,
+                                               deadline.budget_text()));
   StepFailure failure = tracker_.failure();
   if (failure == StepFailure::rough && graded > singular_grading) failure = StepFailure::crowded;
   switch (failure) {

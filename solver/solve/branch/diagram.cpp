@@ -64,6 +64,12 @@ bool Diagram::begin_next() {
   waiting_.pop_front();
   ContinuationOptions options = options_;
   options.other_branches = false;
+  if (const Deadline& deadline = options.solve.deadline; deadline.passed()) {
+    branches_.push_back(
+        {next.origin, BranchEnd::budget, deadline.budget_text() + " (solve.budget) is spent; raise it"});
+    waiting_.clear();
+    return false;
+  }
   const bool twice = next.start.kind == PointKind::period_doubling;
   current_.emplace(twice ? doubled(family_) : family_, options, std::move(next.start), next.side);
   branches_.push_back({.origin = next.origin});

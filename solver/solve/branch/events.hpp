@@ -20,6 +20,7 @@ enum class BranchEnd {
   collision,    ///< the path needs ever more elements
   limit,        ///< there is no problem beyond, or L is not finite there
   too_short,    ///< steps became too short
+  budget,       ///< the deadline has passed
 };
 
 /// Points on a step in their order, the regular one at its end left out, and whether the branch ends there.

@@ -87,12 +87,14 @@ class SquareSystem final : public Ipopt::TNLP {
 
 }  // namespace
 
-void solve_interior_point(Displacement& equations, std::vector<double>& z,
+void solve_interior_point(Displacement& equations, std::vector<double>& z, const Deadline& deadline,
                           const std::function<bool()>& count) {
   if (!equations.evaluate(z, true)) return;
   Ipopt::SmartPtr<Ipopt::IpoptApplication> ipopt = new Ipopt::IpoptApplication(false);
   ipopt->Options()->SetIntegerValue("print_level", 0);
   ipopt->Options()->SetStringValue("sb", "yes");
+  // Ipopt has its own largest value, and looks at the time more often than it calls back.
+  ipopt->Options()->SetNumericValue("max_cpu_time", std::clamp(deadline.seconds_left(), 1e-3, 1e6));
   if (ipopt->Initialize("") != Ipopt::Solve_Succeeded) return;
   ipopt->OptimizeTNLP(new SquareSystem(equations, z, count));
 }

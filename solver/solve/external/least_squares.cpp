@@ -1,6 +1,7 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "solve/external/external_solver.hpp"
@@ -72,7 +73,7 @@ class Silence {
 
 }  // namespace
 
-void solve_least_squares(Displacement& equations, std::vector<double>& z,
+void solve_least_squares(Displacement& equations, std::vector<double>& z, const Deadline& deadline,
                          const std::function<bool()>& count) {
   const Silence silence;
   if (!equations.evaluate(z, true)) return;
@@ -91,6 +92,7 @@ void solve_least_squares(Displacement& equations, std::vector<double>& z,
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = 1000;  // `count` bounds the effort
+  options.max_solver_time_in_seconds = std::min(deadline.seconds_left(), options.max_solver_time_in_seconds);
   options.callbacks.push_back(&counter);
   options.update_state_every_iteration = false;
   ceres::Solver::Summary summary;

@@ -68,6 +68,10 @@ bool ResidualTest::passed(const Problem& problem, const NewtonIteration& newton,
 }
 
 std::string ResidualTest::message() const {
+  if (!std::isfinite(share_))
+    return "the iteration came to rest where all momenta vanish and the natural conditions do not hold: "
+           "there is no "
+           "extremal near; try another guess";
   return fmt::format(
       "Newton's method stopped with a residual of {:.1e} of the largest momentum: there is no extremal near, "
       "or the second variation is nearly singular; try another guess",

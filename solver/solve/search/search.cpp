@@ -41,7 +41,7 @@ bool Search::collapsed() const {
 Search::Pursuit Search::pursue(const char* strategy) {
   outcome_.strategy = strategy;
   outcome_.elsewhere = strategy != from_guess;
-  run_external_solver(options_.method, problem_, refinement_.tables(), path_,
+  run_external_solver(options_.method, problem_, refinement_.tables(), path_, options_.deadline,
                       [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
   // A path far from the guess may be wild, and resolved by accident only.
@@ -247,6 +247,13 @@ const Outcome& Search::run(Acceptance* acceptance) {
     outcome_.message =
         "the second variation is singular or nearly so: the ends may be conjugate, and there is no extremal "
         "or a family of them; move an end or change the duration";
+  }
+  if (outcome_.status != Status::converged && options_.deadline.passed()) {
+    outcome_.status = Status::iteration_limit;
+    outcome_.message = fmt::format(
+        "{} (solve.budget) is spent, in Newton steps: {}; raise it, or try a better guess or a shorter "
+        "duration",
+        options_.deadline.budget_text(), outcome_.iterations);
   }
   acceptance_ = nullptr;
   return outcome_;

@@ -289,10 +289,12 @@ std::vector<Solution> Several::run(int most) {
   }
   sort_by_action(found_);
   if (static_cast<int>(found_.size()) < most)
-    found_.front().message = fmt::format(
-        "{}; {} of up to {} extremals found: no more from other guesses and along families, "
-        "{} Newton steps in all",
-        found_.front().message, found_.size(), most, search_.outcome().iterations);
+    found_.front().message =
+        fmt::format("{}; {} of up to {} extremals found: {}, {} Newton steps in all", found_.front().message,
+                    found_.size(), most,
+                    options_.deadline.passed() ? options_.deadline.budget_text() + " (solve.budget) is spent"
+                                               : "no more from other guesses and along families",
+                    search_.outcome().iterations);
   return std::move(found_);
 }
 
