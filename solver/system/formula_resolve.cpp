@@ -133,10 +133,14 @@ class Resolver {
     const Function& function = *find_function(formula_.name(node));
     if (node.indexed || node.velocity)
       stop(node, fmt::format("'{0}' is a function; write {0}(…)", function.name));
-    const int wanted = arity(function.op);
+    const int wanted = function.arguments();
     if (node.count != static_cast<std::uint32_t>(wanted))
       stop(node, fmt::format("{} takes {} argument{}, here are {}", function.name, wanted,
                              wanted == 1 ? "" : "s", node.count));
+    if (function.op == Op::step && child(node, 0).moving)
+      stop(node,
+           "step(u) jumps where u passes 0, and a Lagrangian must not jump along a motion: u is made of t and "
+           "parameters only; max(0, u) has the slope step(u)");
     node.op = function.op;
   }
 
@@ -191,11 +195,14 @@ class Resolver {
     node.numeric = node.meaning != Meaning::coordinate && node.meaning != Meaning::active &&
                    node.meaning != Meaning::time && node.meaning != Meaning::duration &&
                    node.meaning != Meaning::start && node.meaning != Meaning::end;
+    node.moving = node.meaning == Meaning::coordinate || node.meaning == Meaning::start ||
+                  node.meaning == Meaning::end;
     bool below = false;
     int summed_factors = 0;
     for (const Link link : links) {
       const Syntax& part = formula_.nodes[link.node];
       node.numeric &= part.numeric;
+      node.moving |= part.moving;
       node.depth = std::max(node.depth, part.depth + 1);
       below |= part.additive;
       if (part.additive) summed_factors += link.inverse ? 2 : 1;
@@ -206,6 +213,7 @@ class Resolver {
       const Formula& definition = names_.definitions[node.id];
       const Syntax& root = definition.nodes[definition.root];
       node.numeric = root.numeric;
+      node.moving = root.moving;
       node.additive = root.additive;
       node.depth = root.depth + 1;
     }

@@ -51,6 +51,7 @@ struct Syntax {
   bool velocity = false;
   bool indexed = false;
   bool numeric = false;                  ///< made of numbers, parameters and indices alone
+  bool moving = false;                   ///< depends on coordinates or velocities
   bool additive = false;                 ///< a sum(…) stands in it as a summand, up to factors
   std::uint32_t offset = 0, length = 0;  ///< where it stands in the text; of a name, all of the name
   std::uint32_t first = 0, count = 0;    ///< its links
