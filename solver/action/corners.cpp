@@ -129,11 +129,11 @@ void Along::about_minimum(const Lagrangian& u, int element, Interval in, std::ve
 void Along::find(const Kinks& kinks, int element, std::vector<double>& times) {
   const int parts = 2 * path_.degree;
   std::vector<State> states;
-  for (int i = 0; i <= parts; ++i)
-    states.push_back(state_at(path_, element, static_cast<double>(i) / parts));
+  for (int i = 0; i <= parts; ++i) states.push_back(state_at(path_, element, static_cast<double>(i) / parts));
   std::vector<double> value(states.size());
   const auto interval = [&](int from, int to) {
-    return Interval{static_cast<double>(from) / parts, static_cast<double>(to) / parts, value[from], value[to]};
+    return Interval{static_cast<double>(from) / parts, static_cast<double>(to) / parts, value[from],
+                    value[to]};
   };
   for (const KinkSurface& surface : kinks.surfaces()) {
     const Lagrangian& u = *surface.u;

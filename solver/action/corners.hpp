@@ -21,8 +21,8 @@ struct Polynomials {
 };
 
 /// An end of an element at which the path crosses a surface, or a jump in t. With J = 2 w ∂u/∂q sign(u') the
-/// jump of ∂L/∂q, a change δq at the node moves the crossing by δt = −(u + ∂u/∂q δq)/u', and for δt the force J
-/// is that of the other side. To first order that adds to δS at the node
+/// jump of ∂L/∂q, a change δq at the node moves the crossing by δt = −(u + ∂u/∂q δq)/u', and for δt the force
+/// J is that of the other side. To first order that adds to δS at the node
 ///   stiffness · normal (u + normal·δq),   stiffness = 2 w/|u'|,   normal = ∂u/∂q,
 /// and this is the second variation of w |u| there: ∫ 2w δ(u) (normal·δq)² dt.
 struct Corner {
@@ -38,9 +38,10 @@ struct Corner {
 std::vector<Corner> corners_of(const Kinks& kinks, const Polynomials& path, const ClosingMap* closed);
 std::vector<Corner> corners_of(const Kinks& kinks, const Path& path, const ClosingMap* closed);
 
-/// Moves the mesh nodes of a path, of which these were the corners, to where a step of its nodes, (N + 1) × n,
-/// that was taken by `factor`, has taken u along them: u + ∂u/∂q δq + u' δt = 0. Where surfaces share a node, to
-/// the mean of their times; T does not move. False, and nothing is done, where Path::slide() does nothing.
+/// Moves the mesh nodes of a path, of which these were the corners, to where a step of its nodes, (N + 1) ×
+/// n, that was taken by `factor`, has taken u along them: u + ∂u/∂q δq + u' δt = 0. Where surfaces share a
+/// node, to the mean of their times; T does not move. False, and nothing is done, where Path::slide() does
+/// nothing.
 bool follow_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
                     double factor);
 

@@ -184,7 +184,8 @@ void DiscreteAction::measure_corners(const Path& path) {
 
 void DiscreteAction::add_corners() {
   for (const Corner& corner : corners_)
-    add_stiffness(corner, corner.node == elements_ ? nodes.last.data() : nodes.chain.diagonal(corner.node - 1));
+    add_stiffness(corner,
+                  corner.node == elements_ ? nodes.last.data() : nodes.chain.diagonal(corner.node - 1));
 }
 
 void DiscreteAction::finish_sums() {

@@ -28,10 +28,10 @@ struct SchemeTables {
   Scheme scheme;
   int degree = 0, functions = 0, points = 0;
   bool nodal = false;
-  std::vector<double> node, weight;  ///< of the quadrature
-  std::vector<double> lobatto;       ///< s + 1 nodes of the element
-  std::vector<double> value, slope;  ///< points × functions, basis as in element.hpp
-  std::vector<double> end_derivative;        ///< 2 × (s + 1): nodal basis, derivatives at τ = 0 and τ = 1
+  std::vector<double> node, weight;    ///< of the quadrature
+  std::vector<double> lobatto;         ///< s + 1 nodes of the element
+  std::vector<double> value, slope;    ///< points × functions, basis as in element.hpp
+  std::vector<double> end_derivative;  ///< 2 × (s + 1): nodal basis, derivatives at τ = 0 and τ = 1
   std::vector<double> stiffness, gyration;
   PointTable value_sum, slope_sum, value_value, slope_value, slope_slope;
   std::vector<double> legendre;  ///< functions × functions: Legendre coefficients from (d, 1 − τ, τ)
@@ -42,8 +42,8 @@ struct SchemeTables {
   static const SchemeTables& of_lobatto(int degree);
   /// Of gauss(degree), likewise.
   static const SchemeTables& of_gauss(int degree);
-  /// The rule of order 2·degree for a Lagrangian: Lobatto's, or, where L has kinks, Gauss's, which has no point
-  /// at an end: at a kink derivatives of L are those of the one side or the other.
+  /// The rule of order 2·degree for a Lagrangian: Lobatto's, or, where L has kinks, Gauss's, which has no
+  /// point at an end: at a kink derivatives of L are those of the one side or the other.
   static const SchemeTables& of_order(int degree, const Lagrangian& lagrangian);
 };
 

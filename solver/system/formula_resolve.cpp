@@ -138,9 +138,10 @@ class Resolver {
       stop(node, fmt::format("{} takes {} argument{}, here are {}", function.name, wanted,
                              wanted == 1 ? "" : "s", node.count));
     if (function.op == Op::step && child(node, 0).moving)
-      stop(node,
-           "step(u) jumps where u passes 0, and a Lagrangian must not jump along a motion: u is made of t and "
-           "parameters only; max(0, u) has the slope step(u)");
+      stop(
+          node,
+          "step(u) jumps where u passes 0, and a Lagrangian must not jump along a motion: u is made of t and "
+          "parameters only; max(0, u) has the slope step(u)");
     node.op = function.op;
   }
 
@@ -195,8 +196,8 @@ class Resolver {
     node.numeric = node.meaning != Meaning::coordinate && node.meaning != Meaning::active &&
                    node.meaning != Meaning::time && node.meaning != Meaning::duration &&
                    node.meaning != Meaning::start && node.meaning != Meaning::end;
-    node.moving = node.meaning == Meaning::coordinate || node.meaning == Meaning::start ||
-                  node.meaning == Meaning::end;
+    node.moving =
+        node.meaning == Meaning::coordinate || node.meaning == Meaning::start || node.meaning == Meaning::end;
     bool below = false;
     int summed_factors = 0;
     for (const Link link : links) {

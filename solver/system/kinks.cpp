@@ -50,7 +50,8 @@ NodeId derivative_by_node(Body& body, NodeId node, int inputs) {
     else if (arity(n.op) == 0)
       image[id] = id;
     else
-      image[id] = arity(n.op) == 1 ? graph.unary(n.op, image[n.a]) : graph.binary(n.op, image[n.a], image[n.b]);
+      image[id] =
+          arity(n.op) == 1 ? graph.unary(n.op, image[n.a]) : graph.binary(n.op, image[n.a], image[n.b]);
   }
   const NodeId slope = gradient(graph, image[body.value], {&variable, 1})[0];
   std::vector<NodeId> replacement;

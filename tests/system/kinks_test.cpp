@@ -59,7 +59,8 @@ TEST(Kinks, GradientsJumpByTwiceTheWeight) {
     }
     const PointValues right = values(*l, above, v, t), left = values(*l, below, v, t);
     for (int a = 0; a < 2; ++a) EXPECT_NEAR(right.dq[a] - left.dq[a], 2 * w * u.dq[a], 1e-7);
-    const double later = values(*surface.u, q, v, t + 1e-6).value, earlier = values(*surface.u, q, v, t - 1e-6).value;
+    const double later = values(*surface.u, q, v, t + 1e-6).value,
+                 earlier = values(*surface.u, q, v, t - 1e-6).value;
     EXPECT_NEAR(values(*surface.u_by_time, q, v, t).value, (later - earlier) / 2e-6, 1e-8);
     tested += std::abs(w) > 0.1;
   }

@@ -125,7 +125,8 @@ bool PinnedSolve::holds_energy(const Resolution::Error& left_out) {
   return found.finite && conserves_energy(found, companion, left_out);
 }
 
-/// The elements of the companion end where it crosses kinks of L: Newton's method again as long as they do not.
+/// The elements of the companion end where it crosses kinks of L: Newton's method again as long as they do
+/// not.
 NewtonReport PinnedSolve::follow_kinks(const ElementTables& tables, NewtonReport report) {
   for (int k = 0; tables.kinks() && k < companion_steps; ++k) {
     const std::vector<double> times = crossings(*tables.kinks(), w_.other);
@@ -244,7 +245,8 @@ Outcome PinnedSolve::run() {
       outcome_.message = "converged";
       if (const int kinked = kinked_elements(); kinked > 0)
         outcome_.message += fmt::format(
-            "; the path crosses kinks of the Lagrangian inside {} of its elements, which lowers the order", kinked);
+            "; the path crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
+            kinked);
       outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
       break;
     }

@@ -201,7 +201,8 @@ bool Refinement::closes_beside_kinks() const {
 /// Puts the path on elements that end where it crosses kinks of L, unless they do to the tolerance.
 bool Refinement::end_at_kinks() {
   const std::vector<double> times = kink_times();
-  if (distance_to_nodes(path_.mesh(), times) <= std::max(options_.tolerance, least_misplacement)) return false;
+  if (distance_to_nodes(path_.mesh(), times) <= std::max(options_.tolerance, least_misplacement))
+    return false;
   move_to(*tables_, with_nodes(path_.mesh(), times));
   return true;
 }
