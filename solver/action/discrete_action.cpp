@@ -50,6 +50,8 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   raw_nodes_.resize(nodes.gradient.size());
   start_gradient_.resize(n_);
   end_gradient_.resize(n_);
+  corners_.clear();
+  closed_ = nullptr;
 }
 
 void DiscreteAction::substitute(const Lagrangian& lagrangian, const ElementTables& tables) {
@@ -143,6 +145,12 @@ void DiscreteAction::put_change(const Path& path, const PathChange& change) {
   changed_ = true;
   put_gradient(path);
   changed_ = false;
+  for (const Corner& corner : corners_) {
+    const std::size_t first = static_cast<std::size_t>(corner.node) * n_;
+    double u = -corner.u;
+    for (int a = 0; a < n_; ++a) u += corner.normal[a] * change.nodes[first + a];
+    for (int a = 0; a < n_; ++a) nodes.gradient[first + a] += corner.stiffness * corner.normal[a] * u;
+  }
 }
 
 void DiscreteAction::put_gradient(const Path& path) {
@@ -169,6 +177,7 @@ void DiscreteAction::reduce_gradient(const Path& path) {
     gather(path, b);
     gather_gradient(b);
   });
+  if (tables_->kinks()) measure_corners(path);
   finish_sums();
 }
 
@@ -238,6 +247,10 @@ void DiscreteAction::evaluate(const Path& path) {
     if (border_) gather_border(b);
   });
   if (n_ >= most_lanes) mirror_blocks();
+  if (tables_->kinks()) {
+    measure_corners(path);
+    add_corners();
+  }
   finish_sums();
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "action/corners.hpp"
 #include "action/extended.hpp"
 #include "action/path.hpp"
 #include "linear/chain.hpp"
@@ -91,6 +92,10 @@ class DiscreteAction {
   /// Largest momentum by velocity along a path, roughly; 0 where unknown.
   double inertia(const Path& path) const;
   bool finite() const { return finite_; }
+  /// Paths close, from now until reset(), by this map, which must outlive its use; null: they have ends.
+  void close(const ClosingMap* closed) { closed_ = closed; }
+  /// Where elements end at kinks of L, those of the path evaluated last.
+  std::span<const Corner> corners() const { return corners_; }
   /// ∂L_d/∂q_a, then ∂L_d/∂q_b of the elements of a batch, 2n groups of lanes.
   const double* end_gradients(int batch) const { return sums(batch, of_ends); }
   const ElementTables& tables() const { return *tables_; }
@@ -166,6 +171,8 @@ class DiscreteAction {
   void gather_gradient(int b);
   void eliminated(int b, const double* x, const double* y, double* sum) const;
   void clear_sums();
+  void measure_corners(const Path& path);
+  void add_corners();
   void finish_sums();
   void add_momenta();
   std::size_t batch_size() const { return sizes_.matrix + 2 * sizes_.vector; }
@@ -191,6 +198,8 @@ class DiscreteAction {
   std::vector<Buffers> buffers_;               // the first of the thread that calls
   AlignedDoubles matrices_, inverses_, sums_;  // of every batch
   AlignedDoubles entries_;
+  const ClosingMap* closed_ = nullptr;
+  std::vector<Corner> corners_;
   std::vector<double> raw_nodes_, start_gradient_, end_gradient_;
 };
 

@@ -49,6 +49,41 @@ bool Path::move_mesh(std::span<const double> times, double factor, double least)
   return true;
 }
 
+bool Path::slide(std::span<const double> shift, double most) {
+  std::vector<int> changed;
+  for (int k = 0; k < elements_; ++k) {
+    const double length = lengths_[k] + shift[k + 1] - shift[k];
+    if (!(length * most > lengths_[k] && length < most * lengths_[k])) return false;
+    if (shift[k] != 0 || shift[k + 1] != 0) changed.push_back(k);
+  }
+  const std::size_t count = degree_ + 1, size = count * n_;
+  std::vector<double> tau(count), transposed(size), q(changed.size() * size);
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    const int k = changed[i];
+    for (std::size_t j = 0; j < count; ++j)
+      tau[j] = lobatto_[j] + (shift[k] + lobatto_[j] * (shift[k + 1] - shift[k])) / lengths_[k];
+    values(k, static_cast<int>(count), tau.data(), transposed.data());
+    for (std::size_t j = 0; j < count; ++j)
+      for (int a = 0; a < n_; ++a) q[i * size + j * n_ + a] = transposed[a * count + j];
+  }
+  // Of neighbours, the end of one and the start of the other.
+  for (std::size_t i = 0; i + 1 < changed.size(); ++i)
+    for (int a = 0; a < n_ && changed[i] + 1 == changed[i + 1]; ++a) {
+      double &end = q[i * size + degree_ * n_ + a], &start = q[(i + 1) * size + a];
+      end = start = 0.5 * (end + start);
+    }
+  for (const int k : changed) lengths_[k] += shift[k + 1] - shift[k];
+  for (int k = 1; k < elements_; ++k) mesh_[k] += shift[k];
+  set_duration(duration_);
+  const std::vector<double> high = high_, low = low_;
+  for (std::size_t i = 0; i < changed.size(); ++i) set_element(changed[i], q.data() + i * size);
+  for (int k = 0; k <= elements_; ++k)
+    for (int a = 0; a < n_ && shift[k] == 0; ++a)
+      set_node(k, a, high[static_cast<std::size_t>(k) * n_ + a], low[static_cast<std::size_t>(k) * n_ + a]);
+  load_ends();
+  return true;
+}
+
 void Path::set_element(int k, const double* q) {
   const double *first = q, *last = q + static_cast<std::size_t>(degree_) * n_;
   for (int a = 0; a < n_; ++a) {

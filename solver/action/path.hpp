@@ -42,6 +42,11 @@ class Path {
   /// values are kept. False, and nothing is done, if an element shrank to less than `least` of its length.
   bool move_mesh(std::span<const double> times, double factor, double least);
 
+  /// Mesh nodes move by `shift` (N + 1, in τ, nothing at the ends); the polynomial of each element stays as
+  /// it is, and where two meet their values are averaged. False, and nothing is done, if an element's length
+  /// changed by more than the factor `most`.
+  bool slide(std::span<const double> shift, double most);
+
   /// q at mesh node k (n entries), rounded to double.
   const double* node(int k) const { return high_.data() + static_cast<std::size_t>(k) * n_; }
   /// What rounding left of it.

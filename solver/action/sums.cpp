@@ -34,6 +34,7 @@ void DiscreteAction::clear_sums() {
   std::fill(raw_nodes_.begin(), raw_nodes_.end(), 0.0);
   nodes.border_gradient = nodes.border_part = 0;
   nodes.end_parts.clear();
+  corners_.clear();
   extended_ready_ = false;
 }
 
@@ -168,6 +169,23 @@ void DiscreteAction::eliminated(int b, const double* x, const double* y, double*
       for (int lane = 0; lane < lanes_; ++lane) sum[lane] += x[u + lane] * y[u + lane] * inverse[lane];
     }
   }
+}
+
+/// Finds the corners of a path, and adds what they contribute to the gradient.
+void DiscreteAction::measure_corners(const Path& path) {
+  corners_ = corners_of(*tables_->kinks(), path, closed_);
+  for (const Corner& corner : corners_)
+    for (int a = 0; a < n_; ++a) {
+      const double force = corner.stiffness * corner.normal[a] * corner.u;
+      nodes.gradient[static_cast<std::size_t>(corner.node) * n_ + a] += force;
+      raw_nodes_[static_cast<std::size_t>(corner.node) * n_ + a] += force;
+    }
+}
+
+void DiscreteAction::add_corners() {
+  for (const Corner& corner : corners_)
+    add_stiffness(corner,
+                  corner.node == elements_ ? nodes.last.data() : nodes.chain.diagonal(corner.node - 1));
 }
 
 void DiscreteAction::finish_sums() {

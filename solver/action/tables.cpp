@@ -78,6 +78,7 @@ std::vector<double> stiffness_of(int degree) {
 }
 
 SchemeTables tables_of_lobatto(int degree) { return SchemeTables(lobatto(degree)); }
+SchemeTables tables_of_gauss(int degree) { return SchemeTables(gauss(degree)); }
 
 }  // namespace
 
@@ -124,9 +125,19 @@ const SchemeTables& SchemeTables::of_lobatto(int degree) {
   return all.at(degree);
 }
 
+const SchemeTables& SchemeTables::of_gauss(int degree) {
+  static ByDegree<SchemeTables> all(tables_of_gauss);
+  return all.at(degree);
+}
+
+const SchemeTables& SchemeTables::of_order(int degree, const Lagrangian& lagrangian) {
+  return lagrangian.kinks() ? of_gauss(degree) : of_lobatto(degree);
+}
+
 void ElementTables::bind(const SchemeTables& scheme, const Lagrangian& lagrangian) {
   const Structure& s = lagrangian.structure();
   scheme_ = &scheme;
+  kinks_ = nullptr;
   mass_.clear();
   gyroscopic_.clear();
   hessian_.clear();

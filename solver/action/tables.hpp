@@ -28,10 +28,10 @@ struct SchemeTables {
   Scheme scheme;
   int degree = 0, functions = 0, points = 0;
   bool nodal = false;
-  std::vector<double> node, weight;  ///< of the quadrature
-  std::vector<double> lobatto;       ///< s + 1 nodes of the element
-  std::vector<double> value, slope;  ///< points × functions, basis as in element.hpp
-  std::vector<double> end_derivative;        ///< 2 × (s + 1): nodal basis, derivatives at τ = 0 and τ = 1
+  std::vector<double> node, weight;    ///< of the quadrature
+  std::vector<double> lobatto;         ///< s + 1 nodes of the element
+  std::vector<double> value, slope;    ///< points × functions, basis as in element.hpp
+  std::vector<double> end_derivative;  ///< 2 × (s + 1): nodal basis, derivatives at τ = 0 and τ = 1
   std::vector<double> stiffness, gyration;
   PointTable value_sum, slope_sum, value_value, slope_value, slope_slope;
   std::vector<double> legendre;  ///< functions × functions: Legendre coefficients from (d, 1 − τ, τ)
@@ -40,6 +40,11 @@ struct SchemeTables {
   explicit SchemeTables(const Scheme& scheme, int exact_points = 0);
   /// Of lobatto(degree), kept for the whole run.
   static const SchemeTables& of_lobatto(int degree);
+  /// Of gauss(degree), likewise.
+  static const SchemeTables& of_gauss(int degree);
+  /// The rule of order 2·degree for a Lagrangian: Lobatto's, or, where L has kinks, Gauss's, which has no
+  /// point at an end: at a kink derivatives of L are those of the one side or the other.
+  static const SchemeTables& of_order(int degree, const Lagrangian& lagrangian);
 };
 
 /// Above this many unknowns in an element Newton's method holds its Hessian as a list of entries.
@@ -51,6 +56,9 @@ class ElementTables {
   ElementTables() = default;
   /// Both must outlive the tables. Keeps memory.
   void bind(const SchemeTables& scheme, const Lagrangian& lagrangian);
+  /// Where elements end at the kinks of L, these; else null.
+  const Kinks* kinks() const { return kinks_; }
+  void end_at(const Kinks* kinks) { kinks_ = kinks; }
   const ElementShape& shape() const { return shape_; }
   const SchemeTables& scheme() const { return *scheme_; }
   int coordinates() const { return shape_.n; }
@@ -80,6 +88,7 @@ class ElementTables {
   void list_places();
 
   const SchemeTables* scheme_ = nullptr;
+  const Kinks* kinks_ = nullptr;
   std::vector<EntryView> mass_, gyroscopic_, hessian_;
   std::vector<double> linear_;
   ElementShape shape_{};

@@ -25,6 +25,8 @@ constexpr double least_pivot = 1e-3;
 constexpr std::size_t most_kept = 1 << 23;
 /// Of an element, halved again and again.
 constexpr double shortest_part = 0x1p-12;
+/// Of an element: a point that is on one side of the kink at its end.
+constexpr double beside_kink = 0x1p-40;
 /// Pieces, or so many of an element, at most.
 constexpr int most_pieces = 1 << 14, most_of_element = 16;
 
@@ -52,7 +54,7 @@ int degree_for(int n, int trajectory_degree) {
 }  // namespace
 
 bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
-                               const Condensed& condensed) {
+                               const Condensed& condensed, const ClosingMap* closed) {
   if (trajectory.coordinates > most_coordinates)
     throw std::invalid_argument(fmt::format("second variation of {} coordinates; at most {} are possible",
                                             trajectory.coordinates, most_coordinates));
@@ -60,17 +62,29 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   lagrangian_ = std::move(lagrangian);
   trajectory_ = &trajectory;
   const int degree = degree_for(trajectory.coordinates, trajectory.degree);
-  const bool made = scheme_ && scheme_->degree == degree;
-  if (!made) scheme_ = &SchemeTables::of_lobatto(degree);
+  const SchemeTables& scheme = SchemeTables::of_order(degree, *lagrangian_);
+  const bool made = scheme_ == &scheme;
+  scheme_ = &scheme;
   if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
   pieces_.clear();
   forms_.clear();
   too_many_ = false;
   const bool taken = condensed.action && take(condensed), regular = taken || cut();
   if (!regular) pieces_.clear();
+  if (regular && lagrangian_->kinks()) add_corners(closed);
   evaluated_ = regular && !taken ? pieces_.back().first : -1;
   forget();
   return regular;
+}
+
+/// Where the path crosses a kink the momentum of a Jacobi field jumps: the piece that ends there has it.
+void SecondVariation::add_corners(const ClosingMap* closed) {
+  const std::size_t size = static_cast<std::size_t>(coordinates()) * coordinates();
+  const Polynomials path{coordinates(), trajectory_->degree, trajectory_->times, trajectory_->nodes};
+  for (const Corner& corner : corners_of(*lagrangian_->kinks(), path, closed))
+    for (std::size_t k = 0; k < pieces_.size(); ++k)
+      if (pieces_[k].part.element == corner.node - 1 && pieces_[k].part.tau1 == 1)
+        add_stiffness(corner, forms_.data() + (3 * k + 2) * size);
 }
 
 Piece SecondVariation::piece(int k) const {
@@ -86,15 +100,16 @@ int SecondVariation::piece_at(double t) const {
   return static_cast<int>(after - pieces_.begin());
 }
 
-/// p' = ∂L/∂q.
+/// p' = ∂L/∂q; within the piece, since it may start at a kink, or T be one.
 Eigen::VectorXd SecondVariation::shift(int k) const {
   const int n = coordinates();
   const double t = k < count() ? pieces_[k].start : trajectory_->duration();
   std::vector<double> q(n), v(n);
+  const double within = lagrangian_->kinks() ? beside_kink : 0;
   if (k < count())
-    trajectory_->in_element(pieces_[k].part.element, pieces_[k].part.tau0, q, v);
+    trajectory_->in_element(pieces_[k].part.element, pieces_[k].part.tau0 + within, q, v);
   else
-    trajectory_->in_element(trajectory_->elements() - 1, 1, q, v);
+    trajectory_->in_element(trajectory_->elements() - 1, 1 - within, q, v);
   Scratch memory;
   const PointValues values = evaluate_at(*lagrangian_, q, v, t, Order::gradient, memory);
   Eigen::VectorXd field(2 * n);

@@ -41,8 +41,9 @@ class SecondVariation {
   /// many, since elements do not resolve the fields by far. There are no pieces then. Throws
   /// std::invalid_argument for more than most_coordinates.
   /// Elements that another condensed are the pieces if they resolve the fields well enough for it.
+  /// Beyond T a path that is `closed` goes on; null: it ends there.
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
-                const Condensed& condensed = {});
+                const Condensed& condensed = {}, const ClosingMap* closed = nullptr);
   /// Whether assemble() failed because there would be too many pieces.
   bool too_many() const { return too_many_; }
 
@@ -84,6 +85,7 @@ class SecondVariation {
   bool take(const Condensed& condensed);
   const Eigen::MatrixXd& inner_by_ends(int k);
   void forget();
+  void add_corners(const ClosingMap* closed);
 
   std::shared_ptr<const Lagrangian> lagrangian_;
   const Trajectory* trajectory_ = nullptr;

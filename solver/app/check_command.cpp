@@ -75,6 +75,10 @@ void print_structure(const Inspection& found) {
     line("velocities", "L is not quadratic in them with a constant mass");
   line("Hessian", fmt::format("entries evaluated: {}; in (q, q): {}, in (q', q): {}, in (q', q'): {}",
                               found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
+  if (found.kinks > 0)
+    line("kinks",
+         fmt::format("surfaces of abs, min, max or step: {}; elements end where the path crosses one",
+                     found.kinks));
   for (const Inspection::Tape& tape : found.tapes)
     line(tape.order.c_str(), fmt::format("instructions: {}; kernels: {}; executed at each point: {}",
                                          tape.instructions, tape.kernels, tape.played));

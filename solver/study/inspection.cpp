@@ -37,6 +37,8 @@ Inspection inspect(const Study& study) {
     const int n = structure.coordinates;
     ++(e.row < n ? found.qq : e.column < n ? found.vq : found.vv);
   }
+  if (const Kinks* kinks = study.system.lagrangian->kinks())
+    found.kinks = static_cast<int>(kinks->surfaces().size());
   found.tapes = tapes_of(*study.system.lagrangian);
   found.derivatives = check_derivatives(study.problem, deadline_of(study));
   return found;

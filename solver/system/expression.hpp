@@ -21,7 +21,7 @@ enum class Op : std::uint8_t {
   atan2,
   min,
   max,   // two arguments
-  step,  ///< 1 where a >= b, else 0 (the derivative of min, max and abs)
+  step,  ///< 1 where a >= b, else 0
   neg,
   abs,
   sqrt,

@@ -72,6 +72,7 @@ NodeId Binder::bind(TermBuilder& builder, const Formula& formula, std::uint32_t 
         return definition(builder, node.id, node.meaning == Meaning::definition_end);
       if (node.meaning != Meaning::none) return coordinate(builder, formula, node, scope);
       const NodeId first = part(0);
+      if (node.op == Op::step) return graph.binary(Op::step, first, graph.constant(0));
       return links.size() > 1 ? graph.binary(node.op, first, part(1)) : graph.unary(node.op, first);
     }
   }

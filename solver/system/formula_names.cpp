@@ -18,7 +18,7 @@ constexpr std::array all_functions{
     Function{"atan2", Op::atan2}, Function{"sinh", Op::sinh}, Function{"cosh", Op::cosh},
     Function{"tanh", Op::tanh},   Function{"exp", Op::exp},   Function{"log", Op::log},
     Function{"sqrt", Op::sqrt},   Function{"abs", Op::abs},   Function{"min", Op::min},
-    Function{"max", Op::max},
+    Function{"max", Op::max},     Function{"step", Op::step},
 };
 
 constexpr int most_elements = 1'000'000;

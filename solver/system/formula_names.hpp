@@ -11,10 +11,11 @@
 
 namespace extremal::formula {
 
-/// A function of the language; min, max and atan2 take two arguments.
+/// A function of the language; min, max and atan2 take two arguments. step(u) is Op::step of u and 0.
 struct Function {
   std::string_view name;
   Op op;
+  int arguments() const { return op == Op::step ? 1 : arity(op); }
 };
 std::span<const Function> functions();
 const Function* find_function(std::string_view name);  ///< or null

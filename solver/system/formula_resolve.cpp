@@ -168,10 +168,15 @@ class Resolver {
     const Function& function = *find_function(formula_.name(node));
     if (node.indexed || node.velocity)
       stop(node, fmt::format("'{0}' is a function; write {0}(…)", function.name));
-    const int wanted = arity(function.op);
+    const int wanted = function.arguments();
     if (node.count != static_cast<std::uint32_t>(wanted))
       stop(node, fmt::format("{} takes {} argument{}, here are {}", function.name, wanted,
                              wanted == 1 ? "" : "s", node.count));
+    if (function.op == Op::step && (child(node, 0).reads & (of_coordinates | of_velocities | of_ends)))
+      stop(
+          node,
+          "step(u) jumps where u passes 0, and a Lagrangian must not jump along a motion: u is made of t and "
+          "parameters only; max(0, u) has the slope step(u)");
     node.op = function.op;
   }
 
@@ -285,16 +290,17 @@ class Resolver {
         return of_time;
       case Meaning::active:
       case Meaning::duration:
+        return of_others;
       case Meaning::start:
       case Meaning::end:
-        return of_others;
+        return of_ends;
       case Meaning::definition: {  // the velocity of one reads the coordinates and their velocities
         const std::uint8_t reads = root_of(node).reads;
         return node.velocity && (reads & of_coordinates) ? reads | of_velocities : reads;
       }
       case Meaning::definition_start:
       case Meaning::definition_end:
-        return root_of(node).reads == 0 ? 0 : of_others;
+        return root_of(node).reads == 0 ? 0 : of_ends;
       default:
         return 0;
     }

@@ -42,7 +42,7 @@ enum class Meaning : std::uint8_t {
 };
 
 /// What a part of a formula reads beside numbers, parameters and indices: bits.
-enum Reads : std::uint8_t { of_coordinates = 1, of_velocities = 2, of_time = 4, of_others = 8 };
+enum Reads : std::uint8_t { of_coordinates = 1, of_velocities = 2, of_time = 4, of_ends = 8, of_others = 16 };
 
 struct Link {
   std::uint32_t node;

@@ -74,12 +74,17 @@ struct PointScratch {
 using Extended = long double;
 using DoubleDouble = dd_real;
 
+class Kinks;
+
 /// Immutable once made; evaluation may run in several threads, each with its own Scratch.
 class Lagrangian {
  public:
   virtual ~Lagrangian() = default;
 
   const Structure& structure() const { return structure_; }
+
+  /// Where L is not smooth; null where it is.
+  virtual const Kinks* kinks() const { return nullptr; }
 
   /// Rows of the remainder at each point: out[k*stride + i] with k = 0 the value, then one row for each
   /// structure().gradient (from Order::gradient on), then one for each structure().hessian.

@@ -58,7 +58,8 @@ Tape::Contribution contribution(const Kernel& kernel, const Structure& s, const 
 
 }  // namespace
 
-TapeLagrangian::TapeLagrangian(const LagrangianGraph& lagrangian) {
+TapeLagrangian::TapeLagrangian(const LagrangianGraph& lagrangian, std::shared_ptr<const Kinks> kinks)
+    : kinks_(std::move(kinks)) {
   Analysis analysis = analyse(lagrangian);
   structure_ = std::move(analysis.structure);
   for (const Order order : {Order::value, Order::gradient, Order::hessian}) {
@@ -89,7 +90,7 @@ void TapeLagrangian::sensitivity(const Points& points, int parameter, double* ou
 }
 
 std::shared_ptr<const Lagrangian> make_lagrangian(LagrangianGraph graph) {
-  return std::make_shared<TapeLagrangian>(graph);
+  return std::make_shared<TapeLagrangian>(graph, find_kinks(graph));
 }
 
 }  // namespace extremal

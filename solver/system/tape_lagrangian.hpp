@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "system/kinks.hpp"
 #include "system/lagrangian.hpp"
 #include "system/tape_program.hpp"
 
@@ -69,7 +71,9 @@ class Tape {
 class TapeLagrangian final : public Lagrangian {
  public:
   /// Throws std::invalid_argument for a malformed graph.
-  explicit TapeLagrangian(const LagrangianGraph& lagrangian);
+  explicit TapeLagrangian(const LagrangianGraph& lagrangian, std::shared_ptr<const Kinks> kinks = nullptr);
+
+  const Kinks* kinks() const override { return kinks_.get(); }
 
   void evaluate(const Points& points, Order order, double* out, Scratch& scratch) const override;
   void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const override;
@@ -83,6 +87,7 @@ class TapeLagrangian final : public Lagrangian {
  private:
   Tape orders_[3];
   std::vector<Tape> sensitivities_;  ///< by parameter
+  std::shared_ptr<const Kinks> kinks_;
 };
 
 }  // namespace extremal

@@ -54,6 +54,28 @@ TEST(FormulaNames, MalformedCoordinatesAreRefused) {
   EXPECT_EQ(refused({""}), "the formula is empty | coordinates[0] | 0");
 }
 
+TEST(FormulaNames, StepsAreOfTimeAndParameters) {
+  const auto refused = [](const std::string& lagrangian) {
+    return error_of({.coordinates = {"x"},
+                     .parameters = {{"a", {{2}}}},
+                     .definitions = {{"late", "t - a"}, {"right", "x - a"}},
+                     .lagrangian = lagrangian});
+  };
+  const std::string reason =
+      "step(u) jumps where u passes 0, and a Lagrangian must not jump along a motion: u is made of t and "
+      "parameters only; max(0, u) has the slope step(u) | lagrangian | ";
+  EXPECT_EQ(refused("x'^2/2 + x*step(x)"), reason + "11");
+  EXPECT_EQ(refused("x'^2/2 + step(2*x')"), reason + "9");
+  EXPECT_EQ(refused("x'^2/2 + step(right)"), reason + "9");
+  EXPECT_EQ(refused("step(t, a)"), "step takes 1 argument, here are 2 | lagrangian | 0");
+  const SystemText text{.coordinates = {"x"},
+                        .parameters = {{"a", {{2}}}},
+                        .definitions = {{"late", "t - a"}},
+                        .lagrangian = "x*step(late) + step(a) + step(-a)"};
+  EXPECT_EQ(value_of(text, {3}, {0}, 1.9), 1);
+  EXPECT_EQ(value_of(text, {3}, {0}, 2), 4);
+}
+
 TEST(FormulaNames, ActiveParametersAreSingleNumbers) {
   const auto refused = [](std::vector<std::string> active) {
     return error_of({.coordinates = {"x"},

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "analysis/bounds.hpp"
+#include "problem/closing.hpp"
 
 namespace extremal {
 
@@ -43,7 +45,9 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
         fmt::format("; windows are only found for up to {} coordinates", SecondVariation::most_coordinates);
     return INFINITY;
   }
-  if (!memory.assemble(problem.lagrangian, solution.trajectory)) {
+  std::optional<ClosingMap> closed;
+  if (problem.periodic) closed = closing_map(problem);
+  if (!memory.assemble(problem.lagrangian, solution.trajectory, {}, closed ? &*closed : nullptr)) {
     solution.message += memory.too_many()
                             ? "; windows are not found: Jacobi fields vary too fast for its elements"
                             : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";

@@ -23,6 +23,8 @@ inline constexpr double resolved = 1e-3;
 inline constexpr int steps = 100;
 /// From an extremal to its companion, which is near or none.
 inline constexpr int companion_steps = 25;
+/// Of the times, in t/T, at which the companion crosses kinks.
+inline constexpr double companion_misplacement = 1e-12;
 /// Elements become at most so many times more at once.
 inline constexpr double most_growth = 16;
 /// An error within this factor of that predicted by its order falls regularly.
@@ -45,6 +47,10 @@ inline constexpr double coarse_goal = 1e-3;
 inline constexpr double coarse_cut = 4;
 /// Steps allowed for one run of damped Newton.
 inline constexpr int coarse_steps = 25, fine_steps = 12;
+/// Of T: kinks are known no better.
+inline constexpr double least_misplacement = 1e-13;
+/// Times that a path may cross other kinks, or cross them elsewhere, after Newton's method.
+inline constexpr int most_realignments = 12;
 /// Times that elements are planned before all are halved.
 inline constexpr int most_plans = 6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.

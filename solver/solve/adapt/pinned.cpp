@@ -125,6 +125,38 @@ bool PinnedSolve::holds_energy(const Resolution::Error& left_out) {
   return found.finite && conserves_energy(found, companion, left_out);
 }
 
+/// The elements of the companion end where it crosses kinks of L: Newton's method again as long as they do
+/// not.
+NewtonReport PinnedSolve::follow_kinks(const ElementTables& tables, NewtonReport report) {
+  for (int k = 0; tables.kinks() && k < companion_steps; ++k) {
+    const std::vector<double> times = crossings(*tables.kinks(), w_.other);
+    if (distance_to_nodes(w_.other.mesh(), times) <= companion_misplacement) return report;
+    w_.raised.resample_from(w_.other, tables, with_nodes(w_.other.mesh(), times));
+    std::swap(w_.other, w_.raised);
+    w_.iteration.reset(problem_, tables, w_.other.elements());
+    report = run_newton(tables, w_.other, 1e-12, companion_steps);
+  }
+  report.reached = report.reached && !tables.kinks();
+  return report;
+}
+
+/// Elements of the path inside which it crosses kinks of L.
+int PinnedSolve::kinked_elements() const {
+  if (!problem_.lagrangian->kinks()) return 0;
+  int count = 0, last = -1;
+  const std::span<const double> mesh = path_.mesh();
+  for (const double t : crossings(*problem_.lagrangian->kinks(), path_)) {
+    const auto after = std::upper_bound(mesh.begin(), mesh.end(), t);
+    const int element = static_cast<int>(after - mesh.begin()) - 1;
+    const double within = std::min(t - *(after - 1), *after - t);
+    if (within > companion_misplacement && element != last) {
+      ++count;
+      last = element;
+    }
+  }
+  return count;
+}
+
 /// Largest distance of the path from the extremal of elements of higher degree on the same mesh, or of halved
 /// elements where there is no higher degree, started from it; the companion's own truncation is added, and
 /// its movement under a finer quadrature. Infinite if it does not converge or does not hold its
@@ -140,7 +172,7 @@ double PinnedSolve::distance_to_companion() {
     w_.other.interpolate_from(path_, tables, w_.levels.raise(path_.degree(), degree));
   const Path start = w_.other;
   w_.iteration.reset(problem_, tables, w_.other.elements());
-  const NewtonReport report = run_newton(tables, w_.other, 1e-12, companion_steps);
+  const NewtonReport report = follow_kinks(tables, run_newton(tables, w_.other, 1e-12, companion_steps));
   if (!report.reached) return INFINITY;
   w_.resolution.measure(w_.other, tables);
   const Scales size = scales(w_.other, tables);
@@ -151,6 +183,10 @@ double PinnedSolve::distance_to_companion() {
   if (!std::isfinite(unseen) || !holds_energy(left_out)) return INFINITY;
   double distance =
       std::max(left_out.q + (report.remaining + unseen) * range, unit_roundoff * size.magnitude);
+  if (tables.kinks()) {
+    w_.raised.resample_from(w_.other, tables, start.mesh());
+    std::swap(w_.raised, w_.other);
+  }
   std::vector<double> a(static_cast<std::size_t>(degree + 1) * n), b(a.size());
   for (int k = 0; k < start.elements(); ++k) {
     start.element(k, a.data());
@@ -214,6 +250,10 @@ Outcome PinnedSolve::run() {
     if (options_.elements > 0 || outcome_.error <= outcome_.tolerance) {
       outcome_.status = Status::converged;
       outcome_.message = "converged";
+      if (const int kinked = kinked_elements(); kinked > 0)
+        outcome_.message += fmt::format(
+            "; the path crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
+            kinked);
       outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
       break;
     }

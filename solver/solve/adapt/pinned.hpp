@@ -25,6 +25,8 @@ class PinnedSolve {
   bool solve_discrete(int elements);
   bool quadrature_is_exact();
   bool holds_energy(const Resolution::Error& left_out);
+  NewtonReport follow_kinks(const ElementTables& tables, NewtonReport report);
+  int kinked_elements() const;
   double distance_to_companion();
   double wanted_growth() const;
   int most_affordable();

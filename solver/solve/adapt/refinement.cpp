@@ -107,7 +107,7 @@ bool Refinement::holds_on_other_elements() {
   std::vector<double> other{0};
   for (std::size_t k = 0; k + 1 < mesh.size(); ++k) other.push_back(0.5 * (mesh[k] + mesh[k + 1]));
   other.push_back(1);
-  w_.other.resample_from(path_, *tables_, other);
+  w_.other.resample_from(path_, *tables_, with_nodes(other, kink_times()));
   w_.before.assign(w_.other.nodes().begin(), w_.other.nodes().end());
   w_.iteration.reset(problem_, *tables_, w_.other.elements());
   w_.iteration.set_scale(scales_.q);
@@ -163,11 +163,63 @@ void Refinement::adopt(const Plan& plan) {
     if (plan.degree > path_.degree()) raise(plan.degree);
     return;
   }
-  tables_ = &w_.levels.at(plan.degree);
-  w_.other.resample_from(path_, *tables_, plan.mesh);
+  const std::vector<double> times = kink_times();
+  move_to(w_.levels.at(plan.degree), times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
+}
+
+/// Puts the path on other elements.
+void Refinement::move_to(const ElementTables& tables, std::span<const double> mesh) {
+  tables_ = &tables;
+  w_.other.resample_from(path_, tables, mesh);
   std::swap(path_, w_.other);
   rebind();
   w_.iteration.set_scale(scales_.q);
+}
+
+/// The times, in t/T, at which the path crosses a surface on which L is not smooth.
+std::vector<double> Refinement::kink_times() const {
+  const Kinks* const kinks = tables_->kinks();
+  if (!kinks) return {};
+  std::vector<double> times = crossings(*kinks, path_);
+  // A closed path may cross where it closes: so near 0 and T no element ends for it.
+  if (problem_.periodic) {
+    const double gap = 0.5 * tables_->scheme().node[0];
+    const double first = gap * path_.lengths().front(), last = gap * path_.lengths().back();
+    std::erase_if(times, [&](double t) { return t < first || t > 1 - last; });
+  }
+  return times;
+}
+
+/// Whether a closed path crosses no kink beside t = 0, unless it does so at t = 0 itself.
+bool Refinement::closes_beside_kinks() const {
+  const DiscreteAction& action = w_.iteration.action();
+  return std::ranges::all_of(action.corners(), [&](const Corner& corner) {
+    const double away = std::abs(corner.u / corner.rate) / path_.duration();
+    return corner.node < path_.elements() || away <= std::max(options_.tolerance, least_misplacement);
+  });
+}
+
+/// Puts the path on elements that end where it crosses kinks of L, unless they do to the tolerance.
+bool Refinement::end_at_kinks() {
+  const std::vector<double> times = kink_times();
+  if (distance_to_nodes(path_.mesh(), times) <= std::max(options_.tolerance, least_misplacement))
+    return false;
+  move_to(*tables_, with_nodes(path_.mesh(), times));
+  return true;
+}
+
+/// Newton's method again, as long as the path that it found crosses kinks elsewhere than where elements end.
+NewtonReport Refinement::follow_kinks(NewtonReport newton) {
+  const auto on_step = [this] { return count_step(); };
+  for (int k = 0; k < most_realignments && tables_->kinks() && !exhausted(); ++k) {
+    if (!end_at_kinks()) return newton;
+    newton = converge(w_.iteration, path_, *tables_, {coarse_goal, steps_left(coarse_steps)}, on_step);
+  }
+  if (newton.reached && tables_->kinks()) {
+    newton.reached = false;
+    newton.failure = "the path crosses kinks of the Lagrangian at ever other times";
+  }
+  return newton;
 }
 
 /// Elements of the present degree that should know the path to a few digits, if those are more; else halves.
@@ -199,6 +251,7 @@ NewtonReport Refinement::converge_to(double error, bool reuse) {
 
 Refinement::Attempt Refinement::attempt() {
   const auto on_step = [this] { return count_step(); };
+  end_at_kinks();
   NewtonReport newton =
       approach(w_.iteration, path_, *tables_, {coarse_goal, steps_left(coarse_steps)}, saved_, on_step);
   if (newton.held) {
@@ -211,6 +264,7 @@ Refinement::Attempt Refinement::attempt() {
     rebind();
     newton = converge(w_.iteration, path_, *coarse, {coarse_goal, steps_left(coarse_steps)}, on_step);
   }
+  newton = follow_kinks(newton);
   outcome_.message = newton.failure;
   return newton.reached ? refine_from(newton) : Attempt::failed;
 }
@@ -249,6 +303,17 @@ Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
       before = newton.remaining;
       newton = converge_to(aim, false);
       result = judge(newton, aim, nodes);
+    }
+    if (result == Attempt::converged && !closes_beside_kinks()) {
+      outcome_.message = "the orbit crosses a kink of the Lagrangian beside t = 0; shift the guess in time";
+      return Attempt::failed;
+    }
+    if (result == Attempt::converged && end_at_kinks()) {
+      newton = follow_kinks(converge_to(aim, false));
+      measure();
+      result = newton.reached ? Attempt::refine : Attempt::failed;
+      outcome_.message = newton.failure;
+      worst_ = INFINITY;
     }
     if (result == Attempt::converged) {
       const Attempt satisfied = satisfy_natural_conditions(newton);

@@ -65,9 +65,15 @@ bool Branch::apply(const Move& move, double factor) {
   const double duration = path_.duration() + factor * move.step.duration;
   if (!(duration > 0)) return false;
   const double coordinate = this->coordinate() + factor * move.parameter;
+  std::vector<Corner> corners;
+  if (tables_->kinks()) {
+    const ClosingMap closed = problem_.periodic ? closing_map(problem_) : ClosingMap{};
+    corners = corners_of(*tables_->kinks(), path_, problem_.periodic ? &closed : nullptr);
+  }
   path_.add(move.step.nodes, move.step.inner, factor);
   if (!by_duration()) path_.set_duration(duration);
   path_.load_ends();
+  if (!follow_corners(path_, corners, move.step.nodes, factor)) return false;
   const std::vector<double> before = ends();
   if (!set_coordinate(coordinate)) return false;
   ends_ = ends();

@@ -55,7 +55,9 @@ Plan Tracker::plan_for(const Scales& size) {
 /// The path and the tangent on other elements.
 void Tracker::change_elements(const Plan& plan) {
   const std::vector<double> before(path_.mesh().begin(), path_.mesh().end());
-  const std::vector<double>& mesh = plan.mesh.empty() ? before : plan.mesh;
+  std::vector<double> mesh = plan.mesh.empty() ? before : plan.mesh;
+  if (const Kinks* kinks = branch_.tables().kinks(); kinks && !plan.mesh.empty())
+    mesh = with_nodes(mesh, crossings(*kinks, path_));
   w_.other.resample_from(path_, w_.levels.at(plan.degree), mesh);
   if (!tangent_.step.nodes.empty())
     tangent_.step.nodes = interpolated(tangent_.step.nodes, path_.coordinates(), before, mesh);

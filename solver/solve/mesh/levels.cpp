@@ -4,6 +4,9 @@ namespace extremal {
 
 void Levels::bind(std::shared_ptr<const Lagrangian> lagrangian) {
   if (lagrangian == lagrangian_) return;
+  // The rules of smooth Lagrangians and of others differ.
+  if (lagrangian_ && (lagrangian_->kinks() != nullptr) != (lagrangian->kinks() != nullptr))
+    for (auto& level : levels_) level.reset();
   lagrangian_ = std::move(lagrangian);
   for (Ladder* ladder : {&levels_, &finer_})
     for (auto& level : *ladder)
@@ -13,6 +16,7 @@ void Levels::bind(std::shared_ptr<const Lagrangian> lagrangian) {
 const ElementTables& Levels::bound(Level& level) {
   if (!level.bound) {
     level.tables.bind(*level.scheme, *lagrangian_);
+    level.tables.end_at(lagrangian_->kinks());
     level.bound = true;
   }
   return level.tables;
@@ -20,7 +24,7 @@ const ElementTables& Levels::bound(Level& level) {
 
 const ElementTables& Levels::at(int degree) {
   auto& level = levels_[degree];
-  if (!level) level = std::make_unique<Level>(Level{.scheme = &SchemeTables::of_lobatto(degree)});
+  if (!level) level = std::make_unique<Level>(Level{.scheme = &SchemeTables::of_order(degree, *lagrangian_)});
   return bound(*level);
 }
 

@@ -15,7 +15,7 @@ class Levels {
   /// Tables are for this Lagrangian from now on; those that are for it already stay.
   void bind(std::shared_ptr<const Lagrangian> lagrangian);
 
-  /// lobatto(degree), made when first asked for.
+  /// lobatto(degree), or gauss(degree) where L has kinks, made when first asked for.
   const ElementTables& at(int degree);
   /// The same elements under Gauss's rule with `degree` points more; likewise.
   const ElementTables& finer(const SchemeTables& rule);

@@ -68,6 +68,31 @@ std::vector<double> halved(const std::vector<double>& mesh) {
   return result;
 }
 
+std::vector<double> with_nodes(std::span<const double> mesh, std::span<const double> times) {
+  constexpr double near = 0.3;
+  std::vector<double> result(times.begin(), times.end());
+  result.push_back(0);
+  result.push_back(1);
+  for (std::size_t k = 1; k + 1 < mesh.size(); ++k) {
+    const double reach = near * std::min(mesh[k] - mesh[k - 1], mesh[k + 1] - mesh[k]);
+    const auto after = std::lower_bound(times.begin(), times.end(), mesh[k]);
+    const bool close = (after != times.end() && *after - mesh[k] < reach) ||
+                       (after != times.begin() && mesh[k] - *(after - 1) < reach);
+    if (!close) result.push_back(mesh[k]);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+double distance_to_nodes(std::span<const double> mesh, std::span<const double> times) {
+  double largest = 0;
+  for (const double t : times) {
+    const auto after = std::lower_bound(mesh.begin() + 1, mesh.end() - 1, t);
+    largest = std::max(largest, std::min(std::abs(*after - t), std::abs(t - *(after - 1))));
+  }
+  return largest;
+}
+
 std::vector<double> interpolated(std::span<const double> values, std::size_t n, std::span<const double> from,
                                  std::span<const double> to) {
   std::vector<double> result;

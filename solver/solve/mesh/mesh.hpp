@@ -32,6 +32,12 @@ class Density {
 std::vector<double> uniform_mesh(int elements);
 std::vector<double> halved(const std::vector<double>& mesh);
 
+/// A mesh that has these times, ascending in (0, 1), as nodes: nodes that are near one, by the length of the
+/// elements there, give way to it.
+std::vector<double> with_nodes(std::span<const double> mesh, std::span<const double> times);
+/// The largest distance of one of these times from the nearest node.
+double distance_to_nodes(std::span<const double> mesh, std::span<const double> times);
+
 /// Values of n numbers at the nodes of one mesh (values[k*n + a]), interpolated linearly to those of another.
 std::vector<double> interpolated(std::span<const double> values, std::size_t n, std::span<const double> from,
                                  std::span<const double> to);

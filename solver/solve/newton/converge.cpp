@@ -129,8 +129,7 @@ NewtonReport approach(NewtonIteration& newton, Path& path, const ElementTables& 
       return report;
     }
     rest.steps -= report.steps;
-    path.copy_values(saved);
-    path.load_ends();
+    path = saved;
   }
   if (more && rest.steps > 0) return converge(newton, path, tables, rest, on_step);
   report.failure = spent;

@@ -55,6 +55,10 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   const bool sparse = tables.unknowns() > most_dense_unknowns;
   action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
   action_.give_momenta(problem.boundary.momenta);
+  if (tables.kinks() && problem.periodic) {
+    closed_ = closing_map(problem);
+    action_.close(&closed_);
+  }
   norm_ = contraction_ = noise_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
@@ -127,11 +131,21 @@ bool NewtonIteration::leaves_duration(const Path& path, const Step& step) const 
   return !problem_->duration.free || path.duration() + step.duration > 0;
 }
 
-void NewtonIteration::apply(Path& path, const Step& step, double factor) {
+/// `corners` are those of the path before. False if an element would become too short or too long for it.
+bool NewtonIteration::apply(Path& path, const Step& step, double factor, std::span<const Corner> corners) {
   path.add(step.nodes, step.inner, factor);
   keep_ends(problem_->ends, path);
   if (problem_->duration.free) path.set_duration(path.duration() + factor * step.duration);
   path.load_ends();
+  return follow_corners(path, corners, step.nodes, factor);
+}
+
+/// The path as it was saved, and its mesh where that may have moved.
+void NewtonIteration::restore(Path& path) {
+  if (saved_corners_.empty())
+    path.copy_values(saved_);
+  else
+    path = saved_;
 }
 
 bool NewtonIteration::factor_quickly(const Path& path) {
@@ -177,16 +191,20 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
     norm_ = remaining_ = contraction_ * step;
     damping_ = predicted_ = 1;
     if (std::isnan(solve_for_step(path, step_, true))) return StepResult::singular;
-    apply(path, step_, 1);
+    apply(path, step_, 1, action_.corners());
     return StepResult::ok;
   }
   double factor = predicted_;
-  saved_.copy_values(path);
+  saved_corners_.assign(action_.corners().begin(), action_.corners().end());
+  if (saved_corners_.empty())
+    saved_.copy_values(path);
+  else
+    saved_ = path;
   for (;; factor /= 2) {
     if (factor < least_damping) {
       path.load_ends();
       if (step < loudest && step <= quiet * measure_noise(path)) {
-        apply(path, step_, 1);
+        apply(path, step_, 1, saved_corners_);
         norm_ = remaining_ = noise_;
         contraction_ = damping_ = predicted_ = 1;
         return StepResult::ok;
@@ -195,13 +213,13 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
       model_->evaluate_gradient(action_, path);
       return StepResult::stalled;
     }
-    apply(path, step_, factor);
+    const bool moved = apply(path, step_, factor, saved_corners_);
     ++trials_;
-    const bool positive = path.duration() > 0;
+    const bool positive = moved && path.duration() > 0;
     if (positive) model_->evaluate_gradient(action_, path);
     const double simplified = positive ? solve_for_step(path, simplified_) : NAN;
     if (approximate() && !(simplified <= worst_approximate * step) && !(step < roundoff_step)) {
-      path.copy_values(saved_);
+      restore(path);
       use_sparse(path.elements());
       return full_step(path, enough, least_damping);
     }
@@ -212,7 +230,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
       norm_ = simplified;
       break;
     }
-    path.copy_values(saved_);
+    restore(path);
   }
   if (damping_ == 1 && !approximate()) {
     curvature_ = contraction_ / step;
@@ -221,7 +239,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
   predicted_ = std::min(1.0, damping_ * (contraction_ < 0.5 ? 4 : 2));
   remaining_ = norm_;
   if (damping_ == 1 && contraction_ < worth_taking && leaves_duration(path, simplified_)) {
-    apply(path, simplified_, 1);
+    apply(path, simplified_, 1, action_.corners());
     remaining_ = norm_ * contraction_;
   }
   return StepResult::ok;
@@ -266,7 +284,7 @@ StepResult NewtonIteration::chord_step(Path& path) {
   contraction_ = before > 0 ? norm_ / before : 0;
   if (norm_ > roundoff_step) largest_curvature_ = std::max(largest_curvature_, contraction_ / undamped_);
   remaining_ = norm_ * std::min(contraction_, 1.0);
-  apply(path, step_, 1);
+  apply(path, step_, 1, action_.corners());
   return StepResult::ok;
 }
 

@@ -131,7 +131,8 @@ class NewtonIteration {
   double length(const Path& path, const Step& step) const;
   /// Whether the whole step leaves a positive duration.
   bool leaves_duration(const Path& path, const Step& step) const;
-  void apply(Path& path, const Step& step, double factor);
+  bool apply(Path& path, const Step& step, double factor, std::span<const Corner> corners);
+  void restore(Path& path);
   double measure_noise(Path& path);
   bool round_equations(const Path& path);
 
@@ -149,6 +150,8 @@ class NewtonIteration {
   bool phase_free_ = false, extended_ = false, refined_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
+  ClosingMap closed_;  ///< of a periodic problem with kinks
+  std::vector<Corner> saved_corners_;
   mutable std::vector<double> free_;
   double scale_ = 1, norm_ = 0, remaining_ = 0, undamped_ = 0, contraction_ = 0, damping_ = 1, predicted_ = 1;
   double noise_ = 0;

@@ -110,7 +110,8 @@ std::vector<int> iterate_indices(const Problem& problem, const Solution& solutio
   if (!problem.periodic || most < 0)
     throw std::invalid_argument(fmt::format("indices of {} iterates; need a periodic problem", most));
   SecondVariation variation;
-  if (!variation.assemble(problem.lagrangian, solution.trajectory)) return {};
+  const ClosingMap closed = closing_map(problem);
+  if (!variation.assemble(problem.lagrangian, solution.trajectory, {}, &closed)) return {};
   const auto form = OrbitForm::make(variation, map_of(problem));
   return form ? form->iterates(most) : std::vector<int>{};
 }

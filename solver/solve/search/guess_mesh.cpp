@@ -46,7 +46,19 @@ Search::GuessKind Search::begin() {
     start(mesh_, bend_);
   }
   if (guess_->guess.motion && !mesh_of_motion()) resolve_guess();
+  end_at_kinks_of_guess();
   return colliding ? GuessKind::colliding : GuessKind::usable;
+}
+
+/// Elements end where the guess crosses kinks of L. Coarse ones would miss crossings that follow each other.
+void Search::end_at_kinks_of_guess() {
+  const Kinks* const kinks = refinement_.tables().kinks();
+  if (!kinks || !guess_->guess.given()) return;
+  const std::vector<double> mesh(path_.mesh().begin(), path_.mesh().end());
+  const int degree = path_.degree(), samples = static_cast<int>(guess_->guess.tau.size());
+  start(uniform_mesh(std::clamp(samples / degree, least_sampled, most_sampled)), bend_, degree);
+  mesh_ = with_nodes(mesh, crossings(*kinks, path_));
+  start(mesh_, bend_, degree);
 }
 
 /// A motion that took its integrator so many steps passes one encounter after the other, which elements would

@@ -75,6 +75,8 @@ inline constexpr int most_launched = 128;
 inline constexpr double collision = 100;
 /// A mesh whose elements differ less than this is not worth starting again for.
 inline constexpr double mild_grading = 3;
+/// Elements on which the kinks that a guess crosses are found.
+inline constexpr int least_sampled = 16, most_sampled = 1024;
 /// Tries to move the default guess to where L is finite.
 inline constexpr unsigned most_bends = 8;
 

@@ -71,6 +71,7 @@ class Search {
   GuessKind prepare();
   GuessKind begin();
   bool mesh_of_motion();
+  void end_at_kinks_of_guess();
   bool resolve_guess();
   Pursuit pursue(const char* strategy);
   bool collapsed() const;

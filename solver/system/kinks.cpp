@@ -1,0 +1,138 @@
+#include "system/kinks.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+#include "system/tape_lagrangian.hpp"
+
+namespace extremal {
+
+namespace {
+
+bool has_kink(Op op) { return op == Op::abs || op == Op::min || op == Op::max || op == Op::step; }
+
+/// The body of a term in a graph of its own.
+struct Body {
+  Graph graph;
+  NodeId value = 0;
+  std::vector<NodeId> kinks;  ///< nodes abs, min, max and step
+};
+
+Body copy_body(const LagrangianGraph& l, const Term& term) {
+  Body body;
+  std::unordered_map<NodeId, NodeId> image;
+  for (const NodeId id : nodes_of(l.graph, term.body)) {
+    const Node n = l.graph[id];
+    if (n.op == Op::constant)
+      image[id] = body.graph.constant(n.value);
+    else if (n.op == Op::input)
+      image[id] = body.graph.input(n.index);
+    else
+      image[id] = arity(n.op) == 1 ? body.graph.unary(n.op, image[n.a])
+                                   : body.graph.binary(n.op, image[n.a], image[n.b]);
+  }
+  body.value = image[term.body];
+  for (const NodeId id : nodes_of(body.graph, body.value))
+    if (has_kink(body.graph[id].op)) body.kinks.push_back(id);
+  return body;
+}
+
+/// ∂value/∂node, as an expression of the inputs.
+NodeId derivative_by_node(Body& body, NodeId node, int inputs) {
+  Graph& graph = body.graph;
+  const auto variable = static_cast<std::uint32_t>(inputs);
+  std::unordered_map<NodeId, NodeId> image;
+  for (const NodeId id : nodes_of(graph, body.value)) {
+    const Node n = graph[id];
+    if (id == node)
+      image[id] = graph.input(variable);
+    else if (arity(n.op) == 0)
+      image[id] = id;
+    else
+      image[id] =
+          arity(n.op) == 1 ? graph.unary(n.op, image[n.a]) : graph.binary(n.op, image[n.a], image[n.b]);
+  }
+  const NodeId slope = gradient(graph, image[body.value], {&variable, 1})[0];
+  std::vector<NodeId> replacement;
+  for (std::uint32_t k = 0; k < variable; ++k) replacement.push_back(graph.input(k));
+  replacement.push_back(node);
+  return substitute(graph, slope, replacement);
+}
+
+/// The expressions of one kink, the same for all rows of a term.
+struct Expressions {
+  NodeId u, weight;
+};
+
+Expressions expressions(Body& body, NodeId kink, int inputs) {
+  const Node n = body.graph[kink];
+  if (n.op == Op::step) return {body.graph.sub(n.a, n.b), body.graph.constant(0)};
+  const NodeId slope = derivative_by_node(body, kink, inputs);
+  if (n.op == Op::abs) return {n.a, slope};
+  const double half = n.op == Op::max ? 0.5 : -0.5;
+  return {body.graph.sub(n.a, n.b), body.graph.mul(body.graph.constant(half), slope)};
+}
+
+/// Of the inputs of an expression in one row: whether one is a coordinate or the time, and a velocity.
+struct Dependence {
+  bool state = false, velocity = false;
+};
+
+Dependence dependence(const LagrangianGraph& l, const Body& body, NodeId u,
+                      std::span<const std::uint32_t> row) {
+  const auto n = static_cast<std::uint32_t>(l.coordinates);
+  Dependence result;
+  for (const std::uint32_t input : inputs_of(body.graph, u)) {
+    result.state |= row[input] <= 2 * n;
+    result.velocity |= row[input] >= n && row[input] < 2 * n;
+  }
+  return result;
+}
+
+std::shared_ptr<const Lagrangian> as_lagrangian(const LagrangianGraph& l, const Body& body, NodeId value,
+                                                std::span<const std::uint32_t> row) {
+  LagrangianGraph result;
+  result.coordinates = l.coordinates;
+  result.graph = body.graph;
+  result.uniforms = l.uniforms;
+  result.terms.push_back({value, static_cast<int>(row.size()), {row.begin(), row.end()}});
+  return std::make_shared<TapeLagrangian>(result);
+}
+
+NodeId by_time(const LagrangianGraph& l, Body& body, NodeId u, std::span<const std::uint32_t> row) {
+  std::vector<std::uint32_t> times;
+  for (std::uint32_t k = 0; k < row.size(); ++k)
+    if (row[k] == 2u * l.coordinates) times.push_back(k);
+  NodeId sum = body.graph.constant(0);
+  for (const NodeId slope : gradient(body.graph, u, times)) sum = body.graph.add(sum, slope);
+  return sum;
+}
+
+}  // namespace
+
+std::shared_ptr<const Kinks> find_kinks(const LagrangianGraph& l) {
+  NodeId first = 0;
+  while (first < l.graph.size() && !has_kink(l.graph[first].op)) ++first;
+  if (first == l.graph.size()) return nullptr;
+  std::vector<KinkSurface> surfaces;
+  for (const Term& term : l.terms) {
+    Body body = copy_body(l, term);
+    for (const NodeId kink : body.kinks) {
+      const Expressions found = expressions(body, kink, term.arity);
+      for (int r = 0; r < term.rows(); ++r) {
+        const std::span<const std::uint32_t> row(term.table.data() + static_cast<std::size_t>(r) * term.arity,
+                                                 term.arity);
+        const auto [state, velocity] = dependence(l, body, found.u, row);
+        if (!state) continue;
+        surfaces.push_back({.u = as_lagrangian(l, body, found.u, row),
+                            .u_by_time = as_lagrangian(l, body, by_time(l, body, found.u, row), row),
+                            .weight = as_lagrangian(l, body, found.weight, row),
+                            .by_velocity = velocity});
+      }
+    }
+  }
+  return surfaces.empty() ? nullptr : std::make_shared<const Kinks>(std::move(surfaces));
+}
+
+}  // namespace extremal

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "system/tape.hpp"
+
+/// \file Where a Lagrangian is not smooth. abs(u), min(a, b), max(a, b) and step(u) are smooth on both sides
+/// of a surface u(q, q', t) = 0, with u = a − b for min and max. Beside it
+///   L = smooth part + w |u|,   w = ∂L/∂|u|,
+/// so that ∂L/∂q jumps by 2 w ∂u/∂q from u < 0 to u > 0: max(a, b) = (a + b + |a − b|)/2, and min likewise.
+
+namespace extremal {
+
+/// One surface; all functions are Lagrangians of the same coordinates, evaluated like these.
+struct KinkSurface {
+  std::shared_ptr<const Lagrangian> u;
+  std::shared_ptr<const Lagrangian> u_by_time;  ///< ∂u/∂t
+  std::shared_ptr<const Lagrangian> weight;     ///< w
+  bool by_velocity = false;                     ///< u depends on velocities
+};
+
+/// The surfaces of a Lagrangian; at least one.
+class Kinks {
+ public:
+  explicit Kinks(std::vector<KinkSurface> surfaces) : surfaces_(std::move(surfaces)) {}
+  std::span<const KinkSurface> surfaces() const { return surfaces_; }
+
+ private:
+  std::vector<KinkSurface> surfaces_;
+};
+
+/// Null where L is smooth. Surfaces on which only parameters decide do not count.
+std::shared_ptr<const Kinks> find_kinks(const LagrangianGraph& lagrangian);
+
+}  // namespace extremal
