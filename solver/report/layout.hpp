@@ -31,6 +31,10 @@ Figure layout(const Comparison& comparison);
 struct FollowedBranch;
 Figure layout(const FollowedBranch& branch);
 
+/// Amplitudes, powers of ten, against frequencies: a panel for each of the first coordinates. Throws
+/// std::invalid_argument without any line.
+Figure spectrum_layout(const Result& result);
+
 /// Curves against time, a panel each below the other.
 struct TimePanel {
   std::string label;

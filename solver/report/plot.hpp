@@ -36,6 +36,9 @@ void check_plot_path(const std::string& path);
 /// missing or fails or the path cannot be written.
 void write_plot(const std::string& path, const Picture& picture);
 
+/// The lines of a result that has a spectrum. Throws in the same way, and std::invalid_argument without any line.
+void write_spectrum_plot(const std::string& path, const Result& result);
+
 struct Figure;
 /// Draws a figure; throws in the same way.
 void write_figure(const std::string& path, const Figure& figure);

@@ -74,6 +74,7 @@ Study load_checked(const std::string& path, const std::vector<std::string>& sets
   study.options = read_options(scene.solve);
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system);
+  if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, path, study.problem.names);
   if (scene.continuation) study.continuation = read_continued(scene, study.system, study.problem);
   return study;
 }

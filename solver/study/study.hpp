@@ -9,6 +9,7 @@
 #include "solution/solution.hpp"
 #include "solve/solve.hpp"
 #include "study/continued.hpp"
+#include "study/spectra.hpp"
 #include "system/formula.hpp"
 
 /// \file From a scene to a solution.
@@ -24,6 +25,7 @@ struct Study {
   SolveOptions options;
   int solutions = 0;  ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
+  std::optional<SpectrumRequest> spectrum;
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 
