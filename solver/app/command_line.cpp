@@ -35,6 +35,7 @@ class CommandLine {
   void add_solve();
   void add_continue();
   void add_compare();
+  void add_spectrum();
   void add_check();
   void add_list();
   void add_help();
@@ -51,6 +52,7 @@ class CommandLine {
   SolveArguments solve_;
   ContinueArguments continue_;
   CompareArguments compare_;
+  SpectrumArguments spectrum_;
   CheckArguments check_;
   std::string system_, command_, shell_;
 };
@@ -102,6 +104,7 @@ CommandLine::CommandLine() {
   add_solve();
   add_continue();
   add_compare();
+  add_spectrum();
   add_check();
   add_list();
   add_help();
@@ -168,6 +171,17 @@ void CommandLine::add_compare() {
   add_scene(command, a.scene, a.sets);
   add_output(command, a.output, "write the comparison; - is standard output");
   add_plot(command, a.plot, "draw time against error");
+  add_quiet(command, a.quiet);
+}
+
+void CommandLine::add_spectrum() {
+  SpectrumArguments& a = spectrum_;
+  CLI::App& command =
+      add("spectrum", "solve a scene, then find frequencies and amplitudes of each coordinate",
+          "spectrum henon-heiles.toml --plot spectrum.svg", [&a] { return app::spectrum(a); });
+  add_scene(command, a.scene, a.sets);
+  add_output(command, a.output, "write the result with its spectrum; - is standard output");
+  add_plot(command, a.plot, "draw the lines");
   add_quiet(command, a.quiet);
 }
 

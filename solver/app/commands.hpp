@@ -51,6 +51,14 @@ struct ContinueArguments {
 };
 int follow(const ContinueArguments& arguments);
 
+struct SpectrumArguments {
+  std::string scene;
+  std::vector<std::string> sets;
+  std::string output, plot;
+  bool quiet = false;
+};
+int spectrum(const SpectrumArguments& arguments);
+
 struct CheckArguments {
   std::string scene;
   std::vector<std::string> sets;

@@ -47,10 +47,12 @@ Result search_result(Result result, const std::vector<Solution>& solutions, cons
   for (const Solution& solution : solutions) {
     Result each = empty;
     each.solution = solution;
+    if (study.spectrum) each.spectrum = spectrum_of(study, *study.spectrum, solution);
     each.samples = wanted_samples(a, at, study, solution);
     result.solutions->push_back(std::move(each));
   }
   result.samples = result.solutions->front().samples;
+  result.spectrum = result.solutions->front().spectrum;
   return result;
 }
 
@@ -128,7 +130,10 @@ int solve(const SolveArguments& a) {
       result = search_result(std::move(result), run_all(study, a.repeat), a, at, study);
   }
   const bool converged = result.solution.converged();
-  if (converged && study.solutions == 0) result.samples = wanted_samples(a, at, study, result.solution);
+  if (converged && study.solutions == 0) {
+    result.samples = wanted_samples(a, at, study, result.solution);
+    if (study.spectrum) result.spectrum = spectrum_of(study, *study.spectrum, result.solution);
+  }
   write_outputs(a, study, result, annotation);
   if (table) print(summary(result));
   if (!converged)

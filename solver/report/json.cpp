@@ -40,6 +40,7 @@ class Fields {
     append(object_, "momentum_start", momentum("momentum_start", result.solution.momentum_start));
     append(object_, "momentum_end", momentum("momentum_end", result.solution.momentum_end));
     multipliers();
+    if (converged_ && result.spectrum) spectrum(*result.spectrum);
     counts();
   }
 
@@ -105,6 +106,27 @@ class Fields {
     append_number("symplectic_defect", floquet ? std::optional(floquet->symplectic_defect) : std::nullopt);
   }
 
+  void spectrum(const SolutionSpectrum& spectrum) {
+    Json lines = Json::object();
+    for (std::size_t a = 0; a < result_.names.size(); ++a) {
+      Json list = Json::array();
+      for (const SpectralLine& line : spectrum.motion.coordinates.at(a).lines) {
+        Json object = Json::object();
+        append(object, "frequency", number("spectrum", line.frequency));
+        append(object, "amplitude", number("spectrum", line.amplitude));
+        append(object, "phase", number("spectrum", line.phase));
+        list.push_back(std::move(object));
+      }
+      append(lines, result_.names[a], std::move(list));
+    }
+    append(object_, "spectrum", std::move(lines));
+    std::vector<double> left;
+    for (const Spectrum& each : spectrum.motion.coordinates) left.push_back(each.residual);
+    append(object_, "spectrum_residual", by_name("spectrum_residual", left));
+    append(object_, "drift", by_name("drift", spectrum.motion.drift));
+    if (!spectrum.flat_norm.empty()) append(object_, "flat_norm", by_name("flat_norm", spectrum.flat_norm));
+  }
+
   void counts() {
     const Solution& solution = result_.solution;
     append(object_, "elements", std::max(0, solution.trajectory.elements()));
@@ -124,10 +146,13 @@ class Fields {
       throw std::invalid_argument(
           fmt::format("{} has {} entries for {} coordinates", field, values.size(), result_.names.size()));
     }
+    return by_name(field, values);
+  }
+
+  Json by_name(const std::string& field, const std::vector<double>& values) const {
     Json object = Json::object();
-    for (std::size_t a = 0; a < values.size(); ++a) {
+    for (std::size_t a = 0; a < values.size(); ++a)
       append(object, result_.names[a], number(field + "." + result_.names[a], values[a]));
-    }
     return object;
   }
 

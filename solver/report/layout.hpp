@@ -48,6 +48,10 @@ Figure layout(const Comparison& comparison);
 struct BranchPicture;
 Figure layout(const BranchPicture& picture);
 
+/// Amplitudes, powers of ten, against frequencies: a panel for each of the first coordinates. Throws
+/// std::invalid_argument without any line.
+Figure spectrum_layout(const Result& result);
+
 /// Pixels left of a box that its numbers need.
 double number_width(const Axis& axis);
 

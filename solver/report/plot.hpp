@@ -40,6 +40,9 @@ void check_plot_path(const std::string& path);
 /// std::runtime_error if gnuplot is missing or fails.
 std::string plot_image(const std::string& path, const Picture& picture);
 
+/// The lines of a result that has a spectrum; throws in the same way, and std::invalid_argument without any.
+std::string spectrum_image(const std::string& path, const Result& result);
+
 struct Figure;
 /// The bytes of a figure's file; throws in the same way.
 std::string plot_image(const std::string& path, const Figure& figure);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solution/solution.hpp"
+#include "study/spectra.hpp"
 
 /// \file What is reported: a solution with the names of its coordinates and, on request, samples.
 
@@ -33,6 +34,7 @@ struct Result {
   std::optional<Samples> samples = {};  ///< never written where the solution has not converged
   /// Those of a search, by action; `solution` is the first of them, or tells why there is none.
   std::optional<std::vector<Result>> solutions = {};
+  std::optional<SolutionSpectrum> spectrum = {};  ///< where it was asked for
   int natural_conditions = 0;  ///< at the ends, of a problem that is not periodic
 };
 

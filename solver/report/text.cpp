@@ -142,7 +142,27 @@ std::string solutions_text(const Result& result) {
          fmt::format("{:.10g}", solution.duration()), energy ? fmt::format("{:.10g}", *solution.energy) : "–",
          count(solution.morse_index), count(solution.nullity), printable(solution.strategy, 200)});
   }
-  return "\n" + plain_text(table);
+  return fmt::format("\n{}", plain_text(table));
+}
+
+/// A row for each line of each coordinate.
+std::string spectrum_text(const Result& result) {
+  using Align = Table::Align;
+  const SolutionSpectrum& spectrum = *result.spectrum;
+  Table table{{{"coordinate", Align::left}, {"frequency"}, {"amplitude"}, {"phase"}}, {}};
+  for (std::size_t a = 0; a < result.names.size(); ++a)
+    for (const SpectralLine& line : spectrum.motion.coordinates[a].lines)
+      table.rows.push_back({result.names[a], fmt::format("{:.14g}", line.frequency),
+                            fmt::format("{:.12g}", line.amplitude), fmt::format("{:.10g}", line.phase)});
+  Lines rest;
+  for (std::size_t a = 0; a < result.names.size(); ++a) {
+    if (spectrum.motion.drift[a] != 0)
+      rest.add_number(fmt::format("drift of {}", result.names[a]), spectrum.motion.drift[a]);
+    rest.add_small(fmt::format("left of {}", result.names[a]), spectrum.motion.coordinates[a].residual);
+    if (!spectrum.flat_norm.empty())
+      rest.add_number(fmt::format("flat norm of {}", result.names[a]), spectrum.flat_norm[a]);
+  }
+  return fmt::format("\n{}{}", plain_text(table), rest.text());
 }
 
 }  // namespace
@@ -174,7 +194,10 @@ std::string summary(const Result& result) {
   lines.add("time",
             fmt::format("read {}, solve {}, analyse {}", duration_text(result.seconds_read),
                         duration_text(solution.seconds_solve), duration_text(solution.seconds_analyse)));
-  return lines.text() + (result.solutions && result.solutions->size() > 1 ? solutions_text(result) : "");
+  std::string text = lines.text();
+  if (result.solutions && result.solutions->size() > 1) text += solutions_text(result);
+  if (result.spectrum && solution.converged()) text += spectrum_text(result);
+  return text;
 }
 
 std::string duration_text(double seconds) {

@@ -129,6 +129,10 @@ SearchTable read_search_table(const Document& document, const toml::table& table
   return {*solutions};
 }
 
+SpectrumTable read_spectrum_table(const Document& document, const toml::table& table) {
+  return {number(document, table, "lines"), text(document, table, "against")};
+}
+
 ContinuationTable read_continuation_table(const Document& document, const toml::table& table) {
   const auto parameter = text(document, table, "parameter");
   const auto to = number(document, table, "to");

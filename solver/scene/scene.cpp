@@ -85,6 +85,11 @@ void check_solve(const SolveTable& solve) {
                      fmt::format("elements = {}; need 1 to 1000000000", solve.elements->value));
 }
 
+void check_spectrum(const SpectrumTable& spectrum) {
+  if (spectrum.lines && !(spectrum.lines->value >= 1 && spectrum.lines->value <= 1000))
+    throw SceneError(spectrum.lines->at, fmt::format("lines = {}; need 1 to 1000", spectrum.lines->value));
+}
+
 void check_search(const SearchTable& search) {
   if (!(search.solutions.value >= 1 && search.solutions.value <= 1000))
     throw SceneError(search.solutions.at,
@@ -138,6 +143,8 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);
   if (const auto* search = table(document, "search", false))
     scene.search = read_search_table(document, *search);
+  if (const auto* spectrum = table(document, "spectrum", false))
+    scene.spectrum = read_spectrum_table(document, *spectrum);
   if (const auto* continuation = table(document, "continuation", false))
     scene.continuation = read_continuation_table(document, *continuation);
   check_system(scene.system);
@@ -145,6 +152,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
   check_guess(scene);
   check_solve(scene.solve);
   if (scene.search) check_search(*scene.search);
+  if (scene.spectrum) check_spectrum(*scene.spectrum);
   if (scene.continuation) check_continuation(*scene.continuation);
   return scene;
 }

@@ -82,6 +82,12 @@ struct SearchTable {
   Number solutions;  ///< how many are wanted
 };
 
+/// The lines of each coordinate.
+struct SpectrumTable {
+  std::optional<Number> lines;
+  std::optional<Text> against;  ///< a result that has a spectrum
+};
+
 /// A family of problems: "duration", "energy" or a parameter of the system varies.
 struct ContinuationTable {
   Location at;
@@ -101,6 +107,7 @@ struct Scene {
   SolveTable solve;
   std::optional<SearchTable> search;
   std::optional<ContinuationTable> continuation;
+  std::optional<SpectrumTable> spectrum;
 };
 
 /// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).

@@ -18,6 +18,8 @@ constexpr KeyRecord keys[] = {
     {"", "search", Kind::table, "none", "Several extremals of one problem.", "search.solutions = 5"},
     {"", "continuation", Kind::table, "none", "A family of extremals, for `extremal continue`.",
      R"(continuation = { parameter = "mu", to = 0.1 })"},
+    {"", "spectrum", Kind::table, "none", "Frequencies and amplitudes of each coordinate.",
+     "spectrum.lines = 6"},
     {"", "path", Kind::table, "", "", "", false, false},
     {"", "fit", Kind::table, "", "", "", false, false},
 
@@ -112,6 +114,13 @@ constexpr KeyRecord keys[] = {
      "points = 100"},
     {"continuation", "switch", Kind::boolean, "false", "Follow also the branches that bifurcate.",
      "switch = true"},
+
+    {"spectrum", "lines", Kind::integer, "as many as the tolerance asks for, 32 at most",
+     "Number of lines of each coordinate, 1 to 1000. Fewer are found where the motion has no more.",
+     "lines = 6"},
+    {"spectrum", "against", Kind::text, "none",
+     "Result that has a spectrum. `flat_norm` is the distance from it, in the flat norm.",
+     R"(against = "other.json")"},
 
     {"system file", "about", Kind::note, "none",
      "Texts about the system. The first is shown by `extremal list`; pictures use `axes` and `centres`.",

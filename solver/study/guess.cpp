@@ -80,15 +80,15 @@ double guessed_duration(const GuessTable& table, const System& system, double of
 
 }  // namespace
 
-std::string guess_path(const Scene& scene) {
-  return (std::filesystem::path(scene.path).parent_path() / scene.guess.file->value).string();
+std::string beside(const std::string& scene, const std::string& file) {
+  return (std::filesystem::path(scene).parent_path() / file).string();
 }
 
 void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem) {
   const GuessTable& table = scene.guess;
   if (table.file) {
     if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
-    SampledFile samples = read_samples(guess_path(scene), system.names);
+    SampledFile samples = read_samples(beside(scene.path, table.file->value), system.names);
     if (problem.duration.free)
       problem.duration.value = guessed_duration(table, system, samples.t.back() - samples.t.front());
     use_samples(std::move(samples), problem.guess);

@@ -15,8 +15,8 @@ namespace extremal {
 /// A state is integrated until the deadline. Throws SceneError.
 void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem);
 
-/// The path of the file that the guess names, which is looked up beside the scene.
-std::string guess_path(const Scene& scene);
+/// The path of a file that a scene names: it is looked up beside the scene.
+std::string beside(const std::string& scene, const std::string& file);
 
 /// q(t) as a file gives it, row by row: q[k*n + a].
 struct SampledFile {

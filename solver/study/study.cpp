@@ -87,7 +87,9 @@ Study make_study(const Scene& scene, Purpose purpose) {
   Study study;
   study.scene = scene.path;
   study.files = scene.files;
-  if (scene.guess.file) study.files.push_back(guess_path(scene));
+  if (scene.guess.file) study.files.push_back(beside(scene.path, scene.guess.file->value));
+  if (scene.spectrum && scene.spectrum->against)
+    study.files.push_back(beside(scene.path, scene.spectrum->against->value));
   study.title = scene.title;
   study.system = make_system(scene.system);
   check_parameters_used(scene);
@@ -98,6 +100,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system, Deadline(study.budget));
   check_memory(scene, study);
+  if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;

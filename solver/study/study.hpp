@@ -9,6 +9,7 @@
 #include "solution/solution.hpp"
 #include "solve/solve.hpp"
 #include "study/continued.hpp"
+#include "study/spectra.hpp"
 #include "system/formula.hpp"
 
 /// \file From a scene to a solution.
@@ -27,6 +28,7 @@ struct Study {
   int solutions = 0;   ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
+  std::optional<SpectrumRequest> spectrum;
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 

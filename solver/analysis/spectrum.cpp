@@ -1,0 +1,262 @@
+#include "analysis/spectrum.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+#include <unsupported/Eigen/FFT>
+
+namespace extremal {
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using std::numbers::pi;
+
+/// The window is (1 − cos 2πt/T)³: a line is 4 bins of 2π/T wide, and at Δ bins from another leaks Δ⁻⁷ of it.
+constexpr int window_power = 3;
+/// Two lines closer than this, in bins, are not told apart.
+constexpr double least_distance = 1.5;
+/// All lines are fitted together where the new one is closer to another than this, in bins, ...
+constexpr double near = 2 * (window_power + 1);
+/// ... and where their number has grown by this factor since they were last.
+constexpr double growth = 1.25;
+/// Rows of the least-squares matrix at a time.
+constexpr Eigen::Index chunk = 2048;
+
+/// a cos ωτ + b sin ωτ, τ from the middle of the signal: there the three hardly depend on each other.
+struct Wave {
+  double frequency = 0, a = 0, b = 0;
+  double amplitude() const { return std::hypot(a, b); }
+};
+
+class Fit {
+ public:
+  Fit(std::span<const double> samples, double step);
+
+  /// 2π/T.
+  double bin() const { return 2 * pi / (step_ * static_cast<double>(count_ - 1)); }
+  double middle() const { return step_ * static_cast<double>(count_ - 1) / 2; }
+  double residual() const { return std::sqrt((weights_.array() * left_.array().square()).sum()); }
+  /// The largest line of what is left, not yet taken away.
+  Wave largest();
+  /// Takes a wave away from what is left.
+  void take(const Wave& wave);
+  /// Leaves all but these.
+  void leave(const std::vector<Wave>& waves);
+  /// Corrects waves until what they leave is least, and takes them away. False where a step is not
+  /// finite.
+  bool refine(std::vector<Wave>& waves);
+
+ private:
+  /// One Gauss-Newton step for `waves`, which `values` is to be the sum of; the largest change, in units of
+  /// the bin and relative to the largest amplitude.
+  double step(std::vector<Wave>& waves, const VectorXd& values);
+
+  Eigen::Index count_;
+  double step_;
+  VectorXd values_, weights_, left_;
+  std::vector<std::complex<double>> transformed_, windowed_;
+  Eigen::FFT<double> fft_;
+};
+
+Fit::Fit(std::span<const double> samples, double step)
+    : count_(static_cast<Eigen::Index>(samples.size())),
+      step_(step),
+      values_(Eigen::Map<const VectorXd>(samples.data(), count_)),
+      weights_(count_),
+      left_(values_),
+      windowed_(std::bit_ceil(samples.size())) {
+  for (Eigen::Index j = 0; j < count_; ++j)
+    weights_[j] = std::pow(1 - std::cos(2 * pi * static_cast<double>(j) / static_cast<double>(count_ - 1)),
+                           window_power);
+  weights_ /= weights_.sum();
+}
+
+Wave Fit::largest() {
+  std::fill(windowed_.begin(), windowed_.end(), 0);
+  for (Eigen::Index j = 0; j < count_; ++j) windowed_[j] = weights_[j] * left_[j];
+  fft_.fwd(transformed_, windowed_);
+  std::size_t peak = 0;
+  for (std::size_t k = 0; k <= transformed_.size() / 2; ++k)
+    if (std::norm(transformed_[k]) > std::norm(transformed_[peak])) peak = k;
+  std::vector<Wave> wave{
+      {2 * pi * static_cast<double>(peak) / (step_ * static_cast<double>(transformed_.size()))}};
+  // A line within a bin of zero is a constant: a period longer than the signal cannot be told.
+  for (int k = 0; k < 20; ++k) {
+    if (wave[0].frequency < bin()) wave[0].frequency = 0;
+    if (step(wave, left_) < 1e-9) break;
+  }
+  return wave[0];
+}
+
+double Fit::step(std::vector<Wave>& waves, const VectorXd& values) {
+  const Eigen::Index columns = 3 * static_cast<Eigen::Index>(waves.size());
+  MatrixXd normal = MatrixXd::Zero(columns, columns), rows(std::min(chunk, count_), columns);
+  VectorXd right = VectorXd::Zero(columns), left(rows.rows());
+  const double scale = middle();
+  for (Eigen::Index from = 0; from < count_; from += chunk) {
+    const Eigen::Index n = std::min(chunk, count_ - from);
+    const VectorXd root = weights_.segment(from, n).cwiseSqrt();
+    left.head(n) = values.segment(from, n);
+    for (std::size_t w = 0; w < waves.size(); ++w) {
+      const auto& [omega, a, b] = waves[w];
+      const Eigen::Index c = 3 * static_cast<Eigen::Index>(w);
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const double tau = step_ * static_cast<double>(from + j) - middle();
+        const double cosine = std::cos(omega * tau), sine = std::sin(omega * tau);
+        rows(j, c) = root[j] * cosine;
+        rows(j, c + 1) = root[j] * sine;
+        rows(j, c + 2) = root[j] * tau / scale * (b * cosine - a * sine);
+        left[j] -= a * cosine + b * sine;
+      }
+    }
+    const auto part = rows.topRows(n);
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+    right += part.transpose() * root.cwiseProduct(left.head(n));
+  }
+  // A constant has no sine and no frequency, and a wave without amplitude no frequency yet.
+  for (std::size_t w = 0; w < waves.size(); ++w)
+    for (Eigen::Index c = 3 * static_cast<Eigen::Index>(w) + 1, k = 0; k < 2; ++k, ++c)
+      if (waves[w].frequency == 0 || (k == 1 && waves[w].amplitude() == 0)) {
+        normal.row(c).setZero();
+        normal.col(c).setZero();
+        normal(c, c) = 1;
+        right[c] = 0;
+      }
+  // Columns of waves differ by their amplitudes: scaled to unit diagonal, the matrix is near the unit matrix.
+  const VectorXd unit = normal.diagonal().cwiseSqrt().cwiseInverse();
+  normal = unit.asDiagonal() * MatrixXd(normal.selfadjointView<Eigen::Lower>()) * unit.asDiagonal();
+  const VectorXd change = unit.asDiagonal() * normal.ldlt().solve(unit.asDiagonal() * right);
+  double largest = 0, amplitude = 0;
+  for (std::size_t w = 0; w < waves.size(); ++w) {
+    const Eigen::Index c = 3 * static_cast<Eigen::Index>(w);
+    waves[w].a += change[c];
+    waves[w].b += change[c + 1];
+    waves[w].frequency += change[c + 2] / scale;
+    amplitude = std::max(amplitude, waves[w].amplitude());
+  }
+  for (std::size_t w = 0; w < waves.size(); ++w) {
+    const Eigen::Index c = 3 * static_cast<Eigen::Index>(w);
+    largest = std::max({largest, std::hypot(change[c], change[c + 1]) / amplitude,
+                        std::abs(change[c + 2]) / (scale * bin()) * (waves[w].amplitude() / amplitude)});
+  }
+  return largest;
+}
+
+void Fit::take(const Wave& wave) {
+  for (Eigen::Index j = 0; j < count_; ++j) {
+    const double phase = wave.frequency * (step_ * static_cast<double>(j) - middle());
+    left_[j] -= wave.a * std::cos(phase) + wave.b * std::sin(phase);
+  }
+}
+
+bool Fit::refine(std::vector<Wave>& waves) {
+  bool settled = false;
+  for (int k = 0; k < 10 && !settled; ++k) {
+    const double change = step(waves, values_);
+    if (!std::isfinite(change)) return false;
+    settled = change < 1e-13;
+  }
+  leave(waves);
+  return true;
+}
+
+void Fit::leave(const std::vector<Wave>& waves) {
+  left_ = values_;
+  for (const Wave& wave : waves) take(wave);
+}
+
+/// Of frequency −ω: the same with the sine reversed.
+SpectralLine spectral_line(const Wave& wave, double middle) {
+  const double sign = std::copysign(1.0, wave.frequency);
+  const double phase = std::atan2(-sign * wave.b, wave.a) - std::abs(wave.frequency) * middle;
+  return {std::abs(wave.frequency), wave.amplitude(), std::remainder(phase, 2 * pi)};
+}
+
+Spectrum sorted(std::vector<SpectralLine> lines, double residual) {
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const SpectralLine& a, const SpectralLine& b) { return a.amplitude > b.amplitude; });
+  return {std::move(lines), residual};
+}
+
+std::size_t limit(SpectrumGoal goal) { return goal.lines > 0 ? goal.lines : most_spectral_lines; }
+
+void check(std::span<const double> samples, double length, const char* what) {
+  if (samples.size() < 16)
+    throw std::invalid_argument(fmt::format("{} samples; a spectrum needs at least 16", samples.size()));
+  if (!(length > 0)) throw std::invalid_argument(fmt::format("{} = {}; must be positive", what, length));
+  for (std::size_t j = 0; j < samples.size(); ++j)
+    if (!std::isfinite(samples[j]))
+      throw std::invalid_argument(fmt::format("sample {} is not finite", j + 1));
+}
+
+}  // namespace
+
+Spectrum line_spectrum(std::span<const double> samples, double step, SpectrumGoal goal) {
+  check(samples, step, "step");
+  Fit fit(samples, step);
+  std::vector<Wave> waves;
+  double fitted = 0;  // so many together
+  while (waves.size() < limit(goal)) {
+    const Wave wave = fit.largest();
+    if (!(wave.amplitude() > goal.amplitude)) break;
+    double distance = INFINITY;
+    for (const Wave& other : waves)
+      distance =
+          std::min(distance, std::abs(std::abs(wave.frequency) - std::abs(other.frequency)) / fit.bin());
+    if (distance < least_distance) break;
+    std::vector<Wave> more = waves;
+    more.push_back(wave);
+    const bool enough_for_now = distance > near && static_cast<double>(more.size()) < growth * fitted;
+    const double before = fit.residual();
+    if (enough_for_now) {
+      fit.take(wave);
+    } else if (fit.refine(more) && fit.residual() < before) {
+      fitted = static_cast<double>(more.size());
+    } else {
+      fit.leave(waves);
+      break;
+    }
+    waves = std::move(more);
+  }
+  if (fitted < static_cast<double>(waves.size())) fit.refine(waves);
+  std::vector<SpectralLine> lines;
+  for (const Wave& wave : waves) lines.push_back(spectral_line(wave, fit.middle()));
+  return sorted(std::move(lines), fit.residual());
+}
+
+Spectrum fourier_spectrum(std::span<const double> samples, double period, SpectrumGoal goal) {
+  check(samples, period, "period");
+  std::vector<std::complex<double>> signal(samples.begin(), samples.end()), coefficients;
+  Eigen::FFT<double>().fwd(coefficients, signal);
+  const std::size_t n = samples.size();
+  std::vector<SpectralLine> lines;
+  for (std::size_t k = 0; k <= n / 2; ++k) {
+    const std::complex<double> c = coefficients[k] / static_cast<double>(n);
+    const double amplitude = (k == 0 || 2 * k == n ? 1 : 2) * std::abs(c);
+    lines.push_back({2 * pi * static_cast<double>(k) / period, amplitude, std::arg(c)});
+  }
+  Spectrum result = sorted(std::move(lines), 0);
+  const auto enough = [&](std::size_t k) {
+    return k == limit(goal) || !(result.lines[k].amplitude > goal.amplitude);
+  };
+  std::size_t kept = 0;
+  while (kept < result.lines.size() && !enough(kept)) ++kept;
+  for (std::size_t k = kept; k < result.lines.size(); ++k) {
+    const double a = result.lines[k].amplitude;
+    result.residual += result.lines[k].frequency > 0 ? a * a / 2 : a * a;
+  }
+  result.residual = std::sqrt(result.residual);
+  result.lines.resize(kept);
+  return result;
+}
+
+}  // namespace extremal

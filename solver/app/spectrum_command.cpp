@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "app/commands.hpp"
+#include "app/outputs.hpp"
+#include "app/terminal.hpp"
+#include "report/json.hpp"
+#include "report/plot.hpp"
+#include "report/text.hpp"
+#include "study/study.hpp"
+
+namespace extremal::app {
+
+int spectrum(const SpectrumArguments& a) {
+  const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
+  const Study study = load(a.scene, a.sets, Purpose::solution);
+  outputs.keep(study.files);
+  Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
+  if (!study.problem.periodic) result.natural_conditions = study.problem.ends.free;
+  result.solution = run(study);
+  const bool converged = result.solution.converged();
+  if (converged)
+    result.spectrum = spectrum_of(study, study.spectrum.value_or(SpectrumRequest{}), result.solution);
+  std::vector<FileContent> files;
+  if (!a.output.empty())
+    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
+  if (converged && !a.plot.empty()) files.push_back({a.plot, spectrum_image(a.plot, result)});
+  Outputs::write(std::move(files));
+  if (!outputs.on_standard_output() && !a.quiet) print(summary(result));
+  if (!converged)
+    print_error(fmt::format("{}: {}: {}", a.scene, name(result.solution.status), result.solution.message));
+  return converged ? Exit::done : Exit::not_converged;
+}
+
+}  // namespace extremal::app

@@ -1,0 +1,74 @@
+#include "study/spectra.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "study/guess.hpp"
+#include "study/study.hpp"
+
+namespace extremal {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<PointMass> measure_of(const Spectrum& spectrum) {
+  std::vector<PointMass> measure;
+  for (const SpectralLine& line : spectrum.lines) measure.push_back({line.frequency, line.amplitude});
+  return measure;
+}
+
+double finite(const Json& line, const char* key, const Location& whole) {
+  const auto found = line.is_object() ? line.find(key) : line.end();
+  if (!line.is_object() || found == line.end() || !found->is_number() || !std::isfinite(found->get<double>()))
+    throw SceneError(whole, fmt::format("a line of the spectrum has no number '{}'", key));
+  return found->get<double>();
+}
+
+std::vector<std::vector<PointMass>> read_measures(const std::string& path,
+                                                  const std::vector<std::string>& names) {
+  const Location whole{read_source(path), 0, 0};
+  const Json root = Json::parse(whole.source->text, nullptr, false);
+  if (root.is_discarded()) throw SceneError(whole, "this is not JSON");
+  const auto spectrum = root.is_object() ? root.find("spectrum") : root.end();
+  if (!root.is_object() || spectrum == root.end() || !spectrum->is_object())
+    throw SceneError(whole,
+                     "this result has no spectrum; write one with extremal spectrum SCENE --output FILE");
+  std::vector<std::vector<PointMass>> measures;
+  for (const std::string& name : names) {
+    const auto lines = spectrum->find(name);
+    if (lines == spectrum->end() || !lines->is_array())
+      throw SceneError(whole, fmt::format("the spectrum has no lines of '{}'", name));
+    measures.emplace_back();
+    for (const Json& line : *lines)
+      measures.back().push_back({finite(line, "frequency", whole), finite(line, "amplitude", whole)});
+  }
+  return measures;
+}
+
+}  // namespace
+
+SpectrumRequest read_spectrum(const SpectrumTable& table, const std::string& scene,
+                              const std::vector<std::string>& names) {
+  SpectrumRequest request;
+  if (table.lines) request.lines = static_cast<int>(table.lines->value);
+  if (table.against) request.against = read_measures(beside(scene, table.against->value), names);
+  return request;
+}
+
+SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request, const Solution& solution) {
+  const Sampling sampling = study.options.elements > 0 ? Sampling::nodes : Sampling::dense;
+  SolutionSpectrum result{
+      motion_spectrum(study.problem, solution.trajectory, sampling, request.lines, study.options.tolerance),
+      {}};
+  if (!request.against) return result;
+  for (std::size_t a = 0; a < request.against->size(); ++a) {
+    std::vector<PointMass> difference = measure_of(result.motion.coordinates[a]);
+    for (const PointMass& mass : (*request.against)[a]) difference.push_back({mass.at, -mass.weight});
+    result.flat_norm.push_back(flat_norm(std::move(difference)));
+  }
+  return result;
+}
+
+}  // namespace extremal
