@@ -13,29 +13,10 @@ namespace extremal {
 enum class Op : std::uint8_t {
   constant,  ///< node.value
   input,     ///< node.index
-  add,
-  sub,
-  mul,
-  div,
-  pow,
-  atan2,
-  min,
-  max,   // two arguments
-  step,  ///< 1 where a >= b, else 0 (the derivative of min, max and abs)
-  neg,
-  abs,
-  sqrt,
-  exp,
-  log,  // one argument
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  sinh,
-  cosh,
-  tanh,
+  add, sub, mul, div, pow, atan2, min, max,                          // two arguments
+  step,      ///< 1 where a >= b, else 0 (the derivative of min, max and abs)
+  neg, abs, sqrt, exp, log,                                          // one argument
+  sin, cos, tan, asin, acos, atan, sinh, cosh, tanh,
 };
 
 /// 0, 1 or 2.
