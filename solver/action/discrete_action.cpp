@@ -22,6 +22,7 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   assembly_ = &assembly();
   elimination_ = &elimination();
   border_ = border;
+  momenta_ = {};
   n_ = tables.coordinates();
   elements_ = elements;
   batches_ = (elements + lanes_ - 1) / lanes_;

@@ -25,8 +25,9 @@ struct NodeEquations {
   std::vector<double> gradient;     ///< (N + 1) × n, condensed
   std::vector<double> border;       ///< (N + 1) × n: t
   double border_gradient = 0;       ///< ∂S/∂T, condensed
-  /// Of gradients in extended precision, what must be added to those by q(0) and q(T) (2n), and by T:
-  /// numbers that cancel in the equations of the ends, and would take the digits of what is left with them.
+  /// What must be added to the gradients by q(0) and q(T) (2n; or empty), and by T: momenta that are given,
+  /// and of gradients in extended precision numbers that cancel in the equations of the ends, and would take
+  /// the digits of what is left with them.
   std::vector<double> end_parts;
   double border_part = 0;
   double corner = 0;       ///< τ
@@ -55,6 +56,11 @@ class DiscreteAction {
   /// quadrature, on tables of the same degree bound to it; the factors stay. evaluate() needs what reset()
   /// was given.
   void substitute(const Lagrangian& lagrangian, const ElementTables& tables);
+
+  /// Until reset() the ends have given momenta (2n; empty: none), which must outlive it: `nodes` and
+  /// imbalance() are derivatives of S_h + p(0)·q(0) − p(T)·q(T).
+  void give_momenta(std::span<const double> momenta) { momenta_ = momenta; }
+  std::span<const double> momenta() const { return momenta_; }
 
   /// From now on evaluate() and evaluate_gradient() take gradients in extended precision, where they can.
   void extend(bool on) { extended_on_ = on; }
@@ -90,6 +96,9 @@ class DiscreteAction {
   const ElementTables& tables() const { return *tables_; }
   std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
   std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n
+
+  /// ∂S_h/∂x_e of the end coordinate e, less what momenta that are given make of it.
+  double imbalance(int e) const;
 
   /// Inner steps from the steps of the nodes and of T, into `step` (laid out as Path::x).
   void expand_step(std::span<const double> node_step, double duration_step, AlignedDoubles& step) const;
@@ -158,6 +167,7 @@ class DiscreteAction {
   void eliminated(int b, const double* x, const double* y, double* sum) const;
   void clear_sums();
   void finish_sums();
+  void add_momenta();
   std::size_t batch_size() const { return sizes_.matrix + 2 * sizes_.vector; }
   double* matrix(int b) { return matrices_.data() + b * batch_size(); }
   const double* matrix(int b) const { return matrices_.data() + b * batch_size(); }
@@ -174,6 +184,7 @@ class DiscreteAction {
   bool border_ = false, finite_ = false;
   bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path
   ExtendedGradient extended_;
+  std::span<const double> momenta_;
   bool changed_ = false;  ///< its change is taken in its place
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
   Sizes sizes_{};

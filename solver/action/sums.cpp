@@ -181,9 +181,24 @@ void DiscreteAction::finish_sums() {
     finish_extended();
   else
     nodes.border_gradient += slope_duration_;
+  if (!momenta_.empty() && !changed_) add_momenta();
   double sum = action_;
   for (double g : raw_nodes_) sum += g;
   finite_ = std::isfinite(sum) && std::isfinite(residual_) && std::isfinite(slope_duration_);
+}
+
+/// ∂/∂q of p(0)·q(0) − p(T)·q(T).
+void DiscreteAction::add_momenta() {
+  nodes.end_parts.resize(momenta_.size());
+  for (int a = 0; a < n_; ++a) {
+    nodes.end_parts[a] += momenta_[a];
+    nodes.end_parts[n_ + a] -= momenta_[n_ + a];
+  }
+}
+
+double DiscreteAction::imbalance(int e) const {
+  const double given = momenta_.empty() ? 0 : momenta_[e];
+  return e < n_ ? start_gradient_[e] + given : end_gradient_[e - n_] - given;
 }
 
 }  // namespace extremal

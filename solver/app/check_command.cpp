@@ -4,6 +4,7 @@
 #include "app/commands.hpp"
 #include "app/lines.hpp"
 #include "app/terminal.hpp"
+#include "study/annotation.hpp"
 #include "study/inspection.hpp"
 
 namespace extremal::app {
@@ -18,8 +19,11 @@ std::string coordinates_text(const System& system) {
 
 std::vector<std::string> parameter_texts(const System& system) {
   std::vector<std::string> texts;
-  for (const auto& [name, parameter] : system.parameters)
-    texts.push_back(parameter_text(name, parameter.value, parameter.list));
+  for (const auto& [name, parameter] : system.parameters) {
+    std::vector<std::string> values;
+    for (const double value : parameter.value) values.push_back(fmt::format("{}", value));
+    texts.push_back(parameter_text(name, values, parameter.list));
+  }
   return texts;
 }
 
@@ -29,14 +33,18 @@ std::string boundary_text(const Problem& problem) {
   return fmt::format("{} conditions on {} end values, {} natural", rows, 2 * n, problem.ends.free);
 }
 
-/// The end values that the boundary relation does not fix, of one end.
+/// The end values that the boundary relation does not fix, of one end, with the momenta that are given there.
 std::string open_text(const Problem& problem, bool at_end) {
   constexpr std::size_t most = 12;
   const int n = problem.coordinates();
   std::vector<std::string> names;
-  for (int a = 0; a < n; ++a)
-    if (!problem.ends.fixed[at_end ? n + a : a])
-      names.push_back(fmt::format("{}({})", problem.names[a], at_end ? "T" : "0"));
+  for (int a = 0; a < n; ++a) {
+    const int e = at_end ? n + a : a;
+    if (problem.ends.fixed[e]) continue;
+    const double p = problem.boundary.momenta.empty() ? 0 : problem.boundary.momenta[e];
+    names.push_back(fmt::format("{}({})", problem.names[a], at_end ? "T" : "0"));
+    if (p != 0) names.back() += fmt::format(" with p_{} = {}", problem.names[a], p);
+  }
   if (names.empty()) return "none";
   if (names.size() > most) names[most] = fmt::format("… {} in all", names.size());
   names.resize(std::min(names.size(), most + 1));
@@ -95,6 +103,7 @@ void print_worst(const Study& study, const char* order, const WorstDerivative& w
 
 int check(const CheckArguments& arguments) {
   const Study study = load(arguments.scene, arguments.sets);
+  annotation(study);  // refuses what the system file says wrongly of pictures
   const Inspection found = inspect(study);
   const DerivativeCheck& derivatives = found.derivatives;
   if (!study.title.empty()) line("title", study.title);

@@ -151,6 +151,12 @@ void CommandLine::add_continue() {
   add_output(command, a.output, "write the branches; - is standard output");
   add_csv(command, a.csv, "write the points of the branches; - is standard output");
   add_plot(command, a.plot, "draw the branches");
+  command
+      .add_option(
+          "--quantity", a.quantity,
+          "what the plot shows: a formula of x(0), x'(T), parameters, duration, energy, action, amplitude")
+      ->type_name("FORMULA")
+      ->option_text("FORMULA");
   add_quiet(command, a.quiet);
 }
 

@@ -46,6 +46,7 @@ struct ContinueArguments {
   std::string scene;
   std::vector<std::string> sets;
   std::string output, csv, plot;
+  std::string quantity;  ///< formula of what the plot shows; may be empty
   bool quiet = false;
 };
 int follow(const ContinueArguments& arguments);

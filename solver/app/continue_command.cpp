@@ -8,6 +8,7 @@
 #include "report/branch.hpp"
 #include "report/plot.hpp"
 #include "study/continued.hpp"
+#include "study/quantity.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
@@ -23,15 +24,28 @@ FollowedBranch followed(const Study& study, bool quiet) {
   return extremal::follow(study, progress.callback<BranchPoint>(progress_text));
 }
 
-void write_outputs(const ContinueArguments& a, const FollowedBranch& branch) {
+void write_outputs(const ContinueArguments& a, const Study& study, const FollowedBranch& branch,
+                   const Annotation& annotation) {
   std::vector<FileContent> files;
   if (!a.output.empty())
     files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, branch); })});
   const bool any = !branch.points.empty();
   if (any && !a.csv.empty())
     files.push_back({a.csv, text_of([&](std::ostream& out) { write_csv(out, branch); })});
-  if (any && !a.plot.empty()) files.push_back({a.plot, plot_image(a.plot, branch)});
+  if (any && !a.plot.empty())
+    files.push_back(
+        {a.plot, plot_image(a.plot, BranchPicture{branch, quantity(study, branch, a.quantity), annotation})});
   Outputs::write(std::move(files));
+}
+
+/// The formula of --quantity, before anything is computed.
+void check_shown(const ContinueArguments& a, const Study& study) {
+  if (a.plot.empty()) throw OptionError("--quantity says what --plot shows; give a file to --plot");
+  try {
+    check_quantity(study, a.quantity);
+  } catch (const FormulaError& e) {
+    throw OptionError(fmt::format("--quantity: '{}': column {}: {}", a.quantity, e.offset + 1, e.what()));
+  }
 }
 
 }  // namespace
@@ -40,8 +54,10 @@ int follow(const ContinueArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--plot", a.plot}});
   const Study study = load(a.scene, a.sets);
   outputs.keep(study.files);
+  const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
+  if (!a.quantity.empty()) check_shown(a, study);
   const FollowedBranch branch = followed(study, a.quiet);
-  write_outputs(a, branch);
+  write_outputs(a, study, branch, annotation);
   if (branch.points.empty()) {
     print_error(fmt::format("{}: {}", a.scene, branch.branches.front().message));
     return Exit::not_converged;

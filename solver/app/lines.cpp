@@ -18,7 +18,7 @@ void lines(const std::string& label, const std::vector<std::string>& texts) {
   for (std::size_t k = 0; k < texts.size(); ++k) line(k == 0 ? label : "", texts[k]);
 }
 
-std::string parameter_text(const std::string& name, const std::vector<double>& values, bool list) {
+std::string parameter_text(const std::string& name, const std::vector<std::string>& values, bool list) {
   constexpr std::size_t most = 12;
   if (!list) return fmt::format("{} = {}", name, values.front());
   const auto end = values.begin() + static_cast<std::ptrdiff_t>(std::min(values.size(), most));

@@ -13,6 +13,6 @@ void line(const std::string& label, const std::string& text);
 void lines(const std::string& label, const std::vector<std::string>& texts);
 
 /// "mu = 1", "m = [1, 2]"; of a long list the first values and their number.
-std::string parameter_text(const std::string& name, const std::vector<double>& values, bool list);
+std::string parameter_text(const std::string& name, const std::vector<std::string>& values, bool list);
 
 }  // namespace extremal::app

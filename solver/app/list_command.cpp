@@ -29,8 +29,10 @@ int list_all() {
 }
 
 std::string assignment_text(const Assignment& parameter) {
-  std::vector<double> values;
-  for (const Quantity& value : parameter.values) values.push_back(std::get<double>(value.value));
+  std::vector<std::string> values;
+  for (const Quantity& q : parameter.values)
+    values.push_back(q.formula() ? std::get<std::string>(q.value)
+                                 : fmt::format("{}", std::get<double>(q.value)));
   return parameter_text(parameter.name, values, parameter.list);
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "app/commands.hpp"
@@ -10,12 +11,16 @@
 #include "report/json.hpp"
 #include "report/plot.hpp"
 #include "report/text.hpp"
+#include "study/annotation.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
 namespace {
 
-constexpr int csv_samples = 201, plot_samples = 801;
+constexpr int csv_samples = 201;
+/// A picture has so many equal steps, and so many in each element, which is short where the motion is fast;
+/// of elements that are many, fewer.
+constexpr int plot_steps = 800, element_steps = 8, most_element_steps = 20'000;
 
 std::string progress_text(const Iteration& i) {
   return fmt::format("{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements, i.degree,
@@ -65,23 +70,40 @@ std::string csv_of(const Study& study, const Result& result) {
   });
 }
 
-Picture picture_of(const Study& study, const Result& result) {
-  Picture picture{result.title, result.names, sampled(study, result, plot_samples)};
+Samples drawn(const Study& study, const Solution& solution) {
+  const Trajectory& trajectory = solution.trajectory;
+  std::vector<double> times = equal_times(plot_steps + 1, solution.duration());
+  const int steps = std::min(element_steps, most_element_steps / trajectory.elements());
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (int i = 0; i < steps; ++i)
+      times.push_back(trajectory.times[k] + (trajectory.times[k + 1] - trajectory.times[k]) * i / steps);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return sample(study.problem, trajectory, times);
+}
+
+Picture picture_of(const Study& study, const Result& result, const Annotation& annotation) {
+  Picture picture{.title = result.title,
+                  .names = result.names,
+                  .samples = drawn(study, result.solution),
+                  .annotation = annotation};
   if (!result.solutions || result.solutions->size() < 2) return picture;
   for (const Result& each : *result.solutions) {
-    picture.labels.push_back(fmt::format("{}", picture.labels.size() + 1));
-    if (picture.labels.size() > 1) picture.others.push_back(sampled(study, each, plot_samples));
+    picture.actions.push_back(each.solution.action);
+    if (picture.actions.size() > 1) picture.others.push_back(drawn(study, each.solution));
   }
   return picture;
 }
 
-void write_outputs(const SolveArguments& a, const Study& study, const Result& result) {
+void write_outputs(const SolveArguments& a, const Study& study, const Result& result,
+                   const Annotation& annotation) {
   std::vector<FileContent> files;
   if (!a.output.empty())
     files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
   const bool converged = result.solution.converged();
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
-  if (converged && !a.plot.empty()) files.push_back({a.plot, plot_image(a.plot, picture_of(study, result))});
+  if (converged && !a.plot.empty())
+    files.push_back({a.plot, plot_image(a.plot, picture_of(study, result, annotation))});
   Outputs::write(std::move(files));
 }
 
@@ -91,9 +113,10 @@ int solve(const SolveArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--plot", a.plot}});
   const bool table = !outputs.on_standard_output() && !a.quiet;
   const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
-  Study study = load(a.scene, a.sets);
+  Study study = load(a.scene, a.sets, Purpose::solution);
   outputs.keep(study.files);
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
+  const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
 
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
   if (!study.problem.periodic) result.natural_conditions = study.problem.ends.free;
@@ -107,7 +130,7 @@ int solve(const SolveArguments& a) {
   }
   const bool converged = result.solution.converged();
   if (converged && study.solutions == 0) result.samples = wanted_samples(a, at, study, result.solution);
-  write_outputs(a, study, result);
+  write_outputs(a, study, result, annotation);
   if (table) print(summary(result));
   if (!converged)
     print_error(fmt::format("{}: {}: {}", a.scene, name(result.solution.status), result.solution.message));

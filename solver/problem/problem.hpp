@@ -22,9 +22,14 @@ struct BoundaryRelation {
   int rows = 0;
   std::vector<Triplet> matrix;  ///< (row, e, coefficient)
   std::vector<double> value;    ///< c
+  /// The momenta ∂L/∂q' (2n) that the natural conditions of the ends left free ask for; empty: all zero. They
+  /// are those of the action S + p(0)·q(0) − p(T)·q(T), whose second variation is that of S.
+  std::vector<double> momenta;
 
   /// Adds q_a(0) = x (at_end = false) or q_a(T) = x.
   void fix(int coordinate, bool at_end, double x);
+  /// Gives the momentum of an end left free.
+  void give_momentum(int coordinate, bool at_end, double p);
   /// Adds a row; returns its number.
   int add_row(double c);
   void add(int row, int e, double coefficient) { matrix.push_back({row, e, coefficient}); }

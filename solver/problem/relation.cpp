@@ -278,6 +278,11 @@ void BoundaryRelation::fix(int coordinate, bool at_end, double x) {
   add(add_row(x), at_end ? coordinates + coordinate : coordinate, 1.0);
 }
 
+void BoundaryRelation::give_momentum(int coordinate, bool at_end, double p) {
+  momenta.resize(2 * static_cast<std::size_t>(coordinates));
+  momenta[at_end ? coordinates + coordinate : coordinate] = p;
+}
+
 int BoundaryRelation::add_row(double c) {
   value.push_back(c);
   return rows++;

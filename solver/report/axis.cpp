@@ -43,7 +43,7 @@ std::string fixed(double value, int decimals) {
 
 }  // namespace
 
-Axis make_axis(const std::string& label, double low, double high, double count) {
+Axis make_axis(const AxisName& name, double low, double high, double count) {
   if (!(low < high) || !std::isfinite(high - low)) {
     throw std::invalid_argument(fmt::format("an axis from {} to {} cannot be drawn", low, high));
   }
@@ -53,8 +53,12 @@ Axis make_axis(const std::string& label, double low, double high, double count) 
   const int exponent = magnitude >= 5 || magnitude < -2 ? magnitude : 0;
   const int decimals = std::max(0, exponent - step.power);
 
-  Axis axis{.label = label, .low = low, .high = high, .ticks = {}};
-  if (exponent != 0) axis.label += fmt::format("  (10{})", superscript(exponent));
+  Axis axis{.label = name.name, .low = low, .high = high, .ticks = {}};
+  const std::string power = exponent != 0 ? "10" + superscript(exponent) : "";
+  if (!name.unit.empty())
+    axis.label += fmt::format(" ({}{}{})", power, power.empty() ? "" : " ", name.unit);
+  else if (!power.empty())
+    axis.label += fmt::format("  ({})", power);
   // Counted in whole steps: an accumulated sum would miss the last tick.
   const double slack = 1e-9;
   const double first = std::ceil(low / step.size() - slack), last = std::floor(high / step.size() + slack);

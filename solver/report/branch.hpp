@@ -3,7 +3,9 @@
 #include <iosfwd>
 #include <string>
 
+#include "study/annotation.hpp"
 #include "study/continued.hpp"
+#include "study/quantity.hpp"
 
 /// \file A branch of extremals as JSON, as a table, as CSV and as a picture.
 
@@ -24,11 +26,18 @@ void write_csv(std::ostream& out, const FollowedBranch& branch);
 /// A table of the points, why each branch ended, and how well the derivatives of the action are met.
 std::string summary(const FollowedBranch& branch);
 
-/// A parameter against the action, or duration and energy against each other: periodic orbits coloured by
-/// their stability, others by whether their index is zero, with folds, crossings and period doublings marked.
-/// Beside it some solutions from the first point to the last: paths in the plane or in space, else the first
-/// coordinate against time.
-/// Throws as plot_image of a trajectory does, and std::invalid_argument without points.
-std::string plot_image(const std::string& path, const FollowedBranch& branch);
+/// What a picture of a branch shows.
+struct BranchPicture {
+  const FollowedBranch& branch;
+  BranchQuantity quantity;  ///< drawn upwards, over the number that varies
+  Annotation annotation = {};
+};
+
+/// A bifurcation diagram: periodic orbits coloured by their stability, others by whether their index is zero,
+/// with folds, crossings and period doublings marked. Between the points that were found, which are dots, the
+/// curve is interpolated. Beside it some solutions of each branch, coloured by the number that varies: paths
+/// in the plane or in space, else the coordinate that moves most against time. Throws as plot_image of a
+/// trajectory does, and std::invalid_argument without points.
+std::string plot_image(const std::string& path, const BranchPicture& picture);
 
 }  // namespace extremal

@@ -60,20 +60,23 @@ Figure layout(const Comparison& comparison) {
     errors.push_back(&line.error);
     seconds.push_back(&line.seconds);
   }
-  const double top = top_of_panels(comparison.title) + 18, height = 420;
-  Figure figure{.width = 860, .height = top + height + 56, .title = comparison.title};
+  std::vector<LegendEntry> legend;
+  const std::vector<Colour> colours = distinct_colours(all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) legend.push_back({all[k].method, colours[k], Shape::line});
+  Figure figure = headed_figure(comparison.title, legend);
+  const double top = top_of_panels(figure), height = 420;
+  figure.width = std::max(figure.width, 860.0);
+  figure.height = top + height + bottom;
   Panel panel;
   panel.x = decades("largest error of q", errors, [](int power) { return fmt::format("1e{}", power); });
   panel.y = decades("", seconds, seconds_text);
-  const std::vector<Colour> colours = distinct_colours(all.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     panel.curves.push_back({all[k].error, all[k].seconds, colours[k]});
     for (std::size_t i = 0; i < all[k].error.size(); ++i)
       panel.marks.push_back({all[k].error[i], all[k].seconds[i], colours[k], Shape::disc});
-    panel.legend.push_back({all[k].method, colours[k], Shape::line});
   }
   const double left = 20 + number_width(panel.y);
-  panel.box = {left, top, figure.width - left - 24, height};
+  panel.box = {left, top, 836 - left, height};
   figure.panels.push_back(std::move(panel));
   return figure;
 }

@@ -103,6 +103,7 @@ class Script {
     terminal(format);
     add("set encoding utf8\nset key off\nset multiplot\n");
     add("set cbrange [0:1]\n");
+    header();
     for (const Panel& panel : figure.panels) draw(panel);
     add("unset multiplot\nunset output\n");
   }
@@ -140,20 +141,35 @@ class Script {
     add("set label {} at {} {} textcolor rgb {}\n", quoted(text), screen(x, y), align, hexadecimal(colour));
   }
 
-  void draw(const Panel& panel) {
-    add("unset label\nunset arrow\nunset colorbox\n");
-    if (&panel == &figure_.panels.front() && !figure_.title.empty()) {
+  /// Title and legend of the whole figure are drawn with the first panel.
+  void header() {
+    if (!figure_.title.empty())
       add("set label {} at {} left font ',{}' textcolor rgb {}\n", quoted(figure_.title), screen(20, 26),
           title_size * sizes_.font, hexadecimal(ink));
+    double left = 20;
+    for (const LegendEntry& each : figure_.legend) {
+      entry(each, left + sample_width(each), figure_.title.empty() ? 22 : 60);
+      left += legend_width(each);
     }
+  }
+
+  void draw(const Panel& panel) {
     place(panel);
     if (panel.axes) axes(panel);
     for (const Note& note : panel.notes) {
-      add("set label {} at graph {:.5f},{:.5f} center textcolor rgb {}\n", quoted(note.text),
-          panel.x.place(note.x), panel.y.place(note.y), hexadecimal(quiet_ink));
+      // To the left where there is no room to the right.
+      const double right = panel.x.place(note.x) * panel.box.width + text_width(note.text) + 12;
+      const char* align = !note.beside              ? "center"
+                          : right > panel.box.width ? "right offset -0.8,0.5"
+                                                    : "left offset 0.8,0.5";
+      add("set label {} at graph {:.5f},{:.5f} {} textcolor rgb {}\n", quoted(note.text),
+          panel.x.place(note.x), panel.y.place(note.y), align, hexadecimal(quiet_ink));
     }
+    if (!panel.caption.empty())
+      label(panel.caption, panel.box.left + panel.box.width / 2, panel.box.top - 14, "center", ink);
     legend(panel);
     contents(panel);
+    add("unset label\nunset arrow\nunset colorbox\n");
   }
 
   void place(const Panel& panel) {
@@ -195,43 +211,57 @@ class Script {
   void legend(const Panel& panel) {
     const double y = panel.box.top - 14;
     double right = panel.box.left + panel.box.width;
-    for (auto entry = panel.legend.rbegin(); entry != panel.legend.rend(); ++entry) {
-      const double start = right - text_width(entry->text);
-      label(entry->text, start, y, "left", quiet_ink);
-      if (entry->shape == Shape::line) {
-        add("set arrow from {} to {} nohead linewidth 2.2 linecolor rgb {}\n", screen(start - 24, y),
-            screen(start - 7, y), hexadecimal(entry->colour));
-      } else {
-        for (const std::string& disc : discs(entry->shape, entry->colour)) {
-          add("set label '' at {} point {}\n", screen(start - 11, y), disc);
-        }
-      }
-      right = start - 38;
+    for (auto each = panel.legend.rbegin(); each != panel.legend.rend(); ++each) {
+      const double start = right - text_width(each->text);
+      entry(*each, start, y);
+      right = start - 44;
+    }
+  }
+
+  /// A text that begins at `start`, with its sample before it.
+  void entry(const LegendEntry& entry, double start, double y) {
+    label(entry.text, start, y, "left", quiet_ink);
+    if (entry.shape == Shape::line) {
+      add("set arrow from {} to {} nohead linewidth 2.2 linecolor rgb {}\n", screen(start - 24, y),
+          screen(start - 7, y), hexadecimal(entry.colour));
+    } else if (entry.shape != Shape::none) {
+      for (const std::string& symbol : symbols(entry.shape, entry.colour))
+        add("set label '' at {} point {}\n", screen(start - 12, y), symbol);
     }
   }
 
   /// What is drawn for a mark, one upon the other: a ring is a disc with a white one inside.
-  std::vector<std::string> discs(Shape shape, Colour colour) const {
-    constexpr auto pattern = "pointtype 7 pointsize {:.2f} linecolor rgb {}";
-    std::vector<std::string> parts{fmt::format(pattern, sizes_.point, hexadecimal(colour))};
-    if (shape == Shape::ring) {
-      parts.push_back(fmt::format(pattern, 0.55 * sizes_.point, hexadecimal(paper)));
+  std::vector<std::string> symbols(Shape shape, Colour colour) const {
+    const auto symbol = [&](int type, double size, Colour of) {
+      return fmt::format("pointtype {} pointsize {:.2f} linecolor rgb {}", type, size * sizes_.point,
+                         hexadecimal(of));
+    };
+    switch (shape) {
+      case Shape::square:
+        return {symbol(5, 0.9, colour)};
+      case Shape::cross:
+        return {symbol(1, 1.4, colour) + " linewidth 1.6"};
+      case Shape::dot:
+        return {symbol(7, 0.45, colour)};
+      case Shape::ring:
+        return {symbol(7, 1, colour), symbol(7, 0.55, paper)};
+      default:
+        return {symbol(7, 1, colour)};
     }
-    return parts;
   }
 
   void contents(const Panel& panel) {
     std::vector<std::string> parts;
     for (const ColourMap& map : panel.maps) parts.push_back(colours(map, panel.box));
+    if (panel.key) parts.push_back(key(*panel.key, panel.box));
     for (const Curve& curve : panel.curves) {
       parts.push_back(fmt::format("{} with lines linewidth {} linecolor rgb {}",
                                   points(panel, curve.x, curve.y), curve.width, hexadecimal(curve.colour)));
     }
     for (const Mark& mark : panel.marks) {
       const std::string at = points(panel, {mark.x}, {mark.y});
-      for (const std::string& disc : discs(mark.shape, mark.colour)) {
-        parts.push_back(at + " with points " + disc);
-      }
+      for (const std::string& symbol : symbols(mark.shape, mark.colour))
+        parts.push_back(at + " with points " + symbol);
     }
     add("plot {}\n", fmt::join(parts, ", "));
   }
@@ -264,15 +294,31 @@ class Script {
     return block;
   }
 
+  void bar(const Axis& scale, Palette palette, const Box& box) {
+    std::vector<std::string> stops;
+    const std::span<const Colour> colours = palette_colours(palette);
+    for (std::size_t k = 0; k < colours.size(); ++k)
+      stops.push_back(fmt::format("{} {}", static_cast<double>(k) / static_cast<double>(colours.size() - 1),
+                                  hexadecimal(colours[k])));
+    add("set palette defined ({})\n", fmt::join(stops, ", "));
+    add("set colorbox user origin {} size screen {:.5f},{:.5f} noborder\n",
+        screen(box.left, box.top + box.height), box.width / width_, box.height / height_);
+    ticks("cbtics", scale, 1);
+    label(scale.label, box.left, box.top - 20, "left", ink);  // above a number at the top
+  }
+
+  /// gnuplot draws the bar where something has its colours: here a point out of sight.
+  std::string key(const ColourKey& key, const Box& box) {
+    bar(key.scale, key.palette, box);
+    const std::string block = open_block();
+    add("-1 -1 0\nEOD\n");
+    return block + " using 1:2:3 with points palette";
+  }
+
   /// Cells are drawn as pixels whose centres fill the panel from edge to edge.
   std::string colours(const ColourMap& map, const Box& box) {
-    const char* diverging = "0 '#0B4F8A', 0.25 '#6BAED6', 0.5 '#F7F7F7', 0.75 '#F4A261', 1 '#A63603'";
-    const char* sequential = "0 '#440154', 0.25 '#3B528B', 0.5 '#21918C', 0.75 '#5EC962', 1 '#FDE725'";
-    add("set palette defined ({})\n", map.diverging ? diverging : sequential);
-    add("set colorbox user origin {} size screen {:.5f},{:.5f} noborder\n",
-        screen(box.left + box.width + 18, box.top + box.height), 12 / width_, box.height / height_);
-    ticks("cbtics", map.scale, 1);
-    label(map.scale.label, box.left + box.width + 18, box.top - 14, "left", ink);
+    bar(map.scale, map.diverging ? Palette::diverging : Palette::sequential,
+        {box.left + box.width + 18, box.top, bar_width, box.height});
     const std::string block = open_block();
     for (std::size_t row = 0; row < map.rows; ++row) {
       for (std::size_t column = 0; column < map.columns; ++column) {

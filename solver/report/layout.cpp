@@ -1,4 +1,4 @@
-#include "report/layout.hpp"
+#include "report/solutions.hpp"
 
 #include <fmt/format.h>
 
@@ -9,183 +9,177 @@ namespace extremal {
 
 namespace {
 
-constexpr std::size_t most_curves = 8;   ///< of one array in a time plot; a longer one is a map
-constexpr std::size_t most_panels = 12;  ///< time plots below each other
+constexpr std::size_t most_curves = 8;      ///< of one array in a time plot; a longer one is a map
+constexpr std::size_t most_panels = 12;     ///< time plots below each other
+constexpr std::size_t most_solutions = 60;  ///< drawn, each in a panel of its own
 
-/// All solutions, the first one first.
-std::vector<const Samples*> solutions_of(const Picture& picture) {
-  std::vector<const Samples*> all{&picture.samples};
-  for (const Samples& other : picture.others) all.push_back(&other);
-  return all;
-}
-
-Figure lone_figure(const Picture& picture) {
-  const std::string& name = picture.names[0];
-  TimePanel place{.label = name, .columns = {}, .names = {}, .colour = first_colour};
-  if (picture.labels.size() <= longest_legend) place.names = picture.labels;
-  TimePanel velocity{.label = velocity_key(name), .columns = {}, .names = {}, .colour = second_colour};
-  for (const Samples* samples : solutions_of(picture)) {
-    place.columns.push_back(&samples->q[0]);
-    place.times.push_back(&samples->t);
-    velocity.times.push_back(&samples->t);
-    if (!samples->v.empty()) velocity.columns.push_back(&samples->v[0]);
-  }
-  std::vector<TimePanel> contents{place};
-  if (velocity.columns.size() == place.columns.size()) contents.push_back(velocity);
-  const double top = top_of_panels(picture.title);
-  Figure figure{
-      .width = 860, .height = top + (contents.size() == 1 ? 360 : 500) + 56, .title = picture.title};
+/// Panels against time that fill a figure, and the key of their colours.
+Figure time_panel_figure(const Picture& picture, const SolutionColours& key,
+                         const std::vector<TimePanel>& contents, double height) {
+  Figure figure = headed_figure(picture.title, key.legend, picture.remarks);
+  const double top = top_of_panels(figure);
+  figure.width = std::max(figure.width, 860.0);
+  figure.height = top + height + bottom;
   figure.panels =
-      time_panels(picture.samples.t, contents, {20, top, figure.width - 44, figure.height - top - 56});
+      time_panels(axis_name(picture.annotation, "t"), picture.samples.t, contents, {20, top, 816, height});
+  if (key.scale) add_key(figure, *key.scale);
   return figure;
 }
 
-/// The path of each solution through two or three coordinates.
-std::vector<BodyPath> solution_paths(const Picture& picture) {
-  const std::vector<const Samples*> all = solutions_of(picture);
-  const std::vector<Colour> colours = distinct_colours(all.size());
-  std::vector<BodyPath> paths;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    BodyPath path{.axes = {}, .name = all.size() > 1 ? picture.labels[k] : "", .colour = colours[k]};
-    for (const Column& column : all[k]->q) path.axes.push_back(&column);
-    paths.push_back(std::move(path));
+/// A coordinate of all solutions against time.
+TimePanel coordinate_panel(const Picture& picture, std::size_t a, const SolutionColours& key) {
+  TimePanel panel{
+      .label = axis_name(picture.annotation, picture.names[a]), .columns = {}, .colours = key.colours};
+  for (const Samples* samples : solutions_of(picture)) {
+    panel.columns.push_back(&samples->q[a]);
+    panel.times.push_back(&samples->t);
   }
-  return paths;
+  return panel;
+}
+
+Figure lone_figure(const Picture& picture) {
+  const SolutionColours key = solution_colours(picture);
+  TimePanel velocity{.label = axis_name(picture.annotation, velocity_key(picture.names[0])),
+                     .columns = {},
+                     .colours = key.colours};
+  if (key.colours.size() == 1) velocity.colours = {second_colour};
+  for (const Samples* samples : solutions_of(picture)) {
+    velocity.times.push_back(&samples->t);
+    if (!samples->v.empty()) velocity.columns.push_back(&samples->v[0]);
+  }
+  std::vector<TimePanel> contents{coordinate_panel(picture, 0, key)};
+  if (velocity.columns.size() == key.colours.size()) contents.push_back(velocity);
+  return time_panel_figure(picture, key, contents, contents.size() == 1 ? 360 : 500);
+}
+
+/// Each coordinate of all solutions, one below the other.
+Figure coordinate_figure(const Picture& picture) {
+  const SolutionColours key = solution_colours(picture);
+  std::vector<TimePanel> contents;
+  for (std::size_t a = 0; a < picture.names.size(); ++a)
+    contents.push_back(coordinate_panel(picture, a, key));
+  return time_panel_figure(picture, key, contents, 190 * static_cast<double>(contents.size()) - 40);
 }
 
 Figure time_figure(const Picture& picture, const std::vector<Family>& groups) {
   std::vector<TimePanel> contents;
   for (const Family& family : groups) {
-    TimePanel panel{.label = family.name, .columns = {}, .names = family.indices, .colour = first_colour};
+    TimePanel panel{.label = axis_name(picture.annotation, family.name), .columns = {}};
     for (const std::size_t a : family.members) panel.columns.push_back(&picture.samples.q[a]);
-    if (groups.size() == 1) panel.label = "";
-    for (std::string& index : panel.names) index = family.name + "[" + index + "]";
+    if (panel.columns.size() == 1) panel.colours = {first_colour};
+    if (groups.size() == 1 && panel.label.unit.empty()) panel.label.name.clear();
+    for (const std::string& index : family.indices) panel.names.push_back(family.name + "[" + index + "]");
     contents.push_back(std::move(panel));
   }
-  const double top = top_of_panels(picture.title);
   const double panel_height = groups.size() == 1 ? 380 : 150;
-  const double height = static_cast<double>(groups.size()) * (panel_height + 40) - 40;
-  Figure figure{.width = 860, .height = top + height + 56, .title = picture.title};
-  figure.panels = time_panels(picture.samples.t, contents, {20, top, figure.width - 44, height});
-  return figure;
+  return time_panel_figure(picture, {}, contents,
+                           static_cast<double>(groups.size()) * (panel_height + 40) - 40);
 }
 
-/// Values at `count` equally spaced places of a row of samples, linear between them.
-Column resampled(const Column& t, const Column& values, std::size_t count) {
-  Column result(count);
-  std::size_t k = 0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double fraction = (static_cast<double>(j) + 0.5) / static_cast<double>(count);
-    const double time = t.front() + fraction * (t.back() - t.front());
-    while (k + 2 < t.size() && t[k + 1] < time) ++k;
-    const double weight = (time - t[k]) / (t[k + 1] - t[k]);
-    result[j] = (1 - weight) * values[k] + weight * values[k + 1];
-  }
-  return result;
-}
-
-/// Rows are repeated, or some left out, so that there are about as many as pixels.
-ColourMap colour_map(const Samples& samples, const std::vector<std::size_t>& members, std::size_t pixels) {
-  const std::size_t count = members.size();
-  ColourMap map{.columns = std::min<std::size_t>(samples.count(), 640),
-                .rows = count < pixels ? count * (pixels / count) : pixels,
-                .values = {},
-                .scale = {}};
-  map.values.reserve(map.columns * map.rows);
-  for (std::size_t row = 0; row < map.rows; ++row) {
-    const Column line = resampled(samples.t, samples.q[members[row * count / map.rows]], map.columns);
-    map.values.insert(map.values.end(), line.begin(), line.end());
-  }
-  Extent range = extent({&map.values}, 0);
-  map.diverging = range.low < 0 && range.high > 0;
-  if (map.diverging) {
-    range.high = std::max(-range.low, range.high);
-    range.low = -range.high;
-  }
-  map.scale = make_axis("", range.low, range.high, 6);
-  return map;
-}
-
-Figure map_figure(const Picture& picture, const std::string& name, const std::string& row_name,
-                  const std::vector<std::size_t>& members) {
-  const double top = top_of_panels(picture.title), height = 420;
-  Figure figure{.width = 900, .height = top + height + 56, .title = picture.title};
-  Panel panel;
-  panel.y = make_axis(row_name, 0.5, static_cast<double>(members.size()) + 0.5, 9);
-  panel.x = make_axis("t", picture.samples.t.front(), picture.samples.t.back(), 9);
-  panel.maps.push_back(colour_map(picture.samples, members, static_cast<std::size_t>(height)));
-  panel.maps[0].scale.label = name + panel.maps[0].scale.label;
-  const double left = 20 + number_width(panel.y), right = 44 + number_width(panel.maps[0].scale);
-  panel.box = {left, top, figure.width - left - right, height};
-  figure.panels.push_back(std::move(panel));
-  return figure;
-}
-
-/// One body for each element of arrays that have one length.
-std::vector<BodyPath> bodies(const Picture& picture, const std::vector<Family>& groups) {
-  const std::size_t count = groups[0].members.size();
-  const std::vector<Colour> colours = distinct_colours(count);
-  std::vector<BodyPath> paths(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const Family& family : groups) paths[i].axes.push_back(&picture.samples.q[family.members[i]]);
-    if (!groups[0].indices.empty()) paths[i].name = groups[0].indices[i];
-    paths[i].colour = colours[i];
+/// The bodies of one solution.
+std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies) {
+  const std::vector<Colour> colours = distinct_colours(bodies.places.size());
+  std::vector<BodyPath> paths;
+  for (std::size_t i = 0; i < bodies.places.size(); ++i) {
+    paths.push_back({.axes = {},
+                     .name = bodies.names[i].empty() ? "" : "body " + bodies.names[i],
+                     .colour = colours[i],
+                     .t = &samples.t});
+    for (const std::size_t a : bodies.places[i]) paths.back().axes.push_back(&samples.q[a]);
   }
   return paths;
 }
 
-/// The first solution alone, and the title says so.
-Picture first_of(const Picture& picture) {
-  const std::string note = fmt::format("the first of {} solutions", picture.others.size() + 1);
-  return {picture.title.empty() ? note : fmt::format("{} ({})", picture.title, note), picture.names,
-          picture.samples};
+bool returns(const Samples& samples, const Bodies& bodies) {
+  for (const std::vector<std::size_t>& place : bodies.places)
+    for (const std::size_t a : place) {
+      const Column& q = samples.q[a];
+      const Extent range = extent({&q}, 0);
+      if (!range.constant && std::abs(q.back() - q.front()) > 1e-3 * range.size()) return false;
+    }
+  return true;
+}
+
+/// Of bodies, and of the ends of paths where those are marked apart.
+std::vector<LegendEntry> path_legend(const std::vector<BodyPath>& paths, bool closed) {
+  std::vector<LegendEntry> entries;
+  if (paths.size() > 1 && paths.size() <= longest_legend)
+    for (const BodyPath& path : paths) entries.push_back({path.name, path.colour});
+  if (closed) return entries;
+  const Colour colour = paths.size() == 1 ? paths[0].colour : 0x5A606B;
+  entries.push_back({"start", colour, Shape::ring});
+  entries.push_back({"end", colour, Shape::disc});
+  return entries;
+}
+
+/// A panel for each solution.
+Figure cells_figure(const Picture& picture, const Bodies& bodies, bool closed) {
+  const SolutionColours key = solution_colours(picture);
+  const std::vector<std::string> texts = action_texts(picture.actions);
+  const std::vector<const Samples*> all = solutions_of(picture);
+  std::vector<PathCell> cells;
+  for (std::size_t k = 0; k < std::min(all.size(), most_solutions); ++k) {
+    cells.push_back({texts[k], body_paths(*all[k], bodies)});
+    if (bodies.places.size() == 1) cells.back().paths[0].colour = key.colours[k];
+  }
+  std::vector<std::string> remarks = picture.remarks;
+  if (all.size() > cells.size())
+    remarks.push_back(fmt::format("the first {} of {} solutions", cells.size(), all.size()));
+  Figure figure = headed_figure(picture.title, path_legend(cells[0].paths, closed), remarks);
+  const std::size_t count = cells.size();
+  const std::size_t columns = count <= 4 ? count : count <= 8 ? 4 : count <= 15 ? 5 : 6;
+  const double width = std::min(280.0, 1000.0 / static_cast<double>(columns));
+  figure.panels = path_cells(cells, surroundings(picture.annotation, picture.names, bodies), columns,
+                             {.width = width}, 20, top_of_panels(figure));
+  const Box box = covered(figure.panels);
+  figure.width = std::max(figure.width, box.width + 28);
+  figure.height = box.height + bottom;
+  return figure;
+}
+
+/// Paths between ends over each other; of several bodies or orbits each solution by itself.
+Figure path_figure(const Picture& picture, const Bodies& bodies) {
+  const std::vector<const Samples*> all = solutions_of(picture);
+  const bool one_body = bodies.places.size() == 1;
+  const bool closed =
+      std::all_of(all.begin(), all.end(), [&](const Samples* each) { return returns(*each, bodies); });
+  if (all.size() > 1 && (closed || !one_body)) return cells_figure(picture, bodies, closed);
+  const SolutionColours key = solution_colours(picture);
+  std::vector<BodyPath> paths = body_paths(*all[0], bodies);
+  std::vector<LegendEntry> legend = path_legend(paths, closed);
+  legend.insert(legend.begin(), key.legend.begin(), key.legend.end());
+  for (std::size_t k = 0; k < all.size() && one_body; ++k) {
+    if (k > 0) paths.push_back(body_paths(*all[k], bodies)[0]);
+    paths[k].colour = key.colours[k];
+  }
+  Figure figure = headed_figure(picture.title, legend, picture.remarks);
+  const Surroundings around = surroundings(picture.annotation, picture.names, bodies);
+  figure = bodies.axes.size() == 2
+               ? plane_figure(std::move(figure), paths, around, axis_name(picture.annotation, "t"), one_body)
+               : space_figure(std::move(figure), paths, around);
+  if (key.scale) add_key(figure, *key.scale);
+  return figure;
 }
 
 }  // namespace
 
-std::vector<Family> families(const std::vector<std::string>& names) {
-  std::vector<Family> groups;
-  for (std::size_t a = 0; a < names.size(); ++a) {
-    const std::size_t bracket = names[a].find('[');
-    const std::string base = names[a].substr(0, bracket);
-    const bool known = bracket != std::string::npos && !groups.empty() && groups.back().name == base;
-    if (!known) groups.push_back({base, {}, {}});
-    groups.back().members.push_back(a);
-    if (bracket != std::string::npos) {
-      groups.back().indices.push_back(names[a].substr(bracket + 1, names[a].size() - bracket - 2));
-    }
-  }
-  return groups;
-}
-
 Figure layout(const Picture& picture) {
   const std::size_t count = picture.names.size();
-  std::vector<Family> groups = families(picture.names);
   if (count == 1) return lone_figure(picture);
-  if (count == 2 || count == 3) {
-    const std::vector<BodyPath> paths = solution_paths(picture);
-    return count == 2 ? plane_figure(picture, paths, picture.names)
-                      : space_figure(picture, paths, picture.names);
+  if (const std::optional<Bodies> found = bodies(picture.names)) {
+    const std::optional<Picture> flat = flattened(picture, *found);
+    return flat ? layout(*flat) : path_figure(picture, *found);
   }
-  if (!picture.others.empty()) return layout(first_of(picture));
-  const std::size_t length = groups[0].members.size();
-  const bool one_length = std::all_of(groups.begin(), groups.end(),
-                                      [&](const Family& each) { return each.members.size() == length; });
-  if (one_length && groups.size() == 2) {
-    return plane_figure(picture, bodies(picture, groups), {groups[0].name, groups[1].name});
+  const std::vector<Family> groups = families(picture.names);
+  if (groups.size() == 1 && count > most_curves) {
+    return map_figure(picture, axis_name(picture.annotation, groups[0].name), "index", groups[0].members);
   }
-  if (one_length && groups.size() == 3) {
-    return space_figure(picture, bodies(picture, groups), {groups[0].name, groups[1].name, groups[2].name});
-  }
-  if (groups.size() == 1 && length > most_curves) {
-    return map_figure(picture, groups[0].name, "index", groups[0].members);
-  }
-  if (groups.size() > most_panels) {
+  if (groups.size() > most_panels || (!picture.others.empty() && count > most_panels)) {
     std::vector<std::size_t> all(count);
     for (std::size_t a = 0; a < count; ++a) all[a] = a;
-    return map_figure(picture, "", "coordinate", all);
+    return map_figure(picture, {}, "coordinate", all);
   }
-  return time_figure(picture, groups);
+  return picture.others.empty() ? time_figure(picture, groups) : coordinate_figure(picture);
 }
 
 }  // namespace extremal

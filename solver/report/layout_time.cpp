@@ -4,6 +4,13 @@
 
 namespace extremal {
 
+namespace {
+
+constexpr double title_scale = 18.0 / 13;  ///< of a title against other texts
+constexpr double header_left = 20;         ///< left of title and legend
+
+}  // namespace
+
 double number_width(const Axis& axis) {
   double width = 0;
   if (axis.numbered) {
@@ -12,29 +19,52 @@ double number_width(const Axis& axis) {
   return width + 16;
 }
 
-double top_of_panels(const std::string& title) { return title.empty() ? 40 : 82; }
-
-std::vector<Colour> distinct_colours(std::size_t count) {
-  static constexpr Colour distinct[longest_legend] = {first_colour, second_colour, 0x009E73,
-                                                      0xCC79A7,     0xE69F00,      0x56B4E9};
-  if (count <= longest_legend) return {distinct, distinct + count};
-  static constexpr Colour shades[] = {0x440154, 0x3B528B, 0x21918C, 0x5EC962, 0xC9B70A};
-  std::vector<Colour> colours;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double place = 4.0 * static_cast<double>(k) / static_cast<double>(count - 1);
-    const auto before = std::min<std::size_t>(static_cast<std::size_t>(place), 3);
-    const double weight = place - static_cast<double>(before);
-    Colour mixed = 0;
-    for (const int shift : {16, 8, 0}) {
-      const double low = (shades[before] >> shift) & 0xFF, high = (shades[before + 1] >> shift) & 0xFF;
-      mixed |= static_cast<Colour>((1 - weight) * low + weight * high + 0.5) << shift;
-    }
-    colours.push_back(mixed);
-  }
-  return colours;
+double sample_width(const LegendEntry& entry) {
+  return entry.shape == Shape::none ? 0 : entry.shape == Shape::line ? 24 : 19;
 }
 
-std::vector<Panel> time_panels(const Column& t, const std::vector<TimePanel>& contents, Box box) {
+double legend_width(const LegendEntry& entry) { return sample_width(entry) + text_width(entry.text) + 22; }
+
+double top_of_panels(const Figure& figure) {
+  if (figure.title.empty()) return figure.legend.empty() ? 40 : 66;
+  return figure.legend.empty() ? 82 : 112;
+}
+
+Figure headed_figure(const std::string& title, std::vector<LegendEntry> legend,
+                     const std::vector<std::string>& remarks) {
+  Figure figure{.title = title, .legend = std::move(legend)};
+  for (const std::string& remark : remarks) figure.legend.push_back({remark, 0, Shape::none});
+  double width = 0;
+  for (const LegendEntry& entry : figure.legend) width += legend_width(entry);
+  figure.width = 2 * header_left + std::max(width, title_scale * text_width(title));
+  return figure;
+}
+
+void add_key(Figure& figure, const Axis& scale) {
+  const Box beside = figure.panels.front().box;
+  double right = 0;
+  for (const Panel& panel : figure.panels) right = std::max(right, panel.box.left + panel.box.width);
+  Panel panel{.box = {right + 26, beside.top, bar_width, beside.height}, .x = {}, .y = {}, .axes = false};
+  panel.key = ColourKey{scale, Palette::curves};
+  const double text = std::max(number_width(scale), text_width(scale.label) - bar_width);
+  figure.width = std::max(figure.width, panel.box.left + bar_width + text + 20);
+  figure.panels.push_back(std::move(panel));
+}
+
+AxisName axis_name(const Annotation& annotation, const std::string& name) {
+  const auto unit = [&](const std::string& of) {
+    const auto found = annotation.units.find(of);
+    return found == annotation.units.end() ? std::string() : found->second;
+  };
+  const bool velocity = name.ends_with("'");
+  const std::string length = unit(name.substr(0, name.find_first_of("['")));
+  if (!velocity) return {name, length};
+  const std::string time = unit("t");
+  return {name, length.empty() || time.empty() ? "" : length + "/" + time};
+}
+
+std::vector<Panel> time_panels(const AxisName& time, const Column& t, const std::vector<TimePanel>& contents,
+                               Box box) {
   const double gap = 40;
   const auto count = static_cast<double>(contents.size());
   const double height = (box.height - (count - 1) * gap) / count;
@@ -46,11 +76,10 @@ std::vector<Panel> time_panels(const Column& t, const std::vector<TimePanel>& co
     panel.y = make_axis(content.label, range.low, range.high, height / 36);
     double last = t.back();
     for (const Column* times : content.times) last = std::max(last, times->back());
-    panel.x = make_axis("t", t.front(), last, box.width / 80);
+    panel.x = make_axis(time, t.front(), last, box.width / 80);
     panel.x.numbered = panels.size() + 1 == contents.size();
     const std::size_t curves = content.columns.size();
-    const std::vector<Colour> colours =
-        curves == 1 ? std::vector<Colour>{content.colour} : distinct_colours(curves);
+    const std::vector<Colour> colours = content.colours.empty() ? distinct_colours(curves) : content.colours;
     for (std::size_t k = 0; k < curves; ++k) {
       panel.curves.push_back(
           {content.times.empty() ? t : *content.times[k], *content.columns[k], colours[k]});

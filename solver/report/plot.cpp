@@ -65,9 +65,9 @@ std::string plot_image(const std::string& path, const Picture& picture) {
   format_of(path);
   check(picture, picture.samples);
   for (const Samples& other : picture.others) check(picture, other);
-  if (!picture.others.empty() && picture.labels.size() != picture.others.size() + 1)
-    throw std::invalid_argument(fmt::format("cannot plot {} solutions with {} labels",
-                                            picture.others.size() + 1, picture.labels.size()));
+  if (!picture.others.empty() && picture.actions.size() != picture.others.size() + 1)
+    throw std::invalid_argument(fmt::format("cannot plot {} solutions with {} actions",
+                                            picture.others.size() + 1, picture.actions.size()));
   return plot_image(path, layout(picture));
 }
 

@@ -5,6 +5,7 @@
 
 #include "report/file.hpp"
 #include "report/result.hpp"
+#include "study/annotation.hpp"
 
 /// \file Samples as a picture.
 
@@ -16,8 +17,10 @@ struct Picture {
   std::string title;               ///< may be empty; any text
   std::vector<std::string> names;  ///< of the coordinates: "x", "x[1]"
   Samples samples;
-  std::vector<Samples> others = {};      ///< of further solutions, drawn over the first where there is room
-  std::vector<std::string> labels = {};  ///< of all of them, for the legend
+  std::vector<Samples> others = {};       ///< of further solutions, in the order of their actions
+  Column actions = {};                    ///< of all solutions, if there are several
+  Annotation annotation = {};             ///< of the system: units of axes, centres of force
+  std::vector<std::string> remarks = {};  ///< below the title
 };
 
 /// Refuses a path that does not end in .svg, .png or .pdf with std::invalid_argument. To be called before
@@ -27,15 +30,14 @@ void check_plot_path(const std::string& path);
 /// The bytes of a file drawn with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows
 /// from the names:
 ///  - one coordinate: it and its velocity against time;
-///  - two: the path in the plane, equal scales, beside both against time;
-///  - three: the path in space and its projections;
-///  - two or three arrays of one length, x[n], y[n] (and z[n]): the paths of n bodies;
+///  - x and y, or two coordinates: the path in the plane, beside both against time;
+///  - x, y and z: the path in space and its projections; where it keeps to a plane or a line, that;
+///  - x[n], y[n] (and z[n]), or x1, y1, x2, y2: the paths of n bodies;
 ///  - one long array: a map, time across and index upwards;
 ///  - all else: each coordinate or array against time.
-/// Further solutions are drawn with up to three coordinates; of more coordinates only the first is, and the
-/// title says so.
-/// Throws std::invalid_argument for columns that do not fit the names, std::runtime_error if gnuplot is
-/// missing or fails.
+/// Several solutions are drawn over each other, coloured by their actions; orbits, several bodies and maps in
+/// a panel for each solution. Throws std::invalid_argument for columns that do not fit the names,
+/// std::runtime_error if gnuplot is missing or fails.
 std::string plot_image(const std::string& path, const Picture& picture);
 
 struct Figure;

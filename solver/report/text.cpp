@@ -153,7 +153,7 @@ std::string summary(const Result& result) {
   Lines lines;
   lines.add("title", printable(result.title, 200));
   lines.add("status", name(solution.status));
-  lines.add("message", printable(solution.message, 2000));
+  if (solution.converged()) lines.add("message", printable(solution.message, 2000));
   lines.add("strategy", printable(solution.strategy, 200));
   if (result.natural_conditions > 0)
     lines.add("boundary", counted(result.natural_conditions, "natural condition"));

@@ -50,7 +50,8 @@ void EndConditions::add_relation(const EndStates& ends, Values& values) const {
   }
 }
 
-/// δS = p(T)·δq(T) − p(0)·δq(0) vanishes for every end that the relation leaves free.
+/// δS = p(T)·δq(T) − p(0)·δq(0), less that of the momenta that are given, vanishes for every end that the
+/// relation leaves free.
 void EndConditions::add_natural(const EndStates& ends, Values& values) const {
   for (const Triplet& z : problem_.ends.z) {
     const int row = problem_.boundary.rows + z.column;
@@ -58,8 +59,10 @@ void EndConditions::add_natural(const EndStates& ends, Values& values) const {
     const int a = at_end ? z.row - n_ : z.row;
     const double coefficient = at_end ? z.value : -z.value;
     const double term = coefficient * (at_end ? ends.p_end : ends.p_start)[a];
-    values.residual[row] += term;
-    values.magnitude[row] += std::abs(term);
+    const std::vector<double>& momenta = problem_.boundary.momenta;
+    const double given = momenta.empty() ? 0 : coefficient * momenta[z.row];
+    values.residual[row] += term - given;
+    values.magnitude[row] += std::abs(term) + std::abs(given);
     values.derivatives.push_back({row, at_end ? 3 * n_ + a : n_ + a, coefficient});
   }
 }

@@ -20,7 +20,8 @@ struct PhaseScales {
 };
 
 /// The rows of the boundary relation, B0 q(0) + B1 q(T) − c; the natural conditions for what it leaves
-/// free, Zᵀ (−p(0), p(T)); and, for a free duration, the equation that closes it.
+/// free, Zᵀ (−p(0), p(T)) less that of momenta that are given; and, for a free duration, the equation that
+/// closes it.
 class EndConditions {
  public:
   /// `problem` must outlive it.

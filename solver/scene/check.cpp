@@ -34,9 +34,6 @@ bool list_elements(Kind kind, Kind& element) {
     case Kind::note:
       element = Kind::text;
       return true;
-    case Kind::numbers:
-      element = Kind::number;
-      return true;
     case Kind::quantities:
       element = Kind::quantity;
       return true;
@@ -51,7 +48,6 @@ bool single(Kind kind, const toml::node& node) {
     case Kind::note:
       return node.is_string();
     case Kind::number:
-    case Kind::numbers:
       return node.is_number();
     case Kind::integer:
       return node.is_integer();

@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstring>
 #include <tuple>
+#include <utility>
 
 namespace extremal {
 namespace {
@@ -33,6 +36,48 @@ std::string readable(std::string_view description) {
   if (has("TOML_MAX_NESTED_VALUES"))
     return fmt::format("lists and tables stand more than {} deep in each other", TOML_MAX_NESTED_VALUES);
   return std::string(description);
+}
+
+bool is_value(const std::string& text) {
+  try {
+    toml::parse("x = " + text);
+    return true;
+  } catch (const toml::parse_error&) {
+    return false;
+  }
+}
+
+/// The value at an error of the parser that is a text or a formula without quotes, and where it begins; empty
+/// if it is none.
+std::pair<std::string, Location> unquoted(const Location& at) {
+  if (!at.source || at.line < 1) return {};
+  std::string_view text = at.source->text;
+  for (int line = 1; line < at.line; ++line) {
+    const auto end = text.find('\n');
+    if (end == text.npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find_first_of("\r\n"));
+  // Columns count characters; before the value there are hardly others than ASCII.
+  std::size_t begin = std::min<std::size_t>(std::max(at.column - 1, 0), text.size());
+  while (begin > 0 && !std::strchr("=,[", text[begin - 1])) --begin;
+  begin = text.find_first_not_of(" \t", begin);
+  if (begin == text.npos || std::strchr("\"'[{#,]}", text[begin])) return {};
+  std::size_t end = begin;
+  for (int depth = 0; end < text.size() && text[end] != '#'; ++end) {
+    depth += (text[end] == '(') - (text[end] == ')');
+    if (depth <= 0 && std::strchr(",]}", text[end])) break;
+  }
+  while (end > begin && std::strchr(" \t", text[end - 1])) --end;
+  const std::string value(text.substr(begin, end - begin));
+  if (value.find_first_of("=\"") != value.npos || is_value(value)) return {};
+  return {value, {at.source, at.line, static_cast<int>(begin) + 1}};
+}
+
+[[noreturn]] void refuse_text(const Location& at, std::string_view description) {
+  if (const auto [value, begin] = unquoted(at); !value.empty())
+    throw SceneError(begin, fmt::format("texts and formulas are written in quotes: \"{}\"", value));
+  throw SceneError(at, readable(description));
 }
 
 struct Setting {
@@ -85,8 +130,33 @@ toml::table parse_setting(const Setting& setting, const std::shared_ptr<Source>&
   }
 }
 
+/// Where "q[2]", or "q[2]'" of the velocities "q'", names an element of a list, the list and the number.
+std::pair<toml::array*, std::size_t> element_named(toml::table& table, std::string_view key) {
+  const auto open = key.find('['), close = key.find(']');
+  if (close == key.npos || open >= close || table.contains(key)) return {};
+  std::size_t number = 0;
+  const char *begin = key.data() + open + 1, *end = key.data() + close;
+  if (const auto [stop, error] = std::from_chars(begin, end, number); error != std::errc() || stop != end)
+    return {};
+  const std::string list = std::string(key.substr(0, open)) + std::string(key.substr(close + 1));
+  return {table[list].as_array(), number};
+}
+
+void set_element(toml::array& list, std::size_t number, toml::node&& value, const std::string& key,
+                 const Location& at) {
+  if (number < 1 || number > list.size())
+    throw SceneError(at,
+                     fmt::format("'{}' is out of range: the list has elements 1 to {}", key, list.size()));
+  const auto place = list.erase(list.begin() + static_cast<std::ptrdiff_t>(number) - 1);
+  list.insert(place, std::move(value));
+}
+
 void merge(const Document& document, toml::table& into, toml::table&& from) {
   for (auto&& [key, value] : from) {
+    if (const auto [list, number] = element_named(into, key.str()); list && !value.is_table()) {
+      set_element(*list, number, std::move(value), std::string(key.str()), document.at(value));
+      continue;
+    }
     toml::node* old = into.get(key);
     if (!value.is_table() || value.as_table()->is_inline() || !old) {
       into.insert_or_assign(key, std::move(value));
@@ -121,7 +191,7 @@ Document parse_document(const std::shared_ptr<const Source>& source) {
   try {
     document.root = toml::parse(source->text, source->name);
   } catch (const toml::parse_error& e) {
-    throw SceneError(document.at(e.source()), readable(e.description()));
+    refuse_text(document.at(e.source()), e.description());
   }
   return document;
 }

@@ -37,7 +37,8 @@ bool precedes(const Location& a, const Location& b);
 Document parse_document(const std::shared_ptr<const Source>& source);
 
 /// Applies "key=value": a dotted key, and a value in TOML, or else a string. Tables that are missing are
-/// made. Throws SceneError if the key is malformed or leads through what is no table.
+/// made; "m[2]" is an element of a list m. Throws SceneError if the key is malformed or leads through what is
+/// no table.
 void set_value(Document& document, const std::string& argument);
 
 /// Throws SceneError at the first key that is unknown, of the wrong type or not available in this version,

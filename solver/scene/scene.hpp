@@ -43,10 +43,11 @@ struct SystemTable {
   Location at;
   std::optional<Text> use;
   std::vector<Text> coordinates;
-  std::vector<Assignment> parameters;  ///< numbers only
+  std::vector<Assignment> parameters;
   std::vector<Definition> definitions;
   std::optional<Text> lagrangian;
   std::optional<Number> curvature;
+  std::vector<Text> axes, centres;  ///< of [about], as written
 };
 
 struct BoundaryTable {

@@ -28,10 +28,13 @@ constexpr KeyRecord keys[] = {
     {"system", "coordinates", Kind::texts, "required without `use`",
      "Names of the coordinates. `q[n]` declares `q[1]` to `q[n]`; n is a number or a formula of parameters.",
      R"(coordinates = ["r", "q[3]"])"},
-    {"system", "parameters", Kind::numbers, "none", "Constants for the formulas.",
-     "parameters = { mu = 1.0, m = [1.0, 2.0] }", true},
+    {"system", "parameters", Kind::quantities, "none",
+     "Constants for the formulas: numbers, or formulas of other parameters. One that nothing uses is an "
+     "error.",
+     "parameters = { mu = 0.1, m = [\"1 - mu\", \"mu\"] }", true},
     {"system", "definitions", Kind::text, "none",
-     "Named parts of the Lagrangian, in any order. One that is not used costs nothing.",
+     "Named parts of formulas, in any order. `X'` is the velocity of a definition `X`, `X(0)` its value at "
+     "an end. One that is not used costs nothing.",
      "definitions = { r = \"sqrt(x^2 + y^2)\" }", true},
     {"system", "lagrangian", Kind::text, "required without `use`",
      "Formula of L in coordinates, velocities (`x'`), `t`, parameters and definitions.",
@@ -45,8 +48,10 @@ constexpr KeyRecord keys[] = {
     {"system", "force", Kind::text, "", "", "", true, false},
 
     {"boundary", "start", Kind::quantities, "none",
-     "Coordinates at t = 0. One that is left out has zero momentum there: the natural condition.",
-     R"(start = { x = 1.0, q = [0.0, "pi/2"] })", true},
+     "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
+     "momenta ∂L/∂x', as `p_x`. A coordinate of which neither is given has zero momentum there: the natural "
+     "condition.",
+     R"(start = { x = 1.0, p_y = 0.3, q = "0.1*i" })", true},
     {"boundary", "end", Kind::quantities, "none", "The same at t = T.",
      R"(end = { x = "-mu", "q[2]" = 0.5 })", true},
     {"boundary", "duration", Kind::quantity, "required", R"(T > 0, or `"free"` with `energy` or `where`.)",
@@ -109,7 +114,7 @@ constexpr KeyRecord keys[] = {
      "switch = true"},
 
     {"system file", "about", Kind::note, "none",
-     "Texts about the system. The first is shown by `extremal list`.",
+     "Texts about the system. The first is shown by `extremal list`; pictures use `axes` and `centres`.",
      R"(about = { summary = "Plane pendulum", units = "kg, m, s" })", true},
     {"system file", "system", Kind::table, "required", "The table `[system]` of a scene, without `use`.",
      R"(system = { coordinates = ["x"], lagrangian = "x'^2/2" })"},
@@ -156,8 +161,6 @@ const char* description(Kind kind) {
       return "a number or a formula";
     case Kind::texts:
       return "a list of strings";
-    case Kind::numbers:
-      return "a number or a list of numbers";
     case Kind::quantities:
       return "a number, a formula or a list of them";
     case Kind::note:

@@ -17,7 +17,6 @@ enum class Kind {
   boolean,
   quantity,    ///< a number or a formula
   texts,       ///< a list of strings
-  numbers,     ///< a number or a list of them
   quantities,  ///< a quantity or a list of them
   note,        ///< a string or a list of strings
   table,       ///< with keys of its own in the schema

@@ -79,6 +79,21 @@ std::optional<FoundSystem> find_system(const std::string& name, const fs::path& 
   return std::nullopt;
 }
 
+/// Texts of one entry of [about], each with its place.
+std::vector<Text> texts_of(const Document& document, std::string_view key) {
+  std::vector<Text> texts;
+  const auto add = [&](const toml::node& node) {
+    if (const auto text = node.value<std::string>()) texts.push_back({*text, document.at(node)});
+  };
+  const toml::node* entry = document.root["about"][key].node();
+  if (!entry) return texts;
+  if (const toml::array* list = entry->as_array())
+    for (const toml::node& text : *list) add(text);
+  else
+    add(*entry);
+  return texts;
+}
+
 SystemTable table_of(const FoundSystem& system) {
   const Document& document = system.document;
   check_keys(document, document.root, "system file");
@@ -86,7 +101,10 @@ SystemTable table_of(const FoundSystem& system) {
   if (!table) throw SceneError(document.at(document.root), "a system file needs the table [system]");
   if (const toml::node* nested = table->get("use"))
     throw SceneError(document.at(*nested), "a system file cannot use another");
-  return read_system_table(document, *table);
+  SystemTable read = read_system_table(document, *table);
+  read.axes = texts_of(document, "axes");
+  read.centres = texts_of(document, "centres");
+  return read;
 }
 
 std::vector<std::string> system_names() {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -10,21 +11,88 @@
 namespace extremal {
 namespace {
 
-void fix_ends(const std::vector<Assignment>& values, bool at_end, const System& system,
-              PlacedRelation& placed) {
-  for (const Assignment& a : values)
-    for_each_value(a, range_of(a.name, a.name_at, system), [&](int coordinate, const Quantity& q) {
-      placed.relation.fix(coordinate, at_end, evaluate(q, system.parameters));
-      placed.rows.push_back(q.at);
-    });
+/// What an end is given for one coordinate.
+struct EndEntry {
+  const Quantity *value = nullptr, *momentum = nullptr;
+  int index = 0;  ///< of the coordinate in its array
+};
+using EndEntries = std::vector<EndEntry>;
+
+bool is_coordinate(const std::string& name, const System& system) {
+  const std::string stem = name.substr(0, name.find('['));
+  return std::ranges::any_of(system.coordinates, [&](const Coordinate& c) { return c.name == stem; });
+}
+
+/// Sets an entry. One of --set for an element takes the place of that of its array.
+void put(const Quantity*& entry, const Quantity& given, const std::string& name) {
+  if (entry && given.at.source && given.at.source->numbered)
+    throw SceneError(given.at,
+                     fmt::format("'{}' is given by its whole array already; leave one of them out", name));
+  entry = &given;
+}
+
+/// "start" or "end" coordinate by coordinate.
+EndEntries read_entries(const std::vector<Assignment>& table, const char* end, const System& system) {
+  EndEntries entries(system.names.size());
+  for (const bool whole : {true, false})
+    for (const Assignment& a : table) {
+      if (a.name.ends_with('\''))
+        throw SceneError(
+            a.name_at,
+            fmt::format("\"{0}\" is a velocity, and '{1}' holds coordinates and momenta (p_{2} = "
+                        "∂L/∂{0}); an initial state is a guess: state = {{ \"{0}\" = … }} in [guess]",
+                        a.name, end, a.name.substr(0, a.name.size() - 1)));
+      const bool momentum = a.name.starts_with("p_") && !is_coordinate(a.name, system);
+      const Range range = range_of(momentum ? a.name.substr(2) : a.name, a.name_at, system);
+      if (range.array != whole) continue;
+      for_each_value(a, range, [&](int coordinate, const Quantity& q, int index) {
+        EndEntry& entry = entries[coordinate];
+        put(momentum ? entry.momentum : entry.value, q, a.name);
+        entry.index = index;
+      });
+    }
+  return entries;
+}
+
+/// At each end a coordinate or its momentum can be given: together they determine the motion.
+void check_entries(const EndEntries& start, const EndEntries& end, const System& system) {
+  const auto both = [](const EndEntry& e) { return e.value && e.momentum; };
+  const auto none = [](const EndEntry& e) { return !e.value && !e.momentum; };
+  if (std::ranges::all_of(start, both) && std::ranges::all_of(end, none))
+    throw SceneError(
+        start.front().momentum->at,
+        "every coordinate and every momentum at the start, and nothing at the end, are initial data; "
+        "solving from them is not available yet: give conditions at the end for as many, and the "
+        "state in [guess]");
+  for (const EndEntries* entries : {&start, &end})
+    if (const auto twice = std::ranges::find_if(*entries, both); twice != entries->end())
+      throw SceneError(
+          twice->momentum->at,
+          fmt::format("'{0}' and 'p_{0}' are both given at this end; leave one of them out, it follows",
+                      system.names[twice - entries->begin()]));
+}
+
+void fix_end(const EndEntries& entries, bool at_end, const System& system, PlacedRelation& placed) {
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const EndEntry& entry = entries[k];
+    const int coordinate = static_cast<int>(k);
+    if (entry.value) {
+      placed.relation.fix(coordinate, at_end, evaluate(*entry.value, system, entry.index));
+      placed.rows.push_back(entry.value->at);
+    }
+    if (entry.momentum)
+      placed.relation.give_momentum(coordinate, at_end, evaluate(*entry.momentum, system, entry.index));
+  }
 }
 
 void add_condition(const Text& text, const System& system, PlacedRelation& relation) {
   const EndEquation equation =
       placed(text, [&](const std::string& s) { return end_equation(s, system, "conditions"); });
   if (!equation.affine)
-    throw SceneError(position(text, 0),
-                     "a condition must be linear in the end values; use 'where' for one that is not");
+    throw SceneError(
+        position(text, 0),
+        "a condition must be linear in the end values; one that is not can close a free duration: "
+        "'where' with duration = \"free\" and a guess of it");
   const int row = relation.relation.add_row(-equation.constant);
   for (const Triplet& entry : equation.coefficients) relation.relation.add(row, entry.column, entry.value);
   relation.rows.push_back(position(text, 0));
@@ -42,10 +110,10 @@ void add_closure(const BoundaryTable& boundary, const System& system, PlacedRela
 }
 
 /// What a line of the map says of one coordinate.
-AffineForm read_form(const Quantity& value, const System& system) {
+AffineForm read_form(const Quantity& value, const System& system, int index) {
   if (!value.formula()) return {{}, std::get<double>(value.value)};
   const Text text{std::get<std::string>(value.value), value.at};
-  return placed(text, [&](const std::string& s) { return affine_form(s, system, "map"); });
+  return placed(text, [&](const std::string& s) { return affine_form(s, system, "map", index); });
 }
 
 }  // namespace
@@ -54,8 +122,9 @@ Closure read_closure(const BoundaryTable& boundary, const System& system) {
   Closure closure(system.names.size());
   for (std::size_t a = 0; a < closure.size(); ++a) closure[a].coefficients = {{0, static_cast<int>(a), 1.0}};
   for (const Assignment& line : boundary.map)
-    for_each_value(line, range_of(line.name, line.name_at, system),
-                   [&](int a, const Quantity& value) { closure[a] = read_form(value, system); });
+    for_each_value(
+        line, range_of(line.name, line.name_at, system),
+        [&](int a, const Quantity& value, int index) { closure[a] = read_form(value, system, index); });
   return closure;
 }
 
@@ -66,8 +135,11 @@ PlacedRelation read_relation(const BoundaryTable& boundary, const System& system
     add_closure(boundary, system, placed);
     return placed;
   }
-  fix_ends(boundary.start, false, system, placed);
-  fix_ends(boundary.end, true, system, placed);
+  const EndEntries start = read_entries(boundary.start, "start", system),
+                   end = read_entries(boundary.end, "end", system);
+  check_entries(start, end, system);
+  fix_end(start, false, system, placed);
+  fix_end(end, true, system, placed);
   for (const Text& condition : boundary.conditions) add_condition(condition, system, placed);
   return placed;
 }
@@ -90,7 +162,7 @@ Duration read_duration(const BoundaryTable& boundary, const System& system) {
   Duration duration;
   duration.free = boundary.free;
   if (!boundary.free) {
-    duration.value = evaluate(boundary.duration, system.parameters);
+    duration.value = evaluate(boundary.duration, system);
     if (!(duration.value > 0))
       throw SceneError(boundary.duration.at,
                        fmt::format("duration = {}; it must be positive", duration.value));
@@ -98,7 +170,7 @@ Duration read_duration(const BoundaryTable& boundary, const System& system) {
   }
   if (!system.lagrangian->structure().autonomous)
     throw SceneError(boundary.duration.at, "a free duration needs a Lagrangian that does not depend on t");
-  if (boundary.energy) duration.energy = evaluate(*boundary.energy, system.parameters);
+  if (boundary.energy) duration.energy = evaluate(*boundary.energy, system);
   if (boundary.where)
     duration.where = placed(*boundary.where, [&](const std::string& s) {
                        return end_equation(s, system, "where");

@@ -42,7 +42,35 @@ int massless(const Structure& structure) {
   return found == has.end() ? -1 : static_cast<int>(found - has.begin());
 }
 
+/// Whether q'·∂L/∂q' = L, but L²/2 is regular: L gives the length of a path.
+bool is_length(const Problem& problem) {
+  constexpr int needed = 8;
+  constexpr double roundoff = 1e-10, singular = 1e-10;
+  const int n = problem.coordinates();
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, v;
+  int found = 0, weak = 0;
+  for (int k = 0; k < tries && found < needed; ++k) {
+    const double t = points.next(q, v);
+    const PointValues at = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
+    const Eigen::Map<const Eigen::VectorXd> p(at.dv.data(), n);
+    const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
+    if (!std::isfinite(at.value) || !p.allFinite() || !mass.allFinite() || at.value == 0) continue;
+    const double work = p.dot(Eigen::Map<const Eigen::VectorXd>(v.data(), n));
+    if (!(std::abs(work - at.value) <= roundoff * std::abs(at.value))) return false;
+    if (!(regularity(p * p.transpose() + at.value * mass, weak) > singular)) return false;
+    ++found;
+  }
+  return found == needed;
+}
+
 [[noreturn]] void refuse_irregular(const Problem& problem, int coordinate, const Location& at) {
+  if (is_length(problem))
+    throw SceneError(
+        at,
+        "the Lagrangian is homogeneous of degree one in the velocities: it determines the path, but "
+        "not the speed along it; take L^2/2, whose extremals are the same curves");
   throw SceneError(
       at, fmt::format("the Lagrangian is not regular: its second derivative by the velocities is singular, "
                       "so the momenta do not determine {}'",
@@ -151,6 +179,38 @@ void check_regular(const Problem& problem, const Location& at) {
     ++found;
   }
   if (found > 0) refuse_irregular(problem, weak, at);
+}
+
+void check_energy_at_ends(const Problem& problem, const Location& at) {
+  constexpr double roundoff = 1e-9;
+  if (!problem.duration.energy) return;
+  const std::size_t n = problem.coordinates();
+  const double energy = *problem.duration.energy;
+  Scratch scratch;
+  std::vector<double> unused, v, rest(n, 0);
+  for (const bool end : {false, true}) {
+    if (!wholly_fixed(problem.ends, end)) continue;
+    const double* q = problem.ends.offset.data() + (end ? n : 0);
+    NearbyPoints points(problem);
+    const auto convex = [&](const std::vector<double>& velocity) {
+      const PointValues values =
+          evaluate_at(*problem.lagrangian, {q, n}, velocity, 0, Order::hessian, scratch);
+      const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
+      return mass.allFinite() && mass.llt().info() == Eigen::Success;
+    };
+    bool bounded = convex(rest);
+    for (int k = 0; k < 8 && bounded; ++k) {
+      points.next(unused, v);
+      bounded = convex(v);
+    }
+    const double least = -evaluate_at(*problem.lagrangian, {q, n}, rest, 0, Order::value, scratch).value;
+    if (bounded && energy < least - roundoff * std::max(std::abs(energy), std::abs(least)))
+      throw SceneError(
+          at, fmt::format(
+                  "energy = {}, but at the {} ({}) it is at least {:.6g}, its value at rest; raise it, or "
+                  "move this end",
+                  energy, end ? "end" : "start", point_text(problem, q), least));
+  }
 }
 
 void check_symmetry(const Closure& closure, const Problem& problem, const Location& at) {

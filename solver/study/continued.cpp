@@ -110,6 +110,8 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
       return varied->at(value);
     } catch (const SceneError&) {
       return std::nullopt;
+    } catch (const FormulaError&) {
+      return std::nullopt;
     }
   };
   return continued;

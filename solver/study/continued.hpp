@@ -33,8 +33,8 @@ struct FollowedBranch {
   std::vector<BranchRecord> branches;  ///< the first is the one that was asked for
 };
 
-/// Follows the branch that a scene asks for; `progress` is called with each point. Throws SceneError if it
-/// asks for none.
+/// Follows the branch that a scene asks for; `progress` is called with each point. Throws
+/// std::invalid_argument if it asks for none.
 FollowedBranch follow(const Study& study, const std::function<void(const BranchPoint&)>& progress = {});
 
 }  // namespace extremal

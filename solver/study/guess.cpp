@@ -32,7 +32,7 @@ void fill_default(const EndMap& ends, Guess& guess) {
   }
 }
 
-/// Coordinate a from a formula; `index` is the i of an array.
+/// Coordinate a from a formula; `index` is the i of an array, or 0.
 void fill_formula(const Quantity& quantity, int a, int index, const System& system, double duration,
                   Guess& guess) {
   const std::size_t n = system.names.size();
@@ -44,7 +44,7 @@ void fill_formula(const Quantity& quantity, int a, int index, const System& syst
   for (double& t : times) t *= duration;
   const Text text{std::get<std::string>(quantity.value), quantity.at};
   const std::vector<double> values = placed(text, [&](const std::string& formula) {
-    return tabulate(formula, system.parameters, duration, times, index, "guess");
+    return tabulate(formula, system, duration, times, index, "guess");
   });
   for (std::size_t k = 0; k < times.size(); ++k) guess.q[k * n + a] = values[k];
 }
@@ -57,13 +57,9 @@ void tabulate_formulas(const GuessTable& table, const System& system, Problem& p
   fill_default(problem.ends, guess);
   for (const Assignment& a : table.formulas) {
     const Range range = range_of(a.name, a.name_at, system, keys_of("guess"));
-    const auto fill = [&](int coordinate, const Quantity& q) {
-      fill_formula(q, coordinate, coordinate - range.first + 1, system, problem.duration.value, guess);
-    };
-    if (range.array && !a.list)
-      for (int k = 0; k < range.count; ++k) fill(range.first + k, a.values.front());
-    else
-      for_each_value(a, range, fill);
+    for_each_value(a, range, [&](int coordinate, const Quantity& q, int index) {
+      fill_formula(q, coordinate, index, system, problem.duration.value, guess);
+    });
   }
 }
 
@@ -76,7 +72,7 @@ void use_samples(SampledFile&& samples, Guess& guess) {
 
 double guessed_duration(const GuessTable& table, const System& system, double of_file) {
   if (!table.duration) return of_file;
-  const double value = evaluate(*table.duration, system.parameters);
+  const double value = evaluate(*table.duration, system);
   if (!(value > 0))
     throw SceneError(table.duration->at, fmt::format("duration = {}; it must be positive", value));
   return value;

@@ -5,47 +5,50 @@
 namespace extremal {
 namespace {
 
-/// The texts that compile() reads and, under the names that its errors have, their places.
-struct Texts {
-  SystemText system;
+/// The texts of a system under the names that their errors have.
+std::map<std::string, Text> places_of(const SystemTable& table) {
   std::map<std::string, Text> places;
-};
-
-ParameterText parameter(const Assignment& a) {
-  ParameterText text;
-  text.list = a.list;
-  for (const Quantity& q : a.values) text.value.push_back(std::get<double>(q.value));
-  return text;
+  for (std::size_t k = 0; k < table.coordinates.size(); ++k)
+    places[fmt::format("coordinates[{}]", k)] = table.coordinates[k];
+  for (const Assignment& p : table.parameters) {
+    places["parameters." + p.name] = {p.name, p.name_at};
+    for (std::size_t k = 0; k < p.values.size(); ++k)
+      if (const auto* formula = std::get_if<std::string>(&p.values[k].value))
+        places[fmt::format("parameters.{}[{}]", p.name, k + 1)] = {*formula, p.values[k].at};
+  }
+  for (const Definition& d : table.definitions) places["definitions." + d.name] = d.formula;
+  places["lagrangian"] = *table.lagrangian;
+  return places;
 }
 
-Texts gather(const SystemTable& table) {
-  Texts texts;
-  for (const Text& c : table.coordinates) {
-    texts.places[fmt::format("coordinates[{}]", texts.system.coordinates.size())] = c;
-    texts.system.coordinates.push_back(c.value);
-  }
+SystemText text_of(const SystemTable& table) {
+  SystemText text;
+  for (const Text& c : table.coordinates) text.coordinates.push_back(c.value);
+  for (const Definition& d : table.definitions) text.definitions[d.name] = d.formula.value;
+  std::map<std::string, ParameterEntry> entries;
   for (const Assignment& p : table.parameters) {
-    texts.places["parameters." + p.name] = {p.name, p.name_at};
-    texts.system.parameters[p.name] = parameter(p);
+    ParameterEntry& entry = entries[p.name];
+    entry.list = p.list;
+    for (const Quantity& q : p.values) entry.values.push_back(q.value);
   }
-  for (const Definition& d : table.definitions) {
-    texts.places["definitions." + d.name] = d.formula;
-    texts.system.definitions[d.name] = d.formula.value;
-  }
-  texts.places["lagrangian"] = *table.lagrangian;
-  texts.system.lagrangian = table.lagrangian->value;
-  return texts;
+  text.parameters = evaluate_parameters(entries, text.definitions);
+  text.lagrangian = table.lagrangian->value;
+  return text;
 }
 
 }  // namespace
 
+SceneError at_its_place(const SystemTable& table, const FormulaError& e) {
+  const std::map<std::string, Text> places = places_of(table);
+  const auto place = places.find(e.where);
+  return {place == places.end() ? table.at : position(place->second, e.offset), e.what()};
+}
+
 System make_system(const SystemTable& table) {
-  const Texts texts = gather(table);
   try {
-    return compile(texts.system);
+    return compile(text_of(table));
   } catch (const FormulaError& e) {
-    const auto place = texts.places.find(e.where);
-    throw SceneError(place == texts.places.end() ? table.at : position(place->second, e.offset), e.what());
+    throw at_its_place(table, e);
   } catch (const std::invalid_argument& e) {
     throw SceneError(table.lagrangian->at, e.what());
   }

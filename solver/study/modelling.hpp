@@ -10,4 +10,7 @@ namespace extremal {
 /// Throws SceneError at the place in the scene or system file where a formula is wrong.
 System make_system(const SystemTable& table);
 
+/// An error of a formula of the system, at its place.
+SceneError at_its_place(const SystemTable& table, const FormulaError& error);
+
 }  // namespace extremal

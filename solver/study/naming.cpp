@@ -20,11 +20,11 @@ int index_of(const std::string& name, std::size_t bracket) {
 
 }  // namespace
 
-double evaluate(const Quantity& quantity, const Parameters& parameters) {
+double evaluate(const Quantity& quantity, const Vocabulary& vocabulary, int index) {
   if (!quantity.formula()) return std::get<double>(quantity.value);
   const Text text{std::get<std::string>(quantity.value), quantity.at};
   const double value =
-      placed(text, [&](const std::string& formula) { return number(formula, parameters, ""); });
+      placed(text, [&](const std::string& formula) { return number(formula, vocabulary, "", index); });
   if (!std::isfinite(value))
     throw SceneError(position(text, 0), fmt::format("'{}' is not finite", text.value));
   return value;
@@ -36,17 +36,21 @@ Range range_of(const std::string& name, const Location& at, const System& system
   const std::string stem = name.substr(0, bracket);
   for (const Coordinate& c : system.coordinates) {
     if (c.name != stem) continue;
-    if (bracket == std::string::npos) return {c.first, c.count, c.array};
+    if (bracket == std::string::npos) return {c.first, c.count, c.array, c.array};
     if (!c.array)
       throw SceneError(at, fmt::format("'{0}' is not an array; write '{0}' in place of '{1}'", stem, name));
     const int index = index_of(name, bracket);
     if (index < 1 || index > c.count)
       throw SceneError(at,
                        fmt::format("'{}' is out of range: '{}' has elements 1 to {}", name, stem, c.count));
-    return {c.first + index - 1, 1, false};
+    return {c.first + index - 1, 1, false, index};
   }
   std::vector<std::string> coordinates;
   for (const Coordinate& c : system.coordinates) coordinates.push_back(c.name);
+  if (const std::string meant = velocity_meant(stem, system.coordinates); !meant.empty())
+    throw SceneError(at, fmt::format("unknown coordinate '{}'; velocities are written \"{}'\", and only "
+                                     "'state' in [guess] holds them",
+                                     name, meant));
   keys.insert(keys.end(), coordinates.begin(), coordinates.end());
   constexpr std::size_t most_shown = 12;
   const std::string known =
@@ -55,20 +59,23 @@ Range range_of(const std::string& name, const Location& at, const System& system
 }
 
 void for_each_value(const Assignment& assignment, const Range& range,
-                    const std::function<void(int, const Quantity&)>& f) {
+                    const std::function<void(int, const Quantity&, int)>& f) {
   const int given = static_cast<int>(assignment.values.size());
-  if (range.array && !assignment.list)
-    throw SceneError(assignment.at,
-                     fmt::format("'{0}' has {1} elements; give a list of {1} values, or \"{0}[1]\" = … "
-                                 "for one element",
-                                 assignment.name, range.count));
+  const bool for_all = range.array && !assignment.list;
+  if (for_all && !assignment.values.front().formula())
+    throw SceneError(
+        assignment.at,
+        fmt::format("'{0}' has {1} elements; give a list of {1} values, a formula in the index "
+                    "i (\"{2}\" for all alike), or \"{0}[1]\" = … for one element",
+                    assignment.name, range.count, std::get<double>(assignment.values.front().value)));
   if (!range.array && assignment.list)
     throw SceneError(assignment.at,
                      fmt::format("'{}' is one number; found a list of {}", assignment.name, given));
-  if (given != range.count)
+  if (given != range.count && !for_all)
     throw SceneError(assignment.at, fmt::format("'{}' has {} elements; found {} values", assignment.name,
                                                 range.count, given));
-  for (int k = 0; k < given; ++k) f(range.first + k, assignment.values[k]);
+  for (int k = 0; k < range.count; ++k)
+    f(range.first + k, assignment.values[for_all ? 0 : k], range.index > 0 ? range.index + k : 0);
 }
 
 }  // namespace extremal

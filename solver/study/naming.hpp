@@ -1,9 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <string>
-#include <utility>
 
 #include "scene/scene.hpp"
 #include "system/formula.hpp"
@@ -12,25 +10,27 @@
 
 namespace extremal {
 
-/// Calls f with the formula; its FormulaError becomes a SceneError at the place in the scene.
+/// Calls f with the formula; its FormulaError becomes a SceneError at the place in the scene. That of a
+/// definition goes on, see make_system.
 template <class Function>
 auto placed(const Text& text, Function&& f) {
   try {
     return f(text.value);
   } catch (const FormulaError& e) {
+    if (e.where.starts_with("definitions.")) throw;
     throw SceneError(position(text, e.offset), e.what());
   }
 }
 
-using Parameters = std::map<std::string, ParameterText>;
-
-/// The number, or the value of the formula. Throws SceneError if it is not finite.
-double evaluate(const Quantity& quantity, const Parameters& parameters);
+/// The number, or the value of the formula, where `index` > 0 with the index i. Throws SceneError if it is
+/// not finite.
+double evaluate(const Quantity& quantity, const Vocabulary& vocabulary, int index = 0);
 
 /// A coordinate or an element of an array: q[first] … q[first + count - 1].
 struct Range {
   int first = 0, count = 1;
   bool array = false;  ///< the whole of a declared array
+  int index = 0;       ///< of the first in its array; 0 for a coordinate that is none
 };
 
 /// What "x" or "x[2]" names. Throws UnknownName, with `keys` among the names that may be meant, or SceneError
@@ -38,9 +38,10 @@ struct Range {
 Range range_of(const std::string& name, const Location& at, const System& system,
                std::vector<std::string> keys = {});
 
-/// Calls f(coordinate, value) for each element that the assignment sets. Throws SceneError if the number of
-/// values is wrong.
+/// Calls f(coordinate, value, index) for each element that the assignment sets; one formula serves all
+/// elements of an array. The index is that of the element, 0 without an array. Throws SceneError if the
+/// number of values is wrong.
 void for_each_value(const Assignment& assignment, const Range& range,
-                    const std::function<void(int, const Quantity&)>& f);
+                    const std::function<void(int, const Quantity&, int)>& f);
 
 }  // namespace extremal

@@ -13,6 +13,7 @@
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/suggestion.hpp"
+#include "study/usage.hpp"
 
 namespace extremal {
 namespace {
@@ -62,6 +63,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
     throw SceneError(scene.boundary.at, e.what());
   }
   check_regular(problem, scene.system.lagrangian->at);
+  if (scene.boundary.energy) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
   if (!scene.boundary.map.empty())
     check_symmetry(read_closure(scene.boundary, system), problem, scene.boundary.map.front().name_at);
@@ -81,21 +83,33 @@ void check_memory(const Scene& scene, const Study& study) {
                     elements, degree, byte_text(needed), byte_text(available)));
 }
 
-Study load_checked(const std::string& path, const std::vector<std::string>& sets) {
-  const Scene scene = read_scene(path, sets);
+Study make_study(const Scene& scene, Purpose purpose) {
   Study study;
-  study.scene = path;
+  study.scene = scene.path;
   study.files = scene.files;
   if (scene.guess.file) study.files.push_back(guess_path(scene));
   study.title = scene.title;
   study.system = make_system(scene.system);
+  check_parameters_used(scene);
+  study.axes = scene.system.axes;
+  study.centres = scene.system.centres;
   study.options = read_options(scene.solve);
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system, Deadline(study.budget));
   check_memory(scene, study);
-  if (scene.continuation) study.continuation = read_continued(scene, study.system, study.problem);
+  if (scene.continuation && purpose == Purpose::family)
+    study.continuation = read_continued(scene, study.system, study.problem);
   return study;
+}
+
+Study load_checked(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
+  const Scene scene = read_scene(path, sets);
+  try {
+    return make_study(scene, purpose);
+  } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
+    throw at_its_place(scene.system, e);
+  }
 }
 
 /// What solve() returns the last time, with the medians of the times it took.
@@ -132,9 +146,9 @@ double median(std::vector<double> values) {
 
 Deadline deadline_of(const Study& study) { return Deadline(study.budget).or_earlier(study.options.deadline); }
 
-Study load(const std::string& path, const std::vector<std::string>& sets) {
+Study load(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
   const auto begin = Clock::now();
-  Study study = with_suggestion([&] { return load_checked(path, sets); });
+  Study study = with_suggestion([&] { return load_checked(path, sets, purpose); });
   study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
   return study;
 }

@@ -26,15 +26,20 @@ struct Study {
   double budget = 60;  ///< seconds after which a verb tries nothing further; options.deadline may be earlier
   int solutions = 0;   ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
+  std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 
 /// When work on a study that begins now is to end.
 Deadline deadline_of(const Study& study);
 
+/// What a scene is read for: [continuation] is left aside where one solution is wanted.
+enum class Purpose { solution, family };
+
 /// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column, also where
 /// the least that a solve needs exceeds the memory there is.
-Study load(const std::string& path, const std::vector<std::string>& sets = {});
+Study load(const std::string& path, const std::vector<std::string>& sets = {},
+           Purpose purpose = Purpose::family);
 
 /// Solves `repeat` times from the same guess with one Solver, each time within the budget; where that is
 /// spent, no more times. The solution is the last one's; its seconds are the medians. Throws

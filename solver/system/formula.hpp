@@ -3,9 +3,12 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "system/lagrangian.hpp"
@@ -30,6 +33,38 @@ struct ParameterText {
   bool list = false;
 };
 
+/// A declared coordinate and where its elements stand in q.
+struct Coordinate {
+  std::string name;
+  int first = 0;
+  int count = 1;
+  bool array = false;
+};
+
+/// What formulas may name: parameters, definitions, coordinates.
+struct Vocabulary {
+  Vocabulary(std::map<std::string, ParameterText> parameters = {},
+             std::map<std::string, std::string> definitions = {})
+      : parameters(std::move(parameters)), definitions(std::move(definitions)) {}
+
+  std::map<std::string, ParameterText> parameters;
+  std::map<std::string, std::string> definitions;  ///< parsed where a formula needs them
+  std::vector<Coordinate> coordinates;
+};
+
+/// A parameter as it is written: numbers, and formulas of other parameters and of definitions.
+struct ParameterEntry {
+  std::vector<std::variant<double, std::string>> values;
+  bool list = false;
+};
+
+/// The values of parameters, each after those that its formulas need. Where a FormulaError comes from is
+/// named "parameters.m[2]" for the second value of m, or "definitions.r". Throws FormulaError, also for a
+/// cycle.
+std::map<std::string, ParameterText> evaluate_parameters(
+    const std::map<std::string, ParameterEntry>& entries,
+    const std::map<std::string, std::string>& definitions);
+
 /// A system as text. Where a FormulaError comes from is named "coordinates[0]", "definitions.r",
 /// "lagrangian".
 struct SystemText {
@@ -40,36 +75,40 @@ struct SystemText {
   std::vector<std::string> active{};  ///< scalar parameters that derivatives are asked for
 };
 
-/// A declared coordinate and where its elements stand in q.
-struct Coordinate {
-  std::string name;
-  int first = 0;
-  int count = 1;
-  bool array = false;
-};
-
-struct System {
-  std::vector<Coordinate> coordinates;
-  std::vector<std::string> names;  ///< one an element: "x", "q[1]"
-  std::map<std::string, ParameterText> parameters;
+struct System : Vocabulary {
+  std::vector<std::string> names;  ///< of the coordinates, one an element: "x", "q[1]"
   std::shared_ptr<const Lagrangian> lagrangian;
 };
 
 /// Parses, differentiates and compiles. Throws FormulaError.
 System compile(const SystemText& text);
 
-/// A number written as a formula of parameters ("2*pi/omega"). `where` names the text in errors.
-double number(const std::string& formula, const std::map<std::string, ParameterText>& parameters,
-              const std::string& where);
+/// A number written as a formula of parameters and of definitions that are numbers ("2*pi/omega") and, for an
+/// element of an array, the index i = `index` >= 1 (0: there is none). `where` names the text in errors.
+double number(const std::string& formula, const Vocabulary& vocabulary, const std::string& where,
+              int index = 0);
 
-/// A guess x(t) as formulas of t, T, parameters and, for an array, the index i = `index` >= 1 (0 for a
-/// single coordinate, which has none). Returns the values at each of `times`.
-std::vector<double> tabulate(const std::string& formula,
-                             const std::map<std::string, ParameterText>& parameters, double duration,
+/// Coordinates and velocities at both ends, n entries each.
+struct EndValues {
+  std::span<const double> q_start, v_start, q_end, v_end;
+};
+
+/// The value of a formula at the ends of a trajectory, perhaps not finite; `values` replaces numbers by name.
+using EndQuantity = std::function<double(const EndValues& ends, const std::map<std::string, double>& values)>;
+
+/// A formula of end values x(0), x[2]'(T), also of definitions, of parameters, and of `further` numbers where
+/// the system has no parameter or definition of that name. `where` names the text in errors.
+EndQuantity end_quantity(const std::string& formula, const System& system,
+                         const std::map<std::string, double>& further, const std::string& where);
+
+/// A guess x(t) as a formula of t, T, parameters, definitions of t alone and the index, as above. Returns the
+/// values at each of `times`.
+std::vector<double> tabulate(const std::string& formula, const Vocabulary& vocabulary, double duration,
                              std::span<const double> times, int index, const std::string& where);
 
-/// An equation "left = right" between end values x(0), x[2](T), velocities excluded, and parameters:
-/// g = left − right as a function of the 2n end coordinates (start, then end).
+/// An equation "left = right" between end values x(0), x[2](T) of coordinates and of definitions made of
+/// them, and parameters, velocities excluded: g = left − right as a function of the 2n end coordinates
+/// (start, then end).
 struct EndEquation {
   bool affine = false;
   std::vector<Triplet> coefficients;  ///< (0, e, value), where affine
@@ -78,15 +117,23 @@ struct EndEquation {
                        std::span<double> gradient)>
       function;
 };
-EndEquation end_equation(const std::string& text, const System& system, const std::string& where);
+EndEquation end_equation(const std::string& text, const Vocabulary& vocabulary, const std::string& where);
 
-/// A `map` entry: the coordinate's value at T as an affine formula of the coordinates at 0.
-/// Coefficients over the n coordinates, and the constant.
+/// A `map` entry: the coordinate's value at T as an affine formula of the coordinates at 0 and the index, as
+/// for number(). Coefficients over the n coordinates, and the constant.
 struct AffineForm {
   std::vector<Triplet> coefficients;  ///< (0, a, value)
   double constant = 0;
 };
-AffineForm affine_form(const std::string& formula, const System& system, const std::string& where);
+AffineForm affine_form(const std::string& formula, const Vocabulary& vocabulary, const std::string& where,
+                       int index = 0);
+
+/// The names that a formula is written with, functions and indices included. What follows a character that no
+/// formula has is left out.
+std::set<std::string> names_in(const std::string& formula);
+
+/// The coordinate whose velocity a name of another notation means ("x" for dx, x_dot, v_x), or empty.
+std::string velocity_meant(const std::string& name, std::span<const Coordinate> coordinates);
 
 /// The nearest of `known` to a misspelt name, or empty if none is near.
 std::string nearest_name(const std::string& name, std::span<const std::string> known);

@@ -68,6 +68,8 @@ NodeId Binder::bind(TermBuilder& builder, const Formula& formula, std::uint32_t 
     case Form::series:
       return series(builder, formula, node, scope);
     case Form::call: {
+      if (node.meaning == Meaning::definition_start || node.meaning == Meaning::definition_end)
+        return definition(builder, node.id, node.meaning == Meaning::definition_end);
       if (node.meaning != Meaning::none) return coordinate(builder, formula, node, scope);
       const NodeId first = part(0);
       return links.size() > 1 ? graph.binary(node.op, first, part(1)) : graph.unary(node.op, first);
@@ -148,22 +150,47 @@ NodeId Binder::reference(TermBuilder& builder, const Formula& formula, const Syn
     case Meaning::active:
       return same_input(builder, 2 * n + 1 + node.id);
     case Meaning::definition: {
-      const auto known = builder.definitions.find(node.id);
-      if (known != builder.definitions.end()) return known->second;
-      const Formula& definition = names_.definitions[node.id];
-      const NodeId value = bind(builder, definition, definition.root, {});
-      builder.definitions.emplace(node.id, value);
-      return value;
+      const NodeId value = definition(builder, node.id, at_end_);
+      return node.velocity ? velocity(builder, value) : value;
     }
     default:
       fail(formula, node.offset, fmt::format("'{}' cannot stand here", formula.name(node)));
   }
 }
 
+NodeId Binder::definition(TermBuilder& builder, int id, bool at_end) {
+  const auto known = builder.definitions.find({id, at_end});
+  if (known != builder.definitions.end()) return known->second;
+  const Formula& formula = names_.definitions[id];
+  const bool outer = std::exchange(at_end_, at_end);
+  const NodeId value = bind(builder, formula, formula.root, {});
+  at_end_ = outer;
+  builder.definitions.emplace(std::pair(id, at_end), value);
+  return value;
+}
+
+/// dX/dt = Σ ∂X/∂q_a q_a' + ∂X/∂t along a motion. All entries of a column are coordinates, or all are t, or
+/// none is either.
+NodeId Binder::velocity(TermBuilder& builder, NodeId value) {
+  Graph& graph = target_.graph;
+  const auto n = static_cast<std::uint32_t>(names_.elements);
+  const std::vector<std::uint32_t> inputs = inputs_of(graph, value);
+  const std::vector<NodeId> slopes = gradient(graph, value, inputs);
+  NodeId sum = graph.constant(0);
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    std::vector<std::uint32_t> column = builder.column(inputs[k]);
+    if (column[0] == 2 * n) sum = graph.add(sum, slopes[k]);
+    if (column[0] >= n) continue;
+    for (std::uint32_t& entry : column) entry += n;
+    sum = graph.add(sum, graph.mul(slopes[k], builder.input(std::move(column))));
+  }
+  return sum;
+}
+
 NodeId Binder::coordinate(TermBuilder& builder, const Formula& formula, const Syntax& node,
                           const Scope& scope) {
   const Coordinate& declared = names_.coordinates[node.id];
-  const bool second = node.velocity || node.meaning == Meaning::end;
+  const bool second = node.velocity || node.meaning == Meaning::end || at_end_;
   const std::uint32_t base = declared.first + (second ? names_.elements : 0);
   if (!node.indexed) return same_input(builder, base);
   std::vector<std::uint32_t> column(builder.rows());

@@ -48,6 +48,8 @@ class Binder {
 
  private:
   NodeId reference(TermBuilder& builder, const Formula& formula, const Syntax& node, const Scope& scope);
+  NodeId definition(TermBuilder& builder, int id, bool at_end);
+  NodeId velocity(TermBuilder& builder, NodeId value);
   NodeId coordinate(TermBuilder& builder, const Formula& formula, const Syntax& node, const Scope& scope);
   NodeId series(TermBuilder& builder, const Formula& formula, const Syntax& node, const Scope& scope);
   NodeId same_input(TermBuilder& builder, std::uint32_t global);
@@ -59,6 +61,7 @@ class Binder {
   const Names& names_;
   LagrangianGraph& target_;
   Evaluator evaluator_;
+  bool at_end_ = false;                                        ///< in a definition at T
   std::unordered_map<std::uint64_t, std::uint32_t> uniforms_;  ///< bits of a number -> global input
   std::vector<double> indices_;
   int unrolling_ = 0;

@@ -23,12 +23,13 @@ struct EndFunction {
   std::vector<NodeId> slopes;
 };
 
-EndFunction function_of(Formula& formula, Names& names) {
-  resolve(formula, names);
+EndFunction function_of(Formula& formula, Names& names, int index = 0) {
+  Scope scope;
+  for (const double value : resolve_at(formula, names, index)) scope.push_back({-1, value});
   LagrangianGraph target;
   Binder binder(names, target);
   TermBuilder builder(target.graph);
-  builder.add(binder.bind(builder, formula, formula.root, {}), false);
+  builder.add(binder.bind(builder, formula, formula.root, scope), false);
   Term term = builder.finish();
   EndFunction function{std::move(target.graph), term.body, std::move(term.table), {}};
   std::vector<std::uint32_t> inputs(function.read.size());
@@ -80,9 +81,9 @@ double play(const EndFunction& function, std::span<const double> start, std::spa
 
 }  // namespace formula
 
-EndEquation end_equation(const std::string& text, const System& system, const std::string& where) {
+EndEquation end_equation(const std::string& text, const Vocabulary& vocabulary, const std::string& where) {
   using namespace formula;
-  Names names = names_of(Kind::condition, system.parameters, system.coordinates);
+  Names names = names_of(Kind::condition, vocabulary);
   Formula formula = parse_equation(text, where);
   const auto function = std::make_shared<const EndFunction>(function_of(formula, names));
   if (function->read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
@@ -99,11 +100,12 @@ EndEquation end_equation(const std::string& text, const System& system, const st
   return equation;
 }
 
-AffineForm affine_form(const std::string& text, const System& system, const std::string& where) {
+AffineForm affine_form(const std::string& text, const Vocabulary& vocabulary, const std::string& where,
+                       int index) {
   using namespace formula;
-  Names names = names_of(Kind::map, system.parameters, system.coordinates);
+  Names names = names_of(Kind::map, vocabulary);
   Formula formula = parse(text, where);
-  const EndFunction function = function_of(formula, names);
+  const EndFunction function = function_of(formula, names, index);
   if (!is_affine(function))
     fail(formula, 0,
          "a map is affine in the coordinates: sums of coordinates with constant factors, and a constant");

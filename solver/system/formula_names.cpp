@@ -48,7 +48,8 @@ void check_value(const std::string& name, const ParameterText& text, const std::
 }
 
 /// "x", "x[32]", "x[2*n]".
-void declare_coordinate(Names& names, const std::string& text, const std::string& where) {
+void declare_coordinate(Names& names, const SystemText& system, std::size_t k) {
+  const std::string &text = system.coordinates[k], where = fmt::format("coordinates[{}]", k);
   Formula formula = parse(text, where);
   const Syntax root = formula.nodes[formula.root];
   if (root.form != Form::reference || root.velocity)
@@ -56,10 +57,12 @@ void declare_coordinate(Names& names, const std::string& text, const std::string
   Coordinate coordinate{std::string(formula.name(root)), names.elements, 1, root.indexed};
   if (root.indexed) {
     formula.root = formula.children(root)[0].node;
-    names.kind = Kind::number;
-    resolve(formula, names);
-    std::vector<double> indices;
-    const long count = Evaluator(names).integer(formula, formula.root, indices, "the size of an array");
+    Names constants;
+    constants.declare(system.parameters, system.active);
+    for (const Coordinate& earlier : names.coordinates) constants.declare(earlier, where);
+    constants.declare(system.definitions);
+    std::vector<double> indices = resolve_at(formula, constants, 0);
+    const long count = Evaluator(constants).integer(formula, formula.root, indices, "the size of an array");
     if (count < 1)
       fail(formula, 0, fmt::format("'{}' would have {} elements; need at least 1", coordinate.name, count));
     if (count > most_elements - names.elements)
@@ -110,6 +113,14 @@ void Names::declare(const Coordinate& coordinate, const std::string& where) {
   elements += coordinate.count;
 }
 
+void Names::declare(const std::map<std::string, std::string>& texts) {
+  for (const auto& [name, text] : texts) {
+    const std::string where = "definitions." + name;
+    declare(name, {Meaning::definition, static_cast<int>(definitions.size())}, where);
+    definitions.push_back({.where = where, .text = text});
+  }
+}
+
 void Names::declare(const std::map<std::string, ParameterText>& texts,
                     std::span<const std::string> symbolic) {
   for (std::size_t k = 0; k < symbolic.size(); ++k) {
@@ -128,31 +139,27 @@ void Names::declare(const std::map<std::string, ParameterText>& texts,
     check_value(name, text, "parameters." + name);
     const int id = static_cast<int>(parameters.size()), count = static_cast<int>(text.value.size());
     declare(name, {Meaning::parameter, id, count, text.list}, "parameters." + name);
-    parameters.push_back(text.value);
+    parameters.push_back(&text.value);
   }
 }
 
 Names names_of(const SystemText& text) {
   Names names;
   names.declare(text.parameters, text.active);
-  for (std::size_t k = 0; k < text.coordinates.size(); ++k)
-    declare_coordinate(names, text.coordinates[k], fmt::format("coordinates[{}]", k));
+  for (std::size_t k = 0; k < text.coordinates.size(); ++k) declare_coordinate(names, text, k);
   if (names.elements == 0) throw FormulaError("no coordinates; need at least 1", "coordinates", 0);
-  for (const auto& [name, formula] : text.definitions) {
-    const std::string where = "definitions." + name;
-    names.declare(name, {Meaning::definition, static_cast<int>(names.definitions.size())}, where);
-    names.definitions.push_back(parse(formula, where));
-  }
+  names.declare(text.definitions);
+  for (Formula& definition : names.definitions) definition = parse(definition.text, definition.where);
   names.kind = Kind::lagrangian;
   return names;
 }
 
-Names names_of(Kind kind, const std::map<std::string, ParameterText>& parameters,
-               std::span<const Coordinate> coordinates) {
+Names names_of(Kind kind, const Vocabulary& vocabulary) {
   Names names;
   names.kind = kind;
-  names.declare(parameters, {});
-  for (const Coordinate& coordinate : coordinates) names.declare(coordinate, "coordinates");
+  names.declare(vocabulary.parameters, {});
+  for (const Coordinate& coordinate : vocabulary.coordinates) names.declare(coordinate, "coordinates");
+  names.declare(vocabulary.definitions);
   return names;
 }
 

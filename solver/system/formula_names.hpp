@@ -19,13 +19,14 @@ struct Function {
 std::span<const Function> functions();
 const Function* find_function(std::string_view name);  ///< or null
 
-/// What a kind of formula may use beside parameters and pi.
+/// What a kind of formula may use beside parameters and pi, itself or by definitions.
 enum class Kind {
   number,      ///< nothing
-  guess,       ///< t, T, and the index i
+  guess,       ///< t, T
   map,         ///< coordinates
   condition,   ///< end values x(0), x(T)
-  lagrangian,  ///< coordinates, velocities, t, definitions
+  quantity,    ///< end values x(0), x'(T)
+  lagrangian,  ///< coordinates, velocities, t; definitions are formulas of this kind
 };
 
 /// What a declared name is.
@@ -39,17 +40,19 @@ struct Known {
 struct Names {
   Kind kind = Kind::number;
   std::vector<Coordinate> coordinates;
-  int elements = 0;                   ///< of all coordinates together
-  std::vector<Parameter> parameters;  ///< by Known::id
-  std::vector<double> active;         ///< values, by Known::id
-  std::vector<Formula> definitions;   ///< by Known::id
+  int elements = 0;                          ///< of all coordinates together
+  std::vector<const Parameter*> parameters;  ///< by Known::id; those of the vocabulary, which outlives this
+  std::vector<double> active;                ///< values, by Known::id
+  std::vector<Formula> definitions;          ///< by Known::id; without nodes: not parsed yet
   std::map<std::string, Known, std::less<>> table;
-  std::vector<std::string> indices;  ///< known outside every sum: i in the guess of an array
+  std::vector<std::string> indices;  ///< known outside every sum: i in formulas of an array
 
   const Known* find(std::string_view name) const;
   /// Throws FormulaError where the name is malformed, reserved or taken.
   void declare(const std::string& name, Known known, const std::string& where);
   void declare(const Coordinate& coordinate, const std::string& where);
+  /// Declares definitions, not parsed.
+  void declare(const std::map<std::string, std::string>& definitions);
   /// Declares parameters; those of `active` stay symbolic.
   void declare(const std::map<std::string, ParameterText>& texts, std::span<const std::string> active);
 };
@@ -57,11 +60,14 @@ struct Names {
 /// Coordinates, parameters and parsed definitions of a system. Throws FormulaError.
 Names names_of(const SystemText& text);
 
-/// Names of a formula of parameters and, where given, a system's coordinates.
-Names names_of(Kind kind, const std::map<std::string, ParameterText>& parameters,
-               std::span<const Coordinate> coordinates = {});
+Names names_of(Kind kind, const Vocabulary& vocabulary);
 
-/// Gives every name in the formula its meaning, and likewise in all definitions that it needs.
+/// Gives every name in the formula its meaning, and likewise in all definitions that it needs, which are
+/// parsed for that.
 void resolve(Formula& formula, Names& names);
+
+/// Makes i = `index` known to a formula, unless it is 0, and resolves that. Returns the values of the
+/// indices.
+std::vector<double> resolve_at(Formula& formula, Names& names, int index);
 
 }  // namespace extremal::formula

@@ -27,10 +27,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t li
   return row[b.size()];
 }
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 }  // namespace
+
+std::string velocity_meant(const std::string& name, std::span<const Coordinate> coordinates) {
+  for (const Coordinate& c : coordinates)
+    for (const auto& [before, after] :
+         {std::pair("d", ""), std::pair("d", "dt"), std::pair("d", "_dt"), std::pair("v", ""),
+          std::pair("v_", ""), std::pair("", "_dot"), std::pair("", "dot"), std::pair("dot_", ""),
+          std::pair("", "_t"), std::pair("", "_prime")})
+      if (name == before + c.name + after) return c.name;
+  return {};
+}
 
 std::string nearest_name(const std::string& name, std::span<const std::string> known) {
   constexpr std::size_t longest = 64;
+  const auto same_letters = [&](const std::string& other) {
+    return std::ranges::equal(name, other, {}, lower, lower);
+  };
+  if (const auto found = std::ranges::find_if(known, same_letters); found != known.end()) return *found;
   if (name.size() < 2 || name.size() > longest) return {};  // one letter is near to every other
   std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
   std::string nearest;

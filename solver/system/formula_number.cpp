@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
 #include <numbers>
@@ -38,6 +39,11 @@ std::string circumstances(const Formula& formula, const Syntax& node, std::span<
 
 }  // namespace
 
+void Evaluator::set_time(double time) {
+  time_ = time;
+  std::fill(definitions_.begin(), definitions_.end(), Cached{});
+}
+
 void Evaluator::spend(const Formula& formula, const Syntax& node, std::size_t amount) {
   work_ += amount;
   if (work_ > most_work)
@@ -62,6 +68,7 @@ double Evaluator::value(const Formula& formula, std::uint32_t id, std::vector<do
     case Form::power:
       return std::pow(part(0), part(1));
     case Form::call: {
+      if (node.meaning != Meaning::none) return reference(formula, node, indices);  // at an end
       const double first = part(0);
       return scalar::apply(node.op, first, links.size() > 1 ? part(1) : 0.0);
     }
@@ -89,14 +96,22 @@ double Evaluator::reference(const Formula& formula, const Syntax& node, std::vec
     case Meaning::pi:
       return std::numbers::pi;
     case Meaning::time:
-      return time;
+      return time_;
     case Meaning::duration:
       return duration;
     case Meaning::parameter: {
-      const Parameter& list = names_.parameters[node.id];
+      const Parameter& list = *names_.parameters[node.id];
       return list[node.indexed ? element(formula, node, static_cast<int>(list.size()), indices) : 0];
     }
-    case Meaning::definition: {
+    case Meaning::coordinate:
+    case Meaning::start:
+    case Meaning::end:
+      return end_value(formula, node, indices);
+    case Meaning::definition:
+    case Meaning::definition_start:
+    case Meaning::definition_end: {
+      if (names_.kind == Kind::quantity) return end_definition(node);
+      if (node.velocity) return 0;  // of a number
       Cached& cached = definitions_[node.id];
       if (!cached.known) {
         const Formula& definition = names_.definitions[node.id];
@@ -123,6 +138,25 @@ double Evaluator::series(const Formula& formula, const Syntax& node, std::vector
   }
   indices.pop_back();
   return sum;
+}
+
+/// A coordinate within a definition is that of the end at which the definition is read.
+double Evaluator::end_value(const Formula& formula, const Syntax& node, std::vector<double>& indices) {
+  const Coordinate& declared = names_.coordinates[node.id];
+  const bool last = node.meaning == Meaning::coordinate ? at_end_ : node.meaning == Meaning::end;
+  const std::span<const double> values =
+      last ? (node.velocity ? ends.v_end : ends.q_end) : (node.velocity ? ends.v_start : ends.q_start);
+  return values[declared.first + (node.indexed ? element(formula, node, declared.count, indices) : 0)];
+}
+
+double Evaluator::end_definition(const Syntax& node) {
+  const bool before = at_end_;
+  if (node.meaning != Meaning::definition) at_end_ = node.meaning == Meaning::definition_end;
+  const Formula& definition = names_.definitions[node.id];
+  std::vector<double> none;
+  const double result = value(definition, definition.root, none);
+  at_end_ = before;
+  return result;
 }
 
 double Evaluator::finite(const Formula& formula, std::uint32_t node, std::vector<double>& indices) {
@@ -194,37 +228,52 @@ int Evaluator::element(const Formula& formula, const Syntax& node, int count, st
 
 }  // namespace formula
 
-double number(const std::string& text, const std::map<std::string, ParameterText>& parameters,
-              const std::string& where) {
+double number(const std::string& text, const Vocabulary& vocabulary, const std::string& where, int index) {
   using namespace formula;
-  Names names = names_of(Kind::number, parameters);
+  Names names = names_of(Kind::number, vocabulary);
   Formula formula = parse(text, where);
-  resolve(formula, names);
-  std::vector<double> indices;
+  std::vector<double> indices = resolve_at(formula, names, index);
   return Evaluator(names).finite(formula, formula.root, indices);
 }
 
-std::vector<double> tabulate(const std::string& text, const std::map<std::string, ParameterText>& parameters,
-                             double duration, std::span<const double> times, int index,
-                             const std::string& where) {
+EndQuantity end_quantity(const std::string& text, const System& system,
+                         const std::map<std::string, double>& further, const std::string& where) {
   using namespace formula;
-  Names names = names_of(Kind::guess, parameters);
-  std::vector<double> indices;
-  if (index > 0) {
-    names.indices = {"i"};
-    indices = {static_cast<double>(index)};
-  }
+  // What formula and names refer to lives as long as the quantity.
+  struct Read {
+    Vocabulary vocabulary;
+    Names names;
+    Formula formula;
+  };
+  const auto read = std::make_shared<Read>(Read{system, {}, parse(text, where)});
+  for (const auto& [name, value] : further)
+    if (!system.definitions.contains(name))
+      read->vocabulary.parameters.try_emplace(name, ParameterText{{value}, false});
+  read->names = names_of(Kind::quantity, read->vocabulary);
+  resolve(read->formula, read->names);
+  return [read](const EndValues& ends, const std::map<std::string, double>& values) {
+    for (const auto& [name, value] : values)
+      if (const auto known = read->vocabulary.parameters.find(name);
+          known != read->vocabulary.parameters.end())
+        known->second.value.front() = value;
+    Evaluator evaluator(read->names);
+    evaluator.ends = ends;
+    std::vector<double> indices;
+    return evaluator.value(read->formula, read->formula.root, indices);
+  };
+}
+
+std::vector<double> tabulate(const std::string& text, const Vocabulary& vocabulary, double duration,
+                             std::span<const double> times, int index, const std::string& where) {
+  using namespace formula;
+  Names names = names_of(Kind::guess, vocabulary);
   Formula formula = parse(text, where);
-  resolve(formula, names);
-  if (const Known* known = names.find("i"); known != nullptr && index > 0)
-    for (const Syntax& node : formula.nodes)
-      if (node.meaning == Meaning::index && formula.name(node) == "i")
-        fail(formula, node.offset, "'i' is the index of the element and a parameter; rename the parameter");
+  std::vector<double> indices = resolve_at(formula, names, index);
   Evaluator evaluator(names);
   evaluator.duration = duration;
   std::vector<double> values;
   for (const double time : times) {
-    evaluator.time = time;
+    evaluator.set_time(time);
     const double value = evaluator.value(formula, formula.root, indices);
     if (!std::isfinite(value)) fail(formula, 0, fmt::format("the guess is not finite at t = {}", time));
     values.push_back(value);

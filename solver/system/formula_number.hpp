@@ -10,13 +10,16 @@
 
 namespace extremal::formula {
 
-/// Evaluates resolved formulas of numbers, parameters and indices (and of t, T in a guess). The work of
+/// Evaluates resolved formulas of numbers, parameters and indices (and of t, T in a guess, end values in a
+/// quantity). The work of
 /// all evaluations together is bounded: sums may be long, but nothing may hang.
 class Evaluator {
  public:
   explicit Evaluator(const Names& names) : names_(names), definitions_(names.definitions.size()) {}
 
-  double time = 0, duration = 0;
+  double duration = 0;
+  void set_time(double time);
+  EndValues ends = {};
 
   /// `indices` holds the value of each index known at the node, outermost first.
   double value(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
@@ -39,6 +42,8 @@ class Evaluator {
   double exact(const Formula& formula, std::uint32_t node, std::vector<double>& indices);
   double reference(const Formula& formula, const Syntax& node, std::vector<double>& indices);
   double series(const Formula& formula, const Syntax& node, std::vector<double>& indices);
+  double end_value(const Formula& formula, const Syntax& node, std::vector<double>& indices);
+  double end_definition(const Syntax& node);
 
   struct Cached {
     bool known = false;
@@ -46,7 +51,9 @@ class Evaluator {
   };
 
   const Names& names_;
-  std::vector<Cached> definitions_;
+  std::vector<Cached> definitions_;  ///< at time_
+  double time_ = 0;
+  bool at_end_ = false;  ///< where a definition is read
   std::size_t work_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "system/formula_names.hpp"
@@ -28,8 +29,8 @@ const char* kind_of(Meaning meaning) {
 /// Gives meaning to one formula whose definitions have theirs.
 class Resolver {
  public:
-  Resolver(Formula& formula, const Names& names)
-      : formula_(formula), names_(names), indices_(names.indices) {}
+  Resolver(Formula& formula, const Names& names, Kind kind, std::vector<std::string> indices)
+      : formula_(formula), names_(names), kind_(kind), indices_(std::move(indices)) {}
 
   void visit(std::uint32_t id) {
     Syntax& node = formula_.nodes[id];
@@ -83,38 +84,72 @@ class Resolver {
     if (index != indices_.end()) {
       node.meaning = Meaning::index;
       node.id = static_cast<int>(index - indices_.begin());
+    } else if (name == "T" && kind_ == Kind::guess) {  // a definition may be called so
+      node.meaning = Meaning::duration;
     } else if (const Known* known = names_.find(name)) {
       declared(node, name, *known);
       return;
     } else if (name == "pi") {
       node.meaning = Meaning::pi;
-    } else if (name == "t" && (names_.kind == Kind::guess || names_.kind == Kind::lagrangian)) {
+    } else if (name == "t" && (kind_ == Kind::guess || kind_ == Kind::lagrangian)) {
       node.meaning = Meaning::time;
-    } else if (name == "T" && names_.kind == Kind::guess) {
-      node.meaning = Meaning::duration;
     } else {
       unknown(node, name);
     }
     if (node.indexed) stop(node, fmt::format("'{}' is one number and takes no index", name));
-    if (node.velocity) stop(node, fmt::format("'{}' has no velocity; only coordinates have", name));
+    if (node.velocity)
+      stop(node, fmt::format("'{}' has no velocity; only coordinates and definitions have", name));
   }
 
   void declared(Syntax& node, const std::string& name, const Known& known) const {
     node.meaning = known.meaning;
     node.id = known.id;
     if (known.meaning == Meaning::coordinate) {
-      if (names_.kind == Kind::condition)
+      if (kind_ == Kind::condition)
         stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values",
                                spelled(name, known)));
-      if (names_.kind == Kind::number || names_.kind == Kind::guess)
+      if (kind_ == Kind::quantity)
+        stop(node, fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values",
+                               spelled(name, known)));
+      if (kind_ == Kind::number || kind_ == Kind::guess)
         stop(node, fmt::format("'{}' is a coordinate; only parameters can stand here", name));
-      if (node.velocity && names_.kind == Kind::map)
+      if (node.velocity && kind_ == Kind::map)
         stop(node, fmt::format("\"{}'\" is a velocity; a map is made of coordinates", name));
+    } else if (known.meaning == Meaning::definition) {
+      defined(node, name);
     } else if (node.velocity) {
-      stop(node, fmt::format("'{}' is {} and has no velocity; only coordinates have", name,
+      stop(node, fmt::format("'{}' is {} and has no velocity; only coordinates and definitions have", name,
                              kind_of(known.meaning)));
     }
     check_index(node, name, known);
+  }
+
+  const Syntax& root_of(const Syntax& definition) const {
+    const Formula& formula = names_.definitions[definition.id];
+    return formula.nodes[formula.root];
+  }
+
+  /// Whether a definition may stand in a formula of this kind, by what it is made of.
+  void defined(const Syntax& node, const std::string& name) const {
+    const std::uint8_t reads = root_of(node).reads;
+    if (node.velocity && kind_ != Kind::lagrangian)
+      stop(node, fmt::format("\"{}'\" is a velocity; it can stand in the Lagrangian only", name));
+    if (node.velocity && (reads & of_velocities))
+      stop(node, fmt::format("'{0}' has velocities in it, so \"{0}'\" would need second derivatives", name));
+    if (kind_ == Kind::condition && (reads & of_coordinates))
+      stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values", name));
+    if (kind_ == Kind::quantity && (reads & ~of_time))
+      stop(node,
+           fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values", name));
+    const std::uint8_t allowed = kind_ == Kind::lagrangian ? 0xff
+                                 : kind_ == Kind::map      ? of_coordinates
+                                 : kind_ == Kind::guess    ? of_time
+                                                           : 0;
+    if (reads & ~allowed)
+      stop(node, fmt::format("the definition '{}' depends on {}, which cannot stand here", name,
+                             reads & ~allowed & of_coordinates  ? "coordinates"
+                             : reads & ~allowed & of_velocities ? "velocities"
+                                                                : "t"));
   }
 
   static std::string spelled(const std::string& name, const Known& known) {
@@ -140,27 +175,40 @@ class Resolver {
     node.op = function.op;
   }
 
-  /// x(0), x[2](T).
+  /// x(0), x[2](T), and of a definition made of coordinates.
   void end_value(Syntax& node) {
     const std::string name(formula_.name(node));
     const Known* known = names_.find(name);
     const bool index = std::find(indices_.begin(), indices_.end(), name) != indices_.end();
     if (known == nullptr && !index) unknown(node, name);
-    if (index || known->meaning != Meaning::coordinate || names_.kind != Kind::condition)
+    const bool ends = kind_ == Kind::condition || kind_ == Kind::quantity;
+    const bool definition = known != nullptr && known->meaning == Meaning::definition;
+    const Syntax& argument = child(node, node.indexed);
+    if (!index && argument.form == Form::reference && formula_.name(argument) == "t")
+      stop(node, fmt::format("write {0}{1} for {0}{1}(t)", spelled(name, *known), node.velocity ? "'" : ""));
+    if (index || (known->meaning != Meaning::coordinate && !definition) || !ends)
       stop(node, fmt::format("'{}' is {}, not a function; write {}*(…) to multiply", name,
                              kind_of(index ? Meaning::index : known->meaning),
                              index ? name : spelled(name, *known)));
-    if (node.velocity)
+    if (node.velocity && kind_ == Kind::condition)
       stop(node, fmt::format("\"{}'\" is a velocity; conditions hold between coordinates", name));
     if (node.indexed) visit(formula_.children(node)[0].node);
     check_index(node, name, *known);
-    const Syntax& when = child(node, node.indexed);
+    const Syntax& when = argument;
     const bool start = when.form == Form::number && when.value == 0;
     const bool end = when.form == Form::reference && !when.indexed && formula_.name(when) == "T";
     if (node.count != 1u + node.indexed || (!start && !end))
       stop(node, fmt::format("write {0}(0) or {0}(T) for the value at an end", spelled(name, *known)));
-    node.meaning = start ? Meaning::start : Meaning::end;
     node.id = known->id;
+    node.meaning = definition ? (start ? Meaning::definition_start : Meaning::definition_end)
+                              : (start ? Meaning::start : Meaning::end);
+    if (definition && kind_ == Kind::quantity && node.velocity)
+      stop(node, fmt::format("\"{}'\" is the velocity of a definition; only those of coordinates stand here",
+                             name));
+    const std::uint8_t allowed = kind_ == Kind::quantity ? of_coordinates | of_velocities : of_coordinates;
+    if (definition && root_of(node).reads & ~allowed)
+      stop(node, fmt::format("the definition '{}' depends on {}; conditions hold between coordinates", name,
+                             root_of(node).reads & of_velocities ? "velocities" : "t"));
   }
 
   [[noreturn]] void unknown(const Syntax& node, const std::string& name) const {
@@ -170,7 +218,7 @@ class Resolver {
     std::vector<std::string> known;
     if (!call) known = indices_;
     for (const auto& [other, meaning] : names_.table)
-      if (!call || names_.kind == Kind::condition) known.push_back(other);
+      if (!call || kind_ == Kind::condition || kind_ == Kind::quantity) known.push_back(other);
     for (const Function& function : functions()) known.emplace_back(function.name);
     known.insert(known.end(), {"sum", "pi"});
     const std::string nearest = nearest_name(name, known);
@@ -180,42 +228,81 @@ class Resolver {
       mend = "; known are sum";
       for (const Function& function : functions()) mend += fmt::format(" {}", function.name);
     }
+    if (kind_ == Kind::lagrangian && !velocity_mend(name, call).empty()) mend = velocity_mend(name, call);
     if (name == "t") mend = "; the time cannot stand here";
     if (name == "T") mend = "; T is the duration only in a guess, and in x(T) in a condition";
     stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80), mend));
   }
 
+  /// For dx/dt, x_dot, v_x, diff(x, t) and the like.
+  std::string velocity_mend(const std::string& name, bool call) const {
+    constexpr std::array derivatives{"diff", "dot", "ddt", "der", "deriv", "derivative", "D", "d"};
+    std::string coordinate = velocity_meant(name, names_.coordinates);
+    const bool other = call ? std::ranges::find(derivatives, name) != derivatives.end() : name == "dt";
+    if (other && !names_.coordinates.empty()) coordinate = names_.coordinates.front().name;
+    if (coordinate.empty()) return {};
+    const bool array = names_.find(coordinate)->array;
+    return fmt::format("; velocities are written {}{}'", coordinate, array ? "[1]" : "");
+  }
+
   /// Properties of a node from those of its children.
   void summarise(Syntax& node) const {
     const auto links = formula_.children(node);
-    node.numeric = node.meaning != Meaning::coordinate && node.meaning != Meaning::active &&
-                   node.meaning != Meaning::time && node.meaning != Meaning::duration &&
-                   node.meaning != Meaning::start && node.meaning != Meaning::end;
+    node.reads = read_by(node);
     bool below = false;
     int summed_factors = 0;
     for (const Link link : links) {
       const Syntax& part = formula_.nodes[link.node];
-      node.numeric &= part.numeric;
+      node.reads |= part.reads;
       node.depth = std::max(node.depth, part.depth + 1);
       below |= part.additive;
       if (part.additive) summed_factors += link.inverse ? 2 : 1;
     }
     node.additive = node.form == Form::series || (node.form == Form::product && summed_factors == 1) ||
                     ((node.form == Form::negative || node.form == Form::total) && below);
-    if (node.meaning == Meaning::definition) {
-      const Formula& definition = names_.definitions[node.id];
-      const Syntax& root = definition.nodes[definition.root];
-      node.numeric = root.numeric;
-      node.additive = root.additive;
+    if (is_definition(node)) {
+      const Syntax& root = root_of(node);
+      node.additive = root.additive && node.meaning == Meaning::definition && !node.velocity;
       node.depth = root.depth + 1;
     }
+    node.numeric = node.reads == 0;
     node.additive &= !node.numeric;
     if (node.depth > deepest_tree)
       stop(node, fmt::format("nested more than {} deep through definitions", deepest_tree));
   }
 
+  static bool is_definition(const Syntax& node) {
+    return node.meaning == Meaning::definition || node.meaning == Meaning::definition_start ||
+           node.meaning == Meaning::definition_end;
+  }
+
+  /// What a node reads itself, its children aside.
+  std::uint8_t read_by(const Syntax& node) const {
+    switch (node.meaning) {
+      case Meaning::coordinate:
+        return node.velocity ? of_velocities : of_coordinates;
+      case Meaning::time:
+        return of_time;
+      case Meaning::active:
+      case Meaning::duration:
+      case Meaning::start:
+      case Meaning::end:
+        return of_others;
+      case Meaning::definition: {  // the velocity of one reads the coordinates and their velocities
+        const std::uint8_t reads = root_of(node).reads;
+        return node.velocity && (reads & of_coordinates) ? reads | of_velocities : reads;
+      }
+      case Meaning::definition_start:
+      case Meaning::definition_end:
+        return root_of(node).reads == 0 ? 0 : of_others;
+      default:
+        return 0;
+    }
+  }
+
   Formula& formula_;
   const Names& names_;
+  const Kind kind_;
   std::vector<std::string> indices_;
 };
 
@@ -223,7 +310,7 @@ class Resolver {
 std::vector<std::pair<int, std::uint32_t>> definitions_in(const Formula& formula, const Names& names) {
   std::vector<std::pair<int, std::uint32_t>> used;
   for (const Syntax& node : formula.nodes) {
-    if (node.form != Form::reference) continue;
+    if (node.form != Form::reference && node.form != Form::call) continue;
     const Known* known = names.find(formula.name(node));
     if (known != nullptr && known->meaning == Meaning::definition) used.emplace_back(known->id, node.offset);
   }
@@ -263,15 +350,31 @@ void resolve(Formula& formula, Names& names) {
       if (state[needed] == open) fail_on_cycle(names, path, needed);
       if (state[needed] == unseen) {
         state[needed] = open;
+        Formula& definition = names.definitions[needed];
+        if (definition.nodes.empty()) definition = parse(definition.text, definition.where);
         path.push_back({needed, definitions_in(names.definitions[needed], names)});
       }
       continue;
     }
-    Formula& complete = visit.definition < 0 ? formula : names.definitions[visit.definition];
-    Resolver(complete, names).visit(complete.root);
+    if (visit.definition < 0)
+      Resolver(formula, names, names.kind, names.indices).visit(formula.root);
+    else if (Formula& needed = names.definitions[visit.definition]; true)
+      Resolver(needed, names, Kind::lagrangian, {}).visit(needed.root);
     if (visit.definition >= 0) state[visit.definition] = done;
     path.pop_back();
   }
+}
+
+std::vector<double> resolve_at(Formula& formula, Names& names, int index) {
+  if (index > 0) names.indices = {"i"};
+  resolve(formula, names);
+  if (index == 0) return {};
+  if (const Known* known = names.find("i"))
+    for (const Syntax& node : formula.nodes)
+      if (node.meaning == Meaning::index && formula.name(node) == "i")
+        fail(formula, node.offset,
+             fmt::format("'i' is the index of the element and {}; rename that one", kind_of(known->meaning)));
+  return {static_cast<double>(index)};
 }
 
 }  // namespace extremal::formula

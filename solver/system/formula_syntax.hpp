@@ -35,9 +35,14 @@ enum class Meaning : std::uint8_t {
   time,
   duration,
   pi,
-  start,  ///< a coordinate at 0
-  end,    ///< a coordinate at T
+  start,             ///< a coordinate at 0
+  end,               ///< a coordinate at T
+  definition_start,  ///< a definition at 0; id in Names::definitions
+  definition_end,    ///< a definition at T
 };
+
+/// What a part of a formula reads beside numbers, parameters and indices: bits.
+enum Reads : std::uint8_t { of_coordinates = 1, of_velocities = 2, of_time = 4, of_others = 8 };
 
 struct Link {
   std::uint32_t node;
@@ -50,8 +55,9 @@ struct Syntax {
   Op op = Op::constant;  ///< of a call
   bool velocity = false;
   bool indexed = false;
-  bool numeric = false;                  ///< made of numbers, parameters and indices alone
+  bool numeric = false;                  ///< made of numbers, parameters and indices alone: reads == 0
   bool additive = false;                 ///< a sum(…) stands in it as a summand, up to factors
+  std::uint8_t reads = 0;                ///< of Reads
   std::uint32_t offset = 0, length = 0;  ///< where it stands in the text; of a name, all of the name
   std::uint32_t first = 0, count = 0;    ///< its links
   std::int32_t id = 0;

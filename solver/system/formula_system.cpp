@@ -11,6 +11,7 @@ System compile(const SystemText& text) {
   System system;
   system.lagrangian = make_lagrangian(formula::graph_of(names, text.lagrangian));
   system.parameters = text.parameters;
+  system.definitions = text.definitions;
   for (const Coordinate& coordinate : names.coordinates) {
     if (!coordinate.array) system.names.push_back(coordinate.name);
     for (int i = 1; coordinate.array && i <= coordinate.count; ++i)

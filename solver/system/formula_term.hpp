@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "system/formula_syntax.hpp"
@@ -33,6 +34,7 @@ class TermBuilder {
   std::size_t rows() const { return rows_; }
   std::size_t depth() const { return depth_; }
   std::size_t columns() const { return columns_.size(); }
+  const std::vector<std::uint32_t>& column(std::uint32_t input) const { return columns_[input]; }
   NodeId body() const { return body_; }
 
   /// The values that the indices of `scope` have in a row.
@@ -52,7 +54,8 @@ class TermBuilder {
   /// row of the table.
   Term finish() const;
 
-  std::map<int, NodeId> definitions;  ///< those that have been bound
+  /// Those that have been bound: id, and whether at T of a condition.
+  std::map<std::pair<int, bool>, NodeId> definitions;
 
  private:
   Graph& graph_;

@@ -49,6 +49,20 @@ std::vector<Case> cases() {
       {"RedundantConditions", chain + "conditions = [\"q[1](0) = 0\", \"2*q[1](0) = 0\"]\nduration = 1\n",
        "scene.toml:5:31: this condition follows from the ones before it; leave it out\n"},
       {"NotRegular", with("q'^2/2", "q'"), "scene.toml:4:14: the Lagrangian is not regular"},
+      {"LengthOfAPath",
+       "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(1 + x^2)*sqrt(x'^2 + y'^2)\"\n"
+       "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 1, y = 1 }\nduration = 1\n",
+       "scene.toml:3:14: the Lagrangian is homogeneous of degree one in the velocities: it determines the "
+       "path, but not the speed along it; take L^2/2, whose extremals are the same curves\n"},
+      {"EnergyBelowThatOfAnEnd",
+       "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\n"
+       "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = \"free\"\nenergy = 0.1\n[guess]\nduration "
+       "= 1\n",
+       "scene.toml:8:10: energy = 0.1, but at the end (x = 1) it is at least 0.5, its value at rest; raise "
+       "it, or move this end\n"},
+      {"ConditionThatIsNotLinear", chain + "conditions = [\"q[1](0)^2 = 1\"]\nduration = 1\n",
+       "scene.toml:5:16: a condition must be linear in the end values; one that is not can close a free "
+       "duration: "},
       {"NotFiniteAtTheGuess", with("cos(q)", "1/q") + "[guess]\nq = 0\n",
        "scene.toml:9:1: L is not finite on the guess at t = "},
       {"Empty", "", "scene.toml: the file is empty\n"},

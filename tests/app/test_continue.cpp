@@ -12,7 +12,7 @@ namespace {
 /// Bratu's problem, from the lower branch; λ = 3.513830719 is its fold.
 const std::string bratu =
     "[system]\ncoordinates = [\"q\"]\nparameters = { lambda = 1.0, m = [1.0, 2.0] }\n"
-    "lagrangian = \"q'^2/2 - lambda*exp(q)\"\n"
+    "lagrangian = \"m[1]*q'^2/2 - lambda*exp(q)\"\n"
     "[boundary]\nstart = { q = 0.0 }\nend = { q = 0.0 }\nduration = 1.0\n"
     "[continuation]\nparameter = \"lambda\"\nto = 4.0\npoints = 30\n";
 
@@ -68,6 +68,19 @@ TEST_F(Command, ContinuesAFamily) {
   EXPECT_EQ(csv.rfind("branch,parameter,duration,energy,action,morse_index,nullity,kind,q,q'\n0,1,1,", 0), 0u)
       << csv;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 31);
+}
+
+TEST_F(Command, APlotShowsTheQuantityAsked) {
+  write("scene.toml", bratu_with("points = 30", "points = 6"));
+  const Outcome o = extremal({"continue", "scene.toml", "--plot", "b.svg", "--quantity", "q'(0)/lambda"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  EXPECT_NE(read_text(folder / "b.svg").find("q'(0)/lambda"), std::string::npos);
+  ASSERT_EQ(extremal({"continue", "scene.toml", "--plot", "b.svg"}).exit, 0);
+  EXPECT_NE(read_text(folder / "b.svg").find("amplitude of q"), std::string::npos);
+  EXPECT_EQ(extremal({"continue", "scene.toml", "--plot", "b.svg", "--quantity", "q'(0)/lamda"}).error,
+            "error: --quantity: 'q'(0)/lamda': column 7: unknown name 'lamda'; did you mean 'lambda'?\n");
+  EXPECT_EQ(extremal({"continue", "scene.toml", "--quantity", "q'(0)"}).error,
+            "error: --quantity says what --plot shows; give a file to --plot\n");
 }
 
 TEST_F(Command, ContinuesToTheValueAsked) {

@@ -29,6 +29,46 @@ TEST_F(Command, QuietWritesNothing) {
   }
 }
 
+TEST_F(Command, AFailureIsToldOnce) {
+  for (const std::string search : {"", "[search]\nsolutions = 3\n"}) {
+    const Outcome o = solve(
+        "[system]\ncoordinates = [\"q\"]\nlagrangian = \"q'^2/2 - exp(q)\"\n[boundary]\nstart = { q = 0 }\n"
+        "end = { q = 0 }\nduration = 4\n" +
+        search);
+    EXPECT_EQ(o.exit, 1) << o.out;
+    const std::string message = o.error.substr(0, o.error.find('\n')).substr(o.error.rfind(": ") + 2);
+    EXPECT_EQ(o.out.find(message), std::string::npos) << o.out;
+    EXPECT_EQ(o.out.find("solve 0.00 ns"), std::string::npos) << o.out;
+  }
+}
+
+TEST_F(Command, SolveLeavesAContinuationAside) {
+  write("scene.toml", pendulum + "[continuation]\nparameter = \"energy\"\nto = 1\n");
+  EXPECT_EQ(extremal({"solve", "scene.toml", "--quiet"}).exit, 0);
+  EXPECT_EQ(extremal({"compare", "scene.toml", "--quiet"}).exit, 0);
+  for (const char* command : {"continue", "check"}) {
+    const Outcome o = extremal({command, "scene.toml"});
+    EXPECT_EQ(o.exit, 2);
+    EXPECT_NE(o.error.find("varying the energy needs"), std::string::npos) << o.error;
+  }
+}
+
+TEST_F(Command, MomentaThatAreGiven) {
+  std::string scene = pendulum;
+  scene.replace(scene.find("q = 0.0 }"), 9, "p_q = \"1.3736908728527137\" }");
+  const Outcome o = solve(scene + "[guess]\nq = \"1.5*t/T\"\n", {"--output", "r.json", "--at", "0"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  EXPECT_NE(o.out.find("1 natural condition"), std::string::npos) << o.out;
+  const Json r = Json::parse(read_text(folder / "r.json"));
+  EXPECT_NEAR(r["samples"]["q"][0].get<double>(), 0, 1e-9);
+  EXPECT_NEAR(r["momentum_start"]["q"].get<double>(), pendulum_slope, 1e-10);
+  const Outcome checked = extremal({"check", "scene.toml"});
+  EXPECT_NE(checked.out.find("not fixed      at the start q(0) with p_q = 1.3736908728527137; at the end none"),
+            std::string::npos)
+      << checked.out;
+  EXPECT_EQ(extremal({"compare", "scene.toml", "--quiet"}).exit, 0);
+}
+
 /// The equations of one element that passes the centre at its middle hold by symmetry, with an infinite
 /// action.
 TEST_F(Command, PathsThroughASingularityAreNoSolutions) {

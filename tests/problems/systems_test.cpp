@@ -7,6 +7,7 @@
 #include <set>
 
 #include "problems/reference.hpp"
+#include "study/annotation.hpp"
 #include "study/inspection.hpp"
 #include "study/study.hpp"
 
@@ -64,6 +65,8 @@ TEST_P(EveryScene, HasRightDerivatives) {
   EXPECT_TRUE(check.agree()) << check.gradient.name << " off by " << check.gradient.error << ", "
                              << check.hessian.name << " by " << check.hessian.error;
 }
+
+TEST_P(EveryScene, HasAPictureWithAnnotations) { EXPECT_NO_THROW(annotation(load(scene_path(GetParam())))); }
 
 TEST_P(EveryScene, KeepsItsEnergy) {
   const Solution solution = run(load(scene_path(GetParam()), {"solve.tolerance=1e-11"}));

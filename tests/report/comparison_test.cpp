@@ -47,7 +47,7 @@ TEST(Comparison, AsFigure) {
   const Panel& panel = figure.panels[0];
   ASSERT_EQ(panel.curves.size(), 2u);
   EXPECT_EQ(panel.marks.size(), 3u);
-  EXPECT_EQ(panel.legend.size(), 2u);
+  EXPECT_EQ(figure.legend.size(), 2u);
   for (const Curve& curve : panel.curves)
     for (std::size_t k = 0; k < curve.x.size(); ++k) {
       EXPECT_TRUE(panel.x.place(curve.x[k]) >= 0 && panel.x.place(curve.x[k]) <= 1);

@@ -18,7 +18,7 @@ constexpr double pixel = 40, side = 400 * pixel;
 /// The points that the script draws for a curve y(x) over the unit square.
 template <class Function>
 std::vector<Vertex> drawn(const Function& y) {
-  Panel panel{.box = {0, 0, 400, 400}, .x = make_axis("x", 0, 1, 5), .y = make_axis("y", 0, 1, 5)};
+  Panel panel{.box = {0, 0, 400, 400}, .x = make_axis({"x"}, 0, 1, 5), .y = make_axis({"y"}, 0, 1, 5)};
   Curve curve;
   for (int k = 0; k <= 800; ++k) {
     curve.x.push_back(k / 800.0);

@@ -13,6 +13,22 @@ std::string with(const std::string& from, const std::string& to) {
 
 }  // namespace
 
+TEST_F(SceneFiles, TextsWithoutQuotes) {
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string scene = pendulum;
+    return message(scene.replace(scene.find(from), from.size(), to));
+  };
+  EXPECT_EQ(refused("\"q'^2/2 + cos(q)\"", "q'^2/2 + cos(q)"),
+            "scene.toml:3:14: texts and formulas are written in quotes: \"q'^2/2 + cos(q)\"");
+  EXPECT_EQ(refused("duration = 2", "duration = 2*pi  # s"),
+            "scene.toml:7:12: texts and formulas are written in quotes: \"2*pi\"");
+  EXPECT_EQ(refused("duration = 2", "duration = sqrt(2)"),
+            "scene.toml:7:12: texts and formulas are written in quotes: \"sqrt(2)\"");
+  EXPECT_EQ(refused("q = 1 }", "q = -pi/2 }"),
+            "scene.toml:6:13: texts and formulas are written in quotes: \"-pi/2\"");
+  EXPECT_EQ(refused("[\"q\"]", "[q]"), "scene.toml:2:16: texts and formulas are written in quotes: \"q\"");
+}
+
 TEST_F(SceneFiles, EveryKeyIsRead) {
   const Scene scene = read_scene(write("scene.toml", R"(title = "All"
 [system]

@@ -34,6 +34,27 @@ TEST_F(SceneFiles, SetOfElementsAndVelocities) {
   EXPECT_EQ(scene.guess.state->at(0).name, "q'");
 }
 
+TEST_F(SceneFiles, SetOfAnElementOfAList) {
+  std::string lists = pendulum;
+  lists.replace(lists.find("[boundary]"), 0, "parameters = { m = [1, 2, 3] }\n");
+  lists += "[guess]\nstate = { q = 1, \"q'\" = [4, 5] }\n";
+  const Scene scene =
+      read_scene(write("scene.toml", lists),
+                 {"system.parameters.m[2]=7", "guess.state.q[2]'=8", "system.coordinates[1]=q[n]",
+                  "system.parameters.n=2", "system.parameters.m[3]=2*n"});
+  const Assignment& m = scene.system.parameters[0];
+  EXPECT_EQ(std::get<double>(m.values[0].value), 1.0);
+  EXPECT_EQ(std::get<double>(m.values[1].value), 7.0);
+  EXPECT_EQ(std::get<std::string>(m.values[2].value), "2*n");
+  EXPECT_EQ(to_string(m.values[1].at), "--set system.parameters.m[2]");
+  EXPECT_EQ(std::get<double>(scene.guess.state->at(1).values[1].value), 8.0);
+  EXPECT_EQ(scene.system.coordinates[0].value, "q[n]");
+  EXPECT_EQ(message(lists, {"system.parameters.m[4]=1"}),
+            "--set system.parameters.m[4]: 'm[4]' is out of range: the list has elements 1 to 3");
+  EXPECT_EQ(message(lists, {"system.parameters.m[0]=1"}),
+            "--set system.parameters.m[0]: 'm[0]' is out of range: the list has elements 1 to 3");
+}
+
 TEST_F(SceneFiles, SetTakesTheLastOfTwo) {
   const Scene scene = read_scene(write("scene.toml", pendulum), {"title=a", "title=b"});
   EXPECT_EQ(scene.title, "b");

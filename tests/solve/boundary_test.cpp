@@ -173,6 +173,71 @@ TEST(CoupledEnds, ForcedPeriodicOscillation) {
   EXPECT_NEAR(s.momentum_start[0], s.momentum_end[0], 1e-14);
 }
 
+/// q'' = −ω²q with p(0) = a and p(T) = b, in every scheme to its order; the index is that of natural ends.
+TEST(GivenMomenta, OscillatorAtBothEnds) {
+  const double w = 1.3, T = 2, a = 0.4, b = -0.7;
+  const auto truth = [=](double t) {
+    const double amplitude = (a * std::cos(w * T) - b) / (w * std::sin(w * T));
+    return Values{amplitude * std::cos(w * t) + a / w * std::sin(w * t)};
+  };
+  const auto given = with_ends(systems::oscillator(w), T, [=](auto& r) {
+    r.give_momentum(0, false, a);
+    r.give_momentum(0, true, b);
+  });
+  const Solution s = solve(given, within(1e-12));
+  EXPECT_LT(distance(s.trajectory, truth), 1e-12);
+  EXPECT_NEAR(s.momentum_start[0], a, 1e-13);
+  EXPECT_NEAR(s.momentum_end[0], b, 1e-13);
+  EXPECT_EQ(s.morse_index,
+            solve(with_ends(systems::oscillator(w), T, [](auto&) {}), within(1e-12)).morse_index);
+  for (const Scheme& scheme : schemes_and_families()) {
+    const Solution discrete = solve(given, pinned(scheme, 32));
+    EXPECT_NEAR(discrete.momentum_start[0], a, 1e-12) << scheme.name;
+    EXPECT_NEAR(discrete.momentum_end[0], b, 1e-12) << scheme.name;
+    EXPECT_LT(node_distance(discrete.trajectory, s.trajectory), one_sided(scheme) ? 0.1 : 0.01)
+        << scheme.name;
+  }
+}
+
+/// The extremal between the ends that one with given momenta has found is the same. Chains of 2 and of 90
+/// sites, dense and sparse, by each method.
+TEST(GivenMomenta, ExtremalIsThatBetweenItsEnds) {
+  for (const int n : {2, 90}) {
+    const auto lagrangian = trace(n, [n](auto q, auto v, auto) {
+      auto sum = v[0] * v[0] * 0.0;
+      for (int i = 0; i < n; ++i)
+        sum = sum + v[i] * v[i] / 2.0 - q[i] * q[i] / 2.0 + q[i] * q[i] * q[i] * q[i] / 20.0;
+      for (int i = 0; i + 1 < n; ++i) sum = sum - (q[i + 1] - q[i]) * (q[i + 1] - q[i]) / 4.0;
+      return sum;
+    });
+    const Problem given = with_ends(lagrangian, 0.7, [n](auto& r) {
+      for (int i = 0; i < n; ++i) {
+        if (i % 2 == 0)
+          r.give_momentum(i, false, 0.3 * std::cos(i));
+        else
+          r.fix(i, false, 0.2);
+        if (i % 3 == 0) r.give_momentum(i, true, -0.2);
+      }
+    });
+    for (const Method method : {Method::newton, Method::ceres, Method::ipopt}) {
+      if (!available(method) || (method != Method::newton && n > 2)) continue;
+      SolveOptions options = within(1e-11);
+      options.method = method;
+      const Solution s = solve(given, options);
+      for (int i = 0; i < n; ++i) {
+        if (i % 2 == 0) {
+          EXPECT_NEAR(s.momentum_start[i], 0.3 * std::cos(i), 1e-11) << n;
+        }
+        EXPECT_NEAR(s.momentum_end[i], i % 3 == 0 ? -0.2 : 0, 1e-11) << n;
+      }
+      const Values start = at(s.trajectory, 0).q, end = at(s.trajectory, 0.7).q;
+      const Solution between = solve(fixed_ends(lagrangian, start, end, 0.7), within(1e-11));
+      EXPECT_LT(largest_difference(between.momentum_start, s.momentum_start), 1e-9) << n;
+      EXPECT_LT(largest_difference(at(between.trajectory, 0.3).q, at(s.trajectory, 0.3).q), 1e-9) << n;
+    }
+  }
+}
+
 /// The equilibrium, on which nothing moves and which has no size.
 TEST(Equilibrium, IsASolution) {
   for (const auto& relation : {Relation([](auto& b) { b.fix(0, false, 0), b.fix(0, true, 0); }),

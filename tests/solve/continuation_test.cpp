@@ -45,6 +45,29 @@ TEST(Continuation, BratuFoldAndBothBranches) {
   EXPECT_LE(branch.worst_action_slope(), 1e-6);
 }
 
+/// q'' = −q + 0.4 q³ from q(0) = 1 with p(T) = λ, or p(T) = 0.1 over T: dS = p(T) dq(T) − E dT.
+TEST(Continuation, MomentaThatAreGiven) {
+  const auto problem = [](double duration, double p) {
+    const auto lagrangian = trace(1, [](auto q, auto v, auto) {
+      return v[0] * v[0] / 2 - q[0] * q[0] / 2 + q[0] * q[0] * q[0] * q[0] / 10;
+    });
+    return with_ends(lagrangian, duration, [=](BoundaryRelation& b) {
+      b.fix(0, false, 1);
+      b.give_momentum(0, true, p);
+    });
+  };
+  Continuation momenta(varied([&](double p) { return problem(1, p); }, 0.1, 1), {within(1e-10), 30});
+  for (const BranchPoint& point : follow(momenta))
+    EXPECT_NEAR(point.solution.momentum_end[0], point.parameter, 1e-9);
+  EXPECT_EQ(momenta.end(), BranchEnd::target) << momenta.message();
+  EXPECT_LE(momenta.worst_action_slope(), 1e-6);
+  Continuation durations({problem(1, 0.1), Varied::duration, 1, 2.5, {}}, {within(1e-10), 60});
+  const std::vector<BranchPoint> points = follow(durations);
+  ASSERT_GT(points.size(), 3u);
+  for (const BranchPoint& point : points) EXPECT_NEAR(point.solution.momentum_end[0], 0.1, 1e-9);
+  EXPECT_LE(durations.worst_action_slope(), 1e-6);
+}
+
 /// q'' = q³ − εq − λ at rest, with free ends: λ = q³ − εq turns back at q = ∓√(ε/3), by less than a step.
 TEST(Continuation, TwoFoldsOnOneStep) {
   const double epsilon = 0.01;

@@ -89,6 +89,22 @@ TEST(Failure, ToleranceBeyondRoundoff) {
     EXPECT_EQ(wrong_answers(problem, {within(1e-17)}, "loosen"), "");
 }
 
+/// The message names the end at which L is infinite, and the speed that no path has.
+TEST(Failure, EndsThatNoPathReaches) {
+  const Problem centre = fixed_ends(systems::kepler(), {1, 0}, {0, 0}, 1);
+  EXPECT_EQ(wrong_answers(centre, {within(1e-9)}, "not finite at the end, q[1] = 0, q[2] = 0"), "");
+  const auto relativistic = trace(1, [](auto, auto v, auto) { return -sqrt(1 - v[0] * v[0]); });
+  EXPECT_EQ(wrong_answers(fixed_ends(relativistic, {0}, {3}, 2.9), {within(1e-9)}, "try a longer one"), "");
+  EXPECT_TRUE(Solver().solve(fixed_ends(relativistic, {0}, {3}, 3.1), within(1e-9)).converged());
+}
+
+/// On the sphere φ has no inertia at the pole.
+TEST(Failure, MassThatIsSingularAtAnEnd) {
+  const auto sphere = trace(
+      2, [](auto q, auto v, auto) { return (v[0] * v[0] + sin(q[0]) * sin(q[0]) * v[1] * v[1]) / 2.0; });
+  EXPECT_EQ(wrong_answers(fixed_ends(sphere, {0, 0}, {0, 1}, 1), {within(1e-9)}, "a point of the start"), "");
+}
+
 /// A free particle has no energy below 0: no T closes the problem.
 TEST(Failure, EnergyThatNoPathHas) {
   const auto free_particle = trace(1, [](auto, auto v, auto) { return v[0] * v[0] / 2; });

@@ -1,4 +1,7 @@
+#include <algorithm>
+
 #include "solve/mesh/levels.hpp"
+#include "solve/mesh/roundoff.hpp"
 #include "solve/newton/iteration.hpp"
 #include "solve/published.hpp"
 #include "solve/scenes.hpp"
@@ -8,7 +11,9 @@
 namespace extremal::laws {
 namespace {
 
-/// Near an encounter at 3e-4 of the size of the orbit roundoff of q is amplified a million times.
+/// Near an encounter at 3e-4 of the size of the orbit roundoff of q is amplified some millions of times. How
+/// many depends on the elements and on how sums are rounded, so the measure is held between what steps do,
+/// from both sides.
 TEST(Roundoff, OfAStepIsAllThatStepsChange) {
   const nlohmann::json c = published("nbody_periodic_orbits.json", "3b-ff-F1_1_1_1_");
   const Study study = study_of(c, 1e-8);
@@ -29,12 +34,14 @@ TEST(Roundoff, OfAStepIsAllThatStepsChange) {
   newton.set_scale(1);
   for (int k = 0; k < 5; ++k) ASSERT_EQ(newton.full_step(path, 0), StepResult::ok);
   const double noise = newton.roundoff(path);
-  ASSERT_GT(noise, 1e-12);
-  ASSERT_LT(noise, 1e-8);
+  double largest = 0;
   for (int k = 0; k < 20; ++k) {
     ASSERT_EQ(newton.chord_step(path), StepResult::ok);
-    EXPECT_LT(newton.norm(), 5 * noise);
+    largest = std::max(largest, newton.norm());
   }
+  EXPECT_LT(largest, 5 * noise);
+  EXPECT_GT(largest, noise / 50);
+  EXPECT_GT(noise, 1e3 * unit_roundoff);
 }
 
 /// Roundoff of q amplified to 1e-8 hides a tolerance of 1e-9 from some elements on: thousands of times more

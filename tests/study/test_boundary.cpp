@@ -43,14 +43,78 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(start("\"q[0]\" = 0"), "scene.toml:7:11: 'q[0]' is out of range: 'q' has elements 1 to 3");
   EXPECT_EQ(start("\"x[1]\" = 0"), "scene.toml:7:11: 'x' is not an array; write 'x' in place of 'x[1]'");
   EXPECT_EQ(start("q = [1, 2]"), "scene.toml:7:15: 'q' has 3 elements; found 2 values");
-  EXPECT_EQ(start("q = 1"),
-            "scene.toml:7:15: 'q' has 3 elements; give a list of 3 values, or \"q[1]\" = … for one element");
+  EXPECT_EQ(
+      start("q = 1"),
+      "scene.toml:7:15: 'q' has 3 elements; give a list of 3 values, a formula in the index i (\"1\" for all "
+      "alike), or \"q[1]\" = … for one element");
   EXPECT_EQ(start("x = [1, 2]"), "scene.toml:7:15: 'x' is one number; found a list of 2");
   EXPECT_EQ(start("x = \"1/0\""), "scene.toml:7:16: the value is not finite");
   EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 1"),
-            "scene.toml:7:35: this condition contradicts the ones before it");
-  EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 0"),
-            "scene.toml:7:35: this condition follows from the ones before it; leave it out");
+            "scene.toml:7:35: 'q[2]' is given by its whole array already; leave one of them out");
+  EXPECT_EQ(start("x = 0, p_x = 1"),
+            "scene.toml:7:24: 'x' and 'p_x' are both given at this end; leave one of them out, it follows");
+  EXPECT_EQ(start("x = 0, q = \"0*i\", p_x = 1, p_q = [1, 2, 3]").substr(0, 40),
+            "scene.toml:7:37: every coordinate and eve");
+  EXPECT_EQ(
+      start("\"x'\" = 1"),
+      "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); an "
+      "initial state is a guess: state = { \"x'\" = … } in [guess]");
+  EXPECT_EQ(start("p_y = 1").substr(0, 37), "scene.toml:7:11: unknown coordinate '");
+  EXPECT_EQ(start("v_x = 1"),
+            "scene.toml:7:11: unknown coordinate 'v_x'; velocities are written \"x'\", and only "
+            "'state' in [guess] holds them");
+}
+
+TEST_F(Scenes, EndsOfArraysAreFormulasInTheIndex) {
+  const Study s =
+      study(masses +
+                "[boundary]\nstart = { q = \"k*i\", p_x = 0.5 }\nend = { p_q = [\"k\", 2, \"-i\"] }\n"
+                "duration = \"k + m[2]\"\n",
+            {"boundary.start.q[2]=-1"});
+  EXPECT_EQ(fixed(s, 1), 4.0);
+  EXPECT_EQ(fixed(s, 2), -1.0);
+  EXPECT_EQ(fixed(s, 3), 12.0);
+  EXPECT_EQ(s.problem.boundary.momenta, (std::vector<double>{0.5, 0, 0, 0, 0, 4, 2, -3}));
+  EXPECT_EQ(s.problem.ends.free, 5);
+}
+
+TEST_F(Scenes, DefinitionsStandInEveryFormula) {
+  const Study s = study(
+      "[system]\ncoordinates = [\"a\"]\nparameters = { l = 2.0, g = \"4*l\", a0 = \"angle/2\" }\n"
+      "definitions = { X = \"l*sin(a)\", Y = \"-l*cos(a)\", angle = \"pi/l\", period = \"2*pi*sqrt(l/g)\" }\n"
+      "lagrangian = \"(X'^2 + Y'^2)/2 - g*Y\"\n"
+      "[boundary]\nstart = { a = \"a0\" }\nend = { a = \"angle\" }\nduration = \"period/2\"\n"
+      "[guess]\na = \"angle*(1 + t/T)/2\"\n");
+  EXPECT_DOUBLE_EQ(fixed(s, 0), std::acos(-1.0) / 4);
+  EXPECT_DOUBLE_EQ(fixed(s, 1), std::acos(-1.0) / 2);
+  EXPECT_DOUBLE_EQ(s.problem.duration.value, std::acos(-1.0) / 2);
+  EXPECT_DOUBLE_EQ(s.system.parameters.at("g").value[0], 8);
+}
+
+TEST_F(Scenes, ErrorsOfDefinitionsPointToThem) {
+  EXPECT_EQ(
+      message("[system]\ncoordinates = [\"x\"]\ndefinitions = { d = \"2*dd\" }\nlagrangian = \"x'^2/2\"\n"
+              "[boundary]\nstart = { x = \"d\" }\nduration = 1\n")
+          .substr(0, 38),
+      "scene.toml:3:24: unknown name 'dd'; di");
+}
+
+TEST_F(Scenes, ParametersThatNothingUses) {
+  const auto refused = [&](const std::string& parameters, const std::vector<std::string>& sets = {}) {
+    return message("[system]\nuse = \"pendulum\"\nparameters = { " + parameters +
+                       " }\n[boundary]\nstart = { theta = 0 }\nend = { theta = 1 }\nduration = 1\n",
+                   sets);
+  };
+  EXPECT_EQ(refused("g = 1.62, l = 2"), "");
+  EXPECT_EQ(refused("G = 1.62").substr(0, 53), "scene.toml:3:16: nothing uses the parameter 'G'; the ");
+  EXPECT_NE(refused("G = 1.62").find("did you mean 'g'?"), std::string::npos);
+  EXPECT_EQ(refused("a = 1"), "scene.toml:3:16: nothing uses the parameter 'a'; the formulas use g, l, m");
+  EXPECT_EQ(refused("g = 1", {"system.parameters.nu=2"}).substr(0, 58),
+            "--set system.parameters.nu: nothing uses the parameter 'nu");
+  EXPECT_EQ(refused("a = 1", {"boundary.end.theta=a"}), "");
+  EXPECT_EQ(refused("a = 1", {"boundary.duration=2*a"}), "");
+  EXPECT_EQ(refused("a = 1, b = \"2*a\"", {"guess.theta=b*t/T"}), "");
+  EXPECT_EQ(refused("a = 1", {"continuation.parameter=a", "continuation.to=2"}), "");
 }
 
 TEST_F(Scenes, ErrorsOfFormulasPointIntoTheScene) {

@@ -8,11 +8,11 @@
 namespace extremal {
 namespace {
 
-System plane() {
-  return {.coordinates = {{"x", 0, 1, false}, {"q", 1, 2, true}},
-          .names = {"x", "q[1]", "q[2]"},
-          .parameters = {{"a", {{2}}}, {"m", {{3, 5}, true}}},
-          .lagrangian = nullptr};
+Vocabulary plane() {
+  Vocabulary plane({{"a", {{2}}}, {"m", {{3, 5}, true}}},
+                   {{"s", "x^2 + q[2]"}, {"c", "2*a"}, {"u", "x'"}, {"wave", "sin(t)"}, {"half", "x/2"}});
+  plane.coordinates = {{"x", 0, 1, false}, {"q", 1, 2, true}};
+  return plane;
 }
 
 std::vector<double> dense(const std::vector<Triplet>& triplets, int size) {
@@ -25,7 +25,7 @@ std::vector<double> dense(const std::vector<Triplet>& triplets, int size) {
 }
 
 TEST(FormulaEnds, AffineEquationsAreRecognised) {
-  const System system = plane();
+  const Vocabulary system = plane();
   const EndEquation equation = end_equation("x(0) - a*q[2](T)/4 = m[1] + q[1](0)", system, "conditions[0]");
   EXPECT_TRUE(equation.affine);
   EXPECT_EQ(dense(equation.coefficients, 6), (std::vector<double>{1, -1, 0, 0, 0, -0.5}));
@@ -38,7 +38,7 @@ TEST(FormulaEnds, AffineEquationsAreRecognised) {
 }
 
 TEST(FormulaEnds, AffineEquationsHideInProductsAndSums) {
-  const System system = plane();
+  const Vocabulary system = plane();
   const EndEquation equation =
       end_equation("2*(x(0) + 3*(x(T) - 1))/5 = sum(i, 1, 2, m[i]*q[i](T))", system, "where");
   EXPECT_TRUE(equation.affine);
@@ -49,7 +49,7 @@ TEST(FormulaEnds, AffineEquationsHideInProductsAndSums) {
 }
 
 TEST(FormulaEnds, OtherEquationsAreFunctionsWithAGradient) {
-  const System system = plane();
+  const Vocabulary system = plane();
   const EndEquation equation = end_equation("sin(x(0))*q[1](T)^2 = exp(q[2](0))", system, "where");
   EXPECT_FALSE(equation.affine);
   EXPECT_TRUE(equation.coefficients.empty());
@@ -63,7 +63,7 @@ TEST(FormulaEnds, OtherEquationsAreFunctionsWithAGradient) {
 }
 
 TEST(FormulaEnds, MalformedEquationsAreRefused) {
-  const System system = plane();
+  const Vocabulary system = plane();
   const auto refused = [&](const std::string& text) {
     return error_of([&] { end_equation(text, system, "where"); });
   };
@@ -88,7 +88,7 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
 }
 
 TEST(FormulaEnds, MapsAreAffineInTheCoordinates) {
-  const System system = plane();
+  const Vocabulary system = plane();
   const AffineForm form = affine_form("-x + a*q[2] + 2*pi", system, "map.x");
   EXPECT_EQ(dense(form.coefficients, 3), (std::vector<double>{-1, 0, 2}));
   EXPECT_DOUBLE_EQ(form.constant, 2 * M_PI);
@@ -104,6 +104,35 @@ TEST(FormulaEnds, MapsAreAffineInTheCoordinates) {
   EXPECT_EQ(refused("x'"), "\"x'\" is a velocity; a map is made of coordinates | map.x | 0");
   EXPECT_EQ(refused("x(0)"), "'x' is a coordinate, not a function; write x*(…) to multiply | map.x | 0");
   EXPECT_EQ(refused("y"), "unknown name 'y'; is it a parameter that is not declared? | map.x | 0");
+}
+
+TEST(FormulaEnds, DefinitionsHaveValuesAtTheEnds) {
+  const Vocabulary system = plane();
+  const EndEquation equation = end_equation("s(T) - s(0) = c*x(0)", system, "where");
+  EXPECT_FALSE(equation.affine);
+  const std::vector<double> start{1, 2, 3}, end{4, 5, 6};
+  std::vector<double> gradient(6, 99);
+  EXPECT_EQ(equation.function(start, end, gradient), (16 + 6) - (1 + 3) - 4);
+  EXPECT_EQ(gradient, (std::vector<double>{-2 - 4, 0, -1, 8, 0, 1}));
+  EXPECT_TRUE(end_equation("half(T) = c", system, "conditions").affine);
+  EXPECT_EQ(end_equation("x(T) = c(0)", system, "conditions").constant, -4);
+  const auto refused = [&](const std::string& text) {
+    return error_of([&] { end_equation(text, system, "where"); });
+  };
+  EXPECT_EQ(refused("s = 1"), "write s(0) or s(T): a condition holds between end values | where | 0");
+  EXPECT_EQ(refused("s(1) = 1"), "write s(0) or s(T) for the value at an end | where | 0");
+  EXPECT_EQ(refused("u(0) = 1"),
+            "the definition 'u' depends on velocities; conditions hold between coordinates | where | 0");
+  EXPECT_EQ(refused("wave(0) = x(0)"),
+            "the definition 'wave' depends on t; conditions hold between coordinates | where | 0");
+}
+
+TEST(FormulaEnds, MapsUseDefinitionsAndTheIndex) {
+  const Vocabulary system = plane();
+  EXPECT_EQ(dense(affine_form("c*half + q[3 - i]", system, "map", 1).coefficients, 3),
+            (std::vector<double>{2, 0, 1}));
+  EXPECT_EQ(error_of([&] { affine_form("u", system, "map"); }),
+            "the definition 'u' depends on velocities, which cannot stand here | map | 0");
 }
 
 }  // namespace

@@ -88,11 +88,26 @@ TEST(FormulaNames, UnknownNamesAreMended) {
   EXPECT_EQ(refused("q[5]"), "q[5] is out of range: 'q' has 4 elements, counted from 1 | lagrangian | 0");
   EXPECT_EQ(refused("q'[1]"), "the index stands before the prime: q[…]' | lagrangian | 2");
   EXPECT_EQ(refused("x''"), "a second \"'\"; formulas know first derivatives only | lagrangian | 2");
-  EXPECT_EQ(refused("t'"), "'t' has no velocity; only coordinates have | lagrangian | 0");
+  EXPECT_EQ(refused("t'"), "'t' has no velocity; only coordinates and definitions have | lagrangian | 0");
+  EXPECT_EQ(
+      refused("mu'"),
+      "'mu' is a parameter and has no velocity; only coordinates and definitions have | lagrangian | 0");
   EXPECT_EQ(refused("kinetic'"),
-            "'kinetic' is a definition and has no velocity; only coordinates have | lagrangian | 0");
+            "'kinetic' has velocities in it, so \"kinetic'\" would need second derivatives | lagrangian | 0");
   EXPECT_EQ(refused("pi[1]"), "'pi' is one number and takes no index | lagrangian | 0");
   EXPECT_EQ(refused("q[x]"), "an index is made of numbers, parameters and indices only | lagrangian | 2");
+}
+
+TEST(FormulaNames, VelocitiesInOtherNotations) {
+  const auto refused = [](const std::string& lagrangian) {
+    const std::string error = error_of({.coordinates = {"x", "q[4]"}, .lagrangian = lagrangian});
+    const auto mend = error.find(';');
+    return mend == error.npos ? error : error.substr(mend + 2, error.find(" |") - mend - 2);
+  };
+  for (const char* name : {"dx/dt", "dx", "x_dot", "xdot", "v_x", "vx", "diff(x, t)", "x_t"})
+    EXPECT_EQ(refused(std::string(name) + "*1"), "velocities are written x'") << name;
+  EXPECT_EQ(refused("q_dot[2]^2"), "velocities are written q[1]'");
+  EXPECT_EQ(refused("x'(t)^2"), "write x' for x'(t) | lagrangian | 0");
 }
 
 TEST(FormulaNames, IndicesOfSumsAreChecked) {

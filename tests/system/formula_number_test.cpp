@@ -117,7 +117,8 @@ TEST(FormulaNumber, UnknownNamesAreMended) {
   EXPECT_EQ(refusal("atan2(1)"), "atan2 takes 2 arguments, here are 1 | duration | 0");
   EXPECT_EQ(refusal("sin(1, 2)"), "sin takes 1 argument, here are 2 | duration | 0");
   EXPECT_EQ(refusal("2*t"), "unknown name 't'; the time cannot stand here | duration | 2");
-  EXPECT_EQ(refusal("a'"), "'a' is a parameter and has no velocity; only coordinates have | duration | 0");
+  EXPECT_EQ(refusal("a'"),
+            "'a' is a parameter and has no velocity; only coordinates and definitions have | duration | 0");
   EXPECT_EQ(refusal("m + 1"), "'m' has 4 elements; write m[1] … m[4] | duration | 0");
   EXPECT_EQ(refusal("a[1]"), "'a' is a parameter without elements; write a | duration | 0");
 }
@@ -160,7 +161,7 @@ TEST(FormulaNumber, NestingIsBounded) {
 
 TEST(FormulaNumber, ParametersAreChecked) {
   const auto refused = [](const std::string& name, ParameterText text) {
-    return error_of([&] { number("1", {{name, text}}, "duration"); });
+    return error_of([&] { number("1", std::map<std::string, ParameterText>{{name, text}}, "duration"); });
   };
   EXPECT_EQ(refused("2m", {{1}}),
             "'2m' is not a name: it takes letters, digits and _, and no digit first | parameters.2m | 0");
@@ -194,10 +195,11 @@ TEST(FormulaNumber, GuessesAreTabulated) {
   EXPECT_EQ(refused("sum(i, 1, 2, i)", 1),
             "the index 'i' is an index already; choose another name for it | guess.x | 4");
   EXPECT_EQ(error_of([&] {
-              tabulate("1 + i", {{"i", {{7}}}}, 2, times, 1, "guess.x");
+              tabulate("1 + i", std::map<std::string, ParameterText>{{"i", {{7}}}}, 2, times, 1, "guess.x");
             }),
-            "'i' is the index of the element and a parameter; rename the parameter | guess.x | 4");
-  EXPECT_EQ(tabulate("1 + i", {{"i", {{7}}}}, 2, {}, 0, "guess.x"), std::vector<double>{});
+            "'i' is the index of the element and a parameter; rename that one | guess.x | 4");
+  EXPECT_EQ(tabulate("1 + i", std::map<std::string, ParameterText>{{"i", {{7}}}}, 2, {}, 0, "guess.x"),
+            std::vector<double>{});
 }
 
 TEST(FormulaNumber, NearestNameKnowsTyposButNotStrangers) {

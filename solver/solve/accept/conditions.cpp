@@ -65,12 +65,14 @@ std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions
   if (!balanced(solution, path, newton))
     return Refusal{
         Status::not_converged,
-        fmt::format("a residual of {:.1e} of the largest momentum is left: forces are too strong for "
-                    "what they move; try another guess",
+        fmt::format("a residual of {:.1e} of the largest momentum remains: forces are too large against the "
+                    "momenta; try another guess",
                     solution.residual)};
   if (!closed(problem, options, path, tables, newton))
-    return Refusal{Status::no_solution_near,
-                   "the duration ran away: no extremal near the guess meets what closes it"};
+    return Refusal{
+        Status::no_solution_near,
+        "the duration left the range of the guess: no extremal near it satisfies the condition that "
+        "determines the duration; try another guess"};
   return std::nullopt;
 }
 
@@ -85,21 +87,18 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
   const bool conserved =
       !found || options.scheme || conserves_energy(*found, solution.trajectory, options.tolerance);
   if (!conserved || (raised && options.elements == 0 && solution.error_estimate > outcome.tolerance))
-    return Refusal{
-        Status::not_converged,
-        fmt::format(
-            "the energy drifts by {:.1e}, more than the tolerance {:.1e} explains: between the points "
-            "of its elements the path passes a singularity or a kink that they do not resolve; try "
-            "another tolerance",
-            *solution.energy_drift, options.tolerance)};
+    return Refusal{Status::not_converged,
+                   fmt::format("the energy drifts by {:.1e}, more than the tolerance {:.1e} allows: L has a "
+                               "singularity or a kink on the path that the elements do not resolve; try "
+                               "another tolerance",
+                               *solution.energy_drift, options.tolerance)};
   if (found && problem.ends.free > 0 && !options.scheme &&
       !within_momenta(problem, *found, options.tolerance, nullity, path, action))
     return Refusal{
         Status::not_converged,
         fmt::format(
-            "a residual of {:.1e} of the largest momentum is left, more than momenta change by within "
-            "the tolerance {:.1e}: forces all but vanish along the path, and there may be no extremal "
-            "near; try another guess",
+            "a residual of {:.1e} of the largest momentum remains, more than the tolerance {:.1e} allows: "
+            "forces nearly vanish along the path, and there may be no extremal near; try another guess",
             solution.residual, options.tolerance),
         // Orbits near rest: the smaller the next one is, the more roundoff hides of its residual.
         problem.periodic};
@@ -107,9 +106,9 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
   if (outcome.elsewhere && !problem.periodic && nullity > 0)
     return Refusal{
         Status::conjugate_ends,
-        "away from the guess a path was found along which the second variation is singular: the ends "
-        "may be conjugate, with a family of extremals, or forces vanish along it; move an end or "
-        "the duration, or try a better guess"};
+        "the path found is far from the guess, and its second variation is singular: the ends may be "
+        "conjugate, or forces vanish along the path; move an end, change the duration, or try a better "
+        "guess"};
   return std::nullopt;
 }
 

@@ -46,9 +46,9 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, c
   if (distance <= T * std::clamp(known, least_distance, largest_distance))
     return refuse(
         solution, Status::conjugate_ends,
-        fmt::format("the ends are conjugate: at {:.1e} from T = {:.10g}, within the error, a Jacobi "
-                    "field vanishes at both; there is no extremal or a family of them; move an end or "
-                    "the duration",
+        fmt::format("the ends are conjugate: a Jacobi field vanishes at t = 0 and, within the error, {:.1e} "
+                    "from T = {:.10g}; there is no extremal or a family of them; move an end or change the "
+                    "duration",
                     distance, T));
   const double moved =
       size > 0 && !options.scheme ? moved_by_finer_elements(problem, path, w, 0.1 * options.tolerance) : 0;
@@ -56,12 +56,12 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, c
   solution.error_estimate += amplified;
   const double allowed = options.elements > 0 ? INFINITY : options.tolerance * size;
   if (amplified > 0.1 * allowed && !(solution.error_estimate <= allowed))
-    refuse(
-        solution, Status::not_converged,
-        fmt::format("the ends are nearly conjugate: at {:.1e} from T = {:.10g} a Jacobi field vanishes at "
-                    "both, which amplifies errors beyond the tolerance {:.1e}; loosen or tighten it, or move "
-                    "an end or the duration",
-                    distance, T, options.tolerance));
+    refuse(solution, Status::not_converged,
+           fmt::format(
+               "the ends are nearly conjugate: a Jacobi field vanishes at t = 0 and {:.1e} from T = {:.10g}. "
+               "This amplifies errors beyond the tolerance {:.1e}; loosen or tighten it, move an end, or "
+               "change the duration",
+               distance, T, options.tolerance));
 }
 
 bool failed_at_conjugate_ends(const Problem& problem, const Trajectory& last, SecondVariation& memory) {

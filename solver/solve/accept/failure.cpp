@@ -3,6 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/accept/conjugate_ends.hpp"
@@ -18,17 +22,102 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+using Point = std::span<const double>;
+
+bool singular_mass(const Problem& problem, Point q) {
+  const int n = problem.coordinates();
+  const std::vector<double> v(n, 0.1);
+  Scratch scratch;
+  const PointValues at = evaluate_at(*problem.lagrangian, q, v, 0, Order::hessian, scratch);
+  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
+  return mass.allFinite() && mass.fullPivLu().rank() < n;
+}
+
+/// The guess in the middle; the default guess, where no coordinate is free, at that of the ends.
+std::vector<double> middle_of_guess(const Problem& problem) {
+  const std::size_t n = problem.coordinates();
+  std::vector<double> q(n, 0.1);
+  if (problem.guess.given())
+    problem.guess.at(0.5, q);
+  else
+    for (std::size_t a = 0; a < n; ++a)
+      if (problem.ends.fixed[a] && problem.ends.fixed[n + a])
+        q[a] = 0.5 * (problem.ends.offset[a] + problem.ends.offset[n + a]);
+  return q;
+}
+
+/// The end, where every coordinate is fixed; else nothing.
+Point fixed_end(const Problem& problem, bool end) {
+  const std::size_t n = problem.coordinates(), first = end ? n : 0;
+  const auto begin = problem.ends.fixed.begin() + static_cast<std::ptrdiff_t>(first);
+  const bool fixed = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(n), [](char f) { return f; });
+  return fixed ? Point(problem.ends.offset).subspan(first, n) : Point();
+}
+
+std::string place_of(const Problem& problem, Point q) {
+  std::string place;
+  for (std::size_t a = 0; a < std::min<std::size_t>(q.size(), most_named); ++a)
+    place += fmt::format("{}{} = {:.6g}", a ? ", " : "",
+                         problem.names.empty() ? fmt::format("q[{}]", a + 1) : problem.names[a], q[a]);
+  return place + (q.size() > most_named ? ", …" : "");
+}
+
+/// An end where L is not finite at rest nor at speeds along each axis, or an end that no motion reaches in
+/// time: where L is finite at rest, but not at the mean velocity between the ends.
+std::string unreachable(const Problem& problem) {
+  const std::size_t n = problem.coordinates();
+  const double duration = problem.duration.value;
+  Scratch scratch;
+  const auto finite = [&](Point q, const std::vector<double>& v, double t) {
+    return std::isfinite(evaluate_at(*problem.lagrangian, q, v, t, Order::value, scratch).value);
+  };
+  for (const bool end : {false, true}) {
+    const Point q = fixed_end(problem, end);
+    if (q.empty()) continue;
+    std::vector<double> v(n, 0);
+    bool somewhere = finite(q, v, end ? duration : 0);
+    for (std::size_t a = 0; a < n && !somewhere; ++a) {
+      for (const double speed : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
+        v[a] = speed;
+        somewhere = somewhere || finite(q, v, end ? duration : 0);
+      }
+      v[a] = 0;
+    }
+    if (!somewhere)
+      return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
+                         place_of(problem, q));
+  }
+  const Point start = fixed_end(problem, false), end = fixed_end(problem, true);
+  if (start.empty() || end.empty() || problem.duration.free) return {};
+  std::vector<double> mean(n);
+  for (std::size_t a = 0; a < n; ++a) mean[a] = (end[a] - start[a]) / duration;
+  if (finite(start, mean, 0) || finite(end, mean, duration)) return {};
+  return fmt::format(
+      "L is not finite at the mean velocity between the ends, {:.6g}: they may be out of reach in this "
+      "duration; try a longer one, or ends nearer to each other",
+      std::sqrt(std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0)));
+}
+
 /// Why a solve may have failed before it began; empty if nothing is found.
 std::string irregularity(const Problem& problem) {
   const int n = problem.coordinates();
   if (n > most_coordinates) return {};
-  std::vector<double> q(n, 0.1), v(n, 0.1);
-  if (problem.guess.given()) problem.guess.at(0.5, q);
-  Scratch scratch;
-  const PointValues at = evaluate_at(*problem.lagrangian, q, v, 0, Order::hessian, scratch);
-  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
-  if (!mass.allFinite() || mass.fullPivLu().rank() == n) return {};
-  return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
+  if (std::string reason = unreachable(problem); !reason.empty()) return reason;
+  const std::vector<double> middle = middle_of_guess(problem);
+  const std::pair<const char*, Point> points[] = {
+      {"start", fixed_end(problem, false)}, {"end", fixed_end(problem, true)}, {"guess", middle}};
+  for (const auto& [where, q] : points) {
+    if (q.empty() || !singular_mass(problem, q)) continue;
+    std::vector<double> beside(q.begin(), q.end());
+    for (int a = 0; a < n; ++a) beside[a] += aside * (1 + std::abs(q[a])) * (a + 1) / n;
+    if (singular_mass(problem, beside))
+      return "the Lagrangian is not regular: its mass matrix ∂²L/∂q'∂q' is singular";
+    return fmt::format(
+        "the mass matrix ∂²L/∂q'∂q' is singular at {}, a point of the {}, though not beside it: momenta do "
+        "not determine velocities there; avoid it, or take other coordinates",
+        place_of(problem, q), where);
+  }
+  return {};
 }
 
 }  // namespace
@@ -45,7 +134,8 @@ Solution explain_failure(const Problem& problem, const SolveOptions& options, co
              failed_at_conjugate_ends(problem, trajectory_of(last.path), w.variation)) {
     solution.status = Status::conjugate_ends;
     solution.message =
-        "the ends seem to be conjugate, with no extremal or a family of them; move an end or the duration (" +
+        "the ends seem to be conjugate: there is no extremal or a family of them; move an end or change the "
+        "duration (" +
         last.message + ")";
   }
   solution.strategy = last.strategy;

@@ -55,6 +55,10 @@ namespace failure {
 
 /// Singular mass matrices of more coordinates are not looked for.
 inline constexpr int most_coordinates = 64;
+/// How far beside a point, relative, its mass matrix is looked at too.
+inline constexpr double aside = 0.01;
+/// Coordinates of a place that are named.
+inline constexpr std::size_t most_named = 6;
 
 }  // namespace failure
 

@@ -51,8 +51,8 @@ void refuse(Solution& solution, Status status, std::string message) {
 /// Refuses a solution of which `what`, relative to its range, is more than a tolerance allows.
 void refuse(Solution& solution, const char* what, double much, double tolerance, const char* why) {
   refuse(solution, Status::not_converged,
-         fmt::format("with other points in each element {} differ by {:.1e} of their range, more than the "
-                     "tolerance {:.1e} allows: {}; try another tolerance",
+         fmt::format("a finer quadrature changes {} by {:.1e} of their range, more than the tolerance {:.1e} "
+                     "allows: {}; try another tolerance",
                      what, much, tolerance, why));
 }
 
@@ -114,31 +114,32 @@ bool polish(Path& path, NewtonIteration& newton) {
 void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options, const Outcome& outcome,
                       Solution& solution) {
   if (!check.isolated)
-    return refuse(solution, Status::conjugate_ends,
-                  "the second variation is singular along the path found, though no symmetry makes it so: "
-                  "forces vanish along it, or the ends are conjugate, with a family of extremals; move an "
-                  "end or the duration, or try a better guess");
+    return refuse(
+        solution, Status::conjugate_ends,
+        "the second variation of the path found is singular, and not by a symmetry: forces vanish along "
+        "the path, or the ends are conjugate; move an end, change the duration, or try a better guess");
   if (check.unlike)
     return refuse(solution, Status::not_converged,
-                  "forces along the orbit lack the symmetries of its guess; try another guess");
+                  "the forces along the orbit do not have the symmetries of the guess; try another guess");
   if (!std::isfinite(check.moved))
-    return refuse(solution, Status::not_converged,
-                  "with other points in each element the action is not finite: the path runs through a "
-                  "singularity of L; try another guess");
+    return refuse(
+        solution, Status::not_converged,
+        "the action is not finite with a finer quadrature: the path runs through a singularity of L; "
+        "try another guess");
   if (!options.scheme && !(check.turned <= most_turned * options.tolerance))
     return refuse(solution, "velocities", check.turned, options.tolerance,
                   "the path turns sharply, and roundoff is amplified");
   if (!options.scheme && !(check.kicked <= momentum_tolerances * options.tolerance))
     return refuse(solution, "the momenta at the ends", check.kicked, options.tolerance,
-                  "forces rise within the first element or the last");
+                  "forces change fast within the first or the last element");
   if (check.moved <= honest * solution.error_estimate) return;
   solution.error_estimate = check.moved;
   if (options.elements > 0 || check.moved <= outcome.tolerance) return;
   refuse(solution, Status::not_converged,
-         fmt::format("with other points in each element the path moves by {:.1e}, {:.0f} times what the "
-                     "tolerance {:.1e} allows: they see other forces, or amplify roundoff; try another "
-                     "tolerance",
-                     check.moved, check.moved / outcome.tolerance, options.tolerance));
+         fmt::format(
+             "a finer quadrature moves the path by {:.1e}, {:.0f} times what the tolerance {:.1e} allows: "
+             "forces vary fast within an element, or roundoff is amplified; try another tolerance",
+             check.moved, check.moved / outcome.tolerance, options.tolerance));
 }
 
 }  // namespace extremal

@@ -7,7 +7,8 @@ namespace extremal {
 void Outcome::record(const NewtonIteration& newton, const SolveOptions& options) {
   constexpr double largest = std::numeric_limits<double>::max();
   const double residual = newton.action().residual();
-  ++iterations;
+  ++attempts;
+  if (newton.action().finite()) ++iterations;
   if (options.progress)
     options.progress({.elements = path.elements(),
                       .degree = path.degree(),

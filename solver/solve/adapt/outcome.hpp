@@ -22,8 +22,9 @@ struct Outcome {
   bool recovered = false;
   double error = 0;      ///< of q, absolute
   double tolerance = 0;  ///< absolute
-  int iterations = 0;
-  bool hidden = false;  ///< an extremal is near, but roundoff is more than the tolerance
+  int iterations = 0;    ///< steps that were taken
+  int attempts = 0;      ///< these, and paths from which there was no step
+  bool hidden = false;   ///< an extremal is near, but roundoff is more than the tolerance
   /// Where symmetries left a part of an orbit to be found: the part, of which `path` is the whole.
   Path part;
   const Reduction* reduction = nullptr;

@@ -203,8 +203,8 @@ Outcome PinnedSolve::run() {
       }
       if (options_.elements == 0) {
         outcome_.message = fmt::format(
-            "no extremal that holds its energy was found near that of {} elements with others of higher "
-            "degree; try another tolerance or guess, or let the program choose the scheme",
+            "elements of higher degree give no extremal that conserves its energy near that of {} elements; "
+            "try another tolerance or guess, or leave the scheme out",
             elements);
         break;
       }
@@ -224,8 +224,9 @@ Outcome PinnedSolve::run() {
     }
     const bool futile = cost_ > most_cost && elements > futile_growth * of_least && least < resolved * size.q;
     if (futile || (outcome_.error > stagnation * before && outcome_.error < noise)) {
-      outcome_.message = fmt::format("roundoff hides the tolerance {:.1e} from {} elements on; loosen it",
-                                     options_.tolerance, elements);
+      outcome_.message =
+          fmt::format("the tolerance {:.1e} is below roundoff with {} elements or more; loosen it",
+                      options_.tolerance, elements);
       break;
     }
     // An error that falls as expected gives the number of elements needed; else the next number.

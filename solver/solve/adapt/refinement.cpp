@@ -121,7 +121,7 @@ bool Refinement::holds_on_other_elements() {
   rebind();
   outcome_.error = std::max(outcome_.error, moved);
   const bool holds = report.reached && moved <= options_.tolerance * scales_.q;
-  if (!holds) outcome_.message = "other elements told another path";
+  if (!holds) outcome_.message = "other elements converge to another path";
   return holds;
 }
 

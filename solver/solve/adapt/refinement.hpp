@@ -27,13 +27,13 @@ class Refinement {
 
   /// Steps that all paths from now on may take together, and that share of the time of one solve.
   void allow(int steps, double share = 1) {
-    most_steps_ = outcome_.iterations + steps;
+    most_steps_ = outcome_.attempts + steps;
     cost_ = 0;
     share_ = share;
   }
-  int steps_left() const { return most_steps_ - outcome_.iterations; }
+  int steps_left() const { return most_steps_ - outcome_.attempts; }
   bool exhausted() const {
-    return outcome_.iterations >= most_steps_ || cost_ >= affordable() || options_.deadline.passed();
+    return outcome_.attempts >= most_steps_ || cost_ >= affordable() || options_.deadline.passed();
   }
 
   static constexpr int first_degree = 4;

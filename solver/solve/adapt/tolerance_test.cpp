@@ -100,7 +100,7 @@ Refinement::Attempt Refinement::satisfy_natural_conditions(const NewtonReport& r
 
 /// The message where roundoff hides the tolerance.
 std::string Refinement::hidden(double amplified) const {
-  return fmt::format("roundoff, amplified to {:.1e} of the range, hides the tolerance {:.1e}; loosen it",
+  return fmt::format("roundoff is amplified to {:.1e} of the range, beyond the tolerance {:.1e}; loosen it",
                      amplified, options_.tolerance);
 }
 

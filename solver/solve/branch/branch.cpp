@@ -144,7 +144,7 @@ bool Branch::linearise_duration(Factors factors) {
   off_ = by_energy
              ? 0
              : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
-  action_slope_ = -energy_ * direction.parameter;
+  action_slope_ = -energy_ * direction.parameter + work_of_momenta(direction);
   return true;
 }
 
@@ -194,8 +194,19 @@ bool Branch::linearise_parameter() {
   direction.scale(1 / (2 * by));
   direction.parameter = 1;
   action_slope_ = (after_action - before_action) / (2 * by);
+  action_slope_ += work_of_momenta(direction);
   if (problem_.duration.free) action_slope_ -= energy_ * direction.step.duration;
   return true;
+}
+
+/// p(T)·δq(T) − p(0)·δq(0) of momenta that are given: S is not stationary in these ends.
+double Branch::work_of_momenta(const Move& move) const {
+  const std::span<const double> momenta = problem_.boundary.momenta;
+  const std::size_t n = momenta.size() / 2, last = move.step.nodes.size() - n;
+  double work = 0;
+  for (std::size_t a = 0; a < n; ++a)
+    work += momenta[n + a] * move.step.nodes[last + a] - momenta[a] * move.step.nodes[a];
+  return work;
 }
 
 /// The step from the path, as it would lie in the problem beside, to that problem's extremal. Returns the
@@ -208,6 +219,7 @@ double Branch::solve_beside(double by, Move& move) {
   at_ = path_;
   fit_path(*problem);
   action.substitute(*problem->lagrangian, beside_.at(path_.degree()));
+  action.give_momenta(problem->boundary.momenta);
   w_.iteration.model().evaluate_gradient(action, path_);
   ClosingEquation equation;
   w_.iteration.model().solve(action, closing_equation(*problem, path_, equation), move.step);
@@ -215,6 +227,7 @@ double Branch::solve_beside(double by, Move& move) {
   move.step.duration += path_.duration() - at_.duration();
   move.parameter = by;
   action.substitute(*problem_.lagrangian, *tables_);
+  action.give_momenta(problem_.boundary.momenta);
   path_.copy_values(at_);
   path_.load_ends();
   return action.finite() ? action.action() : NAN;

@@ -98,6 +98,7 @@ class Branch : public ExtremalCurve {
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);
   void note_action();
+  double work_of_momenta(const Move& move) const;
   std::vector<double> ends() const;
   double weight(int k) const;
 

@@ -9,6 +9,7 @@ namespace extremal {
 Displacement::Displacement(const Problem& problem, const ElementTables& tables, Path& path)
     : problem_(problem), path_(path), start_(path) {
   action_.reset(*problem.lagrangian, tables, path.elements(), problem.duration.free, false);
+  action_.give_momenta(problem.boundary.momenta);
   equations_.reset(problem, tables, path.elements());
   entries_.resize(equations_.rows().size());
   weights_.resize(equations_.unknowns());

@@ -12,16 +12,16 @@ using namespace limits::converge;
 
 namespace {
 
-constexpr const char* spent = "the effort that one solve may take is spent";
+constexpr const char* spent = "the limit of work for one solve is reached";
 
 std::string describe(StepResult result) {
   switch (result) {
     case StepResult::singular:
-      return "the second variation became singular";
+      return "the second variation is singular";
     case StepResult::not_finite:
       return "the action is not finite along the path";
     default:
-      return "Newton's method had to be damped too strongly";
+      return "the steps of Newton's method became too short";
   }
 }
 

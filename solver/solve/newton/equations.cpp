@@ -69,6 +69,13 @@ void Equations::spread(std::vector<double>& to, int first, int last, const doubl
 
 void Equations::clear_gradient() { std::fill(gradient_.begin(), gradient_.end(), 0.0); }
 
+void Equations::add_momenta(const DiscreteAction& action) {
+  for (std::size_t e = 0; e < action.momenta().size(); ++e)
+    for (int s = end_start_[e]; s < end_start_[e + 1]; ++s)
+      gradient_[end_shares_[s].unknown] +=
+          end_shares_[s].factor * (static_cast<int>(e) < n_ ? 1 : -1) * action.momenta()[e];
+}
+
 void Equations::add_gradient(int batch, const double* gradient) {
   spread(gradient_, batch * lanes_, std::min(elements_, (batch + 1) * lanes_), gradient);
 }
@@ -82,6 +89,7 @@ void Equations::load(std::span<const double> nodes) {
 void Equations::evaluate(DiscreteAction& action, const Path& path, std::span<double> entries) {
   const bool hessian = !entries.empty();
   clear_gradient();
+  add_momenta(action);
   if (hessian) {
     std::fill(by_duration_.begin(), by_duration_.end(), 0.0);
     corner_ = 0;

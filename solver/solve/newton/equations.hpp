@@ -42,6 +42,8 @@ class Equations {
   /// In place of the gradient that was evaluated last, another: add_gradient() for each batch of elements,
   /// over their local unknowns in lanes.
   void clear_gradient();
+  /// The part of the momenta that are given.
+  void add_momenta(const DiscreteAction& action);
   void add_gradient(int batch, const double* gradient);
   /// Or a load on the nodes, (N + 1) × n, that on the ends left out.
   void load(std::span<const double> nodes);

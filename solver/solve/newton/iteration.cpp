@@ -54,6 +54,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   tables_ = &tables;
   const bool sparse = tables.unknowns() > most_dense_unknowns;
   action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
+  action_.give_momenta(problem.boundary.momenta);
   norm_ = contraction_ = noise_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;

@@ -26,11 +26,8 @@ double difference(const Step& a, const Step& b, double scale, double duration) {
 
 double NewtonIteration::residual() const {
   const EndMap& ends = problem_->ends;
-  const int n = problem_->coordinates();
   free_.assign(ends.free, 0);
-  for (const Triplet& z : ends.z)
-    free_[z.column] +=
-        z.value * (z.row < n ? action_.start_gradient()[z.row] : action_.end_gradient()[z.row - n]);
+  for (const Triplet& z : ends.z) free_[z.column] += z.value * action_.imbalance(z.row);
   double largest = action_.residual();
   for (double g : free_) largest = std::max(largest, std::abs(g));
   return largest;

@@ -41,7 +41,7 @@ double natural_residual(const Problem& problem, const DiscreteAction& action, co
   for (const Triplet& z : problem.ends.z) {
     const bool start = z.row < n;
     const int a = start ? z.row : z.row - n;
-    left[z.column] += z.value * (start ? action.start_gradient()[a] : action.end_gradient()[a]);
+    left[z.column] += z.value * action.imbalance(z.row);
     const NodeEquations& nodes = action.nodes;
     if (nodes.first.empty()) continue;  // a sparse matrix
     const std::vector<double>& block = start ? nodes.first : nodes.last;
@@ -73,8 +73,8 @@ std::string ResidualTest::message() const {
            "there is no "
            "extremal near; try another guess";
   return fmt::format(
-      "the iteration came to rest where a residual of {:.1e} of the largest momentum is left: there is no "
-      "extremal near, or the second variation is nearly singular; try another guess",
+      "Newton's method stopped with a residual of {:.1e} of the largest momentum: there is no extremal near, "
+      "or the second variation is nearly singular; try another guess",
       share_);
 }
 

@@ -96,7 +96,7 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
                                     most_coordinates_for_multipliers);
   } else if (variation.count() == 0) {
-    solution.message += "; nor are multipliers found";
+    solution.message += "; multipliers are not found";
   } else {
     const double error = size > 0 ? solution.error_estimate / size : 0;
     const ClosedOrbit orbit = closed_orbit(problem, solution.trajectory, error);

@@ -47,7 +47,7 @@ Search::Pursuit Search::pursue(const char* strategy) {
   // A path far from the guess may be wild, and resolved by accident only.
   const bool far = ran_away(problem_, magnitude_, scales(path_, refinement_.tables()).magnitude);
   if (result == Refinement::Result::converged && far && problem_.periodic) {
-    outcome_.message = "the orbit ran away to where forces vanish";
+    outcome_.message = "the orbit moved far away, to where forces vanish";
     result = Refinement::Result::failed;
   } else if (result == Refinement::Result::converged && outcome_.elsewhere &&
              (far || !refinement_.holds_on_other_elements())) {
@@ -222,13 +222,15 @@ const Outcome& Search::run(Acceptance* acceptance) {
       result = Refinement::Result::converged;
     } else {
       outcome_.status = Status::iteration_limit;
-      outcome_.message = fmt::format(
-          "{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or a shorter "
-          "duration",
-          outcome_.iterations, failure,
-          met_.contains(Met::other_durations) ? ", through other durations" : "",
-          met_.contains(Met::noise) ? ", from smooth noise" : "",
-          met_.contains(Met::motions) ? ", from motions that miss the end" : "");
+      outcome_.message =
+          fmt::format("{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or {}",
+                      outcome_.iterations, failure,
+                      met_.contains(Met::other_durations) ? ", through other durations" : "",
+                      met_.contains(Met::noise) ? ", from smooth noise" : "",
+                      met_.contains(Met::motions) ? ", from motions that miss the end" : "",
+                      problem_.duration.energy ? "another one of the duration, or another energy"
+                      : problem_.duration.free ? "another one of the duration"
+                                               : "a shorter duration");
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message =
@@ -243,8 +245,8 @@ const Outcome& Search::run(Acceptance* acceptance) {
   if (result != Refinement::Result::converged && doubtful && !problem_.periodic) {
     outcome_.status = Status::conjugate_ends;
     outcome_.message =
-        "the second variation is singular or nearly so: the ends may be conjugate, with no extremal or a "
-        "family of them; move an end or the duration";
+        "the second variation is singular or nearly so: the ends may be conjugate, and there is no extremal "
+        "or a family of them; move an end or change the duration";
   }
   if (outcome_.status != Status::converged && options_.deadline.passed()) {
     outcome_.status = Status::iteration_limit;

@@ -269,6 +269,10 @@ std::vector<Solution> Several::run(int most) {
   const bool converged = first.status == Status::converged;
   Solution solution = acceptance.result(first);
   analysing_ = acceptance.seconds();
+  const auto solving = [&] {
+    return std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
+  };
+  solution.seconds_solve = solving();
   families_ = 1 + (problem_.periodic ? 0 : std::min(problem_.boundary.rows, most_rows));
   const bool begun = converged && add(solution) >= 0;
   std::optional<Solution> failed;
@@ -279,7 +283,10 @@ std::vector<Solution> Several::run(int most) {
   guess();
   while (wanted())
     if (!trace_families()) guess();
-  if (found_.empty()) return {std::move(*failed)};
+  if (found_.empty()) {
+    failed->seconds_solve = solving();
+    return {std::move(*failed)};
+  }
   sort_by_action(found_);
   if (static_cast<int>(found_.size()) < most)
     found_.front().message =

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/layout.hpp"
+
+/// \file Several solutions in one picture.
+
+namespace extremal {
+
+/// All solutions, the first one first.
+std::vector<const Samples*> solutions_of(const Picture& picture);
+
+/// "S = 1.235" with as many digits as tell neighbours apart, but no more than eight.
+std::vector<std::string> action_texts(const Column& actions);
+
+/// Colours by which solutions are told apart, with what explains them: a legend of a few, a scale of many.
+struct SolutionColours {
+  std::vector<Colour> colours;
+  std::vector<LegendEntry> legend;
+  std::optional<Axis> scale;
+};
+SolutionColours solution_colours(const Picture& picture);
+
+/// A motion in space that keeps to a plane or a line, without the axes across it; nothing of any other.
+std::optional<Picture> flattened(const Picture& picture, const Bodies& bodies);
+
+/// A map of each solution below the other, one row for each of some coordinates.
+Figure map_figure(const Picture& picture, const AxisName& name, const std::string& row_name,
+                  const std::vector<std::size_t>& members);
+
+}  // namespace extremal
