@@ -77,14 +77,14 @@ struct Bounds {
     if (steps_taken < steps())
       throw SceneError(
           at, fmt::format("the initial state of the guess cannot be integrated beyond t = {:.6g}", reached));
-    const double duration = problem.duration.value, followed = std::abs(reached - from);
-    throw SceneError(
-        at,
-        fmt::format(
-            "the motion from guess.state makes about {:.2g} oscillations in the duration {:.6g}; {} steps "
-            "of the integrator, the most that elements can follow, lead over {:.2g} of them; shorten the "
-            "duration",
-            oscillations(samples) * duration / followed, duration, steps_taken, oscillations(samples)));
+    const double duration = problem.duration.value, turned = oscillations(samples);
+    const std::string makes = turned > 0 ? fmt::format("makes about {:.2g} oscillations",
+                                                       turned * duration / std::abs(reached - from))
+                                         : "takes too many steps";
+    throw SceneError(at, fmt::format("the motion from guess.state {} in the duration {:.6g}; {} steps of the "
+                                     "integrator, the most that elements can follow, lead to t = {:.6g}; "
+                                     "shorten the duration",
+                                     makes, duration, steps_taken, reached));
   }
 
  private:
