@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
                                                             {"windows", papers::windows}};
     for (const auto& [name, figure] : figures) {
       const std::string path = (folder / name).string() + ".svg";
-      write_figure(path, figure());
+      write_plot(path, figure());
       fmt::print("{}\n", path);
     }
   } catch (const std::exception& e) {

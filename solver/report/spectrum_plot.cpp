@@ -59,12 +59,12 @@ Figure spectrum_layout(const Result& result) {
   std::string title = result.title;
   if (shown.size() < spectra.size())
     title += fmt::format("{}{} of {} coordinates", title.empty() ? "" : ": ", shown.size(), spectra.size());
-  const double count = static_cast<double>(shown.size());
-  Figure figure{
-      .width = 860, .height = top_of_panels(title) + count * (panel_height + gap) + 40, .title = title};
-  double top = top_of_panels(title);
+  Figure figure = headed_figure(title, {});
+  double top = top_of_panels(figure);
+  figure.width = std::max(figure.width, 860.0);
+  figure.height = top + static_cast<double>(shown.size()) * (panel_height + gap) - gap + bottom;
   for (const std::size_t a : shown) {
-    Axis frequencies = make_axis("", -0.02 * highest, 1.04 * highest, 9);
+    Axis frequencies = make_axis({}, -0.02 * highest, 1.04 * highest, 9);
     if (a == shown.back())
       frequencies.label = "frequency, radians per unit of time";
     else
