@@ -16,7 +16,8 @@ std::vector<Recipe> one_coordinate() {
        .positions = {{"x", -1, 1}},
        .velocities = {{"x", -1, 1}},
        .time = 6.3,
-       .autonomous = false},
+       .autonomous = false,
+       .period = "2*pi/drive"},
       {.system = "anharmonic-oscillator",
        .parameters = {{"m", 0.2, 5}, {"alpha", -1.5, 1.5}, {"beta", 0.1, 3}},
        .positions = {{"x", -2, 2}},
@@ -181,7 +182,8 @@ std::vector<Recipe> many_coordinates() {
 const std::vector<Recipe>& catalogue() {
   static const std::vector<Recipe> all = [] {
     std::vector<Recipe> recipes;
-    for (const auto& some : {one_coordinate(), two_coordinates(), three_coordinates(), many_coordinates()})
+    for (const auto& some :
+         {one_coordinate(), two_coordinates(), three_coordinates(), many_coordinates(), written_recipes()})
       recipes.insert(recipes.end(), some.begin(), some.end());
     return recipes;
   }();

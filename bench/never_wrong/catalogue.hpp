@@ -24,9 +24,14 @@ struct Recipe {
   int least = 0, most = 0;             ///< sizes n; 0: the system has none
   std::vector<std::string> maps = {};  ///< symmetries, as they are written in a boundary
   bool autonomous = true;
+  std::string lagrangian = {};  ///< a formula written in the scene; empty: `system` is a file
+  std::string period = {};      ///< of L in t, a formula; empty: it has none
 };
 
-/// Every system of problems/systems.
+/// Systems whose Lagrangian stands in the scene: driven, with kinks, with many extremals.
+std::vector<Recipe> written_recipes();
+
+/// Every system of problems/systems, and these.
 const std::vector<Recipe>& catalogue();
 
 }  // namespace bench

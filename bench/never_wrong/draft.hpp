@@ -20,7 +20,8 @@ struct Draft {
   bool real = false;                    ///< the motion is one of the system; else only its ends are drawn
   std::string kind = {};
   bool known = false;
-  Entries system = {}, boundary = {}, guess = {}, solve = {};
+  Entries system = {}, boundary = {}, guess = {}, solve = {}, search = {}, continuation = {};
+  Entries varied = {};  ///< parameters that are numbers, with their values
 
   double duration() const { return motion.duration; }
 };
@@ -34,6 +35,8 @@ State random_state(Draft& draft);
 void draw_boundary(Draft& draft);
 void draw_guess(Draft& draft);
 void draw_solve(Draft& draft);
+/// Now and then several extremals of the problem, or a family; the kind is then "search" or "family".
+void draw_more(Draft& draft);
 
 std::string text_of(const Draft& draft, const std::string& title);
 

@@ -93,11 +93,20 @@ void close_duration(Draft& draft, const std::vector<std::size_t>& open) {
       "where", quoted(fmt::format("{}(0) = {}", draft.names[a], number_text(draft.motion.start.q[a]))));
 }
 
+/// A multiple of the period, half of it, or another duration, after which nothing repeats.
+void set_driven_duration(Draft& draft) {
+  Random& random = draft.random;
+  if (draft.recipe.period.empty() || random.chance(0.15)) return set_duration(draft);
+  const double multiple = random.chance(0.2) ? 0.5 : random.between(1, 3);
+  draft.boundary.emplace_back("duration", quoted(fmt::format("{}*{}", multiple, draft.recipe.period)));
+}
+
 void draw_periodic(Draft& draft) {
   draft.boundary.emplace_back("periodic", "true");
   if (!draft.recipe.maps.empty() && draft.random.chance(0.4))
     draft.boundary.emplace_back("map", draft.random.pick(draft.recipe.maps));
-  if (!draft.recipe.autonomous || draft.random.chance(0.5)) return set_duration(draft);
+  if (!draft.recipe.autonomous) return set_driven_duration(draft);
+  if (draft.random.chance(0.5)) return set_duration(draft);
   std::vector<std::size_t> open(draft.names.size());
   std::iota(open.begin(), open.end(), 0);
   close_duration(draft, open);

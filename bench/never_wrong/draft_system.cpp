@@ -34,10 +34,22 @@ void draw_system(Draft& draft) {
     size = random_size(recipe, random);
     parameters.emplace_back("n", std::to_string(size));
   }
-  const bool own = random.chance(own_parameters);
-  for (const Span& span : recipe.parameters)
-    if (span.list || own) parameters.emplace_back(span.name, parameter_text(span, size, random));
-  draft.system.emplace_back("use", quoted(recipe.system));
+  const bool written = !recipe.lagrangian.empty();
+  const bool own = written || random.chance(own_parameters);
+  for (const Span& span : recipe.parameters) {
+    if (!span.list && !own) continue;
+    parameters.emplace_back(span.name, parameter_text(span, size, random));
+    if (!span.list) draft.varied.emplace_back(parameters.back());
+  }
+  if (written) {
+    std::string coordinates;
+    for (const Span& span : recipe.positions)
+      coordinates += (coordinates.empty() ? "" : ", ") + quoted(span.name + (recipe.most > 0 ? "[n]" : ""));
+    draft.system.emplace_back("coordinates", "[" + coordinates + "]");
+    draft.system.emplace_back("lagrangian", quoted(recipe.lagrangian));
+  } else {
+    draft.system.emplace_back("use", quoted(recipe.system));
+  }
   if (!parameters.empty()) draft.system.emplace_back("parameters", inline_table(parameters));
   for (const Span& span : recipe.positions)
     for (int k = 1; k <= size; ++k)
@@ -57,7 +69,8 @@ State random_state(Draft& draft) {
 std::string text_of(const Draft& draft, const std::string& title) {
   return fmt::format("title = {}\n", quoted(title)) + table_text("system", draft.system) +
          table_text("boundary", draft.boundary) + table_text("guess", draft.guess) +
-         table_text("solve", draft.solve);
+         table_text("solve", draft.solve) + table_text("search", draft.search) +
+         table_text("continuation", draft.continuation);
 }
 
 }  // namespace bench

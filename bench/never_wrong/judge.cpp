@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "judge_several.hpp"
+#include "recurrence.hpp"
 #include "reference.hpp"
 #include "refute.hpp"
 #include "report/json.hpp"
@@ -105,8 +107,10 @@ class Judge {
   void check_error() {
     const std::optional<TrueError> error = error_by_reference(study_, solution_);
     verdict_.referred = error.has_value();
-    if (adapted_)
+    if (adapted_) {
       for (const Fault& fault : refute(study_, solution_, error)) verdict_.faults.push_back(fault);
+      for (const Fault& fault : deny_recurrence(study_, solution_)) verdict_.faults.push_back(fault);
+    }
     if (!error) return;
     const double least = 10 * error->q_unknown + floor_of_errors * size_;
     if (adapted_) compare_with_contract(*error, least);
@@ -153,13 +157,28 @@ void judge(Verdict& verdict, const std::string& scratch, const std::function<voi
   const double start = processor_seconds();
   try {
     const extremal::Study study = extremal::load(scratch);
-    const extremal::Solution solution = run(study);
-    verdict.seconds = processor_seconds() - start;
-    verdict.status = name(solution.status);
-    verdict.message = solution.message;
-    verdict.residual = solution.residual;
     verdict.tolerance = study.options.elements > 0 ? 0 : study.options.tolerance;
-    solved();
+    const auto note = [&](const char* status, const std::string& message) {
+      verdict.seconds = processor_seconds() - start;
+      verdict.status = status;
+      verdict.message = message;
+      solved();
+    };
+    if (study.continuation) {
+      const extremal::FollowedBranch branch = follow(study);
+      note(branch.points.empty() ? "not-converged" : "converged", branch.branches.front().message);
+      verdict.faults = deny_family(study, branch);
+      return;
+    }
+    if (study.solutions > 0) {
+      const std::vector<extremal::Solution> found = run_all(study);
+      note(name(found.front().status), found.front().message);
+      verdict.faults = deny_search(study, found);
+      return;
+    }
+    const extremal::Solution solution = run(study);
+    verdict.residual = solution.residual;
+    note(name(solution.status), solution.message);
     Judge(verdict, study, solution).run();
   } catch (const extremal::SceneError& e) {
     verdict.status = "refused";

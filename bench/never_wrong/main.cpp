@@ -47,7 +47,7 @@ void add_log(const std::string& path, Tally& tally) {
   for (std::string line; std::getline(file, line);) tally.add(from_line(line));
 }
 
-/// A system without a recipe would never be tried.
+/// A system of a file without a recipe would never be tried.
 void check_catalogue() {
   for (const auto& file : fs::directory_iterator(EXTREMAL_SOURCE_DIR "/problems/systems")) {
     const std::string system = file.path().stem();

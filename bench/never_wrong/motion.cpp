@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "motion/dop853.hpp"
 #include "motion/flow.hpp"
+#include "motion/sample.hpp"
 
 namespace bench {
 namespace {
@@ -64,6 +66,18 @@ Motion follow(const extremal::Lagrangian& lagrangian, const State& start, double
   motion.end.q.assign(q.begin(), q.end());
   motion.duration = duration;
   return motion;
+}
+
+extremal::Guess motion_guess(const extremal::Lagrangian& lagrangian, const State& start, double duration) {
+  extremal::SampledMotion samples;
+  const bool done = sample_motion<double>(extremal::Flow(lagrangian), start.q, start.v, 0, duration,
+                                          {.tolerance = 1e-10,
+                                           .a_step = 16,
+                                           .unit = duration,
+                                           .more = [](int steps) { return steps < most_steps; }},
+                                          samples);
+  if (!done) return {};
+  return {std::move(samples.tau), std::move(samples.q), true};
 }
 
 }  // namespace bench

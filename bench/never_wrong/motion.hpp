@@ -22,4 +22,7 @@ struct Motion {
 /// From `start` over `duration`, or less where the integrator does not come so far.
 Motion follow(const extremal::Lagrangian& lagrangian, const State& start, double duration);
 
+/// The motion as a guess; not given where it cannot be followed.
+extremal::Guess motion_guess(const extremal::Lagrangian& lagrangian, const State& start, double duration);
+
 }  // namespace bench

@@ -76,6 +76,7 @@ RandomScene random_scene(std::uint64_t seed, std::uint64_t index, const std::str
   draw_boundary(draft);
   draw_guess(draft);
   draw_solve(draft);
+  draw_more(draft);
   return {draft.recipe.system, draft.kind, draft.known,
           text_of(draft, fmt::format("Random scene {} of seed {}", index, seed))};
 }

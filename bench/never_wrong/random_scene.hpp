@@ -11,9 +11,9 @@ namespace bench {
 
 struct RandomScene {
   std::string system;
-  std::string
-      kind;  ///< of its ends: "fixed", "natural", "mixed", "coupled", "periodic", "free"; "kept" from a file
-  bool known = false;     ///< made from a motion, so that it has a solution
+  std::string kind;    ///< of its ends: "fixed", "natural", "mixed", "coupled", "periodic", "free", "search",
+                       ///< "family"; "kept" from a file
+  bool known = false;  ///< made from a motion, so that it has a solution
   std::string text = {};  ///< TOML
 };
 

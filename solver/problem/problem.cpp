@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "problem/recurrence.hpp"
 #include "problem/reduction.hpp"
 
 namespace extremal {
@@ -75,6 +76,7 @@ Problem make_problem(Problem problem) {
   check_duration(problem.duration, problem.lagrangian->structure().autonomous);
   check_guess(problem.guess, problem.coordinates());
   problem.ends = solve_relation(problem.boundary);
+  check_recurrence(problem);
   if (problem.periodic) problem.symmetries = continuous_symmetries(problem);
   problem.reduction = reduction_of(problem);
   return problem;

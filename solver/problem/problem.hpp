@@ -97,7 +97,7 @@ struct Problem {
 };
 
 /// Checks dimensions, durations and relations, and fills `ends`, `symmetries` and `reduction`. Throws
-/// std::invalid_argument or RelationError.
+/// std::invalid_argument, which a RecurrenceError is, or RelationError.
 Problem make_problem(Problem problem);
 
 }  // namespace extremal

@@ -7,7 +7,7 @@
 
 #include "linear/dense.hpp"
 #include "machine/simd.hpp"
-#include "study/nearby.hpp"
+#include "problem/nearby.hpp"
 
 namespace extremal {
 namespace {
@@ -135,16 +135,6 @@ class GuessValues {
   double* rows_;
 };
 
-/// R x + shift·c.
-std::vector<double> image(const Closure& closure, const std::vector<double>& x, double shift) {
-  std::vector<double> y;
-  for (const AffineForm& form : closure) {
-    y.push_back(shift * form.constant);
-    for (const Triplet& r : form.coefficients) y.back() += r.value * x[r.column];
-  }
-  return y;
-}
-
 }  // namespace
 
 void check_guess_finite(const Problem& problem, const Location& at) {
@@ -211,37 +201,6 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
                   "move this end",
                   energy, end ? "end" : "start", point_text(problem, q), least));
   }
-}
-
-void check_symmetry(const Closure& closure, const Problem& problem, const Location& at) {
-  constexpr int needed = 16;
-  constexpr double tolerance = 1e-10;
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, v;
-  const auto value = [&](const std::vector<double>& x, const std::vector<double>& w, double time) {
-    return evaluate_at(*problem.lagrangian, x, w, time, Order::value, scratch).value;
-  };
-  const double shifts[2] = {0, problem.duration.value};
-  double first[2] = {0, 0}, worst[2] = {0, 0}, scale = 0;
-  for (int k = 0, found = 0; k < tries && found < needed; ++k) {
-    const double t = points.next(q, v), here = value(q, v, t);
-    if (!std::isfinite(here)) continue;
-    const std::vector<double> image_q = image(closure, q, 1), image_v = image(closure, v, 0);
-    for (int way = 0; way < 2; ++way) {
-      const double change = value(image_q, image_v, t + shifts[way]) - here;
-      if (found == 0) first[way] = change;
-      worst[way] = std::isfinite(change) ? std::max(worst[way], std::abs(change - first[way])) : INFINITY;
-    }
-    scale = std::max(scale, std::abs(here));
-    ++found;
-  }
-  const double change = std::min(worst[0], worst[1]);
-  if (change > tolerance * scale)
-    throw SceneError(
-        at,
-        fmt::format("the map changes the Lagrangian by {:.3g} beyond a constant; its values are up to {:.3g}",
-                    change, scale));
 }
 
 }  // namespace extremal

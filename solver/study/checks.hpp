@@ -2,7 +2,6 @@
 
 #include "problem/problem.hpp"
 #include "scene/source.hpp"
-#include "study/boundary.hpp"
 
 /// \file What can be told of a problem before it is solved.
 
@@ -19,9 +18,5 @@ void check_regular(const Problem& problem, const Location& at);
 /// Throws SceneError at `at` if an end that is fixed wholly cannot have the energy that closes the duration:
 /// where L is convex in the velocities, E = q'·∂L/∂q' − L is least at rest, −L(q, 0).
 void check_energy_at_ends(const Problem& problem, const Location& at);
-
-/// Throws SceneError unless q → Rq + c leaves L unchanged up to a constant, at equal times or from t to t +
-/// T, to 1e-10 at points about the guess.
-void check_symmetry(const Closure& closure, const Problem& problem, const Location& at);
 
 }  // namespace extremal

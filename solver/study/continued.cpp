@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "problem/recurrence.hpp"
 #include "study/boundary.hpp"
 #include "study/modelling.hpp"
 #include "study/study.hpp"
@@ -18,6 +19,9 @@ namespace {
 constexpr double same = 1e-12;
 /// Part of the way to the value wanted, where it is tried what depends on a parameter.
 constexpr double near = 1e-3;
+/// Parts of the way where motions must recur: what recurs at the beginning only by its value fails at the
+/// first.
+constexpr double recurring[] = {near, 0.382, 1};
 
 void check_different(const ContinuationTable& table, double from) {
   const double to = table.to.value;
@@ -86,6 +90,32 @@ class VariedScene {
   std::string parameter_;
 };
 
+/// A map must leave L unchanged, and a duration must be one that L repeats after, along the whole family.
+void check_recurrence_along(VariedScene& varied, const Problem& problem, const ContinuationTable& table,
+                            double from) {
+  if (!problem.periodic) return;
+  for (const double part : recurring) {
+    const double value = from + part * (table.to.value - from);
+    Problem at;
+    try {
+      at = varied.at(value);
+    } catch (const SceneError&) {
+      continue;  // the family ends before
+    }
+    at.guess = problem.guess;
+    if (at.duration.free) at.duration.value = problem.duration.value;
+    try {
+      check_recurrence(at);
+    } catch (const RecurrenceError& e) {
+      throw SceneError(
+          position(table.parameter, 0),
+          fmt::format(
+              "at {0} = {1}: {2}; write what must follow, the duration or the map, as a formula of {0}",
+              table.parameter.value, value, e.change));
+    }
+  }
+}
+
 Continued varied_parameter(const Scene& scene, const System& system, const Problem& problem) {
   const ContinuationTable& table = *scene.continuation;
   const std::string& name = table.parameter.value;
@@ -105,6 +135,7 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
     throw SceneError(
         position(table.parameter, 0),
         fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides may", name));
+  check_recurrence_along(*varied, problem, table, continued.family.from);
   continued.family.at = [varied](double value) -> std::optional<Problem> {
     try {
       return varied->at(value);

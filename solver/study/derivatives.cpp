@@ -10,7 +10,7 @@
 #include <numeric>
 
 #include "machine/simd.hpp"
-#include "study/nearby.hpp"
+#include "problem/nearby.hpp"
 
 namespace extremal {
 namespace {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "problem/recurrence.hpp"
 #include "scene/scene.hpp"
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
@@ -45,6 +46,11 @@ SolveOptions read_options(const SolveTable& table) {
   return options;
 }
 
+/// What makes motions recur: a map, or the duration.
+Location recurrence_location(const BoundaryTable& boundary) {
+  return boundary.map.empty() ? boundary.duration.at : boundary.map.front().name_at;
+}
+
 Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
@@ -59,14 +65,14 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   read_guess(scene, system, deadline, problem);
   try {
     problem = make_problem(std::move(problem));
+  } catch (const RecurrenceError& e) {
+    throw SceneError(recurrence_location(scene.boundary), e.what());
   } catch (const std::invalid_argument& e) {
     throw SceneError(scene.boundary.at, e.what());
   }
   check_regular(problem, scene.system.lagrangian->at);
   if (scene.boundary.energy) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
-  if (!scene.boundary.map.empty())
-    check_symmetry(read_closure(scene.boundary, system), problem, scene.boundary.map.front().name_at);
   return problem;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -124,6 +125,37 @@ void QuadraticForm::finish() {
     structure_.linear = std::move(linear_);
 }
 
+/// How t enters a kernel: frequencies of sin, cos and tan, and whether it stands elsewhere.
+void add_frequencies(const Kernel& kernel, std::span<const double> uniforms, Structure& s) {
+  const auto time = std::find(kernel.kinds.begin(), kernel.kinds.end(), Variable::time);
+  const std::uint32_t t[] = {static_cast<std::uint32_t>(time - kernel.kinds.begin())};
+  Kernel slopes;
+  slopes.graph = kernel.graph;
+  slopes.kinds = kernel.kinds;
+  slopes.table = kernel.table;
+  slopes.rows = kernel.rows;
+  std::vector<Scaled> found;
+  std::vector<bool> otherwise(kernel.graph.size(), false);
+  const std::vector<bool> timed = dependents(kernel, {Variable::time});
+  for (const NodeId id : nodes_of(kernel.graph, kernel.value.node)) {
+    const Node& node = kernel.graph[id];
+    if (!timed[id]) continue;
+    if (node.op == Op::sin || node.op == Op::cos || node.op == Op::tan) {
+      const NodeId slope = gradient(slopes.graph, node.a, t).front();
+      const bool varies =
+          dependents(slopes, {Variable::coordinate, Variable::velocity, Variable::time})[slope];
+      if (!varies) found.push_back({1, slope});
+      otherwise[id] = varies;
+    } else {
+      otherwise[id] = node.op == Op::input || (arity(node.op) > 0 && otherwise[node.a]) ||
+                      (arity(node.op) > 1 && otherwise[node.b]);
+    }
+  }
+  s.harmonic = s.harmonic && !otherwise[kernel.value.node];
+  const RowNumbers numbers = row_numbers(slopes, found, uniforms);
+  for (const double slope : numbers.values) s.frequencies.push_back(std::abs(slope));
+}
+
 /// Rows of the remainder: all that some kernel contributes to.
 void collect_rows(const std::vector<Kernel>& kernels, Structure& s) {
   std::vector<std::pair<int, int>> entries;
@@ -159,8 +191,13 @@ Analysis analyse(const LagrangianGraph& l) {
 
   const std::vector<Group> groups = group_terms(l);
   for (const Group& group : groups) result.kernels.push_back(differentiate(l.graph, group, false));
-  for (const Kernel& kernel : result.kernels)
-    s.autonomous = s.autonomous && !dependents(kernel, {Variable::time})[kernel.value.node];
+  for (const Kernel& kernel : result.kernels) {
+    if (!dependents(kernel, {Variable::time})[kernel.value.node]) continue;
+    s.autonomous = false;
+    add_frequencies(kernel, l.uniforms, s);
+  }
+  std::sort(s.frequencies.begin(), s.frequencies.end());
+  s.frequencies.erase(std::unique(s.frequencies.begin(), s.frequencies.end()), s.frequencies.end());
 
   QuadraticForm form(l, s);
   if (std::all_of(result.kernels.begin(), result.kernels.end(),

@@ -76,7 +76,7 @@ TEST(Symmetry, TranslationsInAMagneticField) {
 /// L depends on time, the rotation is there.
 TEST(Symmetry, DrivenSystem) {
   const auto driven = trace(2, [](auto q, auto v, auto t) {
-    return (v[0] * v[0] + v[1] * v[1]) / 2 - (1 + cos(t)) * (q[0] * q[0] + q[1] * q[1]);
+    return (v[0] * v[0] + v[1] * v[1]) / 2 - (1 + cos(pi * t)) * (q[0] * q[0] + q[1] * q[1]);
   });
   EXPECT_EQ(count(closed(driven)), 1u);
 }

@@ -126,5 +126,65 @@ TEST(Periodic, PinnedSchemesAreStationary) {
   }
 }
 
+/// x'²/2 + (1.7 + 0.1 cos t) cos x: the pendulum that hangs has every period, and no orbit is near.
+TEST(Periodic, DrivenOrbitsThatShrinkToRestAreNone) {
+  const auto swung =
+      trace(1, [](auto q, auto v, auto t) { return v[0] * v[0] / 2 + (1.7 + 0.1 * cos(t)) * cos(q[0]); });
+  const auto guess = [](double size) {
+    return [size](double tau) { return Values{size * std::cos(2 * pi * tau)}; };
+  };
+  Solver solver;
+  for (const SolveOptions& options :
+       {within(1e-3), within(1e-9), within(1e-12), pinned(scheme("midpoint"), 64), pinned(gauss(4), 10)}) {
+    const Solution s = solver.solve(guessed(periodic(swung, 2 * pi), guess(0.02)), options);
+    EXPECT_FALSE(s.converged() && largest(s.trajectory.nodes) < 1e-3) << s.message;
+  }
+  // Who asks for rest gets it.
+  const Solution rest = solve(guessed(periodic(swung, 2 * pi), guess(0)), within(1e-9));
+  EXPECT_LT(largest(rest.trajectory.nodes), 1e-12);
+}
+
+/// The collinear point L2 of the elliptic restricted problem in a frame that pulsates, where it rests.
+TEST(Periodic, PointsOfLibrationAreNoOrbits) {
+  constexpr double mu = 0.01215, e = 0.0549;
+  const auto elliptic = trace(2, [](auto q, auto v, auto t) {
+    const auto far = sqrt((q[0] + mu) * (q[0] + mu) + q[1] * q[1]),
+               near = sqrt((q[0] - 1 + mu) * (q[0] - 1 + mu) + q[1] * q[1]);
+    return (v[0] * v[0] + v[1] * v[1]) / 2 + q[0] * v[1] - q[1] * v[0] +
+           ((q[0] * q[0] + q[1] * q[1]) / 2 + (1 - mu) / far + mu / near) / (1 + e * cos(t));
+  });
+  for (const double size : {0.03, 0.13}) {
+    const Problem problem = guessed(periodic(elliptic, 2 * pi), [size](double tau) {
+      return Values{1.1556822 - size * std::cos(4 * pi * tau), 3 * size * std::sin(4 * pi * tau)};
+    });
+    for (const SolveOptions& options : {within(1e-6), within(1e-9), pinned(gauss(4), 20)}) {
+      const Solution s = Solver().solve(problem, options);
+      if (!s.converged()) {
+        EXPECT_NE(s.message.find("equilibrium"), std::string::npos) << s.message;
+        continue;
+      }
+      double low = INFINITY, high = -INFINITY;
+      for (std::size_t k = 0; k < s.trajectory.nodes.size(); k += 2) {
+        low = std::min(low, s.trajectory.nodes[k]);
+        high = std::max(high, s.trajectory.nodes[k]);
+      }
+      EXPECT_GT(high - low, 1e-3);
+    }
+  }
+}
+
+/// x'' + 5x = f cos t: however weak the drive, x = f cos(t)/4 is an orbit.
+TEST(Periodic, WeakDrives) {
+  for (const double f : {1.0, 1e-3, 1e-8}) {
+    const auto driven = trace(
+        1, [f](auto q, auto v, auto t) { return v[0] * v[0] / 2 - 2.5 * q[0] * q[0] + f * q[0] * cos(t); });
+    const Solution s =
+        solve(guessed(periodic(driven, 2 * pi), [](double tau) { return Values{std::cos(2 * pi * tau)}; }),
+              within(1e-9));
+    for (const double t : {0.0, 1.0, 2.5})
+      EXPECT_NEAR(at(s.trajectory, t).q[0], f * std::cos(t) / 4, 2e-9 * f);
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

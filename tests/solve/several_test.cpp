@@ -150,6 +150,83 @@ TEST(Several, LambertWithUpToTwoRevolutions) {
   }
 }
 
+/// Actions of x'' = x − x³ from `start` to `end` in T: shooting finds every sign of q(T) − end on a fine grid
+/// of velocities.
+Values well_actions(double start, double end, double duration, double fastest) {
+  constexpr int steps = 4000;
+  const auto shoot = [&](double velocity, double* action) {
+    double x = start, v = velocity, s = 0, h = duration / steps;
+    const auto lagrangian = [](double x, double v) { return v * v / 2 - (x * x - 1) * (x * x - 1) / 4; };
+    // Fourth order (Yoshida 1990), and the action by Simpson's rule over two steps.
+    constexpr double w = 1.3512071919596578;  // 1/(2 − 2^(1/3))
+    for (int k = 0; k < steps; ++k) {
+      s += (k == 0 ? 1 : k % 2 ? 4 : 2) * lagrangian(x, v);
+      for (const double c : {w, 1 - 2 * w, w}) {
+        x += c * h / 2 * v;
+        v += c * h * (x - x * x * x);
+        x += c * h / 2 * v;
+      }
+    }
+    if (action) *action = (s + lagrangian(x, v)) * h / 3;
+    return x - end;
+  };
+  Values grid, actions;
+  // Graded towards the velocity with which the barrier is just reached: there motions take long.
+  const double depth = 1 - start * start, barrier = std::sqrt((1 - depth * depth) / 2);
+  for (int i = 1; i <= 1000; ++i)
+    for (const double sign : {1.0, -1.0}) {
+      grid.push_back(sign * fastest * i / 1000);
+      for (const double side : {1.0, -1.0})
+        grid.push_back(sign * (barrier + side * fastest * std::exp(-i / 40.0)));
+    }
+  std::sort(grid.begin(), grid.end());
+  for (const double velocity : roots(grid, [&](double v) { return shoot(v, nullptr); }))
+    shoot(velocity, &actions.emplace_back());
+  std::sort(actions.begin(), actions.end());
+  return actions;
+}
+
+/// Those of least action, without a gap, as many as are asked for.
+TEST(Several, NoneIsMissingBetweenThoseOfADoubleWell) {
+  const auto well = trace(1, [](auto q, auto v, auto) {
+    const auto u = q[0] * q[0] - 1;
+    return v[0] * v[0] / 2 - u * u / 4;
+  });
+  struct Case {
+    double start, end, duration;
+  };
+  for (const Case& c : {Case{-1, 0.5, 10}, Case{-0.3, 1.2, 7}, Case{0.2, 0.9, 8}}) {
+    const Values exact = well_actions(c.start, c.end, c.duration, 10);
+    for (const int asked : {5, 10}) {
+      const std::vector<Solution> found = solve_all(fixed_ends(well, {c.start}, {c.end}, c.duration), asked);
+      ASSERT_EQ(static_cast<int>(found.size()), asked);
+      ASSERT_GE(exact.size(), found.size());
+      for (int k = 0; k < asked; ++k)
+        EXPECT_NEAR(found[k].action, exact[k], 1e-5 * (1 + std::abs(exact[k])))
+            << c.start << ", " << asked << ": " << k;
+      EXPECT_NE(found[0].message.find("others may exist, also between them"), std::string::npos)
+          << found[0].message;
+    }
+  }
+}
+
+/// Three particles in a ring with exponential forces: the first of those that 3000 motions of chance, each
+/// corrected by shooting, lead to.
+TEST(Several, NoneIsMissingBetweenThoseOfTheTodaRing) {
+  const auto toda = trace(3, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2 - exp(q[0] - q[1]) - exp(q[1] - q[2]) -
+           exp(q[2] - q[0]);
+  });
+  const Values exact = {-14.908579, -14.891467, -13.949683, -13.244967, -13.176991, -4.788814, -4.672683,
+                        -2.670263,  -1.654593,  -0.808701,  1.234080,   2.094573,   3.445402};
+  for (const int asked : {5, 13}) {
+    const std::vector<Solution> found =
+        solve_all(fixed_ends(toda, {0.5, -0.2, -0.3}, {-0.3, 0.4, -0.1}, 5), asked);
+    ASSERT_EQ(static_cast<int>(found.size()), asked);
+    for (int k = 0; k < asked; ++k) EXPECT_NEAR(found[k].action, exact[k], 2e-6) << asked << ": " << k;
+  }
+}
+
 /// Away from conjugate ends a linear system has one extremal.
 TEST(Several, OfAnOscillatorThereIsOne) {
   const std::vector<Solution> found = solve_all(fixed_ends(systems::oscillator(1), {0}, {1}, 20), 4);
@@ -187,7 +264,7 @@ TEST(Several, AsManyAsAreWanted) {
   for (int most : {1, 3}) {
     const std::vector<Solution> found = solve_all(problem, most);
     ASSERT_EQ(static_cast<int>(found.size()), most);
-    EXPECT_EQ(found[0].message, "converged");
+    EXPECT_EQ(found[0].message.rfind("converged", 0), 0u);
   }
 }
 

@@ -201,8 +201,44 @@ TEST_F(Scenes, PeriodicUpToASymmetry) {
             "");  // from t to t + T
   const std::string refused =
       message(periodic("x'^2/2 + y'^2/2 + x^3", "map = { y = \"-y\", x = \"-x\" }\n"));
-  EXPECT_EQ(refused.rfind("scene.toml:6:9: the map changes the Lagrangian by", 0), 0u) << refused;
+  EXPECT_EQ(refused.rfind("scene.toml:6:9: the map changes the Lagrangian: the force on x changes by", 0), 0u)
+      << refused;
   EXPECT_NE(message(periodic(round, "map = { x = \"x + 1e-3*y\" }\n")), "");
   EXPECT_NE(message(periodic(round, "map = { x = 0 }\n")), "");
   EXPECT_EQ(message(periodic(round, "map = { x = \"x^2\" }\n")).rfind("scene.toml:6:14: ", 0), 0u);
+}
+
+namespace {
+
+/// x'²/2 − 2x² with a drive; the duration stands in line 7.
+std::string driven(const std::string& drive, const std::string& duration, const std::string& more = "") {
+  return "[system]\ncoordinates = [\"x\"]\nparameters = { w = 3.0 }\nlagrangian = \"x'^2/2 - 2*x^2 + " +
+         drive + "\"\n[boundary]\nperiodic = true\nduration = " + duration +
+         "\n[guess]\nx = \"0.3*cos(2*pi*t/T)\"\n" + more;
+}
+
+}  // namespace
+
+TEST_F(Scenes, PeriodicWhereLIsNot) {
+  const std::string refused = message(driven("0.5*x*cos(1.4*pi*t)", "1"));
+  EXPECT_EQ(
+      refused.rfind("scene.toml:7:12: L does not repeat after the duration 1: the force on x changes by ", 0),
+      0u)
+      << refused;
+  EXPECT_NE(refused.find("L repeats after 1.42857142857143: give that duration"), std::string::npos)
+      << refused;
+  EXPECT_EQ(message(driven("0.5*x*cos(1.4*pi*t)", "1.42857142857143")), "");
+  EXPECT_NE(message(driven("x*exp(0.2*t)", "1")), "");
+  EXPECT_EQ(message(driven("x*cos(w*t)", "\"2*pi/w\"")), "");
+}
+
+/// A duration that does not follow the drive is right at one frequency only.
+TEST_F(Scenes, DurationsFollowTheDrive) {
+  const std::string family = "[continuation]\nparameter = \"w\"\nto = ";
+  EXPECT_EQ(message(driven("x*cos(w*t)", "\"2*pi/w\"", family + "4.0\n")), "");
+  for (const char* to : {"4.0", "6.0"}) {  // 6: a period again
+    const std::string fixed = message(driven("x*cos(w*t)", "\"2*pi/3\"", family + to + "\n"));
+    EXPECT_EQ(fixed.rfind("scene.toml:11:14: at w = 3.00", 0), 0u) << fixed;
+    EXPECT_NE(fixed.find("as a formula of w"), std::string::npos) << fixed;
+  }
 }

@@ -62,6 +62,21 @@ TEST(Structure, TimeInThePotentialLeavesTheMassAlone) {
   EXPECT_FALSE(s.autonomous);
 }
 
+TEST(Structure, FrequenciesOfTime) {
+  const Structure s = structure_of(trace_graph(2, [](auto q, auto v, auto t) {
+    return v[0] * v[0] + v[1] * v[1] + q[0] * cos(2 * t + 1) - sin(q[1] - 3 * t);
+  }));
+  EXPECT_TRUE(s.harmonic);
+  EXPECT_EQ(s.frequencies, (std::vector<double>{2, 3}));
+  EXPECT_FALSE(structure_of(trace_graph(1, [](auto q, auto v, auto t) {
+                 return v[0] * v[0] + q[0] * cos(t * t);
+               })).harmonic);
+  EXPECT_FALSE(structure_of(trace_graph(1, [](auto q, auto v, auto t) {
+                 return v[0] * v[0] + q[0] * cos(t) + q[0] * q[0] * t;
+               })).harmonic);
+  EXPECT_TRUE(structure_of(systems::kepler()).frequencies.empty());
+}
+
 TEST(Structure, AVelocityTimesTimeIsNotQuadratic) {
   const Structure s =
       structure_of(trace_graph(1, [](auto, auto v, auto t) { return v[0] * v[0] / 2 + sin(t) * v[0]; }));

@@ -80,7 +80,7 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
   read_path(problem, path, outcome, w, solution);
-  if (auto fails = equations_fail(problem, options, path, *outcome.tables, w.iteration, solution))
+  if (auto fails = equations_fail(problem, options, outcome, path, w.iteration, solution))
     return refused(*std::move(fails), solution);
   Examined result{observe_energy(*problem.lagrangian, solution)};
   if (auto fails =

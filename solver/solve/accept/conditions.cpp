@@ -10,6 +10,7 @@
 #include "solve/mesh/resolution.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/residual_test.hpp"
+#include "solve/periodic/equilibrium.hpp"
 
 namespace extremal {
 
@@ -57,9 +58,10 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
 
 }  // namespace
 
-std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions& options, const Path& path,
-                                      const ElementTables& tables, NewtonIteration& newton,
+std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions& options,
+                                      const Outcome& outcome, const Path& path, NewtonIteration& newton,
                                       const Solution& solution) {
+  const ElementTables& tables = *outcome.tables;
   if (!std::isfinite(solution.action) || !std::isfinite(solution.residual))
     return Refusal{Status::not_converged, "the path runs through a singularity of L; try another guess"};
   if (!balanced(solution, path, newton))
@@ -73,6 +75,9 @@ std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions
         Status::no_solution_near,
         "the duration left the range of the guess: no extremal near it satisfies the condition that "
         "determines the duration; try another guess"};
+  if (shrank(problem, scales(path, tables).range, outcome.first_range))
+    return Refusal{Status::no_solution_near,
+                   fmt::format("{}; try a larger guess or another duration", shrank_to_rest)};
   return std::nullopt;
 }
 

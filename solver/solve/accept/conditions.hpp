@@ -20,8 +20,9 @@ struct Refusal {
 
 /// Of the equations at the path that the iteration factored last and `solution` was read off: action and
 /// residual are finite, forces balance, and the equation that closes a free duration holds.
-std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions& options, const Path& path,
-                                      const ElementTables& tables, NewtonIteration& newton,
+/// A closed orbit is larger than a point.
+std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions& options,
+                                      const Outcome& outcome, const Path& path, NewtonIteration& newton,
                                       const Solution& solution);
 
 /// Of the elements: energy drifts no more than the error explains, the residual of free ends is within the

@@ -24,6 +24,7 @@ struct Outcome {
   double tolerance = 0;  ///< absolute
   int iterations = 0;    ///< steps that were taken
   int attempts = 0;      ///< these, and paths from which there was no step
+  double first_range = 0;  ///< of the path that a closed orbit was started from; 0 for other paths
   bool hidden = false;   ///< an extremal is near, but roundoff is more than the tolerance
   /// Where symmetries left a part of an orbit to be found: the part, of which `path` is the whole.
   Path part;

@@ -84,7 +84,9 @@ bool PinnedSolve::solve_discrete(int elements) {
       if (w_.iteration.action().finite() || problem_.guess.given()) break;
     }
     if (!again) {
-      magnitude_ = scales(path_, w_.pinned).magnitude;
+      const Scales first = scales(path_, w_.pinned);
+      magnitude_ = first.magnitude;
+      if (problem_.periodic) outcome_.first_range = first.range;
       run_external_solver(options_.method, problem_, w_.pinned, path_, options_.deadline,
                           [this] { return ++outcome_.iterations < options_.max_iterations; });
     }

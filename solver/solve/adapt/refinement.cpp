@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/periodic/equilibrium.hpp"
+
 namespace extremal {
 
 using namespace limits::refinement;
@@ -53,7 +55,7 @@ double Refinement::step_cost() const {
 
 Refinement::Result Refinement::pursue() {
   const double first_range = scales(path_, *tables_).range;
-  const bool may_shrink = problem_.periodic && problem_.lagrangian->structure().autonomous;
+  const double shrinking_from = problem_.periodic ? first_range : 0;
   first_magnitude_ = scales(path_, *tables_).magnitude;
   varied_mass_ = !problem_.lagrangian->structure().quadratic;
   inertia_ = inertia();
@@ -69,7 +71,7 @@ Refinement::Result Refinement::pursue() {
     // Truncation this small that finer elements do not reduce is roundoff.
     const bool hopeless = worst_ > 0.5 * before && worst_ * options_.tolerance < amplified_roundoff;
     // Nor do they help an orbit that has shrunk onto an equilibrium: its range has no digits.
-    const bool shrunk = may_shrink && scales(path_, *tables_).range <= at_rest * first_range;
+    const bool shrunk = shrank(problem_, scales(path_, *tables_).range, shrinking_from);
     if (options_.deadline.passed()) return Result::failed;
     if (hopeless || shrunk || 2 * path_.elements() > most_elements_) {
       outcome_.message = fmt::format("{} elements of degree {} do not reach the tolerance {:.1e}; loosen it",

@@ -37,8 +37,6 @@ class Refinement {
   }
 
   static constexpr int first_degree = 4;
-  /// An orbit so much smaller than its guess is at rest.
-  static constexpr double at_rest = 1e-6;
   /// Makes the path of the outcome an empty one on `mesh`, to be filled by the caller.
   void open(const std::vector<double>& mesh, int degree = first_degree);
   /// The same for the path that there is, on elements of `tables`.

@@ -25,4 +25,12 @@ inline constexpr int points = 8, most_points = 40;
 
 }  // namespace segment
 
+namespace equilibrium {
+
+/// An orbit so much smaller than its guess has shrunk onto an equilibrium. Where L depends on t, a weak drive
+/// makes small orbits that do not rest: only roundoff of the guess is none.
+inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
+
+}  // namespace equilibrium
+
 }  // namespace extremal::limits

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "motion/flow.hpp"
-#include "motion/sample.hpp"
 #include "solve/homotopy/end_homotopy.hpp"
 #include "solve/search/limits.hpp"
+#include "solve/search/motion_scan.hpp"
 #include "solve/search/search.hpp"
 
 /// \file Motions from the start, continued to the end that they miss.
@@ -14,47 +14,8 @@ namespace extremal {
 
 using namespace limits::from_motions;
 
-namespace {
-
-/// Scales a velocity so that q'·∂L/∂q' − L is the energy: its derivative by the logarithm of the scale is
-/// q'·(∂²L/∂q'∂q')q'. False if no scale does.
-bool scale_to_energy(const Lagrangian& lagrangian, std::span<const double> q, double energy,
-                     std::span<double> v) {
-  Scratch scratch;
-  const std::size_t n = v.size();
-  for (int step = 0; step < most_energy_steps; ++step) {
-    const PointValues at = evaluate_at(lagrangian, q, v, 0, Order::hessian, scratch);
-    double excess = -at.value - energy, size = std::abs(at.value) + std::abs(energy), slope = 0;
-    for (std::size_t a = 0; a < n; ++a) {
-      excess += v[a] * at.dv[a];
-      size += std::abs(v[a] * at.dv[a]);
-      for (std::size_t b = 0; b < n; ++b) slope += v[a] * at.vv[a * n + b] * v[b];
-    }
-    if (std::abs(excess) <= energy_error * size) return true;
-    if (!(slope > 0) || !std::isfinite(excess)) return false;
-    const double scale = std::max(0.1, 1 - excess / slope);
-    for (double& x : v) x *= scale;
-  }
-  return false;
-}
-
-/// The motion from (q, v) at t = 0; none where the integration fails, or `count` allows no more steps.
-Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
-                  double duration, const std::function<bool()>& count) {
-  const auto more = [&count](int steps) {
-    return steps < most_integrator_steps && (steps % steps_a_count > 0 || count());
-  };
-  SampledMotion samples;
-  if (!sample_motion<double>(Flow(lagrangian), q, v, 0, duration,
-                             {step_error, samples_a_step, duration, more}, samples))
-    return {};
-  return {std::move(samples.tau), std::move(samples.q), true};
-}
-
-}  // namespace
-
 /// The ends that it misses are moved along a line to those wanted, while the path stays an extremal.
-bool Search::from_motion(const Guess& motion, double duration) {
+bool Search::connect(const Guess& motion, double duration) {
   const std::size_t n = problem_.coordinates();
   Problem launched = problem_;
   launched.guess = motion;
@@ -78,7 +39,7 @@ bool Search::from_motion(const Guess& motion, double duration) {
       scales(path_, refinement_.tables()).q);
   if (!homotopy.trace(refinement_.tables(), distance)) return false;
   refinement_.rebind();
-  return found("homotopy in the ends from a motion");
+  return true;
 }
 
 /// A motion satisfies all but the end. The longer a path, the fewer lines come near one; and each extremal is
@@ -102,7 +63,7 @@ bool Search::from_motions() {
              speeds[seed % std::size(speeds)] * frequency * extent[a] * noise();
     if (given.free && !scale_to_energy(*problem_.lagrangian, from, *given.energy, v)) continue;
     const Guess motion = motion_from(*problem_.lagrangian, from, v, duration, count);
-    if (motion.given() && from_motion(motion, duration)) return true;
+    if (motion.given() && connect(motion, duration) && found(from_motion)) return true;
   }
   return false;
 }

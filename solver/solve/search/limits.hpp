@@ -51,6 +51,9 @@ inline constexpr double speeds[] = {0.3, 1, 0.1, 2};
 /// Durations that are free, in turn: of the guess.
 inline constexpr double durations[] = {1, 0.7, 1.5};
 inline constexpr unsigned most_motions = 1000;
+/// A scan of more coordinates would have to be too dense; of so many the ball is filled evenly, of more the
+/// distance from its centre is as of these.
+inline constexpr int most_scanned = 24, most_dimensions = 4;
 /// Newton steps for a velocity of given energy, and how near they come, relative.
 inline constexpr int most_energy_steps = 30;
 inline constexpr double energy_error = 1e-9;
@@ -119,6 +122,23 @@ inline constexpr unsigned loops = 1200;
 inline constexpr int most_loops_in_vain = 1200;
 /// Rows of the boundary relation that are varied, at most.
 inline constexpr int most_rows = 12;
+/// Of k extremals that are led to alike, one remains unseen after m motions with probability (1 − 1/k)ᵐ: with
+/// so many motions for each of them e⁻⁸, and for one that is led to half as often e⁻⁴.
+inline constexpr int motions_each = 8, least_motions = 24;
+/// Motions for each extremal that is wanted: of chaotic systems there are always more.
+inline constexpr int most_motions_each = 60;
+/// The ball reaches so much further than the extremals that are wanted; and grows so, so often in vain, where
+/// there are not enough in it.
+inline constexpr double reach_beyond = 1.1, growth_of_reach = 1.4;
+inline constexpr int most_growths = 4;
+/// Motions for each extremal known that may lead nowhere, in a row.
+inline constexpr int most_astray = 40;
+/// A path that a homotopy has led to the problem is known to this, relative to its extent.
+inline constexpr double led = 3e-5;
+/// Loops that come back to known orbits, for each of them, before no other is expected between them; and no
+/// more loops than this times those before.
+inline constexpr int returns_each = 2;
+inline constexpr unsigned spare_loops = 1;
 
 }  // namespace several
 

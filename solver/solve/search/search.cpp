@@ -8,6 +8,7 @@
 #include "solve/external/external_solver.hpp"
 #include "solve/homotopy/duration_homotopy.hpp"
 #include "solve/newton/ends.hpp"
+#include "solve/periodic/equilibrium.hpp"
 #include "solve/search/descent.hpp"
 #include "solve/search/limits.hpp"
 
@@ -32,9 +33,8 @@ Search::Search(const Problem& problem, const SolveOptions& options, Workspace& w
 
 Search::~Search() { std::swap(path_, w_.spare); }
 
-/// An equilibrium has every period.
 bool Search::collapsed() const {
-  return extent_ > 0 && scales(path_, refinement_.tables()).range <= Refinement::at_rest * extent_;
+  return shrank(problem_, scales(path_, refinement_.tables()).range, outcome_.first_range);
 }
 
 /// Pursues the path.
@@ -56,7 +56,7 @@ Search::Pursuit Search::pursue(const char* strategy) {
   }
   outcome_.elsewhere = outcome_.elsewhere || far;
   if (collapsed()) {
-    outcome_.message = "the orbit shrank to a point of equilibrium";
+    outcome_.message = shrank_to_rest;
     met_.insert(Met::equilibrium);
     result = Refinement::Result::failed;
   }
@@ -165,7 +165,7 @@ bool Search::refine(const ElementTables& tables, const char* strategy) {
 
 void Search::be_like(const Search& other) {
   magnitude_ = other.magnitude_;
-  extent_ = other.extent_;
+  outcome_.first_range = other.outcome_.first_range;
   allowance_ = other.allowance_;
 }
 
@@ -193,7 +193,7 @@ Search::GuessKind Search::prepare() {
   if (guess == GuessKind::undefined) return guess;
   const Scales size = scales(path_, refinement_.tables());
   magnitude_ = size.magnitude;
-  if (problem_.periodic && problem_.lagrangian->structure().autonomous) extent_ = size.range;
+  if (problem_.periodic) outcome_.first_range = size.range;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * path_.elements();
   allowance_ = std::min(
       {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
@@ -203,7 +203,7 @@ Search::GuessKind Search::prepare() {
 
 const Outcome& Search::run_near_guess() {
   if (prepare() == GuessKind::undefined) return outcome_;
-  extent_ = scales(path_, refinement_.tables()).range;
+  outcome_.first_range = scales(path_, refinement_.tables()).range;
   const auto [result, doubtful] = pursue(from_guess);
   outcome_.hidden = result == Refinement::Result::unreachable && !doubtful;
   if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
@@ -233,9 +233,8 @@ const Outcome& Search::run(Acceptance* acceptance) {
                                                : "a shorter duration");
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
-        outcome_.message =
-            "the orbit shrank to a point of equilibrium from the guess and from others; try a larger "
-            "guess or another duration";
+        outcome_.message = fmt::format(
+            "{} from the guess and from others; try a larger guess or another duration", shrank_to_rest);
       }
       // Where ends are conjugate, different elements find different members of a family.
       if (unheld_) std::swap(path_, *unheld_);

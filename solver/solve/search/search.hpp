@@ -37,6 +37,9 @@ class Search {
   /// Puts the path that `fill` fills on elements that resolve it; false if it comes too near a singularity.
   bool open_fitting(const std::function<void(const ElementTables& tables, Path& path)>& fill,
                     int degree = Refinement::first_degree);
+  /// Leads a motion from the start, which misses the end, through extremals with other ends to those of the
+  /// problem: path() is nearly one of it then. False if it does not come there. Only for ends that are fixed.
+  bool connect(const Guess& motion, double duration);
   const ElementTables& tables() const { return refinement_.tables(); }
   /// Elements of a random path whose frequency is measured.
   static constexpr int sketch_elements = 16;
@@ -83,7 +86,6 @@ class Search {
   bool from_finer_elements();
   bool from_line();
   bool from_motions();
-  bool from_motion(const Guess& motion, double duration);
   bool from_noise(unsigned tries);
 
   const Problem& problem_;
@@ -96,7 +98,6 @@ class Search {
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
   double magnitude_ = 0;        ///< of the guess
-  double extent_ = 0;           ///< of the guess, of a periodic problem
   int allowance_ = 0;           ///< of Newton steps
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others

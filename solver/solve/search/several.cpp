@@ -54,7 +54,8 @@ Several::Several(const Problem& problem, const SolveOptions& options, Workspace&
       w_(workspace),
       search_(problem, options, workspace),
       path_(search_.path()),
-      loops_(problem, options, workspace, search_) {}
+      loops_(problem, options, workspace, search_),
+      motions_(problem, search_) {}
 
 /// Whether an orbit is one of a shorter period, run through several times. One that a symmetry of L closes
 /// after m segments may repeat itself after any number of these.
@@ -97,7 +98,8 @@ int Several::add(Solution candidate) {
   found_.push_back(std::move(candidate));
   traced_.emplace_back(families_, 0);
   search_.renew(patience);
-  in_vain_ = 0;
+  in_vain_ = returns_ = 0;
+  if (static_cast<int>(found_.size()) == most_) enough_at_ = seed_;
   return static_cast<int>(found_.size()) - 1;
 }
 
@@ -131,7 +133,12 @@ void Several::guess() {
   const unsigned most = loops_.usable() ? loops : guesses;
   for (unsigned k = 0; k < most && wanted(); ++k, ++seed_, ++in_vain_) {
     if (loops_.usable()) {
-      if (loops_.next() && keep() >= 0) loops_.credit();
+      if (loops_.next()) {
+        const std::size_t before = found_.size();
+        const bool orbit = keep() >= 0;
+        if (orbit) loops_.credit();
+        if (orbit && found_.size() == before) ++returns_;
+      }
       search_.renew();
       continue;
     }
@@ -250,15 +257,95 @@ bool Several::trace_families() {
     for (std::size_t k = 0; k < found_.size(); ++k)
       if (!traced_[k][family]) {
         traced_[k][family] = 1;
+        ++traced_count_;
         trace_family(k, family);
         return true;
       }
   return false;
 }
 
+/// Whether loops come back to known orbits as often as they would if no more of the wanted were missing.
+bool Several::settled() const {
+  if (!loops_.usable()) return true;
+  return returns_ >= returns_each * static_cast<int>(found_.size()) ||
+         seed_ >= (1 + spare_loops) * enough_at_;
+}
+
 bool Several::wanted() const {
-  return static_cast<int>(found_.size()) < most_ &&
+  return !(static_cast<int>(found_.size()) >= most_ && settled()) &&
          in_vain_ < (loops_.usable() ? most_loops_in_vain : most_in_vain) && !search_.exhausted();
+}
+
+/// Of the extremals of least action, as many as are wanted.
+double Several::wanted_reach() const {
+  std::vector<std::pair<double, double>> reaches;
+  for (const Solution& s : found_) reaches.emplace_back(s.action, motions_.reach_of(s));
+  std::sort(reaches.begin(), reaches.end());
+  double reach = motions_.least_reach(scale_);
+  for (std::size_t k = 0; k < std::min<std::size_t>(reaches.size(), most_); ++k)
+    reach = std::max(reach, reaches[k].second);
+  return reach;
+}
+
+/// Extremals found.
+int Several::within(double reach) const {
+  return static_cast<int>(std::count_if(found_.begin(), found_.end(),
+                                        [&](const Solution& s) { return motions_.reach_of(s) <= reach; }));
+}
+
+/// Whether the path, which a homotopy has led to the problem, is nearly an extremal that was found.
+bool Several::leads_to_known() {
+  Solution candidate;
+  candidate.trajectory = trajectory_of(path_);
+  candidate.error_estimate = led * scales(path_, search_.tables()).q;
+  return find([&](const Solution& other) {
+           return same_path(candidate, other, options_.tolerance, scale_);
+         }) >= 0;
+}
+
+/// Motions to where no extremal between those wanted is likely to be missing; where there are too few, to
+/// where none is likely to be in reach.
+void Several::scan() {
+  search_.renew(patience);
+  double reach = reach_beyond * wanted_reach();
+  for (int growths = 0, quiet = 0, astray = 0;
+       scanned_ < most_motions_each * most_ && !search_.exhausted() && !options_.deadline.passed();) {
+    const int known = within(reach);
+    if (quiet >= std::max(least_motions, motions_each * known) ||
+        astray >= most_astray * std::max(1, known)) {
+      if (static_cast<int>(found_.size()) >= most_ || growths++ == most_growths) return;
+      reach *= growth_of_reach;
+      quiet = astray = 0;
+    }
+    ++scanned_;
+    ++astray;
+    if (!motions_.next(reach)) continue;
+    astray = 0;
+    ++quiet;
+    if (leads_to_known()) continue;
+    const std::size_t before = found_.size();
+    refine_and_keep(search_.tables(), from_motion);
+    if (found_.size() == before) continue;
+    const bool enough = static_cast<int>(found_.size()) >= most_;
+    reach = std::max(reach_beyond * wanted_reach(), enough ? 0 : reach);
+    quiet = 0;
+  }
+}
+
+/// What was done to find `all`.
+std::string Several::searched(std::size_t all) const {
+  std::string text =
+      fmt::format("from the guess and {} {}", seed_, loops_.usable() ? "random loops" : "others");
+  if (traced_count_ > 0) text += fmt::format(", along {} families", traced_count_);
+  if (scanned_ > 0) text += fmt::format(", from {} motions", scanned_);
+  text += fmt::format(", {} Newton steps in all", search_.outcome().iterations);
+  if (options_.deadline.passed())
+    text += fmt::format("; {} (solve.budget) is spent", options_.deadline.budget_text());
+  const std::size_t kept = std::min<std::size_t>(all, most_);
+  if (kept < static_cast<std::size_t>(most_))
+    return fmt::format("{} of up to {} extremals found: no more {}; others may exist", kept, most_, text);
+  return fmt::format("the {} of least action of {} extremals found {}; others may exist, also between them",
+                     kept, all, text);
 }
 
 std::vector<Solution> Several::run(int most) {
@@ -284,17 +371,19 @@ std::vector<Solution> Several::run(int most) {
   while (wanted())
     if (!trace_families()) guess();
   if (found_.empty()) {
+    if (failed->converged())
+      failed->message += fmt::format(
+          "; the duration is that of several turns: {} random loops led to no orbit that closes only after "
+          "it",
+          seed_);
     failed->seconds_solve = solving();
     return {std::move(*failed)};
   }
+  if (most_ > 1 && motions_.usable()) scan();
   sort_by_action(found_);
-  if (static_cast<int>(found_.size()) < most)
-    found_.front().message =
-        fmt::format("{}; {} of up to {} extremals found: {}, {} Newton steps in all", found_.front().message,
-                    found_.size(), most,
-                    options_.deadline.passed() ? options_.deadline.budget_text() + " (solve.budget) is spent"
-                                               : "no more from other guesses and along families",
-                    search_.outcome().iterations);
+  const std::size_t all = found_.size();
+  if (all > static_cast<std::size_t>(most_)) found_.resize(most_);
+  if (most_ > 1) found_.front().message += "; " + searched(all);
   return std::move(found_);
 }
 

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/search/loop_search.hpp"
+#include "solve/search/motion_scan.hpp"
 #include "solve/search/search.hpp"
 
 /// \file Several extremals of one problem.
@@ -19,15 +21,17 @@ class Homotopy;
 /// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
 /// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
 /// that other durations and other ends make of it, which come past more of the problem's. The search
-/// ends after as many steps as one solve may take without a new one. For a periodic problem, random loops
-/// that close as it asks take the place of arcs, and an orbit that closes after part of the time, so that it
-/// is run through several times, is left out.
+/// ends after as many steps as one solve may take without a new one. Then motions from the start, evenly
+/// drawn, are led to the end until those that lead to no new extremal tell that none is likely to be missing
+/// between those found. For a periodic problem, random loops that close as it asks take the place of arcs and
+/// motions, and an orbit that closes after part of the time, so that it is run through several times, is left
+/// out.
 class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);
 
-  /// At most so many, sorted by action; the first one's message says if there are fewer. Where there is
-  /// none, one that has not converged.
+  /// At most so many, those of least action among all found, sorted by it; the first one's message says what
+  /// was searched. Where there is none, one that has not converged.
   std::vector<Solution> run(int most);
 
  private:
@@ -38,6 +42,7 @@ class Several {
     return it == found_.end() ? -1 : static_cast<int>(it - found_.begin());
   }
   bool wanted() const;
+  bool settled() const;
   int keep();
   int add(Solution candidate);
   int refine_and_keep(const ElementTables& tables, const char* strategy);
@@ -52,6 +57,11 @@ class Several {
   void trace_family(std::size_t solution, int family);
   std::unique_ptr<Homotopy> leave(int family, bool onward);
   void load(const Solution& solution);
+  void scan();
+  double wanted_reach() const;
+  int within(double reach) const;
+  bool leads_to_known();
+  std::string searched(std::size_t all) const;
 
   const Problem& problem_;
   const SolveOptions& options_;
@@ -59,13 +69,18 @@ class Several {
   Search search_;
   Path& path_;  ///< of the search
   LoopSearch loops_;
+  MotionScan motions_;
   std::vector<Solution> found_;
   std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times
   double scale_ = 1;                   ///< size of the problem
   int most_ = 1;
-  int in_vain_ = 0;    ///< guesses since the last find
-  unsigned seed_ = 0;  ///< of the next guess
+  int in_vain_ = 0;         ///< guesses since the last find
+  unsigned seed_ = 0;       ///< of the next guess
+  unsigned enough_at_ = 0;  ///< guess after which there were as many extremals as are wanted
+  int returns_ = 0;         ///< loops since the last find that led to known orbits
+  int scanned_ = 0;         ///< motions
   int families_ = 0;
+  int traced_count_ = 0;                   ///< families
   std::vector<std::vector<char>> traced_;  ///< for each extremal, whether each family of it was
   std::chrono::steady_clock::time_point start_;
   double analysing_ = 0;  ///< seconds

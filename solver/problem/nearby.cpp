@@ -1,4 +1,4 @@
-#include "study/nearby.hpp"
+#include "problem/nearby.hpp"
 
 #include <algorithm>
 #include <cmath>

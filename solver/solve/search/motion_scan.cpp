@@ -1,0 +1,108 @@
+#include "solve/search/motion_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "linear/dense.hpp"
+#include "motion/flow.hpp"
+#include "motion/sample.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/search/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::from_motions;
+
+/// The derivative of q'·∂L/∂q' − L by the logarithm of the scale is q'·(∂²L/∂q'∂q')q'.
+bool scale_to_energy(const Lagrangian& lagrangian, std::span<const double> q, double energy,
+                     std::span<double> v) {
+  Scratch scratch;
+  const std::size_t n = v.size();
+  for (int step = 0; step < most_energy_steps; ++step) {
+    const PointValues at = evaluate_at(lagrangian, q, v, 0, Order::hessian, scratch);
+    double excess = -at.value - energy, size = std::abs(at.value) + std::abs(energy), slope = 0;
+    for (std::size_t a = 0; a < n; ++a) {
+      excess += v[a] * at.dv[a];
+      size += std::abs(v[a] * at.dv[a]);
+      for (std::size_t b = 0; b < n; ++b) slope += v[a] * at.vv[a * n + b] * v[b];
+    }
+    if (std::abs(excess) <= energy_error * size) return true;
+    if (!(slope > 0) || !std::isfinite(excess)) return false;
+    const double scale = std::max(0.1, 1 - excess / slope);
+    for (double& x : v) x *= scale;
+  }
+  return false;
+}
+
+Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
+                  double duration, const std::function<bool()>& count) {
+  const auto more = [&count](int steps) {
+    return steps < most_integrator_steps && (steps % steps_a_count > 0 || count());
+  };
+  SampledMotion samples;
+  if (!sample_motion<double>(Flow(lagrangian), q, v, 0, duration,
+                             {step_error, samples_a_step, duration, more}, samples))
+    return {};
+  return {std::move(samples.tau), std::move(samples.q), true};
+}
+
+MotionScan::MotionScan(const Problem& problem, Search& search) : problem_(problem), search_(search) {
+  const Duration& given = problem.duration;
+  usable_ = !problem.periodic && problem.ends.free == 0 && (!given.free || given.energy) &&
+            problem.coordinates() <= most_scanned && Flow::suits(*problem.lagrangian);
+  if (!usable_) return;
+  const int n = problem.coordinates();
+  const std::vector<double> ends = starting_ends(problem);
+  start_ = Eigen::Map<const Eigen::VectorXd>(ends.data(), n);
+  const Eigen::VectorXd v = (Eigen::Map<const Eigen::VectorXd>(ends.data() + n, n) - start_) / given.value;
+  Scratch scratch;
+  const PointValues at = evaluate_at(*problem.lagrangian, {start_.data(), std::size_t(n)},
+                                     {v.data(), std::size_t(n)}, 0, Order::hessian, scratch);
+  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
+  root_ = inverse_root_ = Eigen::MatrixXd::Identity(n, n);
+  if (!mass.allFinite()) return;
+  const SymmetricEigen eigen = symmetric_eigen(mass);
+  if (!(eigen.values.minCoeff() > 0)) return;
+  const Eigen::VectorXd roots = eigen.values.cwiseSqrt();
+  root_ = eigen.vectors * roots.asDiagonal() * eigen.vectors.transpose();
+  inverse_root_ = eigen.vectors * roots.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
+}
+
+double MotionScan::reach_of(const Solution& solution) const {
+  if (problem_.duration.free) return solution.duration();
+  std::vector<double> q(start_.size()), v(start_.size());
+  solution.trajectory.at(0, q, v);
+  return (root_ * Eigen::Map<const Eigen::VectorXd>(v.data(), start_.size())).norm();
+}
+
+double MotionScan::least_reach(double extent) const {
+  return problem_.duration.free ? 0 : root_.norm() * extent / problem_.duration.value;
+}
+
+/// In (0, 1).
+double MotionScan::unit() { return (static_cast<double>(random_() >> 11) + 0.5) * 0x1p-53; }
+
+/// Of length one, all alike: normal numbers (Box and Muller).
+Eigen::VectorXd MotionScan::direction() {
+  Eigen::VectorXd u(start_.size());
+  do
+    for (double& x : u) x = std::sqrt(-2 * std::log(unit())) * std::cos(2 * std::numbers::pi * unit());
+  while (!(u.norm() > 0));
+  return u.normalized();
+}
+
+bool MotionScan::next(double reach) {
+  const auto n = static_cast<std::size_t>(start_.size());
+  const Duration& given = problem_.duration;
+  const double part = given.free ? unit() : std::pow(unit(), 1.0 / std::min<double>(n, most_dimensions));
+  Eigen::VectorXd v = inverse_root_ * direction() * (given.free ? 1 : part * reach);
+  const std::span<const double> from(start_.data(), n);
+  if (given.free && !scale_to_energy(*problem_.lagrangian, from, *given.energy, {v.data(), n})) return false;
+  const double duration = given.free ? part * reach : given.value;
+  const Guess motion = motion_from(*problem_.lagrangian, from, {v.data(), n}, duration,
+                                   [this] { return search_.count_step(); });
+  return motion.given() && search_.connect(motion, duration);
+}
+
+}  // namespace extremal
