@@ -11,6 +11,10 @@ namespace extremal {
 
 namespace {
 
+/// Of Newton's method for velocities; the next step after one this much smaller than the first is roundoff.
+constexpr int most_steps = 6;
+constexpr double step_left = 1e-6;
+
 /// B_{s−1}, B_s and B_{s+1} at the inner Lobatto nodes of some degree.
 using Shapes = std::vector<std::array<double, 3>>;
 
@@ -66,7 +70,7 @@ bool Recovery::measure(const Lagrangian& lagrangian, DiscreteAction& action, con
   for (int b = 0; b < path.batches(); ++b) {
     find_slopes(action.tables().scheme(), path, b);
     find_defects(lagrangian, action.end_gradients(b));
-    structure.quadratic ? solve_with_mass(defects_) : divide(lagrangian);
+    structure.quadratic ? solve_with_mass(defects_) : find_velocities(lagrangian, action.end_gradients(b));
     keep(structure, path, b);
   }
   return std::all_of(coefficients_.begin(), coefficients_.end(), [](double x) { return std::isfinite(x); });
@@ -130,6 +134,26 @@ void Recovery::solve_column(int k, AlignedDoubles& x) {
   for (int a = 0; a < n_; ++a) column_[a] = x[a * both_ + k];
   column_ = factors_.solve(column_);
   for (int a = 0; a < n_; ++a) x[a * both_ + k] = column_[a];
+}
+
+/// Newton's method for the velocities that momenta have, where ∂L/∂q' is not linear in them; `defects_`
+/// becomes by how much they exceed the slopes. One step leaves the square of the defect, which is all of the
+/// energy's digits near a bound of the velocities.
+void Recovery::find_velocities(const Lagrangian& lagrangian, const double* gradient) {
+  slopes_ = v_;
+  double first = 0;
+  for (int k = 0; k < most_steps; ++k) {
+    divide(lagrangian);
+    double largest = 0;
+    for (std::size_t i = 0; i < v_.size(); ++i) {
+      v_[i] += defects_[i];
+      largest = std::max(largest, std::abs(defects_[i]));
+    }
+    if (k == 0) first = largest;
+    if (!(largest > step_left * first) || !std::isfinite(largest)) break;
+    if (k + 1 < most_steps) find_defects(lagrangian, gradient);
+  }
+  for (std::size_t i = 0; i < v_.size(); ++i) defects_[i] = v_[i] - slopes_[i];
 }
 
 /// Defects of momenta to those of velocities, where the mass is another at each node.

@@ -41,6 +41,7 @@ class Recovery {
  private:
   void find_slopes(const SchemeTables& scheme, const Path& path, int batch);
   void find_defects(const Lagrangian& lagrangian, const double* gradient);
+  void find_velocities(const Lagrangian& lagrangian, const double* gradient);
   void divide(const Lagrangian& lagrangian);
   void solve_with_mass(AlignedDoubles& x);
   void solve_column(int k, AlignedDoubles& x);
@@ -59,6 +60,7 @@ class Recovery {
   Eigen::MatrixXd mass_;
   Eigen::VectorXd column_;
   AlignedDoubles q_, v_, t_, rows_, defects_;  ///< of a batch: the first ends of its elements, then the last
+  AlignedDoubles slopes_;                      ///< of the polynomials, where v_ is Newton's
   AlignedDoubles turned_;                      ///< M⁻¹G d_s, likewise
   AlignedDoubles coefficients_;                ///< d_s, d_{s+1}, m for each batch and coordinate
   Scratch scratch_;

@@ -78,9 +78,10 @@ std::vector<Factor> factors(const SecondVariation& variation, const MatrixXd& ma
   return result;
 }
 
-/// Whether the orbit moves, and its shift in time is what the flow makes of it.
-bool shifts(const std::vector<Factor>& factors) {
-  return std::all_of(factors.begin(), factors.end(), [](const Factor& factor) {
+/// On how many parts of the orbit its shift in time is what the flow makes of it: on none where it rests.
+/// Next to a point of rest the error of the orbit may be more than the shift.
+std::ptrdiff_t shifting(const std::vector<Factor>& factors) {
+  return std::count_if(factors.begin(), factors.end(), [](const Factor& factor) {
     const double size = factor.after.norm();
     return size > 0 && (factor.flow * factor.before - factor.after).norm() <= same_shift * size;
   });
@@ -192,7 +193,11 @@ std::vector<double> doubling_tests(const Floquet& floquet) {
 
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {
   const std::vector<Factor> flow = factors(variation, orbit.map);
-  const bool shifted = orbit.autonomous && shifts(flow);
+  const std::ptrdiff_t parts_shifting = orbit.autonomous ? shifting(flow) : 0;
+  const bool shifted = parts_shifting > 0;
+  // Across a shift that is not known the flow is not known either. With one degree of freedom nothing is
+  // across it.
+  if (shifted && parts_shifting < std::ssize(flow) && variation.coordinates() > 1) return std::nullopt;
   std::vector<MatrixXd> parts;
   for (const Factor& factor : flow) parts.push_back(shifted ? factor.across_shift() : factor.flow);
   Collection found;

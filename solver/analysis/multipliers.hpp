@@ -22,7 +22,7 @@ struct ClosedOrbit {
 };
 
 /// Large multipliers and small ones are as good, relative, as those of moderate size are. Nothing if one
-/// overflows.
+/// overflows, or where the error of the orbit hides its shift in time, as next to a homoclinic orbit.
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit);
 
 /// λ + 1/λ + 2 of every pair on the unit circle or real, divided by |λ| >= 1; ascending. One changes its sign

@@ -136,6 +136,7 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
         position(table.parameter, 0),
         fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides may", name));
   check_recurrence_along(*varied, problem, table, continued.family.from);
+  continued.family.name = name;
   continued.family.at = [varied](double value) -> std::optional<Problem> {
     try {
       return varied->at(value);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "solve/branches.hpp"
@@ -315,6 +316,111 @@ TEST(Continuation, EndsWhereThereIsNoProblem) {
   EXPECT_GT(points.back().parameter, 0);
   EXPECT_LT(points.back().parameter, 1e-3);
   EXPECT_NE(branch.message().find("cannot be followed"), std::string::npos) << branch.message();
+}
+
+/// Pendula whose energy leads to that of the point of rest above: rotations from above it, librations from
+/// below. With one degree of freedom all multipliers are one, and there are no bifurcations.
+TEST(Continuation, EndsWhereThePeriodDiverges) {
+  struct Case {
+    double from, to, duration;
+    bool turns;
+  };
+  for (const auto& [from, to, duration, turns] : {Case{3, 0.5, 2.6, true}, Case{-0.8, 1.2, 6.6, false}}) {
+    Problem problem = periodic(pendulum(), duration, turns ? 2 * pi : 0);
+    problem.duration = {.value = duration, .free = true, .energy = from, .where = {}};
+    problem = guessed(std::move(problem), [turns = turns](double tau) {
+      return Values{turns ? 2 * pi * tau : 0.63 * std::sin(2 * pi * tau)};
+    });
+    Continuation branch({problem, Varied::energy, from, to, {}}, {within(1e-9), 100});
+    const std::vector<BranchPoint> points = follow(branch);
+    EXPECT_EQ(branch.end(), BranchEnd::infinite_period) << branch.message();
+    EXPECT_EQ(branch.message(), "the period diverges at energy 1: a homoclinic or heteroclinic orbit");
+    EXPECT_NEAR(points.back().parameter, 1, 1e-6);
+    for (const BranchPoint& point : points) {
+      EXPECT_EQ(point.kind, PointKind::regular) << point.parameter;
+      EXPECT_EQ(point.solution.morse_index, turns ? 0 : 1) << point.parameter;
+      ASSERT_TRUE(point.solution.floquet);
+      for (const auto& multiplier : point.solution.floquet->multipliers) EXPECT_EQ(multiplier, 1.0);
+    }
+  }
+}
+
+/// x'²/2 − x²/2 + x⁴/4 turns slower with the amplitude; the mass 1/p slows it, so that at the energy 0.2 the
+/// period is that of p = 1 over √p: no limit of the period, nothing to end at.
+TEST(Continuation, GoesOnWhereThePeriodOnlyGrows) {
+  const auto at = [](double p) {
+    const auto lagrangian = trace(1, [=](auto q, auto v, auto) {
+      const auto square = q[0] * q[0];
+      return v[0] * v[0] / (2 * p) - square / 2 + square * square / 4;
+    });
+    Problem problem = periodic(lagrangian, 8 / std::sqrt(p));
+    problem.duration = {.value = 8 / std::sqrt(p), .free = true, .energy = 0.2, .where = {}};
+    return guessed(std::move(problem), [](double tau) { return Values{0.72 * std::sin(2 * pi * tau)}; });
+  };
+  Continuation branch(varied(at, 1, 0.01), {within(1e-9), 80});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  for (const BranchPoint& point : points)
+    EXPECT_NEAR(point.solution.duration() * std::sqrt(point.parameter), points.front().solution.duration(),
+                1e-6);
+}
+
+/// −√(1 − y'²) − y²/2: E = γ + y²/2, so that velocities within 1e-9 tell nothing of the energy where γ is
+/// 1000. Those of the points come from momenta.
+TEST(Continuation, EnergiesOfARelativisticOscillator) {
+  const auto lagrangian =
+      trace(1, [](auto q, auto v, auto) { return -sqrt(1 - v[0] * v[0]) - q[0] * q[0] / 2; });
+  Problem problem = periodic(lagrangian, 6.6);
+  problem.duration = {.value = 6.6, .free = true, .energy = 1.1, .where = {}};
+  problem = guessed(std::move(problem), [](double tau) { return Values{0.44 * std::sin(2 * pi * tau)}; });
+  Continuation branch({problem, Varied::energy, 1.1, 1000, {}}, {within(1e-9), 80});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  for (const BranchPoint& point : points) {
+    EXPECT_NEAR(*point.solution.energy / point.parameter, 1, 1e-7);
+    const State start = start_of(point);
+    const double gamma = point.parameter - start.q[0] * start.q[0] / 2;
+    EXPECT_NEAR(std::abs(start.v[0]), std::sqrt(1 - 1 / (gamma * gamma)), 1e-10) << point.parameter;
+  }
+  EXPECT_LE(branch.worst_action_slope(), 1e-6);
+}
+
+/// Driven springs: without any symmetry the index is odd where det(M − 1) > 0, M the linearised flow, since
+/// both change their signs where a multiplier passes 1. It is small where the drive hardly matters.
+TEST(Continuation, IndexAgreesWithMultipliers) {
+  struct Case {
+    double from, to, drive, linear;
+  };
+  for (const auto& [from, to, drive, linear] :
+       {Case{0.3, 1.5, 0.1, -1}, Case{1, 0.2, 0.3, 1}, Case{0.6, 2, 0.5, -1}}) {
+    const auto at = [drive = drive, linear = linear](double frequency) {
+      const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
+        const auto square = q[0] * q[0];
+        return v[0] * v[0] / 2 + linear * square / 2 - square * square / 4 +
+               drive * q[0] * cos(frequency * t);
+      });
+      return guessed(periodic(lagrangian, 2 * pi / frequency),
+                     [](double tau) { return Values{1 + 0.1 * std::cos(2 * pi * tau)}; });
+    };
+    Continuation branch(varied(at, from, to), {within(1e-9), 120});
+    std::optional<int> before;
+    bool event = false;
+    for (const BranchPoint& point : follow(branch)) {
+      event = event || point.kind == PointKind::fold || point.kind == PointKind::branch;
+      if (point.kind != PointKind::regular || !point.solution.floquet) continue;
+      std::complex<double> determinant = 1;
+      for (const auto& multiplier : point.solution.floquet->multipliers) determinant *= multiplier - 1.0;
+      const std::optional<int> index = point.solution.morse_index;
+      if (index) {
+        EXPECT_TRUE(!before || event || *index == *before) << point.parameter;
+        if (std::abs(determinant) > 1e-9)
+          EXPECT_EQ(*index % 2 == 1, determinant.real() > 0) << point.parameter;
+        EXPECT_TRUE(std::abs(determinant) < 1e-9 || point.solution.nullity == 0) << point.parameter;
+      }
+      before = index;
+      event = false;
+    }
+  }
 }
 
 /// No extremal to begin with: half a period of the oscillator between different ends.

@@ -139,6 +139,20 @@ TEST(Diagram, MathieusEquation) {
   }
 }
 
+/// The published values at θ = 5 (DLMF 28.4), a_0 and b_1 almost one.
+TEST(Diagram, MathieusEquationShakenHard) {
+  Diagram diagram(shaken_spring(5, -8, 9), {.solve = within(1e-10), .points = 60});
+  Followed found;
+  while (diagram.advance()) found.points.push_back(diagram.point());
+  const Values crossings = found.values(PointKind::branch),
+               doublings = found.values(PointKind::period_doubling);
+  const Values even{-5.80004602085, 2.09946044549, 7.44910973953}, changing{-5.79008059864, 1.85818754115};
+  ASSERT_EQ(crossings.size(), even.size());
+  ASSERT_EQ(doublings.size(), changing.size());
+  for (std::size_t k = 0; k < even.size(); ++k) EXPECT_NEAR(crossings[k], even[k], 1e-8);
+  for (std::size_t k = 0; k < changing.size(); ++k) EXPECT_NEAR(doublings[k], changing[k], 1e-8);
+}
+
 /// Shaken ever so little it is unstable for so few a about 1 that both ends of them fall within one step.
 TEST(Diagram, TwoDoublingsOnOneStep) {
   for (const double theta : {0.05, 0.01, 0.001}) {

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <complex>
 #include <numbers>
 
@@ -257,6 +259,42 @@ TEST(Families, RotationsOfAPendulum) {
     EXPECT_EQ(point.solution.floquet->trivial_pairs, 1);
   }
   EXPECT_LE(branch.worst_action_slope(), 1e-6);
+}
+
+/// arXiv 1903.01195: the halo orbits about L1 begin at a Jacobi constant between 3.1743503 and 3.1743536, and
+/// their period doubles first at 3.0216192479264.
+TEST(Families, HalosBeginAndDouble) {
+  const Study study = family_scene(
+      "lyapunov-family", {fmt::format("system.parameters.mu={:.17g}", 0.0123000371 / 1.0123000371)});
+  Diagram diagram(study.continuation->family, {.solve = within(1e-11), .points = 25, .other_branches = true});
+  std::vector<double> begin, doubled;
+  while (diagram.advance()) {
+    const BranchPoint& point = diagram.point();
+    EXPECT_EQ(point.parameter, point.solution.duration());
+    const double jacobi = -2 * *point.solution.energy;
+    if (point.branch == 0 && point.kind == PointKind::branch) begin.push_back(jacobi);
+    if (point.branch == 1 && point.kind == PointKind::period_doubling) doubled.push_back(jacobi);
+    if (point.branch > 1) break;
+  }
+  ASSERT_FALSE(begin.empty() || doubled.empty());
+  EXPECT_GE(begin.front(), 3.1743503);
+  EXPECT_LE(begin.front(), 3.1743536);
+  EXPECT_NEAR(doubled.front(), 3.0216192479264, 1e-10);
+}
+
+/// Each point, of whatever kind, carries the orbit of its own energy.
+TEST(Families, EveryPointMeetsItsEquations) {
+  for (const char* scene : {"henon-heiles-line-family", "fpu-mode-family", "hill-lyapunov-family"}) {
+    const Study study = family_scene(scene);
+    Diagram diagram(study.continuation->family,
+                    {.solve = within(1e-10), .points = 25, .other_branches = true});
+    while (diagram.advance()) {
+      const BranchPoint& point = diagram.point();
+      const double scale = std::max(1.0, std::abs(point.parameter));
+      EXPECT_NEAR(*point.solution.energy, point.parameter, 1e-9 * scale) << scene << ' ' << name(point.kind);
+      EXPECT_LE(point.momentum_difference, 1e-7) << scene << ' ' << name(point.kind);
+    }
+  }
 }
 
 /// Positions as complex numbers, about their mean.

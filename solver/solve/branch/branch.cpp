@@ -104,11 +104,20 @@ bool Branch::linearise(Factors factors) {
   if (factors == Factors::anew) {
     inertia_.reset();
     measure_phases(problem_, path_, tables_->scheme(), true, phases_);
+    for (const Move& direction : held_) hold_along(direction);
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   }
   const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter();
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
+}
+
+/// Nothing along a direction in the mean over τ.
+void Branch::hold_along(const Move& direction) {
+  const std::size_t n = path_.coordinates();
+  std::vector<double> weighted = direction.step.nodes;
+  for (std::size_t i = 0; i < weighted.size(); ++i) weighted[i] *= weight(static_cast<int>(i / n));
+  phases_.add(weighted);
 }
 
 bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {
@@ -249,6 +258,18 @@ double Branch::change(bool along) const {
 const Inertia& Branch::inertia() const {
   if (!inertia_) inertia_ = w_.iteration.model().inertia(threshold_);
   return *inertia_;
+}
+
+double Branch::varied_unit() const {
+  switch (family_.varied) {
+    case Varied::energy:
+      return energy_unit_;
+    case Varied::duration:
+      return units_.duration;
+    case Varied::parameter:
+      break;
+  }
+  return unit_;
 }
 
 void Branch::respond(const Move& onward, Move& response) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "action/rule.hpp"
 #include "solve/adapt/workspace.hpp"
@@ -23,6 +24,9 @@ struct ProblemFamily {
   /// The problem with this value of a parameter, if it has one; for Varied::parameter. Its boundary relation
   /// has the same coefficients, its ends, duration and energy may differ.
   std::function<std::optional<Problem>(double)> at = {};
+  std::string name = varied == Varied::energy     ? "energy"
+                     : varied == Varied::duration ? "duration"
+                                                  : "parameter";
 };
 
 /// Curves through a path: with x the path, δS = 0 and the equation that closes a free duration leave of (x,
@@ -57,6 +61,9 @@ class Branch : public ExtremalCurve {
   /// The response of the equations linearised last, with the tangent `onward` as their last row, to a load
   /// without any symmetry: the nearer to a branch point, the longer, and along the branch that crosses.
   void respond(const Move& onward, Move& response);
+  /// Corrections have nothing along these directions from the next linearisation on: where the equations are
+  /// singular along them, the others stay regular. On the elements of the path; empty for none.
+  void hold(std::vector<Move> directions) { held_ = std::move(directions); }
 
   /// Of the path that was linearised.
   double action() const { return action_; }
@@ -67,6 +74,8 @@ class Branch : public ExtremalCurve {
   double varied() const override;
   /// By how much a move makes it greater, correction and direction apart.
   double change(bool along) const override;
+  /// The size of that number: an error of the path changes it by about as much, relative.
+  double varied_unit() const;
   /// The sign of the determinant of the equations with the tangent `onward`·direction as their last row: it
   /// changes where branches cross, but not at folds.
   int orientation(double onward) const;
@@ -94,6 +103,7 @@ class Branch : public ExtremalCurve {
   bool linearise_duration(Factors factors);
   bool linearise_parameter();
   bool evaluate(const ClosingEquation* closing, Factors factors);
+  void hold_along(const Move& direction);
   double energy_change(const Move& move) const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);
@@ -119,6 +129,7 @@ class Branch : public ExtremalCurve {
   mutable std::optional<Inertia> inertia_;  ///< of the last linearisation, once asked for
   Path at_;
   PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
+  std::vector<Move> held_;
   std::vector<double> momenta_;
   std::vector<double> ends_;  ///< nonlinear part of the last apply(), 2n
   double stretch_ = 0;        ///< and the duration

@@ -62,8 +62,14 @@ std::vector<double> read_doubling_tests(Tracker& tracker);
 
 /// Folds on a step.
 std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step);
-/// Points where branches cross.
-std::vector<Event> find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step);
+/// Points where branches cross. Where they explain how the index changes along the step they are complete:
+/// else it is miscounted, or a point is missing.
+struct Crossings {
+  std::vector<Event> events = {};
+  int change = 0;  ///< of the index along the step, on the elements that it begins with
+  bool complete = true;
+};
+Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step);
 /// Points where a period doubles.
 std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, const BranchStep& step);
 

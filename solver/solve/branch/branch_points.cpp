@@ -19,25 +19,67 @@ namespace {
 struct Side {
   double at = 0, weight = 1;
   Move response = {};
-  double size = 0;  ///< of the response; 0: not known
+  double size = 0;                  ///< of the response; 0: not known
+  std::vector<Move> singular = {};  ///< directions, on that side where they are next to singular
 };
 
-/// The branch point, or, where the equations are too singular there, a point next to it: the number that
-/// varies is then interpolated by the cubic through points on either side.
+/// How many eigenvalues of the second variation pass zero between two states, the one of a turning parameter
+/// left out.
+int passing(const BranchState& a, const BranchState& b) {
+  const int change = std::abs(a.index - b.index);
+  const bool turns = (change % 2 != 0) == (a.orientation == b.orientation);
+  return std::max(std::abs(change - turns), 1);
+}
+
+/// Along which the equations at the tracker's path are most nearly singular, of length one: the direction of
+/// the response, then the one across the first that responds most, and so on, while they respond by more than
+/// `least`.
+std::vector<Move> singular_directions(Tracker& tracker, const Move& response, int count, double least) {
+  const Branch& branch = tracker.branch();
+  std::vector<Move> found;
+  Move next = response;
+  for (int k = 0; k < count; ++k) {
+    if (k > 0) {
+      tracker.hold(found);
+      if (!tracker.respond(next)) break;
+    }
+    const double size = std::sqrt(branch.dot(next, next));
+    if (!std::isfinite(size) || size == 0 || (k > 0 && size < least)) break;
+    found.push_back(next);
+    found.back().scale(1 / size);
+  }
+  tracker.hold({});
+  return found;
+}
+
+/// The branch point. Nothing along the singular directions is corrected there: the other equations are
+/// regular. So the predictor must be good along them: it is corrected by the mean of what states as far on
+/// either side differ from it. Where that fails, the nearest point before it that is reached.
 std::optional<BranchPoint> branch_point_at(Tracker& tracker, const BranchState& from, double at,
-                                           double length) {
-  if (tracker.reach_smoothly(from, at)) return read_point(tracker, PointKind::branch);
+                                           double length, const std::vector<Move>& singular) {
+  bool reached = false;
   for (const double share : offsets) {
     const double off = share * length;
-    if (!tracker.reach_smoothly(from, at + off)) continue;
-    const BranchState after = tracker.state;
-    if (!tracker.reach_smoothly(from, at - off) || !branches_cross(tracker.state, after)) continue;
-    BranchPoint point = read_point(tracker, PointKind::branch);
-    const BranchState& before = tracker.state;
-    point.parameter = 0.5 * (before.varied + after.varied) - 0.25 * off * (after.rate - before.rate);
-    return point;
+    tracker.hold({});
+    if (!tracker.reach_smoothly(from, at - off, true)) continue;
+    const BranchState before = tracker.state;
+    if (!tracker.reach_smoothly(from, at + off, true)) continue;
+    const BranchState near = tracker.corrected(from, {before, BranchState(tracker.state), off}, at);
+    tracker.hold(singular);
+    reached = tracker.reach_smoothly(near, at, true);
+    if (reached) break;
   }
-  return std::nullopt;
+  tracker.hold(singular);
+  if (!reached) reached = tracker.reach_smoothly(from, at, true);
+  if (!reached) {
+    tracker.hold({});
+    reached = std::ranges::any_of(
+        beside, [&](double share) { return tracker.reach_smoothly(from, at - share * length); });
+  }
+  std::optional<BranchPoint> point;
+  if (reached) point = read_point(tracker, PointKind::branch);
+  tracker.hold({});
+  return point;
 }
 
 /// To a state at `guess`, or aside of it where the equations are too singular. NaN if there is none.
@@ -49,13 +91,15 @@ double state_near(Tracker& tracker, const BranchState& from, double guess, doubl
   return NAN;
 }
 
+const Side& nearer(const Side (&sides)[2]) { return sides[sides[0].size > sides[1].size ? 0 : 1]; }
+
 /// By halves where the orientation changes, then by the secant of ±1/|response|, which passes zero at a
-/// branch point.
+/// branch point. States next to it are reached with the directions of the responses held.
 double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
-              const BranchState& before, Side (&sides)[2]) {
+              const BranchState& before, int count, Side (&sides)[2]) {
   const Branch& branch = tracker.branch();
   Move response;
-  double last = sides[0].at, best = NAN;
+  double last = sides[0].at, best = NAN, far = 0;
   bool lower_before = false, balanced = false;
   std::optional<double> aside_of;
   for (int k = 0; k < most_trials; ++k) {
@@ -66,13 +110,21 @@ double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& 
                  b = near ? sides[1].weight / sides[1].size : 1;
     const double secant = (sides[0].at * b + sides[1].at * a) / (a + b);
     const double guess = aside_of ? *std::exchange(aside_of, std::nullopt) : secant;
-    if (near) best = secant;
-    const double at = state_near(tracker, from, guess, near ? aside_near : aside_far, sides);
+    if (near) {
+      best = secant;
+      tracker.hold(nearer(sides).singular);
+    }
+    double at = state_near(tracker, from, guess, near ? aside_near : aside_far, sides);
+    if (near && std::isnan(at)) {
+      tracker.hold({});
+      at = state_near(tracker, from, guess, aside_near, sides);
+    }
     if (std::isnan(at)) return best;
-    tracker.branch().respond(tracker.state.tangent, response);
+    const bool across = branches_cross(tracker.state, before);
+    tracker.hold({});
+    if (!tracker.respond(response)) return best;
     const double size = std::sqrt(branch.dot(response, response));
-    const bool lower =
-        near ? branch.dot(response, sides[0].response) > 0 : !branches_cross(tracker.state, before);
+    const bool lower = near ? branch.dot(response, sides[0].response) > 0 : !across;
     // At the branch point itself the way along the other branch may count as null and be left out. The secant
     // between points as far on either side shows where that is.
     const bool gone = near && size < std::min(sides[0].size, sides[1].size);
@@ -89,20 +141,30 @@ double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& 
     last = at;
     // The same side again: the other one counts less (Illinois).
     if (near && lower == lower_before) sides[lower ? 1 : 0].weight *= 0.5;
-    sides[lower ? 0 : 1] = {at, 1, response, size};
+    if (k == 0) far = size;
+    sides[lower ? 0 : 1] = {at, 1, response, size,
+                            singular_directions(tracker, response, count, grown * far)};
     lower_before = lower;
   }
   return NAN;
 }
 
-/// Between low, where the branch is as `before`, and high. `response` becomes that next to the branch point:
-/// at it, there may be none. NaN where the branch cannot be followed.
-double find_branch_point(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
-                         const BranchState& before, double low, double high, Move& response) {
+/// A branch point, and the directions along which the equations are singular there.
+struct Located {
+  double at = NAN;
+  std::vector<Move> singular = {};
+};
+
+/// Between low, where the branch is as `before`, and high, where it is as `after`. NaN where the branch
+/// cannot be followed, or no response grows.
+Located find_branch_point(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
+                          const BranchState& before, const BranchState& after, double low, double high) {
   Side sides[2] = {{.at = low}, {.at = high}};
-  const double at = narrow(tracker, family, from, before, sides);
-  response = std::move(sides[sides[0].size > sides[1].size ? 0 : 1].response);
-  return response.step.nodes.empty() ? NAN : at;
+  const double at = narrow(tracker, family, from, before, passing(before, after), sides);
+  tracker.hold({});
+  const Side& side = nearer(sides);
+  if (side.singular.empty() || !std::isfinite(at)) return {};
+  return {at, side.singular};
 }
 
 }  // namespace
@@ -111,35 +173,42 @@ bool branches_cross(const BranchState& a, const BranchState& b) {
   return a.orientation != b.orientation || std::abs(a.index - b.index) >= 2;
 }
 
-std::vector<Event> find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
+Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   const auto& [from, to, length] = step;
-  std::vector<Event> found;
+  Crossings found{.change = to.index - from.index};
+  if (!branches_cross(from, to)) return found;
+  found.complete = false;
+  if (!tracker.reach(from, length, true)) return found;
+  const BranchState after = tracker.state;
   BranchState before = from;
   double low = 0;
-  for (int k = 0; k < most_points && branches_cross(before, to); ++k) {
-    Move response;
-    const double at = find_branch_point(tracker, search.family, from, before, low, length, response);
-    if (!std::isfinite(at)) return found;
+  for (int k = 0; k < most_points && branches_cross(before, after); ++k) {
+    const Located first = find_branch_point(tracker, search.family, from, before, after, low, length);
+    if (!std::isfinite(first.at)) return found;
+    Located point = first;
     BranchState base = from;
-    double there = at;
-    if (auto finer = tracker.resolved_for(from, response)) {
+    if (auto finer = tracker.resolved_for(from, first.singular.front())) {
       const bool begins = tracker.reach(*finer, low, true) && !branches_cross(tracker.state, before);
-      const double again = begins ? find_branch_point(tracker, search.family, *finer,
-                                                      BranchState(tracker.state), low, length, response)
-                                  : NAN;
-      if (begins && !std::isfinite(again)) return found;  // on those elements alone
+      Located again;
+      if (begins)
+        again =
+            find_branch_point(tracker, search.family, *finer, BranchState(tracker.state), after, low, length);
+      if (begins && !std::isfinite(again.at)) return found;  // on those elements alone
       if (begins) {
         base = *std::move(finer);
-        there = again;
+        point = std::move(again);
       }
     }
-    std::optional<BranchPoint> point = branch_point_at(tracker, base, there, length);
-    if (!point) return found;
-    found.push_back({at, {*std::move(point), branch_start(tracker, search, PointKind::branch, base, there)}});
-    low = at + beyond_it * length;
+    std::optional<BranchPoint> read = branch_point_at(tracker, base, point.at, length, point.singular);
+    if (!read) return found;
+    found.events.push_back(
+        {first.at, {*std::move(read), branch_start(tracker, search, PointKind::branch, base, point.at)}});
+    low = first.at + beyond_it * length;
     if (!(low < length) || !tracker.reach(from, low, true)) return found;
     before = tracker.state;
   }
+  found.change = after.index - from.index;
+  found.complete = !branches_cross(before, after);
   return found;
 }
 

@@ -18,6 +18,7 @@ struct BranchState {
   double back = 0;          ///< that way
   std::vector<double> row;  ///< see Branch::closing_row
   double rate = 0;          ///< ∂varied/∂s along the tangent
+  double varied_error = 0;  ///< of the number that varies, by the error of the path
   double action_rate = 0;   ///< ∂S/∂s as its derivatives give it
   double energy_time = 0;   ///< |E T|
   int orientation = 1, index = 0;

@@ -59,6 +59,43 @@ double action_difference(Tracker& tracker) {
   return least;
 }
 
+/// Of a period, while the path hardly moves.
+double share_at_rest(const Path& path) {
+  const std::size_t n = path.coordinates();
+  const auto speed = [&](int k) {
+    double square = 0;
+    for (std::size_t a = 0; a < n; ++a) square += std::pow(path.node(k + 1)[a] - path.node(k)[a], 2);
+    return std::sqrt(square) / (path.mesh()[k + 1] - path.mesh()[k]);
+  };
+  double fastest = 0, rest = 0;
+  for (int k = 0; k < path.elements(); ++k) fastest = std::max(fastest, speed(k));
+  for (int k = 0; k < path.elements(); ++k)
+    if (speed(k) < slow * fastest) rest += path.mesh()[k + 1] - path.mesh()[k];
+  return rest;
+}
+
+/// Nothing where the period is given.
+Continuation::PeriodGrowth period_of(const ProblemFamily& family, const BranchState& state) {
+  if (family.varied == Varied::duration || !family.problem.periodic || !family.problem.duration.free)
+    return {};
+  const double duration =
+      family.varied == Varied::energy ? state.tangent.parameter : state.tangent.step.duration;
+  return {state.path.duration(), state.varied, state.rate / duration, state.varied_error,
+          share_at_rest(state.path)};
+}
+
+/// The value of the number that varies at which the period diverges. Next to a homoclinic or heteroclinic
+/// orbit the number approaches it as e^{−λT}: g = ∂varied/∂T falls as e^{−λT}, and g/λ is the rest of the
+/// way. Nothing unless that is less than `error`.
+std::optional<double> limit_of_period(const Continuation::PeriodGrowth& before,
+                                      const Continuation::PeriodGrowth& here, double error) {
+  const double longer = here.duration - before.duration;
+  const double decay = std::log(before.slope / here.slope) / longer, rest = here.slope / decay;
+  if (!(longer > 0 && decay * here.duration > lasting && here.at_rest > mostly)) return std::nullopt;
+  if (!(std::abs(rest) <= error)) return std::nullopt;
+  return here.varied + rest;
+}
+
 }  // namespace
 
 Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
@@ -74,6 +111,10 @@ Continuation::Continuation(ProblemFamily family, ContinuationOptions options, Br
 bool Continuation::stop(BranchEnd end, std::string message) {
   end_ = end;
   message_ = std::move(message);
+  if (unknown_indices_ > 0)
+    message_ +=
+        fmt::format("; at {} points the Morse index is not known: no bifurcation was found that changes it",
+                    unknown_indices_);
   return false;
 }
 
@@ -104,6 +145,7 @@ bool Continuation::begin() {
   tracker_.measure_anew();
   add({read_point(tracker_, PointKind::regular)});
   first_ = tracker_.state;
+  index_ = first_.index;
   check_action();
   return true;
 }
@@ -169,6 +211,7 @@ bool Continuation::step() {
   std::swap(state, to_);
   StepEvents events =
       locate_events(tracker_, {family_, first_, options_.other_branches}, {from_, to_, length});
+  if (!events.missed) count_index(events, next);
   std::swap(state, events.missed ? from_ : to_);
   if (events.missed) {
     length_ = shortening * length;
@@ -180,7 +223,34 @@ bool Continuation::step() {
     stop(events.end, std::move(events.message));
   else
     add({std::move(next)});
+  before_ = std::exchange(here_, period_of(family_, state));
+  if (end_ == BranchEnd::none) end_where_period_diverges(here_.error);
   return !found_.empty();
+}
+
+/// Along a step the index changes by the eigenvalues that pass zero, which are counted on one mesh. Where the
+/// number at its end differs from their sum, elements are too long for the fields that decide it.
+void Continuation::count_index(StepEvents& events, BranchPoint& next) {
+  const auto forget = [](BranchPoint& point) {
+    point.solution.morse_index = point.solution.nullity = std::nullopt;
+  };
+  const bool known = events.index_known && from_.index == index_;
+  if (events.index_known) index_ += events.index_change;
+  for (FoundPoint& found : events.points)
+    if (!known) forget(found.point);
+  if (events.index_known && to_.index == index_) return;
+  forget(next);
+  ++unknown_indices_;
+}
+
+/// Where the way that is left to the limit is no longer than `error`.
+bool Continuation::end_where_period_diverges(double error) {
+  const std::optional<double> limit = limit_of_period(before_, here_, error);
+  if (limit)
+    stop(BranchEnd::infinite_period,
+         fmt::format("the period diverges at {} {:.8g}: a homoclinic or heteroclinic orbit", family_.name,
+                     *limit));
+  return limit.has_value();
 }
 
 void Continuation::check_action() {
@@ -189,6 +259,7 @@ void Continuation::check_action() {
 }
 
 bool Continuation::give_up(const BranchState& from) {
+  if (end_where_period_diverges(hardly * std::abs(family_.to - family_.from))) return false;
   const double varied = from.varied, graded = grading(from.path);
   if (const Deadline& deadline = options_.solve.deadline; deadline.passed())
     return stop(BranchEnd::budget, fmt::format("at {:.8g} {} (solve.budget) is spent; raise it", varied,

@@ -28,6 +28,14 @@ struct ContinuationOptions {
 ///     while (branch.advance()) use(branch.point());
 class Continuation {
  public:
+  /// How the number that varies changes with the period, where that is free.
+  struct PeriodGrowth {
+    double duration = 0, varied = 0;
+    double slope = 0;    ///< ∂varied/∂T
+    double error = 0;    ///< of the number
+    double at_rest = 0;  ///< share of the period in which the path hardly moves
+  };
+
   Continuation(ProblemFamily family, ContinuationOptions options);
   /// The branch that crosses another one near a start, one way (side = 1) or the other (−1). The family is
   /// that of its orbits: after a period doubling, that of twice the period.
@@ -55,6 +63,8 @@ class Continuation {
   bool begin_from_start();
   bool step();
   void check_action();
+  void count_index(StepEvents& events, BranchPoint& next);
+  bool end_where_period_diverges(double error);
   void add(FoundPoint found);
   bool stop(BranchEnd end, std::string message);
   bool give_up(const BranchState& from);
@@ -65,6 +75,8 @@ class Continuation {
   std::optional<BranchStart> start_;  ///< the branch begins there
   int side_ = 1;
   BranchState first_;
+  int index_ = 0, unknown_indices_ = 0;
+  PeriodGrowth before_, here_;
   BranchState from_, to_;  ///< of the last step, whose memory the next one uses
   double length_ = 0, longest_ = 0;
   int count_ = 0, steps_ = 0;

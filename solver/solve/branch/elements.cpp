@@ -24,7 +24,7 @@ Tracker::Fit Tracker::fit_elements() {
   w_.resolution.measure(path_, tables);
   const Resolution::Error error = w_.resolution.at(path_.degree());
   error_ = error.q + unit_roundoff * size.magnitude * std::sqrt(path_.elements() * path_.degree());
-  branch_.set_null_threshold(zero_eigenvalue_along(size.q, error_, path_.elements()));
+  branch_.set_null_threshold(null_eigenvalue_of_branch(size.q, error_, path_));
   const double missed = size.q > 0 ? excess(error, size, tolerance_) : 0;
   if (missed <= 1 && (missed == 0 || missed > lavish)) return Fit::fine;
   const Plan plan = plan_for(size);

@@ -88,6 +88,8 @@ bool is_first(const BranchState& state, const BranchState& first) {
 struct SpecialPoints {
   std::vector<Event> events;
   std::vector<Sample> extremes;
+  int index_change = 0;
+  bool index_known = true;
 };
 
 SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
@@ -96,14 +98,16 @@ SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, c
   result.extremes.push_back({0, step.from.varied});
   for (const Event& fold : folds) result.extremes.push_back({fold.at, fold.found.point.parameter});
   result.extremes.push_back({step.length, step.to.varied});
-  std::vector<Event> crossings = find_branch_points(tracker, search, step);
+  Crossings crossings = find_branch_points(tracker, search, step);
+  result.index_change = crossings.change;
+  result.index_known = crossings.complete;
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
   std::erase_if(folds, [&](const Event& fold) {
-    return std::ranges::any_of(crossings, [&](const Event& crossing) {
+    return std::ranges::any_of(crossings.events, [&](const Event& crossing) {
       return std::abs(crossing.at - fold.at) <= one * step.length;
     });
   });
-  for (std::vector<Event>* events : {&folds, &crossings})
+  for (std::vector<Event>* events : {&folds, &crossings.events})
     std::ranges::move(*events, std::back_inserter(result.events));
   std::ranges::move(find_doublings(tracker, search, step), std::back_inserter(result.events));
   return result;
@@ -162,14 +166,18 @@ StepEvents locate_events(Tracker& tracker, const EventSearch& search, const Bran
   if (may_fold(step) || may_double(step) || branches_cross(start, to) || may_end)
     aimed = tracker.with_cubic(step);
   const BranchStep along{aimed ? *aimed : start, to, length};
-  auto [events, extremes] = find_special_points(tracker, search, along);
-  End end = find_end(tracker, search, along, extremes);
+  SpecialPoints found = find_special_points(tracker, search, along);
+  std::vector<Event>& events = found.events;
+  End end = find_end(tracker, search, along, found.extremes);
   if (end.missed) return {.missed = true};
   if (end.kind != BranchEnd::none)
     std::erase_if(events, [&](const Event& event) { return event.at > end.at; });
   if (end.last) events.push_back({end.at, {std::move(*end.last)}});
   std::sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.at < b.at; });
-  StepEvents result{.end = end.kind, .message = std::move(end.message)};
+  StepEvents result{.end = end.kind,
+                    .message = std::move(end.message),
+                    .index_change = found.index_change,
+                    .index_known = found.index_known};
   for (Event& event : events) result.points.push_back(std::move(event.found));
   return result;
 }

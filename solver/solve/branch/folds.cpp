@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/root.hpp"
 
@@ -31,7 +34,9 @@ bool may_fold(const BranchStep& step) {
   return first * step.to.rate < 0 || first * rates_on(step).extremum.value < 0;
 }
 
-/// |∂varied/∂s| times the distance from a fold bounds the error of the number there.
+/// |∂varied/∂s| times the distance from a fold bounds the error of the number there. Between two samples of
+/// the derivative, r and s at the distance ℓ, the number rises above its chord by |r − s|ℓ/8: a smaller
+/// extremum than the error of the number is none.
 std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   const auto& [from, to, length] = step;
   std::vector<Sample> samples = {{0, from.rate}, {length, to.rate * to.back / length}};
@@ -40,6 +45,11 @@ std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const
   if (from.rate * to.rate > 0 && from.rate * extremum.value < 0)
     if (const auto between = dip(tracker, from, samples[0], samples[1], extremum.at, rate))
       samples.insert(samples.begin() + 1, *between);
+  const double error = std::max(from.varied_error, to.varied_error);
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    const Sample &a = samples[k - 1], &b = samples[k];
+    if (changes_sign(a.value, b.value) && std::abs(b.value - a.value) * (b.at - a.at) / 8 <= error) return {};
+  }
   std::vector<Event> found;
   find_roots(tracker, search.family, from, samples, middle, rate, [&](double at) {
     found.push_back({at, {read_point(tracker, PointKind::fold)}});

@@ -27,8 +27,12 @@ inline constexpr double start_distance = 1e-4;
 /// How far from a guess, in shares of the interval, a state is tried where the guess itself fails: near a
 /// branch point that is almost located, and else.
 inline constexpr double aside_near = 0.03, aside_far = 0.3;
-/// How far from a branch point, in shares of the step, states are tried on both sides of it.
-inline constexpr double offsets[] = {1e-7, 1e-5, 1e-3, 1e-2, 3e-2, 0.1};
+/// How far from a branch point, in shares of the step, states on both sides of it are reached.
+inline constexpr double offsets[] = {1e-3, 1e-2, 3e-2, 0.1};
+/// Where they are not: how far before it one is.
+inline constexpr double beside[] = {0, 1e-7, 1e-5, 1e-4};
+/// A second direction is singular if its response is so many times the one far from the branch point.
+inline constexpr double grown = 10;
 
 }  // namespace branch_points
 
@@ -66,6 +70,12 @@ inline constexpr double first_departure = 0.05, least_departure = 1e-4, shorter_
 /// the difference is so small.
 inline constexpr int unchecked = 8;
 inline constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
+/// Next to a homoclinic orbit elements slower than the first share of the fastest make up more than the
+/// second share of the period, which is so many times the time in which the number that varies approaches its
+/// limit e-fold.
+inline constexpr double slow = 0.03, mostly = 0.25, lasting = 5;
+/// Of the distance wanted: where steps fail so near to the limit it is the end.
+inline constexpr double hardly = 1e-6;
 /// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
 inline constexpr double singular_grading = 100;
 

@@ -90,6 +90,23 @@ BranchState Tracker::with_cubic(const BranchStep& step) {
   return result;
 }
 
+BranchState Tracker::corrected(const BranchState& from, const BranchStep& around, double at) {
+  BranchState result = from;
+  path_ = from.path;
+  branch_.set_units(from.units);
+  if (at == 0 || !branch_.set_coordinate(from.coordinate)) return result;
+  Move mean = difference_to(around.from);
+  mean.add(from.predicted(at - around.length), -1);
+  mean.add(difference_to(around.to), 1);
+  mean.add(from.predicted(at + around.length), -1);
+  mean.scale(0.5 / (at * at));
+  if (result.bend.step.nodes.empty())
+    result.bend = std::move(mean);
+  else
+    result.bend.add(mean, 1);
+  return result;
+}
+
 /// A move of another path on the elements of this one.
 Move Tracker::transferred(const Move& move, const Path& from) {
   if (move.step.nodes.empty() || same_elements(from, path_)) return move;

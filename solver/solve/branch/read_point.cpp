@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "motion/flow.hpp"
 #include "solution/observe.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/periodic/stability.hpp"
@@ -34,6 +36,22 @@ double momentum_difference(Tracker& tracker, const Solution& solution) {
   return largest > 0 ? worst / largest : 0;
 }
 
+/// p·q' − L at the start of the path, with the velocities that its momenta have. Near a bound of the
+/// velocities these tell more of the energy than the derivative of a polynomial does.
+std::optional<double> energy_of_momenta(const Lagrangian& lagrangian, const Solution& solution,
+                                        Scratch& scratch) {
+  const std::size_t n = lagrangian.structure().coordinates;
+  if (!lagrangian.structure().autonomous || !Flow::suits(lagrangian)) return std::nullopt;
+  const std::span<const double> q(solution.trajectory.nodes.data(), n), p(solution.momentum_start);
+  std::vector<double> v(n), near(n);
+  solution.trajectory.at(0, near, v);
+  Flow flow(lagrangian);
+  if (!flow.momentum(q, v, 0, near) || !flow.velocity(q, p, 0, v)) return std::nullopt;
+  const PointValues at = evaluate_at(lagrangian, q, v, 0, Order::gradient, scratch);
+  const double energy = std::inner_product(p.begin(), p.end(), v.begin(), -at.value);
+  return std::isfinite(energy) ? std::optional(energy) : std::nullopt;
+}
+
 }  // namespace
 
 const char* name(PointKind kind) {
@@ -61,7 +79,8 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   solution.status = Status::converged;
   solution.message = "converged";
   solution.strategy = "continuation";
-  solution.trajectory = trajectory_of(state.path);
+  Workspace& w = tracker.workspace();
+  solution.trajectory = trajectory_of(recover(problem, state.path, w, w.raised) ? w.raised : state.path);
   solution.degree = state.path.degree();
   solution.action = state.action;
   solution.error_estimate = tracker.error();
@@ -71,9 +90,11 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   const auto middle = branch.momenta().begin() + problem.coordinates();
   solution.momentum_start.assign(branch.momenta().begin(), middle);
   solution.momentum_end.assign(middle, branch.momenta().end());
+  if (const auto energy = energy_of_momenta(*problem.lagrangian, solution, w.scratch))
+    solution.energy = energy;
   point.momentum_difference = momentum_difference(tracker, solution);
   if (!problem.periodic) return point;
-  SecondVariation& variation = tracker.workspace().variation;
+  SecondVariation& variation = w.variation;
   if (problem.coordinates() <= most_coordinates_for_multipliers)
     variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed());
   read_stability(problem, variation, tracker.sizes().q, solution, false);

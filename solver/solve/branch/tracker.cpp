@@ -110,12 +110,19 @@ bool Tracker::update_tangent(bool first) {
   return true;
 }
 
+bool Tracker::respond(Move& response) {
+  if (!branch_.linearise()) return false;
+  branch_.respond(state.tangent, response);
+  return true;
+}
+
 void Tracker::measure_anew() {
   const double extent = sizes().q;
   largest_extent_ = std::max(largest_extent_, extent);
   const double unit = std::max(extent, least_extent * largest_extent_);
   state.units = {unit > 0 ? unit : 1, path_.duration()};
   branch_.set_units(state.units);
+  state.varied_error = extent > 0 ? 2 * error_ / extent * branch_.varied_unit() : 0;
   state.scale(1 / std::sqrt(branch_.dot(state.tangent, state.tangent)));
 }
 

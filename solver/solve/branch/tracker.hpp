@@ -53,8 +53,18 @@ class Tracker {
   double predictable_length() const;
   /// A state from which the step to another one is predicted as the cubic through both, with their tangents.
   BranchState with_cubic(const BranchStep& step);
+  /// The state with a predictor that is right in the mean of two states, reached from it as far before and
+  /// after `at` as the length tells.
+  BranchState corrected(const BranchState& from, const BranchStep& around, double at);
   /// A state on elements that resolve also the way to a branch that crosses there; nothing if its own do.
   std::optional<BranchState> resolved_for(const BranchState& from, const Move& response);
+
+  /// Corrections have nothing along these directions, which belong to the elements of the path, until the
+  /// next call: branch points are reached so. Empty for none.
+  void hold(const std::vector<Move>& directions) { branch_.hold(directions); }
+  /// The response of the equations at the path, with what is held; see Branch::respond. False where they
+  /// cannot be solved.
+  bool respond(Move& response);
 
   Branch& branch() { return branch_; }
   const Branch& branch() const { return branch_; }

@@ -14,6 +14,11 @@ double zero_eigenvalue_along(double size, double error, int elements) {
   return std::clamp(change * error / (size * elements), zero_eigenvalue, largest_zero);
 }
 
+double null_eigenvalue_of_branch(double size, double error, const Path& path) {
+  const double roundoff = roundings_an_element * unit_roundoff * path.elements();
+  return std::clamp(size > 0 ? change * error / (size * path.elements()) : 0, roundoff, largest_zero);
+}
+
 double largest_null_eigenvalue(double magnitude, double error, const Path& path) {
   const double roundoff = roundings_an_element * unit_roundoff * path.elements();
   return std::clamp(magnitude > 0 ? change * error / magnitude : 0, roundoff, zero_eigenvalue);

@@ -17,6 +17,10 @@ inline constexpr double zero_eigenvalue = Border::deflated_below;
 /// the Schur complement of the ends by the number of elements less.
 double zero_eigenvalue_along(double size, double error, int elements);
 
+/// The same for a path next to which there are others of its family, with all symmetries that are known held:
+/// whatever is no error of the path, nor roundoff, is not zero. The index changes where it is.
+double null_eigenvalue_of_branch(double size, double error, const Path& path);
+
 /// For steps along a path of largest |q| `magnitude` known to `error`: larger eigenvalues, relative to the
 /// largest, are neither an error of the elements nor roundoff of elimination, so that their directions are
 /// soft, not null.

@@ -101,7 +101,9 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     const double error = size > 0 ? solution.error_estimate / size : 0;
     const ClosedOrbit orbit = closed_orbit(problem, solution.trajectory, error);
     solution.floquet = floquet(variation, orbit);
-    if (!solution.floquet) solution.message += "; multipliers are too large for numbers";
+    if (!solution.floquet)
+      solution.message +=
+          "; multipliers are not known: they are too large, or the orbit passes too near to a point of rest";
     if (solution.floquet && vectors) add_vectors(variation, orbit, *solution.floquet);
   }
 }
