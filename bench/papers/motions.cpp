@@ -36,7 +36,9 @@ std::pair<double, double> errors(const Trajectory& trajectory, const Trajectory&
   return {position, velocity};
 }
 
-Axis linear_axis(const std::string& label, double low, double high) { return make_axis({label}, low, high, 7); }
+Axis linear_axis(const std::string& label, double low, double high) {
+  return make_axis({label}, low, high, 7);
+}
 
 }  // namespace
 

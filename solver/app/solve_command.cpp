@@ -104,7 +104,8 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
     files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
   const bool converged = result.solution.converged();
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
-  if (converged && !a.plot.empty()) files.push_back({a.plot, plot_image(a.plot, picture_of(study, result, annotation))});
+  if (converged && !a.plot.empty())
+    files.push_back({a.plot, plot_image(a.plot, picture_of(study, result, annotation))});
   Outputs::write(std::move(files));
 }
 

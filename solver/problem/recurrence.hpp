@@ -23,7 +23,8 @@ struct ClosingChange {
   double size;    ///< of the same where they are largest
 };
 
-/// For a periodic problem, its ends solved, with another `duration`; nothing where all is unchanged to roundoff.
+/// For a periodic problem, its ends solved, with another `duration`; nothing where all is unchanged to
+/// roundoff.
 std::optional<ClosingChange> closing_change(const Problem& problem, double duration);
 
 /// The shortest duration in which nothing changes, where t enters L by sin, cos and tan alone and their

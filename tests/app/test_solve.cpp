@@ -63,8 +63,9 @@ TEST_F(Command, MomentaThatAreGiven) {
   EXPECT_NEAR(r["samples"]["q"][0].get<double>(), 0, 1e-9);
   EXPECT_NEAR(r["momentum_start"]["q"].get<double>(), pendulum_slope, 1e-10);
   const Outcome checked = extremal({"check", "scene.toml"});
-  EXPECT_NE(checked.out.find("not fixed      at the start q(0) with p_q = 1.3736908728527137; at the end none"),
-            std::string::npos)
+  EXPECT_NE(
+      checked.out.find("not fixed      at the start q(0) with p_q = 1.3736908728527137; at the end none"),
+      std::string::npos)
       << checked.out;
   EXPECT_EQ(extremal({"compare", "scene.toml", "--quiet"}).exit, 0);
 }

@@ -30,6 +30,7 @@ const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
                                          {"guess", "### guess"},
                                          {"solve", "### solve"},
                                          {"search", "### search"},
+                                         {"spectrum", "### spectrum"},
                                          {"continuation", "### continuation"},
                                          {"system file", "### System files"}};
 

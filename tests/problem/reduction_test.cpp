@@ -86,8 +86,9 @@ TEST(Reduction, IsOnlyOfWhatIsSymmetric) {
   };
   EXPECT_EQ(parts(guessed(tilted(0), ellipse)), 4);
   EXPECT_EQ(parts(guessed(tilted(1e-9), ellipse)), 1);
-  const auto forced = trace(
-      1, [](auto q, auto v, auto t) { return v[0] * v[0] / 2 - q[0] * q[0] * q[0] * q[0] + q[0] * cos(pi / 3 * t); });
+  const auto forced = trace(1, [](auto q, auto v, auto t) {
+    return v[0] * v[0] / 2 - q[0] * q[0] * q[0] * q[0] + q[0] * cos(pi / 3 * t);
+  });
   EXPECT_EQ(parts(guessed(forced, [](double tau) { return Values{std::cos(2 * pi * tau)}; })), 1);
 }
 

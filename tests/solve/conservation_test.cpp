@@ -24,8 +24,10 @@ struct Kink {
   double after(double t) const { return (speed + passage) * (t - passage) - std::pow(t - passage, 2) / 2; }
   double at(double t) const { return t < passage ? -1 + speed * t + t * t / 2 : after(t); }
   Problem problem() const {
-    return fixed_ends(trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 - abs(q[0]); }), {-1},
-                      {0.5}, duration);
+    // Not abs, at whose kinks elements end.
+    return fixed_ends(
+        trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 - sqrt(q[0] * q[0] + 1e-30); }), {-1},
+        {0.5}, duration);
   }
   double error(const Trajectory& trajectory) const {
     double most = 0, q = 0, v = 0;

@@ -40,9 +40,12 @@ TEST_F(Scenes, LagrangiansThatAreNotRegular) {
       "so ";
   EXPECT_EQ(with("x'^2/2 - y^2"), refusal + "the momenta do not determine y'");
   EXPECT_EQ(with("(x' + y')^2/2 - y^2").rfind(refusal, 0), 0u);
-  EXPECT_EQ(with("sqrt(x'^2 + y'^2)").rfind(refusal, 0), 0u);  // homogeneous: any time law is as good
-  EXPECT_EQ(with("x'*y' - y^2"), "");                          // indefinite, but regular
-  EXPECT_EQ(with("1e-9*x'^2 + 1e9*y'^2 - y^2"), "");           // units are the user's own
+  EXPECT_EQ(
+      with("sqrt(x'^2 + y'^2)"),  // any time law is as good
+      "scene.toml:3:14: the Lagrangian is homogeneous of degree one in the velocities: it determines the "
+      "path, but not the speed along it; take L^2/2, whose extremals are the same curves");
+  EXPECT_EQ(with("x'*y' - y^2"), "");                 // indefinite, but regular
+  EXPECT_EQ(with("1e-9*x'^2 + 1e9*y'^2 - y^2"), "");  // units are the user's own
   EXPECT_EQ(with("sqrt(1 + x'^2) + y'^4/12 - y^2"), "");
 }
 

@@ -111,7 +111,7 @@ TEST(FormulaNumber, UnknownNamesAreMended) {
   EXPECT_EQ(
       refusal("besselj(a)"),
       "unknown function 'besselj'; known are sum sin cos tan asin acos atan atan2 sinh cosh tanh exp log "
-      "sqrt abs min max | duration | 0");
+      "sqrt abs min max step | duration | 0");
   EXPECT_EQ(refusal("a(2)"), "'a' is a parameter, not a function; write a*(…) to multiply | duration | 0");
   EXPECT_EQ(refusal("2*sin"), "'sin' is a function; write sin(…) | duration | 2");
   EXPECT_EQ(refusal("atan2(1)"), "atan2 takes 2 arguments, here are 1 | duration | 0");
