@@ -66,7 +66,7 @@ std::optional<BranchPoint> branch_point_at(Tracker& tracker, const BranchState& 
     if (!tracker.reach_smoothly(from, at + off, true)) continue;
     const BranchState near = tracker.corrected(from, {before, BranchState(tracker.state), off}, at);
     tracker.hold(singular);
-    reached = tracker.reach_smoothly(near, at, true);
+    reached = tracker.reach(near, at, true);
     if (reached) break;
   }
   tracker.hold(singular);
@@ -82,12 +82,13 @@ std::optional<BranchPoint> branch_point_at(Tracker& tracker, const BranchState& 
   return point;
 }
 
-/// To a state at `guess`, or aside of it where the equations are too singular. NaN if there is none.
+/// To a state at `guess`, or aside of it where the equations are too singular. NaN if there is none. Where
+/// directions are held the tangent is across them, not along the branch: it may turn.
 double state_near(Tracker& tracker, const BranchState& from, double guess, double aside,
-                  const Side (&sides)[2]) {
+                  const Side (&sides)[2], bool held = false) {
   for (const double at :
        {guess, guess + aside * (sides[1].at - guess), guess - aside * (guess - sides[0].at)})
-    if (tracker.reach_smoothly(from, at, true)) return at;
+    if (held ? tracker.reach(from, at, true) : tracker.reach_smoothly(from, at, true)) return at;
   return NAN;
 }
 
@@ -114,7 +115,7 @@ double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& 
       best = secant;
       tracker.hold(nearer(sides).singular);
     }
-    double at = state_near(tracker, from, guess, near ? aside_near : aside_far, sides);
+    double at = state_near(tracker, from, guess, near ? aside_near : aside_far, sides, near);
     if (near && std::isnan(at)) {
       tracker.hold({});
       at = state_near(tracker, from, guess, aside_near, sides);
