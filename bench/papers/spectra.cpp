@@ -19,6 +19,8 @@ using std::numbers::pi;
 const std::vector<std::string> shown_schemes = {"rectangle", "midpoint",  "trapezoid",
                                                 "linear",    "quadratic", "lobatto(3)"};
 
+Spectrum lines(std::vector<SpectralLine> lines) { return {std::move(lines)}; }
+
 std::shared_ptr<const Lagrangian> oscillator() {
   return trace(1, [](auto q, auto v, auto) { return (v[0] * v[0] - q[0] * q[0]) / 2; });
 }
@@ -65,8 +67,8 @@ constexpr Box left_box{70, 46, 390, 330}, right_box{560, 46, 390, 330};
 
 double distance(const Problem& problem, const Solution& solution, const std::vector<Spectrum>& exact) {
   double sum = 0;
-  const int lines = static_cast<int>(exact.front().lines.size());
-  const MotionSpectrum found = motion_spectrum(problem, solution.trajectory, Sampling::nodes, lines, 1e-12);
+  const int count = static_cast<int>(exact.front().lines.size());
+  const MotionSpectrum found = motion_spectrum(problem, solution.trajectory, Sampling::nodes, count, 1e-12);
   for (std::size_t a = 0; a < exact.size(); ++a) {
     std::vector<PointMass> difference;
     for (const SpectralLine& line : found.coordinates[a].lines)
@@ -96,7 +98,7 @@ std::vector<Known> known_motions() {
                            8 * std::pow(nome, n + 0.5) / (odd * (1 + std::pow(nome, odd))),
                            odd * 0.7 - pi / 2});
   }
-  return {{"oscillator", oscillator(), {{{{1, 1, 0.7}}}}, 60.3 * 2 * pi},
+  return {{"oscillator", oscillator(), {lines({{1, 1, 0.7}})}, 60.3 * 2 * pi},
           {"two frequencies",
            trace(2,
                  [](auto q, auto v, auto) {
@@ -104,7 +106,7 @@ std::vector<Known> known_motions() {
                            0.37 * (q[0] - q[1]) * (q[0] - q[1])) /
                           2;
                  }),
-           {{{{slow, 1, 0.4}, {fast, 0.3, -1.1}}}, {{{slow, 1, 0.4}, {fast, 0.3, pi - 1.1}}}},
+           {lines({{slow, 1, 0.4}, {fast, 0.3, -1.1}}), lines({{slow, 1, 0.4}, {fast, 0.3, pi - 1.1}})},
            60.3 * 2 * pi},
           {"pendulum",
            trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + cos(q[0]); }),
@@ -129,7 +131,7 @@ State sum_of(const std::vector<Spectrum>& spectra) {
 Figure frequencies_and_amplitudes() {
   std::vector<Series> frequency, amplitude;
   const double duration = 60.3 * 2 * pi;
-  const Problem problem = on_motion(oscillator(), sum_of({{{{1, 1, 0.7}}}}), duration);
+  const Problem problem = on_motion(oscillator(), sum_of({lines({{1, 1, 0.7}})}), duration);
   for (const std::string& name : shown_schemes) {
     Series w{name, {}, {}, {}}, a = w;
     for (int elements = 256; elements <= 4096; elements *= 2) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -70,14 +71,15 @@ std::complex<double> furthest(std::span<const PointMass> measure, std::complex<d
 }
 
 /// The largest |z| in the corner of the set of values between two of its corners a and b: a convex set, all
-/// of which is on one side of each edge.
-double beyond(std::span<const PointMass> measure, std::complex<double> a, std::complex<double> b) {
-  const double least = std::max(std::abs(a), std::abs(b));
-  const std::complex<double> edge = b - a, outward = edge * std::complex<double>(0, -1);
+/// of which is on one side of each edge, but for the roundoff of its corners.
+double beyond(std::span<const PointMass> measure, std::complex<double> a, std::complex<double> b,
+              double roundoff) {
+  const double least = std::max(std::abs(a), std::abs(b)), size = std::abs(b - a);
+  if (size <= roundoff) return least;
+  const std::complex<double> outward = (b - a) / size * std::complex<double>(0, -1);
   const std::complex<double> c = furthest(measure, outward);
-  const double size = std::abs(edge);
-  if (!(std::real((c - a) * std::conj(outward)) > 1e-14 * size * (least + size))) return least;
-  return std::max(beyond(measure, a, c), beyond(measure, c, b));
+  if (!(std::real((c - a) * std::conj(outward)) > roundoff)) return least;
+  return std::max(beyond(measure, a, c, roundoff), beyond(measure, c, b, roundoff));
 }
 
 }  // namespace
@@ -94,7 +96,10 @@ double flat_norm(std::vector<PointMass> measure) {
   if (real) return std::abs(right);
   // The set is symmetric about 0: half of its corners tell all.
   const std::complex<double> top = furthest(measure, {0, 1});
-  return std::max(beyond(measure, right, top), beyond(measure, top, -right));
+  double mass = 0;
+  for (const PointMass& each : measure) mass += std::abs(each.weight);
+  const double roundoff = 4 * std::numeric_limits<double>::epsilon() * mass;
+  return std::max(beyond(measure, right, top, roundoff), beyond(measure, top, -right, roundoff));
 }
 
 }  // namespace extremal
