@@ -58,6 +58,13 @@ std::vector<double> logs(const std::vector<double>& values) {
 
 }  // namespace
 
+Figure side_by_side(const std::string& title, const std::vector<std::string>& names) {
+  Figure figure{.width = 980, .height = 490, .title = title};
+  const std::vector<Colour> colours = distinct_colours(names.size());
+  for (std::size_t k = 0; k < names.size(); ++k) figure.legend.push_back({names[k], colours[k], Shape::line});
+  return figure;
+}
+
 Panel decades(const std::string& x, const std::string& y, const std::vector<Series>& series, Box box) {
   double left = INFINITY, right = -INFINITY, low = INFINITY, high = -INFINITY;
   for (const Series& s : series)
@@ -77,7 +84,6 @@ Panel decades(const std::string& x, const std::string& y, const std::vector<Seri
     panel.curves.push_back({at, s.formula.empty() ? measured : logs(s.formula), colours[k], 1.2});
     for (std::size_t i = 0; i < at.size(); ++i)
       panel.marks.push_back({at[i], measured[i], colours[k], Shape::disc});
-    panel.legend.push_back({s.name, colours[k], Shape::line});
   }
   return panel;
 }

@@ -27,6 +27,10 @@ struct Series {
   std::vector<double> x, measured, formula;  ///< formula may be empty: discs are joined then
 };
 
+/// Two panels side by side.
+inline constexpr Box left_box{70, 96, 390, 330}, right_box{560, 96, 390, 330};
+Figure side_by_side(const std::string& title, const std::vector<std::string>& names);
+
 /// Both axes in powers of ten.
 Panel decades(const std::string& x, const std::string& y, const std::vector<Series>& series, Box box);
 

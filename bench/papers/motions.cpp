@@ -14,8 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr Box left_box{70, 46, 390, 330}, right_box{560, 46, 390, 330};
-
 std::shared_ptr<const Lagrangian> pendulum() {
   return trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + cos(q[0]); });
 }
@@ -46,10 +44,13 @@ Figure convergence_of_velocities() {
   const double duration = 20;
   const Problem problem = on_motion(
       pendulum(), [](double t) { return std::vector<double>{1.4 * std::cos(0.8667 * t)}; }, duration);
-  const Trajectory exact = Solver().solve(problem, {.tolerance = 1e-13}).trajectory;
+  SolveOptions tight;
+  tight.tolerance = 1e-13;
+  const Trajectory exact = Solver().solve(problem, tight).trajectory;
   std::vector<Series> position, velocity;
+  std::vector<std::string> names;
   for (const char* name : {"midpoint", "trapezoid", "linear", "quadratic", "lobatto(3)"}) {
-    Series q{name, {}, {}, {}}, v = q;
+    Series q{.name = name, .x = {}, .measured = {}, .formula = {}}, v = q;
     for (int elements = 64; elements <= 1024; elements *= 2) {
       const auto [dq, dv] = errors(solved(problem, name, elements).trajectory, exact);
       q.x.push_back(duration / elements);
@@ -57,14 +58,12 @@ Figure convergence_of_velocities() {
       v.x.push_back(duration / elements);
       v.measured.push_back(dv);
     }
-    fmt::print("{}: slopes of q and q' {:.2f}, {:.2f}\n", name, slope(q), slope(v));
-    q.name += fmt::format(", slope {:.2f}", slope(q));
-    v.name += fmt::format(", slope {:.2f}", slope(v));
+    names.push_back(fmt::format("{}: {:.2f}, {:.2f}", name, slope(q), slope(v)));
     position.push_back(std::move(q));
     velocity.push_back(std::move(v));
   }
-  Figure figure{
-      .width = 980, .height = 440, .title = "Convergence in W^{1,∞} of a pendulum's swing, Theorem 4.7"};
+  Figure figure =
+      side_by_side("Swing of a pendulum: convergence in W^{1,∞}, Theorem 4.7, with slopes", names);
   figure.panels.push_back(decades("h", "sup |q_h − q|", position, left_box));
   figure.panels.push_back(decades("h", "sup |q_h' − q'|", velocity, right_box));
   return figure;
@@ -72,15 +71,11 @@ Figure convergence_of_velocities() {
 
 Figure windows() {
   const int elements = 12;
-  Figure figure{
-      .width = 980,
-      .height = 440,
-      .title = fmt::format(
-          "Oscillator with fixed ends, {} elements: windows, and conjugate points of schemes", elements)};
-  Panel index{.box = left_box, .x = linear_axis("ω₀T/π", 0.9, 3.3), .y = linear_axis("Morse index", -0.2, 4)};
+  Panel index{.box = left_box, .x = linear_axis("ω₀T/π", 0.5, 3.3), .y = linear_axis("Morse index", -0.2, 4)};
   Panel size{
       .box = right_box, .x = linear_axis("ω₀T/π", 0.9, 1.12), .y = linear_axis("log10 max |q_h|", 0, 6)};
   const std::vector<std::string> names = {"midpoint", "trapezoid", "linear"};
+  std::vector<std::string> legend;
   const std::vector<Colour> colours = distinct_colours(names.size());
   const auto oscillator = trace(1, [](auto q, auto v, auto) { return (v[0] * v[0] - q[0] * q[0]) / 2; });
   const auto solve = [&](const std::string& name, double duration) {
@@ -99,7 +94,7 @@ Figure windows() {
   for (std::size_t s = 0; s < names.size(); ++s) {
     const double bound = window_bound(scheme(names[s]), elements);
     Curve steps{{}, {}, colours[s], 1.4}, growth = steps;
-    for (double x = 0.9; x <= 3.3; x += 0.004) {
+    for (double x = 0.5; x <= 3.3; x += 0.004) {
       const Solution solution = solve(names[s], x * pi);
       if (!solution.converged() || !solution.morse_index) continue;
       steps.x.push_back(x);
@@ -117,11 +112,12 @@ Figure windows() {
     size.curves.push_back(growth);
     index.marks.push_back({bound / pi, 0.5, colours[s], Shape::ring});
     size.curves.push_back({{bound / pi, bound / pi}, {0, 6}, colours[s], 0.6});
-    index.legend.push_back(
-        {fmt::format("{}, sharp bound {:.4f}", names[s], bound / pi), colours[s], Shape::line});
-    fmt::print("{}: conjugate at ω₀T/π = {:.6f}\n", names[s], bound / pi);
+    legend.push_back(fmt::format("{}: bound {:.4f} π", names[s], bound / pi));
   }
   index.curves.push_back({{2 / pi, 2 / pi}, {-0.2, 4}, 0x888888, 1});
+  index.notes.push_back({2 / pi + 0.4, 3.8, "2/ω₀, Lemma 5.3"});
+  Figure figure = side_by_side(
+      fmt::format("Oscillator with fixed ends, {} elements: conjugate points", elements), legend);
   figure.panels = {std::move(index), std::move(size)};
   return figure;
 }

@@ -42,12 +42,13 @@ Discrete discrete(const std::string& name, double h) {
       for (int p = 0; p < tables.points; ++p)
         k(i, j) -= h * tables.weight[p] * tables.value[p * f + i] * tables.value[p * f + j];
     }
-  // Functions are those of the start, of the inner ones and of the end.
+  // The inner functions come first, then those of the start and of the end.
   const int inner = f - 2;
-  Eigen::MatrixXd ends(2, 2), sides(inner, 2);
-  ends << k(0, 0), k(0, f - 1), k(f - 1, 0), k(f - 1, f - 1);
-  sides << k.block(1, 0, inner, 1), k.block(1, f - 1, inner, 1);
-  if (inner > 0) ends -= sides.transpose() * k.block(1, 1, inner, inner).ldlt().solve(sides);
+  Eigen::Matrix2d ends = k.bottomRightCorner<2, 2>();
+  if (inner > 0) {
+    const Eigen::MatrixXd sides = k.topRightCorner(inner, 2);
+    ends -= sides.transpose() * k.topLeftCorner(inner, inner).ldlt().solve(sides);
+  }
   return {ends(0, 0), -ends(0, 1), ends(1, 1)};
 }
 
@@ -61,9 +62,6 @@ SpectralLine formula(const std::string& name, double h, double u, double p) {
 SpectralLine measured(const Problem& problem, const Solution& solution) {
   return motion_spectrum(problem, solution.trajectory, Sampling::nodes, 1, 1e-9).coordinates[0].lines.at(0);
 }
-
-Figure side_by_side(const std::string& title) { return {.width = 980, .height = 440, .title = title}; }
-constexpr Box left_box{70, 46, 390, 330}, right_box{560, 46, 390, 330};
 
 double distance(const Problem& problem, const Solution& solution, const std::vector<Spectrum>& exact) {
   double sum = 0;
@@ -133,7 +131,7 @@ Figure frequencies_and_amplitudes() {
   const double duration = 60.3 * 2 * pi;
   const Problem problem = on_motion(oscillator(), sum_of({lines({{1, 1, 0.7}})}), duration);
   for (const std::string& name : shown_schemes) {
-    Series w{name, {}, {}, {}}, a = w;
+    Series w{.name = name, .x = {}, .measured = {}, .formula = {}}, a = w;
     for (int elements = 256; elements <= 4096; elements *= 2) {
       const double h = duration / elements;
       const Solution solution = solved(problem, name, elements);
@@ -150,32 +148,32 @@ Figure frequencies_and_amplitudes() {
     amplitude.push_back(std::move(a));
   }
   Figure figure = side_by_side(
-      "Lines of the discrete oscillator, Müller-Ortiz (1.10) to (1.12): measured, and as formulas");
+      "Discrete oscillator: lines as measured, dots, and by (1.10) to (1.12), curves", shown_schemes);
   figure.panels.push_back(decades("h ω₀", "|ω_h/ω₀ − 1|", frequency, left_box));
   figure.panels.push_back(decades("h ω₀", "||A_h|/|A₀| − 1|", amplitude, right_box));
-  figure.panels.back().legend.clear();
   return figure;
 }
 
 Figure convergence_of_spectra() {
-  Figure figure = side_by_side("Convergence of spectra in the flat norm, Corollary 4.8");
-  const auto panel = [&](const std::string& name, Box box) {
-    std::vector<Series> series;
-    for (const Known& known : known_motions()) {
-      const Problem problem = on_motion(known.lagrangian, sum_of(known.lines), known.duration);
-      Series s{known.name, {}, {}, {}};
-      for (int elements = 1024; elements <= 16384; elements *= 2) {
+  const std::string schemes[] = {"linear", "quadratic"};
+  std::vector<Series> series[2];
+  std::vector<std::string> names;
+  for (const Known& known : known_motions()) {
+    const Problem problem = on_motion(known.lagrangian, sum_of(known.lines), known.duration);
+    names.push_back(known.name + ":");
+    for (int k = 0; k < 2; ++k) {
+      Series s{.name = known.name, .x = {}, .measured = {}, .formula = {}};
+      for (int elements = 2048; elements <= 32768; elements *= 2) {
         s.x.push_back(known.duration / elements);
-        s.measured.push_back(distance(problem, solved(problem, name, elements), known.lines));
+        s.measured.push_back(distance(problem, solved(problem, schemes[k], elements), known.lines));
       }
-      s.name += fmt::format(", slope {:.2f}", slope(s));
-      fmt::print("{}: {}\n", name, s.name);
-      series.push_back(std::move(s));
+      names.back() += fmt::format("{} {:.2f}", k > 0 ? "," : "", slope(s));
+      series[k].push_back(std::move(s));
     }
-    figure.panels.push_back(decades("h, " + name, "flat norm of the difference", series, box));
-  };
-  panel("linear", left_box);
-  panel("quadratic", right_box);
+  }
+  Figure figure = side_by_side("Spectra converge in the flat norm, Corollary 4.8; with slopes", names);
+  figure.panels.push_back(decades("h, linear", "flat norm of the difference", series[0], left_box));
+  figure.panels.push_back(decades("h, quadratic", "flat norm of the difference", series[1], right_box));
   return figure;
 }
 

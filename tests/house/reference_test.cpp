@@ -222,6 +222,10 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   const std::string orbit = without("", "search");
   add_fields("solve", orbit, fields);
   add_fields("solve", complete, fields, {"--samples", "2"});
+  const std::string lines = orbit + "[spectrum]\n";
+  add_fields("spectrum", lines, fields);
+  fs::rename(folder / "out.json", folder / "other.json");
+  add_fields("solve", lines + "against = \"other.json\"\n", fields);
   add_fields("solve", "system.use = \"driven-oscillator\"\nboundary = { start = { x = 0 }, duration = 2 }\n",
              fields);
   EXPECT_EQ(fields, names_in("## Fields of a result"));
