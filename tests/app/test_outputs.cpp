@@ -163,6 +163,7 @@ TEST_F(Outputs, TheBudgetEndsEveryVerb) {
     all.insert(all.end(), {"--set", "solve.budget=0.02"});
     const auto begin = Clock::now();
     const Outcome o = extremal(all);
+    if (o.error.find("is not part of this build") != std::string::npos) continue;
     EXPECT_LT(Clock::now() - begin, 20s) << all[0] << all.back();
     EXPECT_EQ(o.exit, 1) << o.error;
     EXPECT_NE(o.error.find("the budget of 0.02 s"), std::string::npos) << o.error;
