@@ -35,7 +35,9 @@ TEST(Roundoff, OfAStepIsAllThatStepsChange) {
   for (int k = 0; k < 5; ++k) ASSERT_EQ(newton.full_step(path, 0), StepResult::ok);
   const double noise = newton.roundoff(path);
   double largest = 0;
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 10; ++k) {
+    // Chord steps alone may lead away: so much roundoff is beyond where old factors still contract.
+    ASSERT_EQ(newton.full_step(path, 0), StepResult::ok);
     ASSERT_EQ(newton.chord_step(path), StepResult::ok);
     largest = std::max(largest, newton.norm());
   }
