@@ -37,7 +37,7 @@ fuzz: packages
 	@cmake --preset fuzz
 	@cmake --build --preset fuzz
 	@mkdir -p build/fuzz/kept build/fuzz/found
-	@build/fuzz/fuzz_scene -max_total_time=$(FUZZ_SECONDS) -timeout=60 -rss_limit_mb=4096 -max_len=4096 -fork=2 \
+	@build/fuzz/fuzz_scene -max_total_time=$(FUZZ_SECONDS) -timeout=60 -rss_limit_mb=4096 -max_len=4096 -print_funcs=0 -fork=2 \
 	  -dict=tests/fuzz/scene.dict -artifact_prefix=build/fuzz/found/ build/fuzz/kept problems/scenes tests/data/refused
 
 bench: build
