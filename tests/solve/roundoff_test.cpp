@@ -12,8 +12,8 @@ namespace extremal::laws {
 namespace {
 
 /// Near an encounter at 3e-4 of the size of the orbit roundoff of q is amplified some millions of times. How
-/// many depends on the elements and on how sums are rounded, so the measure is held between what steps do,
-/// from both sides.
+/// many depends on the elements and on how sums are rounded, so the measure is held between what steps do, to
+/// a factor of 50 on both sides: a step of that size is also bent by what it amplifies.
 TEST(Roundoff, OfAStepIsAllThatStepsChange) {
   const nlohmann::json c = published("nbody_periodic_orbits.json", "3b-ff-F1_1_1_1_");
   const Study study = study_of(c, 1e-8);
@@ -33,17 +33,18 @@ TEST(Roundoff, OfAStepIsAllThatStepsChange) {
   newton.reset(study.problem, tables, path.elements());
   newton.set_scale(1);
   for (int k = 0; k < 5; ++k) ASSERT_EQ(newton.full_step(path, 0), StepResult::ok);
-  const double noise = newton.roundoff(path);
-  double largest = 0;
+  // Chord steps alone may lead away: so much roundoff is beyond where old factors still contract.
+  double noisiest = 0, largest = 0;
   for (int k = 0; k < 10; ++k) {
-    // Chord steps alone may lead away: so much roundoff is beyond where old factors still contract.
     ASSERT_EQ(newton.full_step(path, 0), StepResult::ok);
+    const double noise = newton.roundoff(path);
     ASSERT_EQ(newton.chord_step(path), StepResult::ok);
+    noisiest = std::max(noisiest, noise);
     largest = std::max(largest, newton.norm());
   }
-  EXPECT_LT(largest, 5 * noise);
-  EXPECT_GT(largest, noise / 50);
-  EXPECT_GT(noise, 1e3 * unit_roundoff);
+  EXPECT_LT(largest, 50 * noisiest);
+  EXPECT_GT(largest, noisiest / 50);
+  EXPECT_GT(noisiest, 1e3 * unit_roundoff);
 }
 
 /// Roundoff of q amplified to 1e-8 hides a tolerance of 1e-9 from some elements on: thousands of times more
