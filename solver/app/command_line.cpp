@@ -52,7 +52,7 @@ class CommandLine {
   SolveArguments solve_;
   ContinueArguments continue_;
   CompareArguments compare_;
-  SpectrumArguments spectrum_;
+  CompareArguments spectrum_;
   CheckArguments check_;
   std::string system_, command_, shell_;
 };
@@ -175,7 +175,7 @@ void CommandLine::add_compare() {
 }
 
 void CommandLine::add_spectrum() {
-  SpectrumArguments& a = spectrum_;
+  CompareArguments& a = spectrum_;
   CLI::App& command =
       add("spectrum", "solve a scene, then find frequencies and amplitudes of each coordinate",
           "spectrum henon-heiles.toml --plot spectrum.svg", [&a] { return app::spectrum(a); });

@@ -51,13 +51,8 @@ struct ContinueArguments {
 };
 int follow(const ContinueArguments& arguments);
 
-struct SpectrumArguments {
-  std::string scene;
-  std::vector<std::string> sets;
-  std::string output, plot;
-  bool quiet = false;
-};
-int spectrum(const SpectrumArguments& arguments);
+/// Those of `compare` serve.
+int spectrum(const CompareArguments& arguments);
 
 struct CheckArguments {
   std::string scene;

@@ -121,7 +121,7 @@ int solve(const SolveArguments& a) {
   const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
 
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
-  if (!study.problem.periodic) result.natural_conditions = study.problem.ends.free;
+  result.natural_conditions = natural_conditions(study.problem);
   {
     const ProgressLine progress(!a.quiet && a.repeat == 1);
     study.options.progress = progress.callback<Iteration>(progress_text);

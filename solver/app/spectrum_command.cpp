@@ -12,12 +12,12 @@
 
 namespace extremal::app {
 
-int spectrum(const SpectrumArguments& a) {
+int spectrum(const CompareArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
   const Study study = load(a.scene, a.sets, Purpose::solution);
   outputs.keep(study.files);
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
-  if (!study.problem.periodic) result.natural_conditions = study.problem.ends.free;
+  result.natural_conditions = natural_conditions(study.problem);
   result.solution = run(study);
   const bool converged = result.solution.converged();
   if (converged)

@@ -147,6 +147,12 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 
 }  // namespace
 
+int natural_conditions(const Problem& problem) {
+  const std::vector<double>& given = problem.boundary.momenta;
+  const auto zeros = std::count(given.begin(), given.end(), 0.0);
+  return problem.periodic ? 0 : problem.ends.free - static_cast<int>(given.size() - zeros);
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;

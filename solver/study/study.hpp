@@ -51,6 +51,10 @@ Solution run(const Study& study, int repeat = 1);
 /// The same for study.solutions extremals, as Solver::solve_all returns them.
 std::vector<Solution> run_all(const Study& study, int repeat = 1);
 
+/// Conditions of zero momentum that stationarity adds at the ends. Periodic ends and momenta given otherwise
+/// are none.
+int natural_conditions(const Problem& problem);
+
 /// Of times of repeated runs, at least one.
 double median(std::vector<double> values);
 

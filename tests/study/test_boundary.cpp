@@ -99,6 +99,17 @@ TEST_F(Scenes, ErrorsOfDefinitionsPointToThem) {
       "scene.toml:3:24: unknown name 'dd'; di");
 }
 
+TEST_F(Scenes, NaturalConditionsAreThoseThatNothingElseGives) {
+  const auto count = [&](const std::string& start) {
+    return natural_conditions(
+        study(masses + "[boundary]\nstart = { " + start + " }\nend = { x = 1, q = \"0\" }\nduration = 2\n")
+            .problem);
+  };
+  EXPECT_EQ(count("x = 0, q = \"0\""), 0);
+  EXPECT_EQ(count("x = 0"), 3);
+  EXPECT_EQ(count("x = 0, p_q = [1, 0, 2]"), 1);
+}
+
 TEST_F(Scenes, ParametersThatNothingUses) {
   const auto refused = [&](const std::string& parameters, const std::vector<std::string>& sets = {}) {
     return message("[system]\nuse = \"pendulum\"\nparameters = { " + parameters +
