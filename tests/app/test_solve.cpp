@@ -58,7 +58,7 @@ TEST_F(Command, MomentaThatAreGiven) {
   scene.replace(scene.find("q = 0.0 }"), 9, "p_q = \"1.3736908728527137\" }");
   const Outcome o = solve(scene + "[guess]\nq = \"1.5*t/T\"\n", {"--output", "r.json", "--at", "0"});
   ASSERT_EQ(o.exit, 0) << o.error;
-  EXPECT_NE(o.out.find("1 natural condition"), std::string::npos) << o.out;
+  EXPECT_EQ(o.out.find("natural condition"), std::string::npos) << o.out;
   const Json r = Json::parse(read_text(folder / "r.json"));
   EXPECT_NEAR(r["samples"]["q"][0].get<double>(), 0, 1e-9);
   EXPECT_NEAR(r["momentum_start"]["q"].get<double>(), pendulum_slope, 1e-10);
