@@ -132,6 +132,14 @@ std::vector<Recipe> three_coordinates() {
 
 std::vector<Recipe> many_coordinates() {
   return {
+      {.system = "sheets",
+       .parameters = {{"g", 0.3, 3}},
+       .positions = {{"q", -1, 1}},
+       .velocities = {{"q", -1, 1}},
+       .time = 3,
+       .least = 2,
+       .most = 4,
+       .maps = {R"({ q = "-q[i]" })"}},
       {.system = "triple-pendulum",
        .parameters = {{"m", 0.3, 3, true}, {"l", 0.5, 2, true}, {"g", 1, 20}},
        .positions = {{"theta", -1.5, 1.5}},
