@@ -118,7 +118,8 @@ std::vector<Fault> deny_search(const extremal::Study& study, const std::vector<e
     if (k > 0 && found[k].action < found[k - 1].action)
       faults.push_back({"invalid", of + "not sorted by action"});
     for (std::size_t j = 0; j < k; ++j)
-      if (same_path(found[j], found[k], 1e-3 * study.options.tolerance, 1))
+      if (study.options.elements > 0 ? same_discrete(found[j], found[k])
+                                     : same_path(found[j], found[k], 1e-3 * study.options.tolerance, 1))
         faults.push_back({"invalid", of + fmt::format("the same as {}", j + 1)});
   }
   if (study.options.elements == 0) add(faults, find_gap(study, found), "");

@@ -52,7 +52,8 @@ extremal::Problem between_ends(const extremal::Problem& problem, const extremal:
   result.symmetries.clear();
   result.guess = {};
   result.duration = {path.duration(), false, {}, {}};
-  result.boundary = {.coordinates = problem.coordinates()};
+  result.boundary = {};
+  result.boundary.coordinates = problem.coordinates();
   for (std::size_t a = 0; a < n; ++a) {
     result.boundary.fix(static_cast<int>(a), false, path.nodes[a]);
     result.boundary.fix(static_cast<int>(a), true, path.nodes[path.nodes.size() - n + a]);

@@ -129,9 +129,11 @@ class Refutation {
                         *solution_.morse_index, along_path < 0 ? "odd" : "even")};
   }
 
-  /// (−1)^index with fixed ends, off conjugate ends; 0 elsewhere.
+  /// (−1)^index with fixed ends, off conjugate ends; 0 elsewhere, and where fields jump at kinks of L, which
+  /// those that are integrated do not.
   int expected_orientation() const {
     if (problem_.ends.free > 0 || problem_.duration.free || solution_.nullity != 0) return 0;
+    if (problem_.lagrangian->kinks()) return 0;
     return *solution_.morse_index % 2 == 0 ? 1 : -1;
   }
 

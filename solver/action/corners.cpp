@@ -20,6 +20,8 @@ constexpr int finer = 16;
 constexpr double same_time = 1e-12;
 /// An element beside a corner becomes at most so many times shorter or longer in one step.
 constexpr double most_stretch = 2;
+/// Of the shorter element beside a corner: a move that changes those two alone. Others keep all their digits.
+constexpr double near = 0.01;
 /// Halvings of an interval, after which the crossing is known to the last digit.
 constexpr int most_halvings = 60;
 
@@ -149,6 +151,19 @@ void Along::find(const Kinks& kinks, int element, std::vector<double>& times) {
   }
 }
 
+/// Nodes between those that move, and the ends, move in proportion.
+void spread(std::span<const double> mesh, std::span<const int> moves, std::span<double> shift) {
+  std::size_t left = 0;
+  for (std::size_t right = 1; right < shift.size(); ++right) {
+    if (moves[right] == 0 && right + 1 < shift.size()) continue;
+    for (std::size_t k = left + 1; k < right; ++k) {
+      const double share = (mesh[k] - mesh[left]) / (mesh[right] - mesh[left]);
+      shift[k] = shift[left] + share * (shift[right] - shift[left]);
+    }
+    left = right;
+  }
+}
+
 }  // namespace
 
 std::vector<Corner> corners_of(const Kinks& kinks, const Polynomials& path, const ClosingMap* closed) {
@@ -207,6 +222,13 @@ bool follow_corners(Path& path, std::span<const Corner> corners, std::span<const
   }
   for (std::size_t k = 0; k < shift.size(); ++k)
     if (surfaces[k] > 1) shift[k] /= surfaces[k];
+  const auto far = [&](std::size_t k) {
+    const std::span<const double> lengths = path.lengths();
+    return k > 0 && k < lengths.size() && std::abs(shift[k]) > near * std::min(lengths[k - 1], lengths[k]);
+  };
+  bool any = false;
+  for (std::size_t k = 0; k < shift.size(); ++k) any = any || far(k);
+  if (any) spread(path.mesh(), surfaces, shift);
   return path.slide(shift, most_stretch);
 }
 

@@ -40,7 +40,8 @@ std::vector<Corner> corners_of(const Kinks& kinks, const Path& path, const Closi
 
 /// Moves the mesh nodes of a path, of which these were the corners, to where a step of its nodes, (N + 1) ×
 /// n, that was taken by `factor`, has taken u along them: u + ∂u/∂q δq + u' δt = 0. Where surfaces share a
-/// node, to the mean of their times; T does not move. False, and nothing is done, where Path::slide() does
+/// node, to the mean of their times; T does not move. Where that is far for the elements beside a node, the
+/// nodes up to the next corner follow. False, and nothing is done, where Path::slide() does
 /// nothing.
 bool follow_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
                     double factor);

@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include "solve/laws.hpp"
+#include "solve/branches.hpp"
 #include "system/formula.hpp"
 
 /// \file Extremals that cross kinks of L, against solutions pieced together by hand.
@@ -218,6 +218,60 @@ TEST(Kinks, GrazingIsNoCrossing) {
   const Solution s = solver.solve(fixed_ends(lagrangian, {0}, {0}, T), within(1e-9));
   if (s.converged())
     EXPECT_LT(distance(s.trajectory, [&](double t) { return Values{t * (T - t) / 2}; }), 1e-8);
+}
+
+/// x'' = −x to the right of 0, −(1 + k) x to the left: from x, v at 0 on, arc by arc.
+State wall_motion(double k, double x, double v, double T) {
+  for (double t = 0;;) {
+    const bool right = x > 0 || (x == 0 && v > 0);
+    const double w = right ? 1 : std::sqrt(1 + k), phase = std::atan2(v / w, x);
+    // x = A cos(w s − phase) vanishes next where w s − phase is an odd multiple of π/2.
+    double turn = (right ? pi / 2 : 3 * pi / 2) + phase;
+    if (turn <= 1e-9) turn += 2 * pi;
+    if (turn > 2 * pi) turn -= 2 * pi;
+    const double rest = T - t, s = std::min(rest, turn / w);
+    const double cosine = std::cos(w * s), sine = std::sin(w * s);
+    const double next = x * cosine + v / w * sine;
+    v = v * cosine - w * x * sine;
+    x = s < rest ? 0 : next;
+    if (s == rest) return {{x}, {v}};
+    t += s;
+  }
+}
+
+/// Between two crossings to the left of 0 lies half a swing, whose ends are conjugate; to rest at T, which
+/// varies, after 13 crossings.
+TEST(Kinks, FamiliesCrossThemManyTimes) {
+  const double k = 4.65, start = 0.84;
+  const auto lagrangian = written({"x"}, "x'^2/2 - x^2/2 - 4.65*max(0, -x)^2/2");
+  Problem problem = with_ends(lagrangian, 29.2, [&](BoundaryRelation& b) { b.fix(0, false, start); });
+  const double v = 0.155;
+  problem = guessed(problem, [&](double tau) { return wall_motion(k, start, v, 29.2 * tau).q; });
+  Continuation branch({problem, Varied::duration, 29.2, 28.5, {}}, {within(1e-10), 60});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_LE(branch.worst_action_slope(), 1e-6);
+  for (const BranchPoint& point : points) {
+    const State first = start_of(point);
+    EXPECT_NEAR(wall_motion(k, start, first.v[0], point.parameter).v[0], 0, 1e-7) << point.parameter;
+  }
+}
+
+/// x'' = −sign x from 1 to −1: one crossing, which moves along the family.
+TEST(Kinks, FamiliesFollowACrossing) {
+  const auto lagrangian = written({"x"}, "x'^2/2 - abs(x)");
+  Continuation branch({fixed_ends(lagrangian, {1}, {-0.2}, 2), Varied::duration, 2, 3, {}},
+                      {within(1e-10), 30});
+  const std::vector<BranchPoint> points = follow(branch);
+  EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+  EXPECT_LT(points.size(), 20u);
+  for (const BranchPoint& point : points) {
+    // v²/2 + |x| = E on both sides.
+    const double v = start_of(point).v[0], crossing = v + std::sqrt(v * v + 2),
+                 rest = point.parameter - crossing;
+    const double end = -std::sqrt(v * v + 2) * rest + rest * rest / 2;
+    EXPECT_NEAR(end, -0.2, 1e-8) << point.parameter;
+  }
 }
 
 /// Elements that the user chose stay where they are. The error is that of a kink inside an element, estimated

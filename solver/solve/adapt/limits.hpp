@@ -47,8 +47,6 @@ inline constexpr double coarse_goal = 1e-3;
 inline constexpr double coarse_cut = 4;
 /// Steps allowed for one run of damped Newton.
 inline constexpr int coarse_steps = 25, fine_steps = 12;
-/// Of T: kinks are known no better.
-inline constexpr double least_misplacement = 1e-13;
 /// Times that a path may cross other kinks, or cross them elsewhere, after Newton's method.
 inline constexpr int most_realignments = 12;
 /// Times that elements are planned before all are halved.

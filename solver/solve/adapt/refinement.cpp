@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/mesh/kink_nodes.hpp"
+#include "solve/mesh/limits.hpp"
 #include "solve/periodic/equilibrium.hpp"
 
 namespace extremal {
@@ -109,7 +111,7 @@ bool Refinement::holds_on_other_elements() {
   std::vector<double> other{0};
   for (std::size_t k = 0; k + 1 < mesh.size(); ++k) other.push_back(0.5 * (mesh[k] + mesh[k + 1]));
   other.push_back(1);
-  w_.other.resample_from(path_, *tables_, with_nodes(other, kink_times()));
+  w_.other.resample_from(path_, *tables_, with_nodes(other, kink_times(*tables_, path_, problem_.periodic)));
   w_.before.assign(w_.other.nodes().begin(), w_.other.nodes().end());
   w_.iteration.reset(problem_, *tables_, w_.other.elements());
   w_.iteration.set_scale(scales_.q);
@@ -165,7 +167,7 @@ void Refinement::adopt(const Plan& plan) {
     if (plan.degree > path_.degree()) raise(plan.degree);
     return;
   }
-  const std::vector<double> times = kink_times();
+  const std::vector<double> times = kink_times(*tables_, path_, problem_.periodic);
   move_to(w_.levels.at(plan.degree), times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
 }
 
@@ -178,36 +180,20 @@ void Refinement::move_to(const ElementTables& tables, std::span<const double> me
   w_.iteration.set_scale(scales_.q);
 }
 
-/// The times, in t/T, at which the path crosses a surface on which L is not smooth.
-std::vector<double> Refinement::kink_times() const {
-  const Kinks* const kinks = tables_->kinks();
-  if (!kinks) return {};
-  std::vector<double> times = crossings(*kinks, path_);
-  // A closed path may cross where it closes: so near 0 and T no element ends for it.
-  if (problem_.periodic) {
-    const double gap = 0.5 * tables_->scheme().node[0];
-    const double first = gap * path_.lengths().front(), last = gap * path_.lengths().back();
-    std::erase_if(times, [&](double t) { return t < first || t > 1 - last; });
-  }
-  return times;
-}
-
 /// Whether a closed path crosses no kink beside t = 0, unless it does so at t = 0 itself.
 bool Refinement::closes_beside_kinks() const {
   const DiscreteAction& action = w_.iteration.action();
   return std::ranges::all_of(action.corners(), [&](const Corner& corner) {
     const double away = std::abs(corner.u / corner.rate) / path_.duration();
-    return corner.node < path_.elements() || away <= std::max(options_.tolerance, least_misplacement);
+    return corner.node < path_.elements() || away <= std::max(options_.tolerance, limits::kinks::least_misplacement);
   });
 }
 
 /// Puts the path on elements that end where it crosses kinks of L, unless they do to the tolerance.
 bool Refinement::end_at_kinks() {
-  const std::vector<double> times = kink_times();
-  if (distance_to_nodes(path_.mesh(), times) <= std::max(options_.tolerance, least_misplacement))
-    return false;
-  move_to(*tables_, with_nodes(path_.mesh(), times));
-  return true;
+  const auto mesh = mesh_to_kinks(*tables_, path_, problem_.periodic, options_.tolerance);
+  if (mesh) move_to(*tables_, *mesh);
+  return mesh.has_value();
 }
 
 /// Newton's method again, as long as the path that it found crosses kinks elsewhere than where elements end.

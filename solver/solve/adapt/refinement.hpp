@@ -93,7 +93,6 @@ class Refinement {
   std::optional<Resolution::Error> recovered(double q);
   void raise(int degree);
   void move_to(const ElementTables& tables, std::span<const double> mesh);
-  std::vector<double> kink_times() const;
   bool end_at_kinks();
   bool closes_beside_kinks() const;
   NewtonReport follow_kinks(NewtonReport newton);

@@ -1,5 +1,6 @@
 #include "solve/branch/limits.hpp"
 #include "solve/branch/tracker.hpp"
+#include "solve/mesh/kink_nodes.hpp"
 #include "solve/mesh/roundoff.hpp"
 
 /// \file Elements along a branch.
@@ -20,6 +21,10 @@ double excess(const Resolution::Error& error, const Scales& size, double toleran
 /// Elements that meet the tolerance, and not many more than that takes.
 Tracker::Fit Tracker::fit_elements() {
   const ElementTables& tables = branch_.tables();
+  if (auto mesh = mesh_to_kinks(tables, path_, branch_.problem().periodic, tolerance_)) {
+    change_elements(path_.degree(), *mesh);
+    return Fit::changed;
+  }
   const Scales size = sizes();
   w_.resolution.measure(path_, tables);
   const Resolution::Error error = w_.resolution.at(path_.degree());
@@ -32,7 +37,7 @@ Tracker::Fit Tracker::fit_elements() {
       plan.degree * plan.mesh.size() < worth_changing * path_.degree() * (path_.elements() + 1);
   if (missed <= 1 && (plan.mesh.empty() || !fewer)) return Fit::fine;
   if (plan.degree == 0) return Fit::too_many;
-  change_elements(plan);
+  adopt(plan);
   return Fit::changed;
 }
 
@@ -52,13 +57,16 @@ Plan Tracker::plan_for(const Scales& size) {
                           .strongest_growth = strongest_growth});
 }
 
+void Tracker::adopt(const Plan& plan) {
+  if (plan.mesh.empty()) return change_elements(plan.degree, {path_.mesh().begin(), path_.mesh().end()});
+  const std::vector<double> times = kink_times(branch_.tables(), path_, branch_.problem().periodic);
+  change_elements(plan.degree, times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
+}
+
 /// The path and the tangent on other elements.
-void Tracker::change_elements(const Plan& plan) {
+void Tracker::change_elements(int degree, const std::vector<double>& mesh) {
   const std::vector<double> before(path_.mesh().begin(), path_.mesh().end());
-  std::vector<double> mesh = plan.mesh.empty() ? before : plan.mesh;
-  if (const Kinks* kinks = branch_.tables().kinks(); kinks && !plan.mesh.empty())
-    mesh = with_nodes(mesh, crossings(*kinks, path_));
-  w_.other.resample_from(path_, w_.levels.at(plan.degree), mesh);
+  w_.other.resample_from(path_, w_.levels.at(degree), mesh);
   if (!tangent_.step.nodes.empty())
     tangent_.step.nodes = interpolated(tangent_.step.nodes, path_.coordinates(), before, mesh);
   std::swap(path_, w_.other);
@@ -76,7 +84,7 @@ std::optional<BranchState> Tracker::resolved_for(const BranchState& from, const 
   const Plan plan = plan_for(size);
   if (plan.degree == 0) return std::nullopt;
   path_ = from.path;
-  change_elements(plan);
+  adopt(plan);
   if (!correct(1, nullptr) || !update_tangent()) return std::nullopt;
   state.units = from.units;
   state.bend = transferred(from.bend, from.path);

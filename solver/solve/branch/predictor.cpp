@@ -25,6 +25,15 @@ bool same_elements(const Path& a, const Path& b) {
   return a.degree() == b.degree() && std::ranges::equal(a.mesh(), b.mesh());
 }
 
+/// Whether the elements of one are those of the other, whose ends have followed kinks of L.
+bool followed_kinks(const Path& a, const Path& b) {
+  if (a.degree() != b.degree() || a.elements() != b.elements()) return false;
+  const std::span<const double> here = a.mesh(), there = b.mesh();
+  for (int k = 0; k < a.elements(); ++k)
+    if (std::max(here[k], there[k]) >= std::min(here[k + 1], there[k + 1])) return false;
+  return true;
+}
+
 }  // namespace
 
 Move BranchState::predicted(double length) const {
@@ -107,9 +116,11 @@ BranchState Tracker::corrected(const BranchState& from, const BranchStep& around
   return result;
 }
 
-/// A move of another path on the elements of this one.
+/// A move of another path on the elements of this one. Moves have kinks where paths cross those of L: with
+/// the elements that end there they move, or differences of moves would be worth nothing.
 Move Tracker::transferred(const Move& move, const Path& from) {
   if (move.step.nodes.empty() || same_elements(from, path_)) return move;
+  if (branch_.tables().kinks() && followed_kinks(from, path_)) return move;
   Path whole;
   whole.reset(w_.levels.at(from.degree()), from.mesh(), from.duration());
   whole.add(move.step.nodes, move.step.inner, 1);

@@ -92,7 +92,8 @@ class Tracker {
   bool update_tangent(bool first = false);
   Fit fit_elements();
   Plan plan_for(const Scales& size);
-  void change_elements(const Plan& plan);
+  void adopt(const Plan& plan);
+  void change_elements(int degree, const std::vector<double>& mesh);
   Move transferred(const Move& move, const Path& from);
   Move difference_to(const BranchState& to);
   bool return_to(const BranchState& from);

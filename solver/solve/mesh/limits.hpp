@@ -44,4 +44,11 @@ inline constexpr double nearly_uniform = 1e-3;
 
 }  // namespace resolution
 
+namespace kinks {
+
+/// Of T: crossings are known no better.
+inline constexpr double least_misplacement = 1e-13;
+
+}  // namespace kinks
+
 }  // namespace extremal::limits

@@ -80,6 +80,10 @@ std::vector<double> with_nodes(std::span<const double> mesh, std::span<const dou
                        (after != times.begin() && mesh[k] - *(after - 1) < reach);
     if (!close) result.push_back(mesh[k]);
   }
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const auto between = [&](double t) { return t > times[k - 1] && t < times[k]; };
+    if (std::ranges::none_of(result, between)) result.push_back(0.5 * (times[k - 1] + times[k]));
+  }
   std::sort(result.begin(), result.end());
   return result;
 }

@@ -33,7 +33,9 @@ std::vector<double> uniform_mesh(int elements);
 std::vector<double> halved(const std::vector<double>& mesh);
 
 /// A mesh that has these times, ascending in (0, 1), as nodes: nodes that are near one, by the length of the
-/// elements there, give way to it.
+/// elements there, give way to it. Between two of them there is another node: two crossings of a surface that
+/// follow each other are conjugate where L is quadratic between them, and the inner nodes of an element from
+/// one to the other would have a singular matrix.
 std::vector<double> with_nodes(std::span<const double> mesh, std::span<const double> times);
 /// The largest distance of one of these times from the nearest node.
 double distance_to_nodes(std::span<const double> mesh, std::span<const double> times);

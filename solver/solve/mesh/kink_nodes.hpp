@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "action/path.hpp"
+#include "action/tables.hpp"
+
+/// \file Elements that end where a path crosses the surfaces on which L is not smooth.
+
+namespace extremal {
+
+/// The crossings, in t/T, ascending; empty where L is smooth. A closed path may cross where it closes: so
+/// near 0 and T no element ends for it.
+std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed);
+
+/// The mesh of the path with these crossings as nodes; nothing where they are nodes, to `tolerance` of T, and
+/// where L is smooth.
+std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,
+                                                 double tolerance);
+
+}  // namespace extremal
