@@ -209,7 +209,8 @@ void DiscreteAction::visit(const Path& path, bool hessian,
       assembly_->hessian(tables_->shape(), elements, tables_->entries().slots.data(), entries_.data());
       if (border_) evaluate_border(path, elements, row, corner);
     }
-    use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr, corner});
+    use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr, corner,
+            border_ ? sums(b, of_slope) : nullptr});
   }
   finish_sums();
 }

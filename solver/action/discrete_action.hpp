@@ -42,6 +42,7 @@ struct BatchValues {
   const double* entries;   ///< Hessian, as ElementTables::entries lists it; null without Hessian
   const double* border;    ///< ∂²S/∂x∂T, m; null unless T is an unknown
   const double* corner;    ///< ∂²S/∂T²
+  const double* slope;     ///< ∂L_d/∂h; null unless T is an unknown
 };
 
 /// Evaluates a path, batch by batch in one pass: points, tape, gradient, Hessian, condensation.

@@ -127,8 +127,33 @@ class Fields {
     if (!spectrum.flat_norm.empty()) append(object_, "flat_norm", by_name("flat_norm", spectrum.flat_norm));
   }
 
+  /// The ends of elements of a scheme that was asked for.
+  void nodes() {
+    const Trajectory& trajectory = result_.solution.trajectory;
+    const std::size_t n = trajectory.coordinates, s = trajectory.degree;
+    const auto value = [&](int k, std::size_t a) {
+      const std::size_t first = k < trajectory.elements() ? k * (s + 1) : (k - 1) * (s + 1) + s;
+      return trajectory.nodes[first * n + a];
+    };
+    Json object = Json::object();
+    const auto list = [&](const std::string& key, const std::vector<double>& values) {
+      Json numbers = Json::array();
+      for (const double x : values) numbers.push_back(number("nodes." + key, x));
+      append(object, key, std::move(numbers));
+    };
+    list("t", trajectory.times);
+    std::vector<double> column(trajectory.times.size());
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t k = 0; k < column.size(); ++k) column[k] = value(static_cast<int>(k), a);
+      list(result_.names[a], column);
+    }
+    if (!result_.solution.element_energies.empty()) list("energy", result_.solution.element_energies);
+    append(object_, "nodes", std::move(object));
+  }
+
   void counts() {
     const Solution& solution = result_.solution;
+    if (converged_ && solution.pinned) nodes();
     append(object_, "elements", std::max(0, solution.trajectory.elements()));
     append(object_, "degree", solution.degree);
     append(object_, "unknowns", solution.unknowns);

@@ -110,6 +110,7 @@ SolveTable read_solve_table(const Document& document, const toml::table& table) 
   solve.tolerance = number(document, table, "tolerance");
   solve.scheme = text(document, table, "scheme");
   solve.elements = number(document, table, "elements");
+  solve.steps = text(document, table, "steps");
   solve.budget = number(document, table, "budget");
   solve.method = text(document, table, "method");
   if (solve.method) {

@@ -83,6 +83,10 @@ void check_solve(const SolveTable& solve) {
   if (solve.elements && !(solve.elements->value >= 1 && solve.elements->value <= 1e9))
     throw SceneError(solve.elements->at,
                      fmt::format("elements = {}; need 1 to 1000000000", solve.elements->value));
+  if (solve.steps && solve.steps->value != "free")
+    throw SceneError(position(*solve.steps, 0),
+                     fmt::format("steps = \"{}\"; write steps = \"free\", or leave it out for equal steps",
+                                 solve.steps->value));
 }
 
 void check_spectrum(const SpectrumTable& spectrum) {

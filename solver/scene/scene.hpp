@@ -74,6 +74,7 @@ struct SolveTable {
   std::optional<Number> tolerance;
   std::optional<Text> scheme;
   std::optional<Number> elements;
+  std::optional<Text> steps;     ///< "free"
   std::optional<Number> budget;  ///< s
   std::optional<Text> method;    ///< one of method_records()
 };

@@ -95,6 +95,10 @@ constexpr KeyRecord keys[] = {
      R"(scheme = "midpoint")"},
     {"solve", "elements", Kind::integer, "chosen",
      "Number of equal elements; with `scheme`, without `tolerance`.", "elements = 64"},
+    {"solve", "steps", Kind::text, "equal",
+     "`\"free\"`: with `elements`, the times of the nodes are unknowns in which the action is stationary too. "
+     "All elements then have the same discrete energy.",
+     R"(steps = "free")"},
     {"solve", "budget", Kind::number, "60",
      "Seconds after which nothing further is tried, and an attempt that does not converge is given up.",
      "budget = 600.0"},
@@ -145,6 +149,7 @@ constexpr Exclusion pairs[] = {
 
 constexpr Requirement needs[] = {
     {"solve.elements", "solve.scheme", "the number of elements alone does not fix a discretisation"},
+    {"solve.steps", "solve.elements", "free steps need a number of elements, whose times they are"},
     {"boundary.map", "boundary.periodic", "a map relates the ends of a periodic orbit"},
 };
 

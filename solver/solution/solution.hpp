@@ -93,6 +93,10 @@ struct Solution {
   std::optional<double> minimal_period;  ///< of a path with q(T) = q(0) that is periodic; T, or a part of it
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
+  bool pinned = false;  ///< the scheme of its elements was asked for
+  /// Of those elements: the discrete energy −∂L_d/∂h of each. Empty where L depends on t.
+  std::vector<double> element_energies;
+
   int degree = 0;  ///< of the elements that were solved for; the trajectory's may be higher
   int unknowns = 0, iterations = 0;
   std::vector<Iteration> history;

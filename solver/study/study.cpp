@@ -37,6 +37,7 @@ SolveOptions read_options(const SolveTable& table) {
   if (table.method) options.method = read_method(*table.method);
   if (table.tolerance) options.tolerance = table.tolerance->value;
   if (table.elements) options.elements = static_cast<int>(table.elements->value);
+  options.free_steps = table.steps.has_value();
   if (!table.scheme) return options;
   try {
     options.scheme = scheme(table.scheme->value);
@@ -105,6 +106,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   study.problem = read_problem(scene, study.system, Deadline(study.budget));
+  if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
   if (scene.continuation && purpose == Purpose::family)

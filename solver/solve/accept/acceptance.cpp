@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "action/energies.hpp"
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
 #include "solve/accept/limits.hpp"
@@ -173,6 +174,9 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
     judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
+  solution.pinned = options.scheme.has_value();
+  if (solution.pinned && problem.lagrangian->structure().autonomous)
+    solution.element_energies = discrete_energies(*problem.lagrangian, *found.tables, path);
   const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
   if (!solution.converged()) solution = without_path(solution);
   solution.strategy = found.strategy;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "action/energies.hpp"
 #include "solve/accept/limits.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/resolution.hpp"
@@ -30,7 +31,7 @@ bool closed(const Problem& problem, const SolveOptions& options, const Path& pat
   const ClosingEquation* closing = newton.closing(path);
   if (!closing) return true;
   const double slope = newton.action().slope_duration();
-  const double size = closing->row.empty() ? std::abs(slope) + std::abs(closing->value)
+  const double size = closing->row.empty() ? energy_unit(newton.action(), path.duration())
                                            : std::max(1.0, scales(path, tables).magnitude);
   const double value = closing->row.empty() ? slope + closing->value : closing->value;
   const double allowed =

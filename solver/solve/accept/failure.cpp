@@ -130,7 +130,7 @@ Solution explain_failure(const Problem& problem, const SolveOptions& options, co
   solution.message = last.message;
   if (const std::string reason = irregularity(problem); !reason.empty()) {
     solution.message = reason;
-  } else if (last.status != Status::conjugate_ends &&
+  } else if (last.status != Status::conjugate_ends && last.path.elements() > 0 &&
              failed_at_conjugate_ends(problem, trajectory_of(last.path), w.variation)) {
     solution.status = Status::conjugate_ends;
     solution.message =

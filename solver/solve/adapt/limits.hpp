@@ -37,6 +37,18 @@ inline constexpr double stationary_residual = 1e-10;
 
 }  // namespace pinned
 
+namespace free_times {
+
+/// Equations hold to this, relative to the largest momentum, and to that times the largest velocity.
+inline constexpr double roundoff = 1e-12;
+/// Of Newton's method for one μ; what may be left after one of them; and the least way to the next μ.
+inline constexpr int most_steps = 12;
+inline constexpr double worst_imbalance = 1, least_way = 1e-4;
+/// An element becomes at most so many times shorter or longer in one step.
+inline constexpr double most_stretch = 3;
+
+}  // namespace free_times
+
 namespace refinement {
 
 /// Elements at most, or so many times those of the first mesh: a path that needs more meets a singularity.

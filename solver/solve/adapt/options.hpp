@@ -16,6 +16,7 @@ struct SolveOptions {
   double tolerance = 1e-9;       ///< of q(t), relative to the largest range of a coordinate
   std::optional<Scheme> scheme;  ///< this scheme, N adapted; absent: chosen
   int elements = 0;              ///< with scheme: exactly so many equal elements; excludes tolerance
+  bool free_steps = false;       ///< with elements: the times of the nodes are unknowns as well
   Method method = Method::newton;
   int max_iterations = 8000;  ///< Newton steps in all, restarts from other guesses included
   Deadline deadline = {};     ///< after which nothing further is tried

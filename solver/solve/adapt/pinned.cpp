@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "machine/simd.hpp"
+#include "solve/adapt/free_times.hpp"
 #include "solve/adapt/limits.hpp"
 #include "solve/external/external_solver.hpp"
 #include "solve/guess/first_path.hpp"
@@ -100,9 +101,20 @@ bool PinnedSolve::solve_discrete(int elements) {
       return false;
     }
     again = true;
+    if (options_.free_steps && !free_times()) return false;
     const bool more = scheme_.quadrature == Quadrature::exact && points < most_points;
     if (!more || quadrature_is_exact()) return true;
   }
+}
+
+/// From equal steps to those that leave all elements the same energy.
+bool PinnedSolve::free_times() {
+  FreeTimes times(problem_, w_.pinned, path_.elements());
+  const FreeTimes::Report report = times.find(path_, [this] {
+    return ++outcome_.iterations < options_.max_iterations && !options_.deadline.passed();
+  });
+  outcome_.message = report.failure;
+  return report.reached;
 }
 
 /// Whether two more points leave S_h as it is.

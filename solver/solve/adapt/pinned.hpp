@@ -24,6 +24,7 @@ class PinnedSolve {
   NewtonReport converge_to_roundoff();
   bool solve_discrete(int elements);
   bool quadrature_is_exact();
+  bool free_times();
   bool holds_energy(const Resolution::Error& left_out);
   NewtonReport follow_kinks(const ElementTables& tables, NewtonReport report);
   int kinked_elements() const;

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "action/energies.hpp"
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/newton/ends.hpp"

@@ -39,11 +39,6 @@ void solve_with_duration(QuadraticModel& model, const DiscreteAction& action, co
   move.parameter = std::exchange(move.step.duration, 0);
 }
 
-double energy_unit(const DiscreteAction& action, double duration) {
-  const double unit = std::abs(action.slope_duration()) + std::abs(action.action()) / duration;
-  return unit > 0 ? unit : 1;
-}
-
 TangentScale tangent_scale(const ExtremalCurve& curve, const Move* before, double sense) {
   const double length = std::sqrt(curve.dot(curve.direction, curve.direction));
   const double along = before ? curve.dot(*before, curve.direction) : sense;

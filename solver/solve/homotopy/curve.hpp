@@ -61,8 +61,6 @@ struct BorderedSteps {
 /// parameter is δT.
 void solve_with_duration(QuadraticModel& model, const DiscreteAction& action, const ClosingEquation& closing,
                          Move& move);
-/// |E| + |S|/T, or 1 where that is zero: by so much the right-hand sides differ if the energy closes them.
-double energy_unit(const DiscreteAction& action, double duration);
 
 /// The direction of a curve by `scale` is its tangent of length one, onward from the tangent `before`, with
 /// which it makes an angle of this cosine. Without one before, `sense` is its sign.

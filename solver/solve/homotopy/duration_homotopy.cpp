@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "action/energies.hpp"
 #include "solve/homotopy/limits.hpp"
 #include "solve/mesh/resolution.hpp"
 

@@ -107,6 +107,24 @@ void Equations::evaluate(DiscreteAction& action, const Path& path, std::span<dou
   slope_ = action.slope_duration();
 }
 
+void Equations::evaluate_lengths(DiscreteAction& action, const Path& path, LengthDerivatives& to) const {
+  to.slope.resize(elements_);
+  to.corner.resize(elements_);
+  to.entries.clear();
+  action.visit(path, true, [&](int batch, const BatchValues& values) {
+    const int first = batch * lanes_, last = std::min(elements_, first + lanes_);
+    for (int k = first; k < last; ++k) {
+      const int lane = k - first;
+      const double scale = path.duration() / path.h(batch)[lane];  // δh_k = (h_k/T) δT
+      to.slope[k] = values.slope[lane];
+      to.corner[k] = scale * scale * values.corner[lane];
+      for (int u = 0; u < inner_ + 2 * n_; ++u)
+        for (const Share& share : shares(k, u))
+          to.entries.push_back({share.unknown, k, scale * share.factor * values.border[u * lanes_ + lane]});
+    }
+  });
+}
+
 void Equations::share_time(const Path& path, std::span<double> to) const {
   const std::span<const double> mesh = path.mesh();
   const double unit = path.duration() / path.degree();

@@ -7,6 +7,13 @@
 
 namespace extremal {
 
+/// S_h as a function of the lengths h_k of its elements as well, T being their sum.
+struct LengthDerivatives {
+  std::vector<double> slope;     ///< ∂L_d/∂h_k, the discrete energy of element k with the sign changed
+  std::vector<double> corner;    ///< ∂²L_d/∂h_k²
+  std::vector<Triplet> entries;  ///< (unknown, k, a part of ∂²L_d/∂x∂h_k); parts of one place add up
+};
+
 /// δS_h = 0 under the boundary relation in all unknowns at once, nothing condensed: gradient and sparse
 /// Hessian. Unknowns are numbered: nodes 1 … N − 1, then the free unknowns of the ends,
 /// then the inner ones element by element. The duration, where it is free, is not among them.
@@ -25,6 +32,10 @@ class Equations {
   /// show in `action` (see DiscreteAction::finite).
   void evaluate(DiscreteAction& action, const Path& path, std::span<double> entries);
 
+  /// Derivatives by the lengths of the elements at a path, with an action for which T is an unknown. As many
+  /// entries in the same places each time.
+  void evaluate_lengths(DiscreteAction& action, const Path& path, LengthDerivatives& to) const;
+
   const std::vector<double>& gradient() const { return gradient_; }
   /// ∂S/∂T; its derivatives by the unknowns, empty where T is fixed, and by T.
   double slope_duration() const { return slope_; }
@@ -32,6 +43,9 @@ class Equations {
   double corner() const { return corner_; }
   /// The time that belongs to each unknown, roughly: a gradient by it is a force.
   void share_time(const Path& path, std::span<double> to) const;
+  /// The number of the unknown q_a at node k between two elements, 0 < k < N, and of inner unknown u of element k.
+  int node_unknown(int k, int a) const { return (k - 1) * n_ + a; }
+  int inner_unknown(int k, int u) const { return nodal() + k * inner_ + u; }
   /// A row over (q(0), q(T)), 2n, in the unknowns.
   void express_row(std::span<const double> row, std::vector<double>& to) const;
   /// A direction at the nodes, (N + 1) × n, in the unknowns; only nodal() of them differ from zero.
