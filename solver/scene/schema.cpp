@@ -96,7 +96,8 @@ constexpr KeyRecord keys[] = {
     {"solve", "elements", Kind::integer, "chosen",
      "Number of equal elements; with `scheme`, without `tolerance`.", "elements = 64"},
     {"solve", "steps", Kind::text, "equal",
-     "`\"free\"`: with `elements`, the times of the nodes are unknowns in which the action is stationary too. "
+     "`\"free\"`: with `elements`, the times of the nodes are unknowns in which the action is stationary "
+     "too. "
      "All elements then have the same discrete energy.",
      R"(steps = "free")"},
     {"solve", "budget", Kind::number, "60",

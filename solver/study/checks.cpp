@@ -205,11 +205,13 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
 
 void check_free_steps(const Problem& problem, const Location& at) {
   if (!problem.lagrangian->structure().autonomous)
-    throw SceneError(at, "free steps give all elements the same energy, which is not conserved where L depends "
-                         "on t; leave 'steps' out");
+    throw SceneError(at,
+                     "free steps give all elements the same energy, which is not conserved where L depends "
+                     "on t; leave 'steps' out");
   if (problem.periodic)
-    throw SceneError(at, "free steps need ends: the nodes of a closed orbit can all be shifted along it; leave "
-                         "'steps' out, or give start and end");
+    throw SceneError(at,
+                     "free steps need ends: the nodes of a closed orbit can all be shifted along it; leave "
+                     "'steps' out, or give start and end");
   if (problem.duration.where)
     throw SceneError(at, "with free steps a free duration is closed by 'energy', not by 'where'");
   if (problem.lagrangian->kinks())

@@ -19,8 +19,8 @@ void check_regular(const Problem& problem, const Location& at);
 /// where L is convex in the velocities, E = q'·∂L/∂q' − L is least at rest, −L(q, 0).
 void check_energy_at_ends(const Problem& problem, const Location& at);
 
-/// Throws SceneError at `at` where the times of the nodes cannot be unknowns: all elements have one energy, so L
-/// must not depend on t, and a free duration is closed by that energy.
+/// Throws SceneError at `at` where the times of the nodes cannot be unknowns: all elements have one energy,
+/// so L must not depend on t, and a free duration is closed by that energy.
 void check_free_steps(const Problem& problem, const Location& at);
 
 }  // namespace extremal

@@ -71,14 +71,16 @@ FreeTimes::Sparse FreeTimes::hessian() const {
 }
 
 /// Steps of the unknowns by steps δx of values at nodes that move with the path, their moves σ_k, and δT:
-/// δt_k = σ_k + (t_k/T) δT, δq_k = δx_k + q' σ_k. With c the place of an inner node in its element from a to b,
-/// it moves by (1 − c) σ_a + c σ_b, and its deviation from the chord changes by
-/// (1 − c)(q' − q'_a) σ_a + c (q' − q'_b) σ_b.
+/// δt_k = σ_k + (t_k/T) δT, δq_k = δx_k + q' σ_k. With c the place of an inner node in its element from a to
+/// b, it moves by (1 − c) σ_a + c σ_b, and its deviation from the chord changes by (1 − c)(q' − q'_a) σ_a + c
+/// (q' − q'_b) σ_b.
 FreeTimes::Sparse FreeTimes::moving_with(const Path& path) const {
   const int n = path.coordinates(), s = path.degree(), first = equations_.unknowns();
   const Basis& basis = lobatto_nodal_basis(s);
   std::vector<double> all(static_cast<std::size_t>(elements_) * (s + 1) * n);
-  const auto slopes = [&](int k, int j) { return all.data() + (static_cast<std::size_t>(k) * (s + 1) + j) * n; };
+  const auto slopes = [&](int k, int j) {
+    return all.data() + (static_cast<std::size_t>(k) * (s + 1) + j) * n;
+  };
   for (int k = 0; k < elements_; ++k) path.element_slopes(k, basis.derivative, slopes(k, 0));
   const auto at_node = [&](int k, int a) { return 0.5 * (slopes(k - 1, s)[a] + slopes(k, 0)[a]); };
   std::vector<Eigen::Triplet<double>> places;

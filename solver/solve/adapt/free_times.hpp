@@ -13,9 +13,9 @@
 namespace extremal {
 
 /// ∂S_h/∂t_k = E_k − E_{k−1} = 0 says that all elements have the same discrete energy E_k = −∂L_d/∂h_k, h_k
-/// their lengths (Chen-Guo-Wu (3.3), (3.6); Kane, Marsden and Ortiz, J. Math. Phys. 40 (1999) 3353). Where T is
-/// free, t_N is an unknown too, and its equation gives E_N. On equal elements E_k differs from a constant by
-/// O(h^order). The times are found by Newton's method along
+/// their lengths (Chen-Guo-Wu (3.3), (3.6); Kane, Marsden and Ortiz, J. Math. Phys. 40 (1999) 3353). Where T
+/// is free, t_N is an unknown too, and its equation gives E_N. On equal elements E_k differs from a constant
+/// by O(h^order). The times are found by Newton's method along
 ///   δS_h = 0,   ∂S_h/∂t_k = μ r_k
 /// from equal elements, where μ = 1, to μ = 0.
 ///
@@ -52,7 +52,7 @@ class FreeTimes {
   Equations equations_;
   LengthDerivatives lengths_;
   SparseSymmetric matrix_;
-  std::vector<double> entries_;     ///< of the Hessian in the path
+  std::vector<double> entries_;      ///< of the Hessian in the path
   Eigen::VectorXd slope_, unequal_;  ///< ∂S_h/∂t_k, less the energy given for t_N; r
   Eigen::VectorXd step_;             ///< of values that move with the path, moves of nodes, and T
 };

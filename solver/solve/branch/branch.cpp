@@ -249,6 +249,24 @@ double Branch::solve_beside(double by, Move& move) {
   return action.finite() ? action.action() : NAN;
 }
 
+double Branch::step_under(const ElementTables& quadrature) {
+  QuadraticModel& model = w_.iteration.model();
+  DiscreteAction& action = w_.iteration.action();
+  action.substitute(*problem_.lagrangian, quadrature);
+  model.evaluate_gradient(action, path_);
+  Move move;
+  ClosingEquation equation = closing_;
+  if (by_duration()) {
+    equation.value = equation.row.empty() ? energy_ : 0;
+    solve_with_duration(model, action, equation, move);
+  } else {
+    model.solve(action, closing_equation(problem_, path_, equation), move.step);
+  }
+  action.substitute(*problem_.lagrangian, *tables_);
+  move.add(direction, -dot(direction, move) / dot(direction, direction));
+  return action.finite() ? largest(move) : INFINITY;
+}
+
 double Branch::varied() const { return family_.varied == Varied::energy ? energy_ : coordinate(); }
 
 double Branch::change(bool along) const {

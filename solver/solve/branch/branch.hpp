@@ -61,6 +61,9 @@ class Branch : public ExtremalCurve {
   /// The response of the equations linearised last, with the tangent `onward` as their last row, to a load
   /// without any symmetry: the nearer to a branch point, the longer, and along the branch that crosses.
   void respond(const Move& onward, Move& response);
+  /// How far a node of the path that was linearised last moves across the direction, relative to the extent,
+  /// to where the equations hold under another quadrature, on tables of the same degree: to first order.
+  double step_under(const ElementTables& quadrature);
   /// Corrections have nothing along these directions from the next linearisation on: where the equations are
   /// singular along them, the others stay regular. On the elements of the path; empty for none.
   void hold(std::vector<Move> directions) { held_ = std::move(directions); }

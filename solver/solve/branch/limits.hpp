@@ -122,6 +122,9 @@ namespace tracker {
 /// Corrections are carried on to this share of the tolerance, and no further than this.
 inline constexpr double unfinished = 0.01, least_goal = 10 * least_correction;
 inline constexpr int most_resolutions = 4;
+/// A path that another quadrature moves by more than this share of what it did before elements were halved is
+/// moved by roundoff.
+inline constexpr double halving_helps = 0.5;
 /// The unit of lengths is no smaller than this share of the largest path so far.
 inline constexpr double least_extent = 0.3;
 

@@ -4,6 +4,7 @@
 
 #include "solve/branch/chord_steps.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/mesh/mesh.hpp"
 #include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
@@ -62,7 +63,25 @@ bool Tracker::reach(const BranchState& from, double length, bool same_elements, 
     if (fit == Fit::fine) break;
     if (!correct(std::abs(length), landing)) return false;
   }
-  return update_tangent();
+  return update_tangent() && (same_elements || resolve_forces(std::abs(length), landing));
+}
+
+/// Forces between the points of the quadrature show in another one. Elements are halved as long as it moves
+/// the path by more than the tolerance and that helps: what remains is roundoff.
+bool Tracker::resolve_forces(double length, const double* landing) {
+  for (double before = INFINITY;;) {
+    const Scales size = sizes();
+    const double moved = branch_.step_under(w_.levels.finer(branch_.tables().scheme())) * state.units.extent;
+    error_ = std::max(error_, moved);
+    if (size.q == 0 || moved <= tolerance_ * size.q || moved > halving_helps * before) return true;
+    if (2 * path_.elements() > limits::elements::most_elements) {
+      failure_ = StepFailure::crowded;
+      return false;
+    }
+    before = moved;
+    change_elements(path_.degree(), halved({path_.mesh().begin(), path_.mesh().end()}));
+    if (!correct(length, landing) || !update_tangent()) return false;
+  }
 }
 
 bool Tracker::reach_smoothly(const BranchState& from, double length, bool same_elements) {

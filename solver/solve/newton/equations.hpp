@@ -43,7 +43,8 @@ class Equations {
   double corner() const { return corner_; }
   /// The time that belongs to each unknown, roughly: a gradient by it is a force.
   void share_time(const Path& path, std::span<double> to) const;
-  /// The number of the unknown q_a at node k between two elements, 0 < k < N, and of inner unknown u of element k.
+  /// The number of the unknown q_a at node k between two elements, 0 < k < N, and of inner unknown u of
+  /// element k.
   int node_unknown(int k, int a) const { return (k - 1) * n_ + a; }
   int inner_unknown(int k, int u) const { return nodal() + k * inner_ + u; }
   /// A row over (q(0), q(T)), 2n, in the unknowns.
