@@ -66,7 +66,8 @@ bool ElementSolver::evaluate(const MotionState& state, double h, Order order) {
     double* const own = &residuals_[a * s];
     const double* const found = &sums_[a * shape_.functions];
     for (int k = 0; k < s; ++k) own[k] = found[k];
-    own[s - 1] = (own[s - 1] + state.p[a].high) + state.p[a].low;
+    // −∂L_d/∂q_k = p_k, where the derivatives by both ends sum up to `force`.
+    own[s - 1] = ((state.p[a].high - own[s - 1]) + state.p[a].low) + force_[a];
     for (int k = 0; k < s; ++k) sum += own[k];
   }
   return std::isfinite(sum);

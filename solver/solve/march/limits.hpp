@@ -13,7 +13,7 @@ inline constexpr int most_steps = 40;
 /// A step below this, relative to the element's own extent, is roundoff; one below the second that does not
 /// shrink to less than `stagnation` of the last, too; so is one of so many roundings of q, which the forces
 /// have.
-inline constexpr double negligible_step = 4 * unit_roundoff, small_step = 1e-12, stagnation = 0.25,
+inline constexpr double negligible_step = 2 * unit_roundoff, small_step = 1e-12, stagnation = 0.25,
                         roundings = 16 * unit_roundoff;
 /// Where the force of an element changes the momentum by no more than this part, steps so many times larger
 /// are: what they change the force by is smaller still.

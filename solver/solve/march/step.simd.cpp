@@ -35,7 +35,7 @@ void expand(const StepShape& s, const StepPoints& p, const double* start, double
   }
 }
 
-/// L and its derivatives at the points: ½ q'ᵀMq' + q'ᵀCq + aᵀq' beside the remainder. Returns Σ b_i L_i.
+/// L and its derivatives at the points, with their weights: ½ q'ᵀMq' + q'ᵀCq + aᵀq' beside the remainder. Returns Σ b_i L_i.
 double derivatives(const StepShape& s, const StepPoints& p) {
   Vec action = broadcast(0);
   for (int i = 0; i < s.width; i += lanes) {
@@ -64,7 +64,12 @@ double derivatives(const StepShape& s, const StepPoints& p) {
       double* to = z < s.n ? p.dq + z * s.width : p.dv + (z - s.n) * s.width;
       at(to + i) += at(p.remainder + (1 + g) * s.width + i);
     }
-    action += at(s.weight + i) * value;
+    const Vec weight = at(s.weight + i);
+    action += weight * value;
+    for (int a = 0; a < s.n; ++a) {
+      at(p.dq + a * s.width + i) *= weight;
+      at(p.dv + a * s.width + i) *= weight;
+    }
   }
   return total(action);
 }
@@ -74,15 +79,15 @@ double gather(const StepShape& s, const StepPoints& p, double h, double* out, do
   for (int a = 0; a < s.n; ++a) {
     const double *dq = p.dq + a * s.width, *dv = p.dv + a * s.width;
     Vec sum = broadcast(0);
-    for (int i = 0; i < s.width; i += lanes) sum += at(s.weight + i) * at(dq + i);
+    for (int i = 0; i < s.width; i += lanes) sum += at(dq + i);
     force[a] = h * total(sum);
     for (int f = 0; f < s.functions; f += lanes) {
       Vec r = broadcast(0), kinetic = broadcast(0);
       for (int i = 0; i < s.points; ++i) {
-        r += (h * dq[i]) * at(s.test_value + i * s.functions + f);
-        kinetic += dv[i] * at(s.test_slope + i * s.functions + f);
+        r += dq[i] * at(s.sum_value + i * s.functions + f);
+        kinetic += dv[i] * at(s.sum_slope + i * s.functions + f);
       }
-      at(out + a * s.functions + f) = r + kinetic;
+      at(out + a * s.functions + f) = h * r + kinetic;
     }
   }
   return h * action;

@@ -34,8 +34,10 @@ struct StepShape {
   const double* weight;      ///< width: b_i
   const double* value;       ///< (s − 1) × width: φ_J(c_i)
   const double* slope;       ///< (s − 1) × width: φ_J'(c_i)
-  const double* test_value;  ///< points × functions: b_i φ_I(c_i), I = s − 1 being 1 − τ
-  const double* test_slope;  ///< points × functions: b_i φ_I'(c_i)
+  const double* sum_value;    ///< points × functions: φ_I(c_i), I = s − 1 being τ
+  const double* sum_slope;    ///< points × functions: φ_I'(c_i)
+  const double* test_value;   ///< points × functions: b_i φ_I(c_i), I = s − 1 being 1 − τ
+  const double* test_slope;   ///< points × functions: b_i φ_I'(c_i)
   const double* trial_value;  ///< points × s: φ_K(c_i), K = s − 1 being τ
   const double* trial_slope;  ///< points × s: φ_K'(c_i)
   const double* stiffness;    ///< s × functions: Σ b_i φ_K' φ_I', by trial function
@@ -51,15 +53,17 @@ struct StepShape {
 struct StepPoints {
   double *q, *v, *t;      ///< n, n and 1 rows
   const double* remainder;  ///< value, gradient, Hessian
-  double *dq, *dv;        ///< n rows each: ∂L/∂q, ∂L/∂q'
+  double *dq, *dv;        ///< n rows each: b_i ∂L/∂q, b_i ∂L/∂q'
 };
 
 struct StepKernels {
   /// q, q' and, where there is a place for it, t at the quadrature points.
   void (*expand)(const StepShape&, const StepPoints&, const double* start, double time, double h,
                  const double* x);
-  /// ∂L/∂q and ∂L/∂q' there; for each coordinate the sums `out` (functions) of the equations, without p, and
-  /// the change of momentum h Σ b_i ∂L/∂q. Returns L_d.
+  /// ∂L/∂q and ∂L/∂q' there; for each coordinate the derivatives `out` (functions) of L_d by d_I and, at
+  /// I = s − 1, by q_b, and the change of momentum h Σ b_i ∂L/∂q. Returns L_d. The same rounded numbers φ_I(c_i)
+  /// make q and these sums: so roundoff of the tables leaves them derivatives of a discrete action, and the
+  /// energy does not drift with them.
   double (*gather)(const StepShape&, const StepPoints&, double h, double* out, double* force);
   /// The transposed matrix of the equations, n s rows of `stride`: [(b*s + K)*stride + a*s + I].
   void (*matrix)(const StepShape&, const StepPoints&, double h, double* matrix, int stride);

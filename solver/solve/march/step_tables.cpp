@@ -55,6 +55,8 @@ void StepTables::arrange_basis() {
   slope_.assign(value_.size(), 0.0);
   test_value_.assign(static_cast<std::size_t>(points) * rows, 0.0);
   test_slope_.assign(test_value_.size(), 0.0);
+  sum_value_.assign(test_value_.size(), 0.0);
+  sum_slope_.assign(test_value_.size(), 0.0);
   trial_value_.resize(static_cast<std::size_t>(points) * s);
   trial_slope_.resize(trial_value_.size());
   for (int i = 0; i < width; ++i) {
@@ -73,6 +75,8 @@ void StepTables::arrange_basis() {
       const int trial = k == s - 1 ? s : k;
       trial_value_[i * s + k] = value[trial];
       trial_slope_[i * s + k] = slope[trial];
+      sum_value_[i * rows + k] = k == s - 1 ? scheme_.node[i] : value[k];
+      sum_slope_[i * rows + k] = k == s - 1 ? 1 : slope[k];
     }
   }
   stiffness_.assign(static_cast<std::size_t>(s) * rows, 0.0);
@@ -86,6 +90,8 @@ void StepTables::arrange_basis() {
   shape_.weight = weight_.data();
   shape_.value = value_.data();
   shape_.slope = slope_.data();
+  shape_.sum_value = sum_value_.data();
+  shape_.sum_slope = sum_slope_.data();
   shape_.test_value = test_value_.data();
   shape_.test_slope = test_slope_.data();
   shape_.trial_value = trial_value_.data();

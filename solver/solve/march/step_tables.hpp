@@ -32,7 +32,7 @@ class StepTables {
 
   SchemeTables scheme_;
   const Lagrangian& lagrangian_;
-  AlignedDoubles node_, weight_, value_, slope_, test_value_, test_slope_, stiffness_;
+  AlignedDoubles node_, weight_, value_, slope_, sum_value_, sum_slope_, test_value_, test_slope_, stiffness_;
   std::vector<double> trial_value_, trial_slope_, node_slope_, linear_;
   std::vector<MassView> mass_, gyroscopic_;
   std::vector<CoupledPair> pairs_;
