@@ -76,7 +76,7 @@ class Fields {
     append(object_, "nullity", count(result_.solution.nullity));
     // Without an index nothing is known of it.
     append(object_, "minimizing",
-           result_.solution.morse_index ? Json(result_.solution.minimizing) : Json(nullptr));
+           converged_ && !result_.solution.morse_index ? Json(nullptr) : Json(result_.solution.minimizing));
     windows();
   }
 

@@ -77,9 +77,11 @@ void check_entries(const EndEntries& start, const EndEntries& end, const System&
       const std::string& name = system.names[twice - entries->begin()];
       std::string mend = "leave one of them out, it follows";
       if (const auto lacks = std::ranges::find_if_not(start, has_both); entries == &start)
-        mend += fmt::format("; for initial data the start needs both of every coordinate, and '{}{}' is missing",
-                            lacks->value ? "p_" : "", system.names[lacks - start.begin()]);
-      throw SceneError(twice->momentum->at, fmt::format("'{0}' and 'p_{0}' are both given at this end; {1}", name, mend));
+        mend +=
+            fmt::format("; for initial data the start needs both of every coordinate, and '{}{}' is missing",
+                        lacks->value ? "p_" : "", system.names[lacks - start.begin()]);
+      throw SceneError(twice->momentum->at,
+                       fmt::format("'{0}' and 'p_{0}' are both given at this end; {1}", name, mend));
     }
 }
 

@@ -159,7 +159,8 @@ class Comparer {
     ComparisonRow row{"dop853", tolerance, 0, std::nullopt, Status::not_converged};
     if (!Flow::suits(*study_.problem.lagrangian)) return row;
     Flow flow(*study_.problem.lagrangian);
-    const IntegrationOptions options{.tolerance = tolerance, .block = static_cast<int>(n), .deadline = deadline()};
+    const IntegrationOptions options{
+        .tolerance = tolerance, .block = static_cast<int>(n), .deadline = deadline()};
     std::vector<double> y(2 * n), v(n);
     // Through ascending times; the states there, row by row.
     const auto integrate = [&](const std::vector<double>& times, MotionSamples& samples) {

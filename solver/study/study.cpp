@@ -58,7 +58,8 @@ void check_initial_data(const Scene& scene, Purpose purpose) {
   };
   if (scene.boundary.free)
     refuse(scene.boundary.duration.at, "the duration must be a number, for nothing at the end closes it");
-  if (scene.boundary.where) refuse(position(*scene.boundary.where, 0), "'where' has nothing to close; leave it out");
+  if (scene.boundary.where)
+    refuse(position(*scene.boundary.where, 0), "'where' has nothing to close; leave it out");
   if (!scene.guess.formulas.empty() || scene.guess.file || scene.guess.state)
     refuse(scene.guess.at, "the motion is computed without a guess; leave [guess] out");
   if (scene.search) refuse(scene.search->solutions.at, "they have one motion; leave [search] out");

@@ -60,7 +60,7 @@ class Comparer {
 
   void momenta(Side& side) {
     double *const q = side.rows.data(), *const v = q + n_ * batch, *const p = v + n_ * batch,
-                 *const t = p + n_ * batch;
+                  *const t = p + n_ * batch;
     for (std::size_t row = 0; row < 2 * n_; ++row)
       std::fill(q + row * batch + count_, q + (row + 1) * batch, q[row * batch + count_ - 1]);
     std::copy_n(time_, count_, t);
@@ -96,7 +96,8 @@ class Comparer {
       low_[row] = low;
       high_[row] = high;
     }
-    for (int i = 0; i < count_; ++i) note(time_[i], {differences[0][i], differences[1][i], differences[2][i]});
+    for (int i = 0; i < count_; ++i)
+      note(time_[i], {differences[0][i], differences[1][i], differences[2][i]});
     count_ = 0;
   }
 
@@ -129,7 +130,8 @@ double excess_of(const MotionDeviation::Sizes& error, const MotionDeviation& who
   constexpr double negligible = 1e-12, velocity_tolerances = 10;
   const double range = whole.range.q > negligible * whole.magnitude ? whole.range.q : whole.magnitude;
   const auto part = [](double error, double allowed) { return error == 0 ? 0 : error / allowed; };
-  return std::max({part(error.q, tolerance * range), part(error.v, velocity_tolerances * tolerance * whole.range.v),
+  return std::max({part(error.q, tolerance * range),
+                   part(error.v, velocity_tolerances * tolerance * whole.range.v),
                    part(error.p, velocity_tolerances * tolerance * whole.range.p)});
 }
 
@@ -159,7 +161,8 @@ MotionDeviation deviation(const Lagrangian& lagrangian, const Trajectory& motion
   for (int e = 0; e < better.elements(); ++e) {
     const double start = better.times[e], h = better.length(e);
     for (std::size_t i = 0; i < std::size(places); ++i) {
-      const double t = e + 1 == better.elements() && places[i] == 1 ? better.duration() : start + places[i] * h;
+      const double t =
+          e + 1 == better.elements() && places[i] == 1 ? better.duration() : start + places[i] * h;
       while (k < last && motion.times[k + 1] < t) ++k;
       element_point(better, e, basis.row(i), comparer.better(), comparer.better() + comparer.velocities(),
                     batch);

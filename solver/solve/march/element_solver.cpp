@@ -81,8 +81,11 @@ bool ElementSolver::factor(double h) {
     return factored_ = kernels_.invert(size_, stride_, matrix_.data(), work_.data());
   }
   const double rate = 1 / h;
-  const double* const hessian = rows_.data() + static_cast<std::size_t>(1 + shape_.gradient_count) * shape_.width;
-  const auto row = [&](int k) { return k < 0 ? nullptr : hessian + static_cast<std::size_t>(k) * shape_.width; };
+  const double* const hessian =
+      rows_.data() + static_cast<std::size_t>(1 + shape_.gradient_count) * shape_.width;
+  const auto row = [&](int k) {
+    return k < 0 ? nullptr : hessian + static_cast<std::size_t>(k) * shape_.width;
+  };
   const int s = shape_.s;
   sparse_->entries.clear();
   for (int e = 0; e < shape_.pair_count; ++e) {
@@ -97,7 +100,8 @@ bool ElementSolver::factor(double h) {
                        test_slope = shape_.test_slope[i * shape_.functions + f];
           if (qq) sum += h * qq[i] * value * test;
           if (c.velocities)
-            sum += (c.qv0 + (qv ? qv[i] : 0)) * slope * test + (c.vq0 + (vq ? vq[i] : 0)) * value * test_slope +
+            sum += (c.qv0 + (qv ? qv[i] : 0)) * slope * test +
+                   (c.vq0 + (vq ? vq[i] : 0)) * value * test_slope +
                    (c.mass + (vv ? vv[i] : 0)) * slope * rate * test_slope;
         }
         sparse_->entries.emplace_back(c.a * s + f, c.b * s + k, sum);

@@ -37,8 +37,8 @@ int degree_for(double truncation, const Lagrangian& lagrangian) {
     const double unknowns = n * s, lanes = simd_lanes();
     // Nanoseconds, roughly: values and sums of some steps, the matrix and its inverse.
     const double step = 60 + std::ceil(s / lanes) * rows * 4 + (4 * n * s * s + unknowns * unknowns) / lanes;
-    const double matrix = unknowns > most_dense ? 20 * unknowns * s
-                                                : (unknowns * unknowns * (s + 2 * unknowns)) / (2 * lanes);
+    const double matrix =
+        unknowns > most_dense ? 20 * unknowns * s : (unknowns * unknowns * (s + 2 * unknowns)) / (2 * lanes);
     const double cost = (6 * step + 1.5 * matrix) / length;
     if (cost >= least) continue;
     least = cost;
@@ -98,7 +98,8 @@ class InitialMotion {
                              std::min(degree + companion_degrees, max_degree), &found.march.trajectory);
         if (!companion.complete()) return fail(companion.march, 0);
       }
-      const MotionDeviation apart = deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
+      const MotionDeviation apart =
+          deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
       double excess = apart.excess(options_.tolerance);
       if (excess <= 1 && !holds_energy(found)) excess = 2 / spare;
       if (excess <= 1) return accept(std::move(found), apart);
@@ -107,8 +108,8 @@ class InitialMotion {
       before = excess;
       truncation = std::max(truncation * std::clamp(spare / excess, most_fall, 0.5), finest);
     }
-    solution_.message = fmt::format("the error does not fall to the tolerance in {} marches; loosen it",
-                                    most_marches);
+    solution_.message =
+        fmt::format("the error does not fall to the tolerance in {} marches; loosen it", most_marches);
   }
 
   /// Of a motion whose force elements overlook the energy drifts.
@@ -149,7 +150,8 @@ class InitialMotion {
         }
         const double size = apart.range.q > 1e-12 * apart.magnitude ? apart.range.q : apart.magnitude;
         const double excess = apart.error.q / (options_.tolerance * size);
-        if (options_.elements > 0 || apart.error.q == 0 || excess <= 1) return accept(std::move(found), apart);
+        if (options_.elements > 0 || apart.error.q == 0 || excess <= 1)
+          return accept(std::move(found), apart);
         if (excess > stagnant * before && apart.error.q < 1e-9 * apart.range.q) return refuse_roundoff(apart);
         before = excess;
         growth = std::pow(2 * excess, 1.0 / order);
@@ -188,8 +190,8 @@ class InitialMotion {
     solution_.status = Status::converged;
     solution_.message = "converged";
     solution_.degree = march.trajectory.degree;
-    solution_.unknowns = static_cast<int>(
-        std::min<long long>(static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));
+    solution_.unknowns = static_cast<int>(std::min<long long>(
+        static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));
     solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
     solution_.trajectory = std::move(march.trajectory);
     solution_.action = march.action;
@@ -207,7 +209,8 @@ class InitialMotion {
     for (int k = 0; k < trajectory.elements(); ++k) {
       double largest = 0;
       for (std::size_t a = 0; a < n; ++a)
-        largest = std::max(largest, std::abs(trajectory.slopes[(k + 1) * (trajectory.degree + 1) * n - n + a]));
+        largest =
+            std::max(largest, std::abs(trajectory.slopes[(k + 1) * (trajectory.degree + 1) * n - n + a]));
       mean += largest * trajectory.length(k) / trajectory.duration();
     }
     for (std::size_t a = count - n; a < count; ++a) end = std::max(end, std::abs(trajectory.slopes[a]));
@@ -221,28 +224,32 @@ class InitialMotion {
     const double t = march.reached;
     if (march.end == March::End::deadline) {
       solution_.status = Status::iteration_limit;
-      solution_.message =
-          fmt::format("{} (solve.budget) is spent at t = {:.6g} of a march; raise it, shorten the duration or "
-                      "loosen the tolerance",
-                      options_.deadline.budget_text(), t);
+      solution_.message = fmt::format(
+          "{} (solve.budget) is spent at t = {:.6g} of a march; raise it, shorten the duration or "
+          "loosen the tolerance",
+          options_.deadline.budget_text(), t);
     } else if (march.end == March::End::memory) {
       solution_.message = fmt::format(
-          "the motion takes more than {} elements until t = {:.6g}; shorten the duration or loosen the tolerance",
+          "the motion takes more than {} elements until t = {:.6g}; shorten the duration or loosen the "
+          "tolerance",
           march.trajectory.elements(), t);
     } else if (elements > 0) {
       solution_.message = fmt::format(
-          "element {} has no solution near the motion: {} from t = {:.9g} over {:.3g}; raise solve.elements, or "
+          "element {} has no solution near the motion: {} from t = {:.9g} over {:.3g}; raise solve.elements, "
+          "or "
           "leave scheme and elements out",
           march.trajectory.elements() + 1, reason(march.reason), t, march.wanted);
     } else if (runs_away(march.trajectory)) {
       solution_.status = Status::collision;
       solution_.message = fmt::format(
-          "the motion runs into a collision or another singularity of L at t = {:.9g}, where q' grows without "
+          "the motion runs into a collision or another singularity of L at t = {:.9g}, where q' grows "
+          "without "
           "bound; end it before, at a shorter duration",
           t);
     } else {
       solution_.message = fmt::format(
-          "no element, however short, continues the motion beyond t = {:.9g}: {}; end it before, at a shorter "
+          "no element, however short, continues the motion beyond t = {:.9g}: {}; end it before, at a "
+          "shorter "
           "duration",
           t, reason(march.reason));
     }

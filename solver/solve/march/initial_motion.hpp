@@ -8,10 +8,10 @@
 
 namespace extremal {
 
-/// The motion from problem.initial. Without a scheme, Gauss elements of a degree and of lengths that follow from the
-/// tolerance; with one, so many equal elements as options.elements says or as the tolerance needs. The error
-/// is that of a comparison with another march, of higher degree and with a much smaller truncation, so that
-/// it includes what the motion has made of truncation and roundoff.
+/// The motion from problem.initial. Without a scheme, Gauss elements of a degree and of lengths that follow
+/// from the tolerance; with one, so many equal elements as options.elements says or as the tolerance needs.
+/// The error is that of a comparison with another march, of higher degree and with a much smaller truncation,
+/// so that it includes what the motion has made of truncation and roundoff.
 Solution solve_initial(const Problem& problem, const SolveOptions& options);
 
 }  // namespace extremal

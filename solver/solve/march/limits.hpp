@@ -60,6 +60,10 @@ inline constexpr double scheme_companion = 1e-10, scheme_margin = 1e4;
 /// Equal elements: the first number, the most, and the largest factor from one to the next.
 inline constexpr int first_elements = 16, most_elements = 20'000'000;
 inline constexpr double most_element_growth = 16;
+/// Elements that end so near before a kink, relative to their length, are made to end on it, as precisely as
+/// the third number tells, relative to the duration. One that crosses it is cut to no less than the second.
+inline constexpr double kink_near = 0.1, kink_least = 0.02, kink_precision = 2e-16;
+inline constexpr int most_kink_tries = 12;
 /// Points of an exact quadrature.
 inline constexpr int most_points = 20;
 inline constexpr double exact = 1e-15;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "action/rule.hpp"
+#include "solve/march/kink_watch.hpp"
 #include "solve/march/limits.hpp"
 #include "solve/march/predictor.hpp"
 #include "solve/march/record.hpp"
@@ -72,6 +73,7 @@ class AdaptiveMarch {
         truncation_(truncation),
         record_(tables, start, 1024),
         solver_(tables),
+        kinks_(tables, record_.state()),
         continuation_(tables),
         last_(tables.unknowns(), 0.0),
         length_(first_length * duration) {
@@ -86,8 +88,9 @@ class AdaptiveMarch {
       }
       if (record_.full()) return record_.finish(March::End::memory);
       const double left = (duration_ - time_.high) - time_.low;
+      if (kinks_.active() && kink_tries_ == 0) length_ = kinks_.expected(length_);
       const bool last = length_ * (1 + 1e-3) >= left;
-      const double h = last ? left : std::min(length_, left / 2);
+      const double h = last ? left : kinks_.active() ? length_ : std::min(length_, left / 2);
       if (h < least_length * duration_ || record_.state().time + h == record_.state().time) {
         record_.march().wanted = h;
         return record_.finish(March::End::no_element);
@@ -112,6 +115,14 @@ class AdaptiveMarch {
       ++record_.march().rejected;
       return;
     }
+    if (kinks_.active()) {
+      const double precision = kink_precision * duration_;
+      const KinkWatch::Verdict verdict = kinks_.judge(state, solver_.x(), h, std::max(precision, 1e-15 * h));
+      if (verdict.length && ++kink_tries_ <= most_kink_tries) {
+        length_ = *verdict.length;
+        return;
+      }
+    }
     const double excess = this->excess(h);
     const double factor = std::pow(aim / std::max(excess, 1e-30), 1.0 / (tables_.degree() + 1));
     if (excess > accepted) {
@@ -126,6 +137,8 @@ class AdaptiveMarch {
     time_.add(h);
     record_.add(solver_, last_, h, last ? duration_ : time_.high);
     if (last) time_ = {duration_, 0};
+    kink_tries_ = 0;
+    if (kinks_.active()) kinks_.accept();
     const double most = tail_.size == 0 || excess < 1e-6 ? fast_growth : most_growth;
     length_ = h * std::clamp(factor, most_shrink, most);
   }
@@ -149,6 +162,8 @@ class AdaptiveMarch {
   const double duration_, truncation_;
   MarchRecord record_;
   ElementSolver solver_;
+  KinkWatch kinks_;
+  int kink_tries_ = 0;
   PolynomialContinuation continuation_;
   PolynomialContinuation::Tail tail_;
   std::optional<TrajectoryReader> reader_;

@@ -28,10 +28,11 @@ struct March {
   double wanted = 0;   ///< length of the element that is missing
   ElementSolver::Result reason = ElementSolver::Result::solved;
   Trajectory trajectory;
-  MotionState last;       ///< at `reached`
-  double action = 0, finer_action = 0;  ///< the second by a quadrature with more points, where it is asked for
-  double residual = 0;    ///< largest component of δS_h divided by the largest momentum
-  long long steps = 0;    ///< of Newton's method
+  MotionState last;  ///< at `reached`
+  double action = 0,
+         finer_action = 0;  ///< the second by a quadrature with more points, where it is asked for
+  double residual = 0;      ///< largest component of δS_h divided by the largest momentum
+  long long steps = 0;      ///< of Newton's method
   long long rejected = 0;
   double truncation = 0;  ///< largest estimate of the error of q inside an element
 

@@ -12,9 +12,7 @@ namespace extremal {
 using limits::march::most_differences;
 
 Differences::Differences(int size)
-    : size_(size),
-      table_(static_cast<std::size_t>(most_differences + 1) * size, 0.0),
-      work_(size) {}
+    : size_(size), table_(static_cast<std::size_t>(most_differences + 1) * size, 0.0), work_(size) {}
 
 void Differences::predict(std::span<double> x) const {
   std::copy_n(table_.begin(), size_, x.begin());
@@ -146,8 +144,7 @@ void TrajectoryReader::predict(double time, double h, std::span<double> x) {
   for (int a = 0; a < n; ++a) x[a * s + s - 1] = q_[a] - start_[a];
   for (int j = 1; j < s; ++j) {
     at(time + lobatto[j] * h, q_);
-    for (int a = 0; a < n; ++a)
-      x[a * s + j - 1] = (q_[a] - start_[a]) - lobatto[j] * x[a * s + s - 1];
+    for (int a = 0; a < n; ++a) x[a * s + j - 1] = (q_[a] - start_[a]) - lobatto[j] * x[a * s + s - 1];
   }
 }
 

@@ -35,7 +35,8 @@ void expand(const StepShape& s, const StepPoints& p, const double* start, double
   }
 }
 
-/// L and its derivatives at the points, with their weights: ½ q'ᵀMq' + q'ᵀCq + aᵀq' beside the remainder. Returns Σ b_i L_i.
+/// L and its derivatives at the points, with their weights: ½ q'ᵀMq' + q'ᵀCq + aᵀq' beside the remainder.
+/// Returns Σ b_i L_i.
 double derivatives(const StepShape& s, const StepPoints& p) {
   Vec action = broadcast(0);
   for (int i = 0; i < s.width; i += lanes) {

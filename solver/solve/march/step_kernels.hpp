@@ -15,10 +15,10 @@ namespace extremal {
 
 /// Derivatives of L that couple two coordinates.
 struct CoupledPair {
-  int a, b;              ///< of the equation, of the unknown
-  int qq, qv, vq, vv;    ///< rows of the remainder's Hessian by (a, b), or -1; qv: ∂²/∂q_a∂q'_b
-  double mass, qv0, vq0; ///< constant parts
-  bool velocities;       ///< anything but qq and mass
+  int a, b;               ///< of the equation, of the unknown
+  int qq, qv, vq, vv;     ///< rows of the remainder's Hessian by (a, b), or -1; qv: ∂²/∂q_a∂q'_b
+  double mass, qv0, vq0;  ///< constant parts
+  bool velocities;        ///< anything but qq and mass
 };
 
 struct MassView {
@@ -30,10 +30,10 @@ struct MassView {
 /// is added has weight zero.
 struct StepShape {
   int n, s, points, width, functions;
-  const double* node;        ///< width: c_i
-  const double* weight;      ///< width: b_i
-  const double* value;       ///< (s − 1) × width: φ_J(c_i)
-  const double* slope;       ///< (s − 1) × width: φ_J'(c_i)
+  const double* node;         ///< width: c_i
+  const double* weight;       ///< width: b_i
+  const double* value;        ///< (s − 1) × width: φ_J(c_i)
+  const double* slope;        ///< (s − 1) × width: φ_J'(c_i)
   const double* sum_value;    ///< points × functions: φ_I(c_i), I = s − 1 being τ
   const double* sum_slope;    ///< points × functions: φ_I'(c_i)
   const double* test_value;   ///< points × functions: b_i φ_I(c_i), I = s − 1 being 1 − τ
@@ -51,9 +51,9 @@ struct StepShape {
 
 /// Where the values of an element stand; rows of `width`.
 struct StepPoints {
-  double *q, *v, *t;      ///< n, n and 1 rows
+  double *q, *v, *t;        ///< n, n and 1 rows
   const double* remainder;  ///< value, gradient, Hessian
-  double *dq, *dv;        ///< n rows each: b_i ∂L/∂q, b_i ∂L/∂q'
+  double *dq, *dv;          ///< n rows each: b_i ∂L/∂q, b_i ∂L/∂q'
 };
 
 struct StepKernels {
@@ -61,9 +61,9 @@ struct StepKernels {
   void (*expand)(const StepShape&, const StepPoints&, const double* start, double time, double h,
                  const double* x);
   /// ∂L/∂q and ∂L/∂q' there; for each coordinate the derivatives `out` (functions) of L_d by d_I and, at
-  /// I = s − 1, by q_b, and the change of momentum h Σ b_i ∂L/∂q. Returns L_d. The same rounded numbers φ_I(c_i)
-  /// make q and these sums: so roundoff of the tables leaves them derivatives of a discrete action, and the
-  /// energy does not drift with them.
+  /// I = s − 1, by q_b, and the change of momentum h Σ b_i ∂L/∂q. Returns L_d. The same rounded numbers
+  /// φ_I(c_i) make q and these sums: so roundoff of the tables leaves them derivatives of a discrete action,
+  /// and the energy does not drift with them.
   double (*gather)(const StepShape&, const StepPoints&, double h, double* out, double* force);
   /// The transposed matrix of the equations, n s rows of `stride`: [(b*s + K)*stride + a*s + I].
   void (*matrix)(const StepShape&, const StepPoints&, double h, double* matrix, int stride);
