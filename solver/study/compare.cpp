@@ -161,19 +161,25 @@ class Comparer {
     Flow flow(*study_.problem.lagrangian);
     const IntegrationOptions options{
         .tolerance = tolerance, .block = static_cast<int>(n), .deadline = deadline()};
-    std::vector<double> y(2 * n), v(n);
-    // Through ascending times; the states there, row by row.
+    std::vector<double> y(2 * n), between(2 * n), v(n);
+    // To the end; with the states at ascending times, row by row, where these are asked for.
     const auto integrate = [&](const std::vector<double>& times, MotionSamples& samples) {
       std::copy(initial.q.begin(), initial.q.end(), y.begin());
       std::copy(initial.p.begin(), initial.p.end(), y.begin() + static_cast<std::ptrdiff_t>(n));
       Dop853 integrator([&flow](double at, auto state, auto slope) { return flow.slope(at, state, slope); },
                         static_cast<int>(2 * n));
-      double t = 0;
-      for (const double time : times) {
-        if (time > t && integrator.advance(t, y, time, options) != Integrated::done) return false;
-        if (!flow.velocity(std::span(y).first(n), std::span(y).subspan(n), time, v)) return false;
-        samples.q.insert(samples.q.end(), y.begin(), y.begin() + static_cast<std::ptrdiff_t>(n));
-        samples.v.insert(samples.v.end(), v.begin(), v.end());
+      auto next = times.begin();
+      for (double t = 0, before = 0; t < duration; before = t) {
+        if (integrator.accept_step(t, y, duration, options) != Integrated::done) return false;
+        if (next == times.end()) continue;
+        if (!integrator.prepare_interpolation(y, static_cast<int>(2 * n))) return false;
+        for (; next != times.end() && *next <= t; ++next) {
+          integrator.interpolate((*next - before) / (t - before), between);
+          const std::span<const double> state(between);
+          if (!flow.velocity(state.first(n), state.subspan(n), *next, v)) return false;
+          samples.q.insert(samples.q.end(), state.begin(), state.begin() + static_cast<std::ptrdiff_t>(n));
+          samples.v.insert(samples.v.end(), v.begin(), v.end());
+        }
       }
       return true;
     };
@@ -183,7 +189,7 @@ class Comparer {
     do {
       MotionSamples end;
       const auto start = Clock::now();
-      done = integrate({duration}, end);
+      done = integrate({}, end);
       seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
       spent += seconds.back();
     } while (done && spent < options_.row_seconds && seconds.size() < most_repeats);
