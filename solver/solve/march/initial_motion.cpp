@@ -29,11 +29,12 @@ using Clock = std::chrono::steady_clock;
 /// units of 2d; the cheapest degree has the least cost over this.
 int degree_for(double truncation, const Lagrangian& lagrangian) {
   const Structure& structure = lagrangian.structure();
+  const int gain = structure.quadratic && structure.velocity_free && structure.gyroscopic.empty() ? 2 : 1;
   const double n = structure.coordinates, rows = 1.0 + structure.gradient.size() + structure.hessian.size();
   int best = least_degree;
   double least = INFINITY;
   for (int s = least_degree; s <= highest_degree; ++s) {
-    const double f = std::pow(truncation, 1.0 / (s + 1)), length = 2 * f / (1 - f * f);
+    const double f = std::pow(truncation, 1.0 / (s + 1 + gain)), length = 2 * f / (1 - f * f);
     const double unknowns = n * s, lanes = simd_lanes();
     // Nanoseconds, roughly: values and sums of some steps, the matrix and its inverse.
     const double step = 60 + std::ceil(s / lanes) * rows * 4 + (4 * n * s * s + unknowns * unknowns) / lanes;
@@ -189,7 +190,7 @@ class InitialMotion {
     March& march = found.march;
     solution_.status = Status::converged;
     solution_.message = "converged";
-    solution_.degree = march.trajectory.degree;
+    solution_.degree = found.tables->degree();
     solution_.unknowns = static_cast<int>(std::min<long long>(
         static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));
     solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));

@@ -32,7 +32,7 @@ inline constexpr int most_differences = 10;
 inline constexpr int pieces = 4, most_cuts = 3;
 
 /// Share of the tolerance that the truncation of an element is aimed at, and what may be accepted of it.
-inline constexpr double aim = 0.3, accepted = 1.0;
+inline constexpr double aim = 0.2, accepted = 1.0;
 /// Elements grow and shrink from one to the next by no more.
 inline constexpr double most_growth = 2, fast_growth = 8, most_shrink = 0.2;
 /// Coefficients fall at least so fast in an element that is accepted: else the estimate means little.
@@ -49,7 +49,7 @@ inline constexpr int companion_degrees = 2;
 inline constexpr double finest = 2e-15;
 /// Of the tolerance, the first truncation of a march; from one march to the next it falls by no more, and to
 /// this part of what the error asks for. A companion serves as long as its own is so much smaller.
-inline constexpr double first_share = 0.5, most_fall = 1e-3, spare = 0.4, companion_enough = 0.2;
+inline constexpr double first_share = 0.25, most_fall = 1e-3, spare = 0.4, companion_enough = 0.2;
 inline constexpr int most_marches = 10;
 /// An error that another march with a smaller truncation does not lower to this part is roundoff, where it is
 /// below the second part of the range: there it tells motions apart that are near each other.

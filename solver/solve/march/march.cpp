@@ -71,7 +71,7 @@ class AdaptiveMarch {
       : tables_(tables),
         duration_(duration),
         truncation_(truncation),
-        record_(tables, start, 1024),
+        record_(tables, start, 1024, true),
         solver_(tables),
         kinks_(tables, record_.state()),
         continuation_(tables),
@@ -124,14 +124,15 @@ class AdaptiveMarch {
       }
     }
     const double excess = this->excess(h);
-    const double factor = std::pow(aim / std::max(excess, 1e-30), 1.0 / (tables_.degree() + 1));
+    const double factor =
+        std::pow(aim / std::max(excess, 1e-30), 1.0 / (tables_.degree() + 1 + record_.gain()));
     if (excess > accepted) {
       length_ = h * std::clamp(factor, most_shrink, 0.9);
       ++record_.march().rejected;
       return;
     }
     March& march = record_.march();
-    march.truncation = std::max(march.truncation, tail_.size * tail_.fall);
+    march.truncation = std::max(march.truncation, error_);
     std::copy(solver_.x().begin(), solver_.x().end(), last_.begin());
     last_length_ = h;
     time_.add(h);
@@ -143,18 +144,20 @@ class AdaptiveMarch {
     length_ = h * std::clamp(factor, most_shrink, most);
   }
 
-  /// The truncation error of the element relative to what is allowed: coefficient s + 1 of q, and its
-  /// derivative at the ends of the element.
+  /// The truncation error of the element relative to what is allowed: the first coefficient that the output
+  /// leaves out of q, and its derivative at the ends of the element.
   double excess(double h) {
     double magnitude = 0;
     for (const LongSum& q : record_.state().q) magnitude = std::max(magnitude, std::abs(q.high));
     tail_ = continuation_.tail(solver_.x(), magnitude);
+    error_ = 0;
     if (tail_.size == 0) return 0;
-    const int s = tables_.degree();
-    const double q = tail_.size * tail_.fall, v = q * (s + 1) * (s + 2) / h;
+    const int order = tables_.degree() + 1 + record_.gain();
+    error_ = tail_.size * std::pow(tail_.fall, 1 + record_.gain());
+    const double v = error_ * order * (order + 1) / h;
     const double range_q = std::max(record_.range_q(), tail_.extent),
                  range_v = std::max(record_.range_v(), 2 * tail_.extent / h);
-    const double by_size = std::max(q / range_q, v / (10 * range_v)) / truncation_;
+    const double by_size = std::max(error_ / range_q, v / (10 * range_v)) / truncation_;
     return tail_.fall > slowest_fall ? std::max(by_size, 2 * accepted) : by_size;
   }
 
@@ -168,7 +171,7 @@ class AdaptiveMarch {
   PolynomialContinuation::Tail tail_;
   std::optional<TrajectoryReader> reader_;
   std::vector<double> last_;
-  double length_, last_length_ = 0;
+  double length_, last_length_ = 0, error_ = 0;
   LongSum time_;
 };
 
@@ -176,7 +179,7 @@ class AdaptiveMarch {
 
 March march_uniform(const InitialData& start, double duration, const StepTables& tables, int elements,
                     const Deadline& deadline, const MarchProgress& progress, const StepTables* finer) {
-  MarchRecord record(tables, start, elements);
+  MarchRecord record(tables, start, elements, false);
   ElementSolver solver(tables);
   Differences differences(tables.unknowns());
   std::optional<ElementSolver> sum;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "solve/march/dense_output.hpp"
 #include "solve/march/march.hpp"
 
 /// \file The elements of a march as they come.
@@ -13,7 +14,7 @@ namespace extremal {
 /// Trajectory, action and extents of a motion that grows by an element at a time.
 class MarchRecord {
  public:
-  MarchRecord(const StepTables& tables, const InitialData& start, std::size_t expected);
+  MarchRecord(const StepTables& tables, const InitialData& start, std::size_t expected, bool recovering);
 
   const MotionState& state() const { return state_; }
   /// The element that was solved; it ends at `time`.
@@ -26,12 +27,15 @@ class MarchRecord {
   double range_q() const { return range_q_; }
   double range_v() const { return range_v_; }
   March& march() { return march_; }
+  /// Orders by which the trajectory is better than the elements.
+  int gain() const { return output_.gain(); }
   int elements() const { return march_.trajectory.elements(); }
   March finish(March::End end);
 
  private:
-  const StepTables& tables_;
-  MotionState state_;
+  const int n_;
+  DenseOutput output_;
+  MotionState state_, before_;
   March march_;
   LongSum action_, finer_action_;
   double residual_ = 0, momentum_ = 0, range_q_ = 0, range_v_ = 0;

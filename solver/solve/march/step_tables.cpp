@@ -83,9 +83,6 @@ void StepTables::arrange_basis() {
   for (int k = 0; k < s; ++k)
     for (int f = 0; f < s; ++f)
       stiffness_[k * rows + f] = scheme_.stiffness[(k == s - 1 ? s : k) * (s + 1) + f];
-  const Basis& nodal = lobatto_nodal_basis(s);
-  for (int i = 0; i <= s; ++i)
-    for (int j = 1; j < s; ++j) node_slope_.push_back(nodal.derivative[i * (s + 1) + j]);
   shape_.node = node_.data();
   shape_.weight = weight_.data();
   shape_.value = value_.data();

@@ -23,8 +23,6 @@ class StepTables {
   int coordinates() const { return shape_.n; }
   int degree() const { return shape_.s; }
   int unknowns() const { return shape_.n * shape_.s; }
-  /// The derivatives of φ_J, J inner, at the s + 1 Lobatto nodes: (s + 1) × (s − 1).
-  const std::vector<double>& node_slope() const { return node_slope_; }
 
  private:
   void arrange_basis();
@@ -33,7 +31,7 @@ class StepTables {
   SchemeTables scheme_;
   const Lagrangian& lagrangian_;
   AlignedDoubles node_, weight_, value_, slope_, sum_value_, sum_slope_, test_value_, test_slope_, stiffness_;
-  std::vector<double> trial_value_, trial_slope_, node_slope_, linear_;
+  std::vector<double> trial_value_, trial_slope_, linear_;
   std::vector<MassView> mass_, gyroscopic_;
   std::vector<CoupledPair> pairs_;
   StepShape shape_{};
