@@ -124,6 +124,13 @@ class InitialMotion {
   void refuse_roundoff(const MotionDeviation& apart) {
     const double until = apart.exceeded(options_.tolerance);
     solution_.status = Status::not_converged;
+    if (apart.error.q <= roundings * apart.magnitude) {
+      solution_.message = fmt::format(
+          "the tolerance {:.1e} of the range {:.1e} is less than what rounding leaves of coordinates up to "
+          "{:.1e} and of their velocities; loosen it",
+          options_.tolerance, apart.range.q, apart.magnitude);
+      return;
+    }
     solution_.message = fmt::format(
         "the motion amplifies roundoff: the tolerance {:.1e} holds until t = {:.6g}, at the end the error is "
         "{:.1e}; shorten the duration to {:.6g}, or loosen the tolerance",

@@ -76,14 +76,19 @@ KinkWatch::Verdict KinkWatch::judge(const MotionState& state, std::span<const do
     }
     if (rate == 0 || before * rate > 0) continue;  // it goes away
     const double missed = -end / rate;             // the time from the end to the surface
-    if (std::abs(missed) <= precision)
-      next_[s].on = true;
-    else if (missed < kink_near * h)
+    next_[s].on = std::abs(missed) <= precision;
+    // On the surface it is as long as another step brings it nearer.
+    const bool nearer = std::abs(missed) < 0.5 * missed_;
+    if (missed < kink_near * h && (!next_[s].on || (missed != 0 && nearer)))
       verdict.length = std::min(verdict.length.value_or(INFINITY), h + missed);
+    if (next_[s].on) missed_ = std::abs(missed);
   }
   return verdict;
 }
 
-void KinkWatch::accept() { sides_ = next_; }
+void KinkWatch::accept() {
+  sides_ = next_;
+  missed_ = INFINITY;
+}
 
 }  // namespace extremal

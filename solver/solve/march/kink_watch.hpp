@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -43,6 +44,7 @@ class KinkWatch {
   const StepTables& tables_;
   const Kinks* kinks_;
   std::vector<Side> sides_, next_;
+  double missed_ = INFINITY;  ///< by the last element that ended on a surface
   std::vector<double> value_, derivative_, q_, v_;
   Scratch scratch_;
 };
