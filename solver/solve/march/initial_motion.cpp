@@ -12,6 +12,7 @@
 
 #include "solution/observe.hpp"
 #include "solve/march/deviation.hpp"
+#include "solve/march/kink_watch.hpp"
 #include "solve/march/limits.hpp"
 #include "solve/march/march.hpp"
 #include "solve/mesh/conservation.hpp"
@@ -197,6 +198,10 @@ class InitialMotion {
     March& march = found.march;
     solution_.status = Status::converged;
     solution_.message = "converged";
+    if (const int kinked = options_.scheme ? kinked_elements(lagrangian_, march.trajectory) : 0; kinked > 0)
+      solution_.message += fmt::format(
+          "; the motion crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
+          kinked);
     solution_.degree = found.tables->degree();
     solution_.unknowns = static_cast<int>(std::min<long long>(
         static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));

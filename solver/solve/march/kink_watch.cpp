@@ -91,4 +91,27 @@ void KinkWatch::accept() {
   missed_ = INFINITY;
 }
 
+int kinked_elements(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+  const Kinks* kinks = lagrangian.kinks();
+  if (!kinks) return 0;
+  const std::size_t n = trajectory.coordinates, size = (trajectory.degree + 1) * n;
+  const std::size_t surfaces = kinks->surfaces().size();
+  std::vector<double> before(surfaces, 0.0);
+  Scratch scratch;
+  int count = 0;
+  for (int k = 0; k < trajectory.elements(); ++k) {
+    const std::size_t last = (k + 1) * size - n;
+    const std::span<const double> q(trajectory.nodes.data() + last, n), v(trajectory.slopes.data() + last, n);
+    bool crosses = false;
+    for (std::size_t s = 0; s < surfaces; ++s) {
+      const double u =
+          evaluate_at(*kinks->surfaces()[s].u, q, v, trajectory.times[k + 1], Order::value, scratch).value;
+      crosses = crosses || u * before[s] < 0;
+      if (u != 0) before[s] = u;
+    }
+    count += crosses;
+  }
+  return count;
+}
+
 }  // namespace extremal

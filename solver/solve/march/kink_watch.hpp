@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "solution/solution.hpp"
 #include "solve/march/element_solver.hpp"
 #include "system/kinks.hpp"
 
@@ -48,5 +49,8 @@ class KinkWatch {
   std::vector<double> value_, derivative_, q_, v_;
   Scratch scratch_;
 };
+
+/// Elements of a trajectory that begin and end on different sides of a surface.
+int kinked_elements(const Lagrangian& lagrangian, const Trajectory& trajectory);
 
 }  // namespace extremal
