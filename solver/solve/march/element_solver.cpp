@@ -17,6 +17,28 @@ struct ElementSolver::Sparse {
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factors;
   std::vector<Eigen::Triplet<double>> entries;
   bool analysed = false;
+  /// Of a constant M; and the inverse of Σ b_i φ_I' φ_K', h/M times which nearly is that of the equations where
+  /// h ω is small for every frequency ω.
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> mass;
+  Eigen::MatrixXd stiffness, right;
+
+  /// False where M is not constant or is singular.
+  bool use_kinetic_energy(const StepTables& tables) {
+    const Structure& structure = tables.lagrangian().structure();
+    const StepShape& shape = tables.shape();
+    if (!structure.quadratic) return false;
+    std::vector<Eigen::Triplet<double>> of_mass;
+    for (const Triplet& m : structure.mass) of_mass.emplace_back(m.row, m.column, m.value);
+    Eigen::SparseMatrix<double> matrix(shape.n, shape.n);
+    matrix.setFromTriplets(of_mass.begin(), of_mass.end());
+    mass.compute(matrix);
+    if (mass.info() != Eigen::Success) return false;
+    Eigen::MatrixXd whole(shape.s, shape.s);
+    for (int f = 0; f < shape.s; ++f)
+      for (int k = 0; k < shape.s; ++k) whole(f, k) = shape.stiffness[k * shape.functions + f];
+    stiffness = whole.inverse();
+    return true;
+  }
 };
 
 ElementSolver::ElementSolver(const StepTables& tables)
@@ -42,6 +64,7 @@ ElementSolver::ElementSolver(const StepTables& tables)
     matrix_.assign(static_cast<std::size_t>(size_) * stride_, 0.0);
   else
     sparse_ = std::make_unique<Sparse>();
+  kinetic_ = sparse_ && sparse_->use_kinetic_energy(tables);
   residuals_.assign(stride_, 0.0);
   correction_.assign(stride_, 0.0);
   work_.assign(2 * static_cast<std::size_t>(size_), 0.0);
@@ -115,8 +138,17 @@ bool ElementSolver::factor(double h) {
   return factored_ = sparse_->factors.info() == Eigen::Success;
 }
 
+/// −h (Σ b φ'φ')⁻¹ M⁻¹ residuals_: cheap steps that converge where forces change the motion little over h.
+void ElementSolver::correct_by_kinetic_energy() {
+  const Eigen::Map<const Eigen::MatrixXd> residuals(residuals_.data(), shape_.s, shape_.n);
+  Eigen::Map<Eigen::MatrixXd> correction(correction_.data(), shape_.s, shape_.n);
+  sparse_->right = (sparse_->stiffness * residuals).transpose();
+  correction = -factored_h_ * sparse_->mass.solve(sparse_->right).transpose();
+}
+
 /// correction_ = −(matrix)⁻¹ residuals_.
 void ElementSolver::correct() {
+  if (kinetic_) return correct_by_kinetic_energy();
   if (dense_) {
     kernels_.multiply(size_, stride_, matrix_.data(), residuals_.data(), correction_.data());
     return;
@@ -130,6 +162,7 @@ void ElementSolver::correct() {
 ElementSolver::Step ElementSolver::measure() {
   const int s = shape_.s;
   Step step;
+  double widest = 0, largest = 0;  // extent and change
   for (int a = 0; a < shape_.n; ++a) {
     double extent = 0, change = 0;
     for (int k = a * s; k < (a + 1) * s; ++k) {
@@ -138,22 +171,40 @@ ElementSolver::Step ElementSolver::measure() {
       change = std::max(change, std::abs(correction_[k]));
     }
     extent_[a] = extent;
-    extent = std::max(extent, least_extent * largest_[a]);
+    extent = std::max({extent, least_extent * largest_[a], negligible_extent * widest_});
     if (!std::isfinite(change) || !std::isfinite(extent)) return {INFINITY, INFINITY};
+    widest = std::max(widest, extent_[a]);
+    largest = std::max(largest, change);
     if (change == 0) continue;
     step.by_extent = std::max(step.by_extent, change / extent);
     step.by_value = std::max(step.by_value, change / (extent + std::abs(q_[a])));
   }
+  // Coordinates that move by the roundoff of others never settle by themselves.
+  if (largest > 0) step.by_value = std::min(step.by_value, largest / widest);
   return step;
 }
 
 ElementSolver::Result ElementSolver::solve(const MotionState& state, double h) {
+  if (!kinetic_) return iterate(state, h);
+  const std::vector<double> guess = x_;
+  const Result result = iterate(state, h);
+  if (result == Result::solved) return result;
+  x_ = guess;
+  kinetic_ = false;
+  const Result direct = iterate(state, h);
+  kinetic_ = ++kinetic_failures_ < most_kinetic_failures;
+  return direct;
+}
+
+ElementSolver::Result ElementSolver::iterate(const MotionState& state, double h) {
   for (int a = 0; a < shape_.n; ++a) q_[a] = state.q[a].high;
   double before = INFINITY;
-  bool renew = !(factored_ && reuse_ && h == factored_h_ && size_ > few_unknowns);
+  bool renew = !kinetic_ && !(factored_ && reuse_ && h == factored_h_ && size_ > few_unknowns);
+  const double stagnant_at = kinetic_ ? kinetic_stagnation : stagnation;
+  if (kinetic_) factored_h_ = h;
   const double negligible = push_ <= weak_force ? weak_factor * negligible_step : negligible_step;
   reuse_ = true;
-  for (steps_ = 1; steps_ <= most_steps; ++steps_) {
+  for (steps_ = 1; steps_ <= (kinetic_ ? most_cheap_steps : most_steps); ++steps_) {
     const bool fresh = renew;
     if (!evaluate(state, h, renew ? Order::hessian : Order::gradient)) {
       factored_ = false;
@@ -168,12 +219,13 @@ ElementSolver::Result ElementSolver::solve(const MotionState& state, double h) {
       return Result::not_finite;
     }
     const bool small = step <= small_step || by_value <= roundings;
-    if (step <= negligible || (small && step >= stagnation * before)) {
+    if (step <= negligible || (small && step >= stagnant_at * before)) {
       residual_ = 0;
       for (int k = 0; k < size_; ++k) residual_ = std::max(residual_, std::abs(residuals_[k]));
       double force = 0, momentum = 0;
       for (int a = 0; a < shape_.n; ++a) {
         largest_[a] = std::max(largest_[a], extent_[a]);
+        widest_ = std::max(widest_, extent_[a]);
         force = std::max(force, std::abs(force_[a]));
         momentum = std::max(momentum, std::abs(state.p[a].high));
       }
@@ -182,10 +234,12 @@ ElementSolver::Result ElementSolver::solve(const MotionState& state, double h) {
       return Result::solved;
     }
     const double contraction = step / before;
+    if (kinetic_ && !(step < divergence)) return Result::not_converged;
     if (steps_ == 2 && contraction > good_contraction) reuse_ = false;
     // Far from the solution, a matrix is worth a new one wherever it shrinks steps little.
     if (steps_ > 1 && contraction > poor_contraction && step > small_step) renew = true;
     if (fresh && steps_ == 1) renew = step > poor_contraction;
+    if (kinetic_) renew = false;
     before = step;
   }
   factored_ = false;

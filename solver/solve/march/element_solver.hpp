@@ -46,6 +46,11 @@ class ElementSolver {
   };
   /// From `state` over h; x() is the first guess and then the solution, x[a*s + K] as in step_kernels.hpp.
   Result solve(const MotionState& state, double h);
+  /// The same by cheap steps alone where there are such: with the kinetic energy's matrix, which asks for h
+  /// below the periods of all frequencies, but costs a fraction of one that is factored.
+  Result solve_cheaply(const MotionState& state, double h) { return iterate(state, h); }
+  bool cheap() const { return kinetic_; }
+  void give_up_cheap_steps() { kinetic_ = false; }
   std::span<double> x() { return {x_.data(), static_cast<std::size_t>(size_)}; }
 
   /// L_d of any element of the degree.
@@ -65,9 +70,11 @@ class ElementSolver {
   const StepTables& tables() const { return tables_; }
 
  private:
+  Result iterate(const MotionState& state, double h);
   bool evaluate(const MotionState& state, double h, Order order);
   bool factor(double h);
   void correct();
+  void correct_by_kinetic_energy();
   struct Step {
     double by_extent = 0, by_value = 0;
   };
@@ -86,7 +93,10 @@ class ElementSolver {
   int steps_ = 0;
   bool factored_ = false, reuse_ = false;
   double push_ = 0, momentum_ = 0;  ///< largest change of p in an element, relative; largest |p|
+  double widest_ = 0;               ///< largest extent of a coordinate
   double factored_h_ = 0;
+  bool kinetic_ = false;  ///< the matrix is that of the kinetic energy alone
+  int kinetic_failures_ = 0;
   struct Sparse;
   std::unique_ptr<Sparse> sparse_;
 };

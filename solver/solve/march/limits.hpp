@@ -23,8 +23,18 @@ inline constexpr int few_unknowns = 12;
 /// A kept matrix serves as long as it shrinks a step to less than this; an element begins with it where it
 /// shrank the first of the last one to less than the second.
 inline constexpr double poor_contraction = 0.1, good_contraction = 0.02;
+/// Steps by the kinetic energy alone shrink regularly; beyond the second they do not converge. After so many
+/// elements where they did not they are not tried again.
+inline constexpr double kinetic_stagnation = 0.7, divergence = 1e3;
+inline constexpr int most_kinetic_failures = 8, most_cheap_steps = 20;
+/// Where cheap steps do not converge, elements are cut to this part; what bounds them is raised again by the
+/// second from element to element. After so many cuts in a row cheap steps are given up.
+inline constexpr double cheap_cut = 0.6, cheap_growth = 1.02;
+inline constexpr int most_cheap_cuts = 8;
 /// An extent smaller than this part of the largest so far counts as so large.
-inline constexpr double least_extent = 1e-2;
+/// Nor is one that is smaller than the second part of that of another coordinate told: a front that
+/// runs into a body at rest begins with numbers below all others.
+inline constexpr double least_extent = 1e-2, negligible_extent = 1e-25;
 /// Orders of extrapolation from earlier elements, at most.
 inline constexpr int most_differences = 10;
 /// Pieces of an element that Newton's method fails on, each solved from the last, for a better start; and how

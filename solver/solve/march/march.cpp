@@ -107,9 +107,20 @@ class AdaptiveMarch {
       reader_->predict(state.time, std::min(h, duration_ - state.time), solver_.x());
     else if (last_length_ > 0)
       continuation_.predict(last_, h / last_length_, solver_.x());
-    const Result result = solver_.solve(state, h);
+    const Result result = solver_.solve_cheaply(state, h);
     record_.count(solver_.steps());
     record_.march().reason = result;
+    if (result != Result::solved && solver_.cheap() && ++cheap_cuts_ <= most_cheap_cuts) {
+      length_ = longest_ = cheap_cut * h;
+      ++record_.march().rejected;
+      return;
+    }
+    if (result != Result::solved && solver_.cheap()) {
+      solver_.give_up_cheap_steps();
+      length_ = h / std::pow(cheap_cut, most_cheap_cuts);
+      longest_ = INFINITY;
+      return;
+    }
     if (result != Result::solved) {
       length_ = most_shrink * h;
       ++record_.march().rejected;
@@ -141,7 +152,9 @@ class AdaptiveMarch {
     kink_tries_ = 0;
     if (kinks_.active()) kinks_.accept();
     const double most = tail_.size == 0 || excess < 1e-6 ? fast_growth : most_growth;
-    length_ = h * std::clamp(factor, most_shrink, most);
+    cheap_cuts_ = 0;
+    longest_ *= cheap_growth;
+    length_ = std::min(h * std::clamp(factor, most_shrink, most), longest_);
   }
 
   /// The truncation error of the element relative to what is allowed: the first coefficient that the output
@@ -172,6 +185,8 @@ class AdaptiveMarch {
   std::optional<TrajectoryReader> reader_;
   std::vector<double> last_;
   double length_, last_length_ = 0, error_ = 0;
+  double longest_ = INFINITY;  ///< that cheap steps allow
+  int cheap_cuts_ = 0;
   LongSum time_;
 };
 
