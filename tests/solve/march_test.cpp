@@ -38,7 +38,7 @@ std::vector<MotionCase> motion_cases() {
           {"double pendulum", systems::double_pendulum(), {0.5, 0.4}, {0.3, -0.2}, 1, 60},
           {"magnetic", systems::magnetic(), {0.3, -0.2}, {0.4, 0.5}, 3, 50},
           {"driven", systems::driven(), {0.3}, {0.4}, 3, 50},
-          {"doubled", damped_and_driven(), {0.3, 0.1}, {0.4, -0.2}, 3, 40}};
+          {"doubled", damped_and_driven(), {0.3, 0.1}, {0.4, -0.2}, 5, 50}};
 }
 
 Problem from(const MotionCase& c) { return initial_problem(c.lagrangian, {c.q, c.p}, c.duration); }

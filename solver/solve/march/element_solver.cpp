@@ -17,8 +17,8 @@ struct ElementSolver::Sparse {
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factors;
   std::vector<Eigen::Triplet<double>> entries;
   bool analysed = false;
-  /// Of a constant M; and the inverse of Σ b_i φ_I' φ_K', h/M times which nearly is that of the equations where
-  /// h ω is small for every frequency ω.
+  /// Of a constant M; and the inverse of Σ b_i φ_I' φ_K', h/M times which nearly is that of the equations
+  /// where h ω is small for every frequency ω.
   Eigen::SparseLU<Eigen::SparseMatrix<double>> mass;
   Eigen::MatrixXd stiffness, right;
 
