@@ -7,6 +7,7 @@
 #include "machine/aligned.hpp"
 #include "solution/element_point.hpp"
 #include "solve/march/nodal_values.hpp"
+#include "solve/mesh/limits.hpp"
 
 namespace extremal {
 
@@ -39,11 +40,14 @@ class Comparer {
     if (count_ == batch) evaluate();
   }
 
-  MotionDeviation finish() {
+  MotionDeviation finish(double duration) {
     if (count_ > 0) evaluate();
     found_.range = {width(0), width(n_), width(2 * n_)};
     for (std::size_t a = 0; a < n_; ++a)
       found_.magnitude = std::max({found_.magnitude, std::abs(low_[a]), std::abs(high_[a])});
+    for (std::size_t a = 2 * n_; a < 3 * n_; ++a)
+      found_.largest_momentum = std::max({found_.largest_momentum, std::abs(low_[a]), std::abs(high_[a])});
+    found_.duration = duration;
     return std::move(found_);
   }
 
@@ -126,13 +130,18 @@ class Comparer {
   std::vector<double> low_, high_;
 };
 
+/// Where velocities or momenta hardly change they are asked for no more digits than this share of their size
+/// gives.
+constexpr double nearly_uniform = limits::resolution::nearly_uniform;
+
 double excess_of(const MotionDeviation::Sizes& error, const MotionDeviation& whole, double tolerance) {
   constexpr double negligible = 1e-12, velocity_tolerances = 10;
-  const double range = whole.range.q > negligible * whole.magnitude ? whole.range.q : whole.magnitude;
+  const double q = whole.range.q > negligible * whole.magnitude ? whole.range.q : whole.magnitude;
+  const double v = std::max(whole.range.v, nearly_uniform * q / whole.duration),
+               p = std::max(whole.range.p, nearly_uniform * whole.largest_momentum);
   const auto part = [](double error, double allowed) { return error == 0 ? 0 : error / allowed; };
-  return std::max({part(error.q, tolerance * range),
-                   part(error.v, velocity_tolerances * tolerance * whole.range.v),
-                   part(error.p, velocity_tolerances * tolerance * whole.range.p)});
+  return std::max({part(error.q, tolerance * q), part(error.v, velocity_tolerances * tolerance * v),
+                   part(error.p, velocity_tolerances * tolerance * p)});
 }
 
 }  // namespace
@@ -176,7 +185,7 @@ MotionDeviation deviation(const Lagrangian& lagrangian, const Trajectory& motion
       comparer.take(centre);
     }
   }
-  return comparer.finish();
+  return comparer.finish(better.duration());
 }
 
 }  // namespace extremal

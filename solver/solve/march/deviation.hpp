@@ -17,7 +17,9 @@ struct MotionDeviation {
     double q = 0, v = 0, p = 0;
   };
   Sizes error, range;
-  double magnitude = 0;  ///< largest |q|
+  double magnitude = 0;         ///< largest |q|
+  double largest_momentum = 0;  ///< largest |p|
+  double duration = 0;
   bool finite = true;
 
   /// Largest of the errors relative to the tolerance times the range, ten times that for q' and p.

@@ -168,9 +168,18 @@ class AdaptiveMarch {
     const int order = tables_.degree() + 1 + record_.gain();
     error_ = tail_.size * std::pow(tail_.fall, 1 + record_.gain());
     const double v = error_ * order * (order + 1) / h;
+    // An error of q' makes one of p, as large against |p| as that against the speed.
+    const double speed = 2 * tail_.extent / h;
+    double momentum = 0;
+    for (std::size_t a = 0; a < solver_.force().size(); ++a) {
+      const double p = record_.state().p[a].high;
+      momentum = std::max({momentum, std::abs(p), std::abs(p + solver_.force()[a])});
+    }
     const double range_q = std::max(record_.range_q(), tail_.extent),
-                 range_v = std::max(record_.range_v(), 2 * tail_.extent / h);
-    const double by_size = std::max(error_ / range_q, v / (10 * range_v)) / truncation_;
+                 range_v = std::max(record_.range_v(), speed),
+                 range_p = std::max(record_.range_p(), momentum);
+    const double by_size =
+        std::max({error_ / range_q, v / (10 * range_v), v * momentum / (speed * 10 * range_p)}) / truncation_;
     return tail_.fall > slowest_fall ? std::max(by_size, 2 * accepted) : by_size;
   }
 

@@ -8,8 +8,8 @@ MarchRecord::MarchRecord(const StepTables& tables, const InitialData& start, std
                          bool recovering)
     : n_(tables.coordinates()),
       output_(tables, recovering),
-      low_(2 * start.q.size(), INFINITY),
-      high_(2 * start.q.size(), -INFINITY) {
+      low_(3 * start.q.size(), INFINITY),
+      high_(3 * start.q.size(), -INFINITY) {
   for (const double q : start.q) state_.q.push_back({q, 0});
   for (const double p : start.p) {
     state_.p.push_back({p, 0});
@@ -54,7 +54,11 @@ void MarchRecord::add(const ElementSolver& solver, std::span<const double> x, do
     }
     range_q_ = std::max(range_q_, high_[a] - low_[a]);
     range_v_ = std::max(range_v_, high_[n_ + a] - low_[n_ + a]);
-    momentum_ = std::max(momentum_, std::abs(state_.p[a].high));
+    const double p = state_.p[a].high;
+    momentum_ = std::max(momentum_, std::abs(p));
+    low_[2 * n_ + a] = std::min({low_[2 * n_ + a], before_.p[a].high, p});
+    high_[2 * n_ + a] = std::max({high_[2 * n_ + a], before_.p[a].high, p});
+    range_p_ = std::max(range_p_, high_[2 * n_ + a] - low_[2 * n_ + a]);
   }
 }
 

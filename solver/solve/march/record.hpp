@@ -23,9 +23,10 @@ class MarchRecord {
   void count(int steps) { march_.steps += steps; }
   bool full() const;
 
-  /// Largest range of a coordinate and of a velocity so far.
+  /// Largest range of a coordinate, of a velocity and of a momentum so far.
   double range_q() const { return range_q_; }
   double range_v() const { return range_v_; }
+  double range_p() const { return range_p_; }
   March& march() { return march_; }
   /// Orders by which the trajectory is better than the elements.
   int gain() const { return output_.gain(); }
@@ -38,8 +39,8 @@ class MarchRecord {
   MotionState state_, before_;
   March march_;
   LongSum action_, finer_action_;
-  double residual_ = 0, momentum_ = 0, range_q_ = 0, range_v_ = 0;
-  std::vector<double> low_, high_;  ///< of q, then of q'
+  double residual_ = 0, momentum_ = 0, range_q_ = 0, range_v_ = 0, range_p_ = 0;
+  std::vector<double> low_, high_;  ///< of q, then of q', then of p
 };
 
 }  // namespace extremal
