@@ -330,6 +330,27 @@ TEST(MarchedMotion, EndsElementsOnKinks) {
   EXPECT_NEAR(node(pushed.trajectory, pushed.trajectory.elements())[0], 5, 1e-12);
 }
 
+/// The impulse 0.1 √π at t = 5, a thousandth wide.
+TEST(MarchedMotion, FindsForcesBetweenThePointsOfElements) {
+  const auto lagrangian = marched_system({"x"}, "x'^2/2 - x^2/2 + 100*x*exp(-((t - 5)/1e-3)^2)");
+  const double end = std::cos(10) + 0.1 * std::sqrt(pi) * std::sin(5);
+  const Solution s = solve(from(lagrangian, {1}, {0}, 10), within(1e-7));
+  EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], end, 1e-6);
+  const Solution coarse = solve(from(lagrangian, {1}, {0}, 10), pinned(scheme("midpoint"), 500));
+  EXPECT_GT(coarse.error_estimate, 0.1);
+}
+
+/// Ranges of velocities that vanish, and momenta that grow while coordinates decay.
+TEST(MarchedMotion, UniformAndDamped) {
+  const Solution uniform = solve(from(marched_system({"x"}, "x'^2/2"), {1}, {2}, 10), within(1e-12));
+  EXPECT_NEAR(node(uniform.trajectory, uniform.trajectory.elements())[0], 21, 1e-13);
+  const Solution damped =
+      solve(from(marched_system({"x"}, "exp(t)*(x'^2 - x^2)/2"), {1}, {0}, 30), within(1e-9));
+  const double omega = std::sqrt(0.75);
+  const double speed = -std::exp(-15.0) / omega * std::sin(omega * 30);
+  EXPECT_NEAR(damped.momentum_end[0], std::exp(30.0) * speed, 1e-8 * std::exp(15.0));
+}
+
 TEST(MarchedMotion, AtRestStaysThere) {
   for (const char* name : {"midpoint", "gauss(3)"}) {
     const Solution s = solve(from(systems::pendulum(), {0}, {0}, 10), pinned(scheme(name), 10));

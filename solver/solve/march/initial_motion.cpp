@@ -15,6 +15,7 @@
 #include "solve/march/kink_watch.hpp"
 #include "solve/march/limits.hpp"
 #include "solve/march/march.hpp"
+#include "solve/march/overlooked.hpp"
 #include "solve/mesh/conservation.hpp"
 
 namespace extremal {
@@ -82,7 +83,7 @@ class InitialMotion {
   Marched adaptive(double truncation, int degree, const Trajectory* near) {
     Marched result{std::make_unique<StepTables>(gauss(degree), 0, lagrangian_), {}, truncation};
     result.march = march_adaptive(*problem_.initial, problem_.duration.value, *result.tables, truncation,
-                                  options_.deadline, near, options_.progress);
+                                  longest_, options_.deadline, near, options_.progress);
     steps_ += result.march.steps;
     return result;
   }
@@ -104,7 +105,11 @@ class InitialMotion {
           deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
       double excess = apart.excess(options_.tolerance);
       if (excess <= 1 && !holds_energy(found)) excess = 2 / spare;
-      if (excess <= 1) return accept(std::move(found), apart);
+      if (excess <= 1 && !shorten_elements(found.march.trajectory)) return accept(std::move(found), apart);
+      if (excess <= 1) {
+        companion = {};
+        continue;
+      }
       const bool stagnates = excess > stagnant * before && apart.error.q < near_motions * apart.range.q;
       if (truncation <= finest || stagnates) return refuse_roundoff(apart);
       before = excess;
@@ -120,6 +125,16 @@ class InitialMotion {
     survey_ = observe_energy(lagrangian_, solution_);
     if (!lagrangian_.structure().autonomous) return true;
     return survey_ && conserves_energy(*survey_, solution_.trajectory, options_.tolerance);
+  }
+
+  /// Elements become so short that they find a force that depends on time and that these overlook. A force
+  /// that depends on positions alone makes the energy drift.
+  bool shorten_elements(const Trajectory& trajectory) {
+    if (lagrangian_.structure().autonomous) return false;
+    const std::optional<double> step = overlooked_force(lagrangian_, trajectory);
+    if (!step || !(steps_an_element * *step < longest_)) return false;
+    longest_ = steps_an_element * *step;
+    return true;
   }
 
   void refuse_roundoff(const MotionDeviation& apart) {
@@ -141,6 +156,8 @@ class InitialMotion {
   /// Equal elements of the scheme against a motion that is known much better.
   void run_scheme() {
     Marched companion = adaptive(scheme_companion, degree_for(scheme_companion, lagrangian_), nullptr);
+    if (companion.complete() && shorten_elements(companion.march.trajectory))
+      companion = adaptive(scheme_companion, degree_for(scheme_companion, lagrangian_), nullptr);
     if (!companion.complete()) return fail(companion.march, 0);
     int elements = options_.elements > 0 ? options_.elements : first_elements;
     const int order = std::min(options_.scheme->order, options_.scheme->degree + 1);
@@ -288,6 +305,7 @@ class InitialMotion {
   Solution solution_;
   std::optional<Survey> survey_;
   long long steps_ = 0;
+  double longest_ = INFINITY;  ///< element
 };
 
 }  // namespace

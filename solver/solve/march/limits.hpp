@@ -74,12 +74,16 @@ inline constexpr double most_element_growth = 16;
 /// the third number tells, relative to the duration. One that crosses it is cut to no less than the second.
 inline constexpr double kink_near = 0.1, kink_least = 0.02, kink_precision = 2e-16;
 inline constexpr int most_kink_tries = 12;
+/// Steps in which forces are looked for that elements overlook, at least and for each element; elements are
+/// then no longer than so many. Momenta are known to the last number.
+inline constexpr int least_force_steps = 4096, force_steps_an_element = 4;
+inline constexpr double steps_an_element = 4, momentum_noise = 1e-6;
 /// Points of an exact quadrature.
 inline constexpr int most_points = 20;
 inline constexpr double exact = 1e-15;
 /// Speeds this much above their mean along the motion belong to a collision.
 inline constexpr double collision_speed = 30;
 /// Numbers of a trajectory that are kept at most.
-inline constexpr double most_numbers = 2e8;
+inline constexpr double most_numbers = 5e7;
 
 }  // namespace extremal::limits::march

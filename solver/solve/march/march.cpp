@@ -67,10 +67,11 @@ Result solve_by_pieces(ElementSolver& solver, const MotionState& state, double h
 class AdaptiveMarch {
  public:
   AdaptiveMarch(const InitialData& start, double duration, const StepTables& tables, double truncation,
-                const Trajectory* near)
+                double longest, const Trajectory* near)
       : tables_(tables),
         duration_(duration),
         truncation_(truncation),
+        bound_(longest),
         record_(tables, start, 1024, true),
         solver_(tables),
         kinks_(tables, record_.state()),
@@ -87,6 +88,7 @@ class AdaptiveMarch {
         report(record_, solver_, progress);
       }
       if (record_.full()) return record_.finish(March::End::memory);
+      length_ = std::min(length_, bound_);
       const double left = (duration_ - time_.high) - time_.low;
       if (kinks_.active() && kink_tries_ == 0) length_ = kinks_.expected(length_);
       const bool last = length_ * (1 + 1e-3) >= left;
@@ -184,7 +186,7 @@ class AdaptiveMarch {
   }
 
   const StepTables& tables_;
-  const double duration_, truncation_;
+  const double duration_, truncation_, bound_;
   MarchRecord record_;
   ElementSolver solver_;
   KinkWatch kinks_;
@@ -232,8 +234,9 @@ March march_uniform(const InitialData& start, double duration, const StepTables&
 }
 
 March march_adaptive(const InitialData& start, double duration, const StepTables& tables, double truncation,
-                     const Deadline& deadline, const Trajectory* near, const MarchProgress& progress) {
-  return AdaptiveMarch(start, duration, tables, truncation, near).run(deadline, progress);
+                     double longest, const Deadline& deadline, const Trajectory* near,
+                     const MarchProgress& progress) {
+  return AdaptiveMarch(start, duration, tables, truncation, longest, near).run(deadline, progress);
 }
 
 }  // namespace extremal

@@ -48,9 +48,10 @@ March march_uniform(const InitialData& start, double duration, const StepTables&
                     const StepTables* finer = nullptr);
 
 /// Elements as long as truncation allows: `truncation` for q, relative to the largest range of a coordinate
-/// so far, ten times that for q'. A trajectory that is near serves as the first guess of each element.
+/// so far, ten times that for q'; and no longer than `longest`. A trajectory that is near serves as the first
+/// guess of each element.
 March march_adaptive(const InitialData& start, double duration, const StepTables& tables, double truncation,
-                     const Deadline& deadline, const Trajectory* near = nullptr,
+                     double longest, const Deadline& deadline, const Trajectory* near = nullptr,
                      const MarchProgress& progress = {});
 
 }  // namespace extremal
