@@ -80,17 +80,35 @@ class InitialMotion {
   }
 
  private:
-  Marched adaptive(double truncation, int degree, const Trajectory* near) {
+  /// Over the duration, or a part of it.
+  Marched adaptive(double truncation, int degree, const Trajectory* near, double part = 1) {
     Marched result{std::make_unique<StepTables>(gauss(degree), 0, lagrangian_), {}, truncation};
-    result.march = march_adaptive(*problem_.initial, problem_.duration.value, *result.tables, truncation,
-                                  longest_, options_.deadline, near, options_.progress);
+    result.march = march_adaptive(*problem_.initial, part * problem_.duration.value, *result.tables,
+                                  truncation, longest_, options_.deadline, near, options_.progress);
     steps_ += result.march.steps;
     return result;
   }
 
+  /// Of a long motion the errors at the ends of elements decide. They grow with t² where the energy drifts:
+  /// from those of a part of the motion, the truncation that the whole needs.
+  double foreseen(double truncation) {
+    const int degree = degree_for(truncation, lagrangian_);
+    const Marched found = adaptive(truncation, degree, nullptr, pilot_part);
+    if (!found.complete() || found.march.trajectory.elements() < least_pilot) return truncation;
+    const Marched better = adaptive(std::max(companion_share * truncation, finest),
+                                    degree + companion_degrees, &found.march.trajectory, pilot_part);
+    if (!better.complete()) return truncation;
+    const double range = deviation(lagrangian_, found.march.trajectory, better.march.trajectory).range.q;
+    double error = 0;
+    for (std::size_t a = 0; a < found.march.last.q.size(); ++a)
+      error = std::max(error, std::abs(found.march.last.q[a].high - better.march.last.q[a].high));
+    const double excess = error / (pilot_part * pilot_part * options_.tolerance * range);
+    return excess > spare ? std::max(truncation * std::max(spare / excess, most_fall), finest) : truncation;
+  }
+
   /// Lowers the truncation until the error of the motion, as another march finds it, is tolerated.
   void run_adaptive() {
-    double truncation = std::max(first_share * options_.tolerance, finest), before = INFINITY;
+    double truncation = foreseen(std::max(first_share * options_.tolerance, finest)), before = INFINITY;
     Marched companion;
     for (int marches = 0; marches < most_marches; ++marches) {
       const int degree = degree_for(truncation, lagrangian_);
@@ -150,7 +168,7 @@ class InitialMotion {
     solution_.message = fmt::format(
         "the motion amplifies roundoff: the tolerance {:.1e} holds until t = {:.6g}, at the end the error is "
         "{:.1e}; shorten the duration to {:.6g}, or loosen the tolerance",
-        options_.tolerance, until, apart.error.q, until);
+        options_.tolerance, until, apart.error.q, shorter * until);
   }
 
   /// Equal elements of the scheme against a motion that is known much better.

@@ -61,6 +61,11 @@ inline constexpr double finest = 2e-15;
 /// this part of what the error asks for. A companion serves as long as its own is so much smaller.
 inline constexpr double first_share = 0.25, most_fall = 1e-3, spare = 0.4, companion_enough = 0.2;
 inline constexpr int most_marches = 10;
+/// Part of the duration that tells how errors grow, where it takes so many elements.
+inline constexpr double pilot_part = 1.0 / 32;
+inline constexpr int least_pilot = 64;
+/// Of the time until which a tolerance holds, what is advised: ranges are smaller then.
+inline constexpr double shorter = 0.9;
 /// An error that another march with a smaller truncation does not lower to this part is roundoff, where it is
 /// below the second part of the range: there it tells motions apart that are near each other.
 inline constexpr double stagnant = 0.5, near_motions = 0.1;
