@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "action/rule.hpp"
 #include "solve/march/kink_watch.hpp"
@@ -90,7 +91,8 @@ class AdaptiveMarch {
       if (record_.full()) return record_.finish(March::End::memory);
       length_ = std::min(length_, bound_);
       const double left = (duration_ - time_.high) - time_.low;
-      if (kinks_.active() && kink_tries_ == 0) length_ = kinks_.expected(length_);
+      if (kinks_.active() && kink_tries_ == 0)
+        length_ = std::max(kinks_.expected(length_), 4 * least_length * duration_);
       const bool last = length_ * (1 + 1e-3) >= left;
       const double h = last ? left : kinks_.active() ? length_ : std::min(length_, left / 2);
       if (h < least_length * duration_ || record_.state().time + h == record_.state().time) {
@@ -114,7 +116,6 @@ class AdaptiveMarch {
     record_.march().reason = result;
     if (result != Result::solved && solver_.cheap() && ++cheap_cuts_ <= most_cheap_cuts) {
       length_ = longest_ = cheap_cut * h;
-      ++record_.march().rejected;
       return;
     }
     if (result != Result::solved && solver_.cheap()) {
@@ -125,7 +126,6 @@ class AdaptiveMarch {
     }
     if (result != Result::solved) {
       length_ = most_shrink * h;
-      ++record_.march().rejected;
       return;
     }
     if (kinks_.active()) {
@@ -141,11 +141,8 @@ class AdaptiveMarch {
         std::pow(aim / std::max(excess, 1e-30), 1.0 / (tables_.degree() + 1 + record_.gain()));
     if (excess > accepted) {
       length_ = h * std::clamp(factor, most_shrink, 0.9);
-      ++record_.march().rejected;
       return;
     }
-    March& march = record_.march();
-    march.truncation = std::max(march.truncation, error_);
     std::copy(solver_.x().begin(), solver_.x().end(), last_.begin());
     last_length_ = h;
     time_.add(h);
@@ -165,11 +162,10 @@ class AdaptiveMarch {
     double magnitude = 0;
     for (const LongSum& q : record_.state().q) magnitude = std::max(magnitude, std::abs(q.high));
     tail_ = continuation_.tail(solver_.x(), magnitude);
-    error_ = 0;
     if (tail_.size == 0) return 0;
     const int order = tables_.degree() + 1 + record_.gain();
-    error_ = tail_.size * std::pow(tail_.fall, 1 + record_.gain());
-    const double v = error_ * order * (order + 1) / h;
+    const double error = tail_.size * std::pow(tail_.fall, 1 + record_.gain());
+    const double v = error * order * (order + 1) / h;
     // An error of q' makes one of p, as large against |p| as that against the speed.
     const double speed = 2 * tail_.extent / h;
     double momentum = 0;
@@ -181,7 +177,7 @@ class AdaptiveMarch {
                  range_v = std::max(record_.range_v(), speed),
                  range_p = std::max(record_.range_p(), momentum);
     const double by_size =
-        std::max({error_ / range_q, v / (10 * range_v), v * momentum / (speed * 10 * range_p)}) / truncation_;
+        std::max({error / range_q, v / (10 * range_v), v * momentum / (speed * 10 * range_p)}) / truncation_;
     return tail_.fall > slowest_fall ? std::max(by_size, 2 * accepted) : by_size;
   }
 
@@ -195,7 +191,7 @@ class AdaptiveMarch {
   PolynomialContinuation::Tail tail_;
   std::optional<TrajectoryReader> reader_;
   std::vector<double> last_;
-  double length_, last_length_ = 0, error_ = 0;
+  double length_, last_length_ = 0;
   double longest_ = INFINITY;  ///< that cheap steps allow
   int cheap_cuts_ = 0;
   LongSum time_;

@@ -1,9 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "machine/deadline.hpp"
 #include "problem/problem.hpp"
@@ -33,8 +30,6 @@ struct March {
          finer_action = 0;  ///< the second by a quadrature with more points, where it is asked for
   double residual = 0;      ///< largest component of δS_h divided by the largest momentum
   long long steps = 0;      ///< of Newton's method
-  long long rejected = 0;
-  double truncation = 0;  ///< largest estimate of the error of q inside an element
 
   bool complete() const { return end == End::complete; }
 };
