@@ -45,5 +45,7 @@ Figure convergence_of_spectra();
 Figure convergence_of_velocities();
 /// Lemmas 2.1, 4.2 and 5.3, and what happens where T reaches a conjugate point of the scheme.
 Figure windows();
+/// Discrete frequencies of marched wave trains, and the growth of their errors.
+Figure wave_trains();
 
 }  // namespace extremal::papers

@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
     const std::pair<const char*, Figure (*)()> figures[] = {{"lines", papers::frequencies_and_amplitudes},
                                                             {"spectra", papers::convergence_of_spectra},
                                                             {"velocities", papers::convergence_of_velocities},
-                                                            {"windows", papers::windows}};
+                                                            {"windows", papers::windows},
+                                                            {"wave_trains", papers::wave_trains}};
     for (const auto& [name, figure] : figures) {
       const std::string path = (folder / name).string() + ".svg";
       write_plot(path, figure());

@@ -30,6 +30,7 @@ std::vector<std::string> parameter_texts(const System& system) {
 std::string boundary_text(const Problem& problem) {
   const int n = problem.coordinates(), rows = problem.boundary.rows;
   if (problem.periodic) return "periodic";
+  if (problem.initial) return fmt::format("initial data, {} coordinates and {} momenta", n, n);
   return fmt::format("{} conditions on {} end values, {} natural", rows, 2 * n, problem.ends.free);
 }
 
@@ -53,7 +54,7 @@ std::string open_text(const Problem& problem, bool at_end) {
 
 void print_ends(const Problem& problem) {
   line("boundary", boundary_text(problem));
-  if (problem.periodic || problem.ends.free == 0) return;
+  if (problem.periodic || problem.initial || problem.ends.free == 0) return;
   line("not fixed",
        fmt::format("at the start {}; at the end {}", open_text(problem, false), open_text(problem, true)));
 }

@@ -69,12 +69,36 @@ void check_guess(const Guess& guess, int coordinates) {
   }
 }
 
+void check_initial(const Problem& problem) {
+  if (!problem.initial) return;
+  const std::size_t n = problem.coordinates();
+  const auto& [q, p] = *problem.initial;
+  require(q.size() == n && p.size() == n, "initial data of {} coordinates and {} momenta; the system has {}",
+          q.size(), p.size(), n);
+  for (std::size_t a = 0; a < n; ++a)
+    require(std::isfinite(q[a]) && std::isfinite(p[a]), "initial data {} and {} of coordinate {}", q[a], p[a],
+            a + 1);
+  require(!problem.periodic, "a periodic problem has no initial data");
+  require(!problem.duration.free, "initial data need a duration that is a number");
+}
+
 }  // namespace
+
+Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration) {
+  Problem problem;
+  problem.lagrangian = std::move(lagrangian);
+  problem.boundary.coordinates = static_cast<int>(initial.q.size());
+  for (int a = 0; a < problem.boundary.coordinates; ++a) problem.boundary.fix(a, false, initial.q[a]);
+  problem.duration.value = duration;
+  problem.initial = std::move(initial);
+  return make_problem(std::move(problem));
+}
 
 Problem make_problem(Problem problem) {
   check_dimensions(problem);
   check_duration(problem.duration, problem.lagrangian->structure().autonomous);
   check_guess(problem.guess, problem.coordinates());
+  check_initial(problem);
   problem.ends = solve_relation(problem.boundary);
   check_recurrence(problem);
   if (problem.periodic) problem.symmetries = continuous_symmetries(problem);

@@ -78,6 +78,11 @@ struct Guess {
   void at(double tau, std::span<double> q) const;
 };
 
+/// q(0) and the canonical momentum −∂S_h/∂q(0), n each: the motion is marched from there.
+struct InitialData {
+  std::vector<double> q, p;
+};
+
 struct Reduction;
 
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
@@ -92,9 +97,14 @@ struct Problem {
   Guess guess;
   std::shared_ptr<const Reduction> reduction;  ///< of a periodic problem with a symmetric guess, else null
   std::optional<double> curvature;             ///< a bound of M⁻¹V'' known to hold everywhere
+  /// In place of conditions at the ends: `boundary` fixes q(0) alone. The duration is then fixed.
+  std::optional<InitialData> initial;
 
   int coordinates() const { return boundary.coordinates; }
 };
+
+/// The problem whose motion starts at (q, p) and lasts that long. Throws as make_problem().
+Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration);
 
 /// Checks dimensions, durations and relations, and fills `ends`, `symmetries` and `reduction`. Throws
 /// std::invalid_argument, which a RecurrenceError is, or RelationError.

@@ -74,7 +74,9 @@ class Fields {
     const auto count = [](const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); };
     append(object_, "morse_index", count(result_.solution.morse_index));
     append(object_, "nullity", count(result_.solution.nullity));
-    append(object_, "minimizing", result_.solution.minimizing);
+    // Without an index nothing is known of it.
+    append(object_, "minimizing",
+           converged_ && !result_.solution.morse_index ? Json(nullptr) : Json(result_.solution.minimizing));
     windows();
   }
 

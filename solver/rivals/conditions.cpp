@@ -15,7 +15,10 @@ EndConditions::Values EndConditions::at(const EndStates& ends, const PhaseScales
   values.residual = values.magnitude = Eigen::VectorXd::Zero(rows_);
   values.size = values.residual;
   add_relation(ends, values);
-  add_natural(ends, values);
+  if (problem_.initial)
+    add_initial(ends, values);
+  else
+    add_natural(ends, values);
   if (problem_.duration.free) add_closing(ends, values);
   for (const Triplet& e : values.derivatives)
     values.size[e.row] += std::abs(e.value) * ((e.column / n_) % 2 == 0 ? scales.q : scales.p);
@@ -64,6 +67,17 @@ void EndConditions::add_natural(const EndStates& ends, Values& values) const {
     values.residual[row] += term - given;
     values.magnitude[row] += std::abs(term) + std::abs(given);
     values.derivatives.push_back({row, at_end ? 3 * n_ + a : n_ + a, coefficient});
+  }
+}
+
+/// p(0) is given, and nothing at the end.
+void EndConditions::add_initial(const EndStates& ends, Values& values) const {
+  for (int a = 0; a < n_; ++a) {
+    const int row = problem_.boundary.rows + a;
+    const double given = problem_.initial->p[a];
+    values.residual[row] = ends.p_start[a] - given;
+    values.magnitude[row] = std::abs(ends.p_start[a]) + std::abs(given);
+    values.derivatives.push_back({row, n_ + a, 1});
   }
 }
 

@@ -20,8 +20,8 @@ struct PhaseScales {
 };
 
 /// The rows of the boundary relation, B0 q(0) + B1 q(T) − c; the natural conditions for what it leaves
-/// free, Zᵀ (−p(0), p(T)) less that of momenta that are given; and, for a free duration, the equation that
-/// closes it.
+/// free, Zᵀ (−p(0), p(T)) less that of momenta that are given, or p(0) of initial data; and, for a free
+/// duration, the equation that closes it.
 class EndConditions {
  public:
   /// `problem` must outlive it.
@@ -42,6 +42,7 @@ class EndConditions {
  private:
   void add_relation(const EndStates& ends, Values& values) const;
   void add_natural(const EndStates& ends, Values& values) const;
+  void add_initial(const EndStates& ends, Values& values) const;
   void add_closing(const EndStates& ends, Values& values) const;
 
   const Problem& problem_;

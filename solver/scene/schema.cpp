@@ -52,7 +52,8 @@ constexpr KeyRecord keys[] = {
     {"boundary", "start", Kind::quantities, "none",
      "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
      "momenta ∂L/∂x', as `p_x`. A coordinate of which neither is given has zero momentum there: the natural "
-     "condition.",
+     "condition. Every coordinate and every momentum, with no `end`, are initial data: the motion is marched "
+     "from them.",
      R"(start = { x = 1.0, p_y = 0.3, q = "0.1*i" })", true},
     {"boundary", "end", Kind::quantities, "none", "The same at t = T.",
      R"(end = { x = "-mu", "q[2]" = 0.5 })", true},

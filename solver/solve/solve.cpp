@@ -9,6 +9,7 @@
 
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
+#include "solve/march/initial_motion.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/search/distinct.hpp"
 #include "solve/search/search.hpp"
@@ -84,6 +85,7 @@ std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions
 
 /// As the options ask: with a scheme of their own, by the part of a symmetric orbit, or by a search.
 Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  if (problem.initial) return solve_initial(problem, options);
   const auto start = Clock::now();
   w.levels.bind(problem.lagrangian);
   if (options.scheme) return judged(problem, options, PinnedSolve(problem, options, w).run(), w, start);
@@ -126,6 +128,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
+  if (problem.initial) return {solve(problem, options)};
   Workspace& w = memory_->workspace;
   w.levels.bind(problem.lagrangian);
   SolveOptions adaptive = options;

@@ -24,7 +24,7 @@ class Solver {
   /// Up to `most` distinct extremals of one problem, sorted by action. Of a continuum, as of the time shifts
   /// of a periodic orbit, one. Each one's iterations and seconds count from the beginning; if fewer are found
   /// than asked for, the message of the first says so. Where none is found, one solution that has not
-  /// converged.
+  /// converged. From initial data there is one motion.
   std::vector<Solution> solve_all(const Problem& problem, const SolveOptions& options, int most);
 
  private:

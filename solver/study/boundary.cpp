@@ -54,22 +54,35 @@ EndEntries read_entries(const std::vector<Assignment>& table, const char* end, c
   return entries;
 }
 
-/// At each end a coordinate or its momentum can be given: together they determine the motion.
-void check_entries(const EndEntries& start, const EndEntries& end, const System& system) {
-  const auto both = [](const EndEntry& e) { return e.value && e.momentum; };
-  const auto none = [](const EndEntry& e) { return !e.value && !e.momentum; };
-  if (std::ranges::all_of(start, both) && std::ranges::all_of(end, none))
-    throw SceneError(
-        start.front().momentum->at,
-        "every coordinate and every momentum at the start, and nothing at the end, are initial data; "
-        "solving from them is not available yet: give conditions at the end for as many, and the "
-        "state in [guess]");
-  for (const EndEntries* entries : {&start, &end})
-    if (const auto twice = std::ranges::find_if(*entries, both); twice != entries->end())
+bool has_both(const EndEntry& e) { return e.value && e.momentum; }
+
+/// Every coordinate and every momentum at the start, which determine the motion.
+bool are_initial_data(const EndEntries& start, const EndEntries& end, const System& system) {
+  if (!std::ranges::all_of(start, has_both)) return false;
+  for (std::size_t a = 0; a < end.size(); ++a)
+    if (const Quantity* given = end[a].value ? end[a].value : end[a].momentum)
       throw SceneError(
-          twice->momentum->at,
-          fmt::format("'{0}' and 'p_{0}' are both given at this end; leave one of them out, it follows",
-                      system.names[twice - entries->begin()]));
+          given->at,
+          fmt::format("'start' gives every coordinate and every momentum: these initial data determine the "
+                      "motion, and nothing can be given of '{}' at the end; leave 'end' out, or give at the "
+                      "start either the coordinates or the momenta",
+                      system.names[a]));
+  return true;
+}
+
+/// At each end a coordinate or its momentum can be given.
+void check_entries(const EndEntries& start, const EndEntries& end, const System& system) {
+  for (const EndEntries* entries : {&start, &end})
+    if (const auto twice = std::ranges::find_if(*entries, has_both); twice != entries->end()) {
+      const std::string& name = system.names[twice - entries->begin()];
+      std::string mend = "leave one of them out, it follows";
+      if (const auto lacks = std::ranges::find_if_not(start, has_both); entries == &start)
+        mend +=
+            fmt::format("; for initial data the start needs both of every coordinate, and '{}{}' is missing",
+                        lacks->value ? "p_" : "", system.names[lacks - start.begin()]);
+      throw SceneError(twice->momentum->at,
+                       fmt::format("'{0}' and 'p_{0}' are both given at this end; {1}", name, mend));
+    }
 }
 
 void fix_end(const EndEntries& entries, bool at_end, const System& system, PlacedRelation& placed) {
@@ -82,6 +95,17 @@ void fix_end(const EndEntries& entries, bool at_end, const System& system, Place
     }
     if (entry.momentum)
       placed.relation.give_momentum(coordinate, at_end, evaluate(*entry.momentum, system, entry.index));
+  }
+}
+
+void read_initial_data(const EndEntries& start, const System& system, PlacedRelation& placed) {
+  placed.initial.emplace();
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    const EndEntry& entry = start[k];
+    placed.initial->q.push_back(evaluate(*entry.value, system, entry.index));
+    placed.initial->p.push_back(evaluate(*entry.momentum, system, entry.index));
+    placed.relation.fix(static_cast<int>(k), false, placed.initial->q.back());
+    placed.rows.push_back(entry.value->at);
   }
 }
 
@@ -137,6 +161,10 @@ PlacedRelation read_relation(const BoundaryTable& boundary, const System& system
   }
   const EndEntries start = read_entries(boundary.start, "start", system),
                    end = read_entries(boundary.end, "end", system);
+  if (are_initial_data(start, end, system)) {
+    read_initial_data(start, system, placed);
+    return placed;
+  }
   check_entries(start, end, system);
   fix_end(start, false, system, placed);
   fix_end(end, true, system, placed);
@@ -149,6 +177,7 @@ void set_relation(const BoundaryTable& boundary, const System& system, Problem& 
   try {
     problem.ends = solve_relation(placed.relation);
     problem.boundary = std::move(placed.relation);
+    problem.initial = std::move(placed.initial);
   } catch (const RelationError& e) {
     throw SceneError(placed.rows[e.row],
                      e.contradiction ? "this condition contradicts the ones before it"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "problem/problem.hpp"
@@ -14,6 +15,7 @@ namespace extremal {
 struct PlacedRelation {
   BoundaryRelation relation;
   std::vector<Location> rows;
+  std::optional<InitialData> initial;  ///< the relation fixes q(0) then
 };
 
 /// q(T) = R q(0) + c: one affine form of q(0) for each coordinate.
@@ -22,7 +24,7 @@ using Closure = std::vector<AffineForm>;
 /// The map of a periodic orbit; what it leaves out is unchanged.
 Closure read_closure(const BoundaryTable& boundary, const System& system);
 
-/// Fixed ends, conditions, or the closure of a periodic orbit. Throws SceneError.
+/// Initial data, fixed ends, conditions, or the closure of a periodic orbit. Throws SceneError.
 PlacedRelation read_relation(const BoundaryTable& boundary, const System& system);
 
 /// The relation into a problem, solved. Throws SceneError where conditions depend on each other.

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "motion/dop853.hpp"
+#include "motion/flow.hpp"
 #include "rivals/shooting.hpp"
 #include "rivals/verify.hpp"
 #include "solution/observe.hpp"
@@ -46,6 +48,7 @@ class Comparer {
   }
 
   Comparison run() {
+    if (study_.problem.initial) return run_motions();
     std::vector<ShootingMethod> shooting(std::begin(shooting_methods), std::end(shooting_methods));
     std::erase_if(shooting, [this](const ShootingMethod& method) {
       return study_.problem.coordinates() > method.most_coordinates;
@@ -63,6 +66,17 @@ class Comparer {
   }
 
  private:
+  /// From initial data: the march beside integration.
+  Comparison run_motions() {
+    share_among(3);
+    find_reference();
+    share_among(2);
+    run_method([this](double tolerance) { return solve(tolerance); });
+    share_among(1);
+    run_method([this](double tolerance) { return integrate_row(tolerance); });
+    return result_;
+  }
+
   /// Of what is left of the budget, for the next of so many.
   void share_among(int parties) { study_.options.deadline = total_.share(1.0 / parties); }
   const Deadline& deadline() const { return study_.options.deadline; }
@@ -133,6 +147,61 @@ class Comparer {
                            return MotionSamples{std::move(flight.q), std::move(flight.v)};
                          }});
     if (shot.converged() && result_.reference && !row.error) row.status = Status::not_converged;
+    return row;
+  }
+
+  /// The motion by the method of Dormand and Prince, each step to the tolerance.
+  ComparisonRow integrate_row(double tolerance) {
+    using Clock = std::chrono::steady_clock;
+    const InitialData& initial = *study_.problem.initial;
+    const std::size_t n = initial.q.size();
+    const double duration = study_.problem.duration.value;
+    ComparisonRow row{"dop853", tolerance, 0, std::nullopt, Status::not_converged};
+    if (!Flow::suits(*study_.problem.lagrangian)) return row;
+    Flow flow(*study_.problem.lagrangian);
+    const IntegrationOptions options{
+        .tolerance = tolerance, .block = static_cast<int>(n), .deadline = deadline()};
+    std::vector<double> y(2 * n), between(2 * n), v(n);
+    // To the end; with the states at ascending times, row by row, where these are asked for.
+    const auto integrate = [&](const std::vector<double>& times, MotionSamples& samples) {
+      std::copy(initial.q.begin(), initial.q.end(), y.begin());
+      std::copy(initial.p.begin(), initial.p.end(), y.begin() + static_cast<std::ptrdiff_t>(n));
+      Dop853 integrator([&flow](double at, auto state, auto slope) { return flow.slope(at, state, slope); },
+                        static_cast<int>(2 * n));
+      auto next = times.begin();
+      for (double t = 0, before = 0; t < duration; before = t) {
+        if (integrator.accept_step(t, y, duration, options) != Integrated::done) return false;
+        if (next == times.end()) continue;
+        if (!integrator.prepare_interpolation(y, static_cast<int>(2 * n))) return false;
+        for (; next != times.end() && *next <= t; ++next) {
+          integrator.interpolate((*next - before) / (t - before), between);
+          const std::span<const double> state(between);
+          if (!flow.velocity(state.first(n), state.subspan(n), *next, v)) return false;
+          samples.q.insert(samples.q.end(), state.begin(), state.begin() + static_cast<std::ptrdiff_t>(n));
+          samples.v.insert(samples.v.end(), v.begin(), v.end());
+        }
+      }
+      return true;
+    };
+    std::vector<double> seconds;
+    double spent = 0;
+    bool done = true;
+    do {
+      MotionSamples end;
+      const auto start = Clock::now();
+      done = integrate({}, end);
+      seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      spent += seconds.back();
+    } while (done && spent < options_.row_seconds && seconds.size() < most_repeats);
+    row.seconds = median(std::move(seconds));
+    if (!done) return row;
+    row.status = Status::converged;
+    if (result_.reference)
+      row.error = error({duration, [&](const std::vector<double>& times) {
+                           MotionSamples samples;
+                           integrate(times, samples);
+                           return samples;
+                         }});
     return row;
   }
 

@@ -35,6 +35,10 @@ double solve_bytes(const Structure& structure, int elements, int degree) {
   return sizeof(double) * (16 * elements * entries + rows);
 }
 
+double march_bytes(int coordinates, int elements, int degree) {
+  return 4.0 * sizeof(double) * elements * (degree + 1.0) * coordinates;
+}
+
 double available_bytes() {
   double bytes = double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
   rlimit limit{};

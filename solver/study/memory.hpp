@@ -12,6 +12,10 @@ namespace extremal {
 /// unknowns each, and every node between them its blocks of the chain and their factors.
 double solve_bytes(const Structure& structure, int elements, int degree);
 
+/// Bytes of a march over so many: q and q' at the nodes of its trajectory, and the motion that it is compared
+/// with.
+double march_bytes(int coordinates, int elements, int degree);
+
 /// Bytes that this process may use: physical memory, or less where its own limit or that of its control
 /// group is lower.
 double available_bytes();

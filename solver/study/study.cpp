@@ -52,13 +52,35 @@ Location recurrence_location(const BoundaryTable& boundary) {
   return boundary.map.empty() ? boundary.duration.at : boundary.map.front().name_at;
 }
 
-Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline) {
+/// From initial data there is one motion: nothing is guessed, searched for, closed or continued.
+void check_initial_data(const Scene& scene, Purpose purpose) {
+  const auto refuse = [](const Location& at, const std::string& what) {
+    throw SceneError(at, "'start' gives initial data, every coordinate and every momentum: " + what);
+  };
+  if (scene.boundary.free)
+    refuse(scene.boundary.duration.at, "the duration must be a number, for nothing at the end closes it");
+  if (scene.boundary.where)
+    refuse(position(*scene.boundary.where, 0), "'where' has nothing to close; leave it out");
+  if (!scene.guess.formulas.empty() || scene.guess.file || scene.guess.state)
+    refuse(scene.guess.at, "the motion is computed without a guess; leave [guess] out");
+  if (scene.search) refuse(scene.search->solutions.at, "they have one motion; leave [search] out");
+  if (scene.continuation && purpose == Purpose::family)
+    refuse(scene.continuation->at,
+           "families are continued between conditions at both ends; change the data with --set instead");
+  if (scene.solve.method && scene.solve.method->value != name(Method::newton))
+    refuse(position(*scene.solve.method, 0),
+           fmt::format("elements are solved one by one by Newton's method, without {}; leave 'method' out",
+                       scene.solve.method->value));
+}
+
+Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline, Purpose purpose) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
   set_relation(scene.boundary, system, problem);
+  if (problem.initial) check_initial_data(scene, purpose);
   problem.duration = read_duration(scene.boundary, system);
   // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
   if (scene.guess.state && system.lagrangian->structure().quadratic)
@@ -81,7 +103,9 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
 void check_memory(const Scene& scene, const Study& study) {
   const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
   const int degree = study.options.scheme ? study.options.scheme->degree : 2;
-  const double needed = solve_bytes(study.problem.lagrangian->structure(), elements, degree);
+  const double needed = study.problem.initial
+                            ? march_bytes(n, elements, degree)
+                            : solve_bytes(study.problem.lagrangian->structure(), elements, degree);
   const double available = available_bytes();
   if (needed > available)
     throw SceneError(
@@ -105,7 +129,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.options = read_options(scene.solve);
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
-  study.problem = read_problem(scene, study.system, Deadline(study.budget));
+  study.problem = read_problem(scene, study.system, Deadline(study.budget), purpose);
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
@@ -152,7 +176,7 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 int natural_conditions(const Problem& problem) {
   const std::vector<double>& given = problem.boundary.momenta;
   const auto zeros = std::count(given.begin(), given.end(), 0.0);
-  return problem.periodic ? 0 : problem.ends.free - static_cast<int>(given.size() - zeros);
+  return problem.periodic || problem.initial ? 0 : problem.ends.free - static_cast<int>(given.size() - zeros);
 }
 
 double median(std::vector<double> values) {

@@ -51,10 +51,11 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(start("x = \"1/0\""), "scene.toml:7:16: the value is not finite");
   EXPECT_EQ(start("q = [0, 0, 0], \"q[2]\" = 1"),
             "scene.toml:7:35: 'q[2]' is given by its whole array already; leave one of them out");
-  EXPECT_EQ(start("x = 0, p_x = 1"),
-            "scene.toml:7:24: 'x' and 'p_x' are both given at this end; leave one of them out, it follows");
-  EXPECT_EQ(start("x = 0, q = \"0*i\", p_x = 1, p_q = [1, 2, 3]").substr(0, 40),
-            "scene.toml:7:35: every coordinate and ev");
+  EXPECT_EQ(
+      start("x = 0, p_x = 1"),
+      "scene.toml:7:24: 'x' and 'p_x' are both given at this end; leave one of them out, it follows; for "
+      "initial data the start needs both of every coordinate, and 'q[1]' is missing");
+  EXPECT_EQ(start("x = 0, q = \"0*i\", p_x = 1, p_q = [1, 2, 3]"), "");
   EXPECT_EQ(
       start("\"x'\" = 1"),
       "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); an "
@@ -63,6 +64,54 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(start("v_x = 1"),
             "scene.toml:7:11: unknown coordinate 'v_x'; velocities are written \"x'\", and only "
             "'state' in [guess] holds them");
+}
+
+TEST_F(Scenes, InitialData) {
+  const std::string data = "start = { x = \"k/2\", q = \"i\", p_x = -1, p_q = [\"k\", 0, 5] }\n";
+  const Study s = study(masses + "[boundary]\n" + data + "duration = 2\n");
+  ASSERT_TRUE(s.problem.initial);
+  EXPECT_EQ(s.problem.initial->q, (std::vector<double>{2, 1, 2, 3}));
+  EXPECT_EQ(s.problem.initial->p, (std::vector<double>{-1, 4, 0, 5}));
+  EXPECT_EQ(natural_conditions(s.problem), 0);
+  const Solution motion = run(s);
+  ASSERT_TRUE(motion.converged()) << motion.message;
+  EXPECT_NEAR(motion.momentum_end[2], -2 * std::sin(2.0), 1e-8);
+}
+
+TEST_F(Scenes, InitialDataThatAreMoreOrLess) {
+  const auto refused = [&](const std::string& boundary, const std::string& rest = "",
+                           const std::vector<std::string>& sets = {}) {
+    return message("[system]\nuse = \"kepler\"\n[boundary]\n" + boundary + "\n" + rest, sets);
+  };
+  const std::string data = "start = { x = 1, y = 0, p_x = 0, p_y = 1 }\n";
+  EXPECT_EQ(refused(data + "duration = 2"), "");
+  EXPECT_EQ(
+      refused(data + "end = { y = 1 }\nduration = 2"),
+      "scene.toml:5:13: 'start' gives every coordinate and every momentum: these initial data determine the "
+      "motion, and nothing can be given of 'y' at the end; leave 'end' out, or give at the start either the "
+      "coordinates or the momenta");
+  EXPECT_EQ(refused(data + "end = { p_x = 1 }\nduration = 2").substr(0, 17), "scene.toml:5:15: ");
+  EXPECT_EQ(
+      refused("start = { x = 1, p_x = 0, p_y = 1 }\nduration = 2"),
+      "scene.toml:4:24: 'x' and 'p_x' are both given at this end; leave one of them out, it follows; for "
+      "initial data the start needs both of every coordinate, and 'y' is missing");
+  EXPECT_EQ(
+      refused("start = { x = 1, y = 0, p_x = 0 }\nduration = 2"),
+      "scene.toml:4:31: 'x' and 'p_x' are both given at this end; leave one of them out, it follows; for "
+      "initial data the start needs both of every coordinate, and 'p_y' is missing");
+  EXPECT_EQ(refused("start = { x = 1 }\nend = { x = 1, y = 0, p_x = 0, p_y = 1 }\nduration = 2"),
+            "scene.toml:5:29: 'x' and 'p_x' are both given at this end; leave one of them out, it follows");
+  EXPECT_NE(refused(data + "duration = \"free\"\nenergy = -0.5", "[guess]\nduration = 2\n")
+                .find("must be a number"),
+            std::string::npos);
+  EXPECT_NE(refused(data + "duration = 2", "[guess]\nx = \"1\"\n").find("leave [guess] out"),
+            std::string::npos);
+  EXPECT_NE(refused(data + "duration = 2", "[search]\nsolutions = 2\n").find("leave [search] out"),
+            std::string::npos);
+  EXPECT_NE(
+      refused(data + "duration = 2", "[continuation]\nparameter = \"mu\"\nto = 2\n").find("families are"),
+      std::string::npos);
+  EXPECT_NE(refused(data + "duration = 2", "", {"boundary.energy=1"}), "");
 }
 
 TEST_F(Scenes, EndsOfArraysAreFormulasInTheIndex) {

@@ -65,6 +65,22 @@ TEST_F(Comparing, ErrorsFollowTolerances) {
   }
 }
 
+TEST_F(Comparing, MarchesBesideIntegration) {
+  const std::string scene =
+      "[system]\nuse = \"henon-heiles\"\n[boundary]\nstart = { x = 0.0, y = 0.1, p_x = 0.35, p_y = 0.1 "
+      "}\nduration = 30\n";
+  const Comparison found =
+      compare(study(scene), {.tolerances = {1e-4, 1e-8}, .row_seconds = 0, .progress = nullptr});
+  ASSERT_TRUE(found.reference) << found.message;
+  ASSERT_EQ(found.rows.size(), 4u);
+  EXPECT_EQ(found.rows[2].method, "dop853");
+  for (const ComparisonRow& row : found.rows) {
+    EXPECT_EQ(row.status, Status::converged) << row.method;
+    ASSERT_TRUE(row.error) << row.method;
+    EXPECT_LE(*row.error, (row.method == "dop853" ? 1000 : 1) * row.tolerance) << row.method;
+  }
+}
+
 TEST_F(Comparing, NothingWithoutAReference) {
   const Comparison found = compare(study(oscillator, {"boundary.duration=pi"}),
                                    {.tolerances = {1e-6}, .row_seconds = 0, .progress = {}});

@@ -1,0 +1,335 @@
+#include "solve/march/initial_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <climits>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "solution/observe.hpp"
+#include "solve/march/deviation.hpp"
+#include "solve/march/kink_watch.hpp"
+#include "solve/march/limits.hpp"
+#include "solve/march/march.hpp"
+#include "solve/march/overlooked.hpp"
+#include "solve/mesh/conservation.hpp"
+
+namespace extremal {
+
+using namespace limits::march;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Coefficients of degree k fall like f^k, f = 1/(y + √(1 + y²)) with y = 2d/h, d the distance to the
+/// nearest singularity in complex time. So the truncation f^(s+1) gives the length that a degree s allows, in
+/// units of 2d; the cheapest degree has the least cost over this.
+int degree_for(double truncation, const Lagrangian& lagrangian) {
+  const Structure& structure = lagrangian.structure();
+  const int gain = structure.quadratic && structure.velocity_free && structure.gyroscopic.empty() ? 2 : 1;
+  const double n = structure.coordinates, rows = 1.0 + structure.gradient.size() + structure.hessian.size();
+  int best = least_degree;
+  double least = INFINITY;
+  for (int s = least_degree; s <= highest_degree; ++s) {
+    const double f = std::pow(truncation, 1.0 / (s + 1 + gain)), length = 2 * f / (1 - f * f);
+    const double unknowns = n * s, lanes = simd_lanes();
+    // Nanoseconds, roughly: values and sums of some steps, the matrix and its inverse.
+    const double step = 60 + std::ceil(s / lanes) * rows * 4 + (4 * n * s * s + unknowns * unknowns) / lanes;
+    const double matrix =
+        unknowns > most_dense ? 20 * unknowns * s : (unknowns * unknowns * (s + 2 * unknowns)) / (2 * lanes);
+    const double cost = (6 * step + 1.5 * matrix) / length;
+    if (cost >= least) continue;
+    least = cost;
+    best = s;
+  }
+  return best;
+}
+
+/// A march with the tables that it was made with.
+struct Marched {
+  std::unique_ptr<StepTables> tables;
+  March march;
+  double truncation = 0;
+
+  explicit operator bool() const { return tables != nullptr; }
+  bool complete() const { return march.complete(); }
+};
+
+class InitialMotion {
+ public:
+  InitialMotion(const Problem& problem, const SolveOptions& options)
+      : problem_(problem), options_(options), lagrangian_(*problem.lagrangian) {}
+
+  Solution run() {
+    const auto start = Clock::now();
+    solution_.strategy = "marched from the initial data";
+    if (options_.scheme)
+      run_scheme();
+    else
+      run_adaptive();
+    solution_.seconds_solve = std::chrono::duration<double>(Clock::now() - start).count();
+    const auto analysis = Clock::now();
+    if (solution_.converged() && !survey_) survey_ = observe_energy(lagrangian_, solution_);
+    solution_.seconds_analyse = std::chrono::duration<double>(Clock::now() - analysis).count();
+    return std::move(solution_);
+  }
+
+ private:
+  /// Over the duration, or a part of it.
+  Marched adaptive(double truncation, int degree, const Trajectory* near, double part = 1) {
+    Marched result{std::make_unique<StepTables>(gauss(degree), 0, lagrangian_), {}, truncation};
+    result.march = march_adaptive(*problem_.initial, part * problem_.duration.value, *result.tables,
+                                  truncation, longest_, options_.deadline, near, options_.progress);
+    steps_ += result.march.steps;
+    return result;
+  }
+
+  /// Of a long motion the errors at the ends of elements decide. They grow with t² where the energy drifts:
+  /// from those of a part of the motion, the truncation that the whole needs.
+  double foreseen(double truncation) {
+    const int degree = degree_for(truncation, lagrangian_);
+    const Marched found = adaptive(truncation, degree, nullptr, pilot_part);
+    if (!found.complete() || found.march.trajectory.elements() < least_pilot) return truncation;
+    const Marched better = adaptive(std::max(companion_share * truncation, finest),
+                                    degree + companion_degrees, &found.march.trajectory, pilot_part);
+    if (!better.complete()) return truncation;
+    const double range = deviation(lagrangian_, found.march.trajectory, better.march.trajectory).range.q;
+    double error = 0;
+    for (std::size_t a = 0; a < found.march.last.q.size(); ++a)
+      error = std::max(error, std::abs(found.march.last.q[a].high - better.march.last.q[a].high));
+    const double excess = error / (pilot_part * pilot_part * options_.tolerance * range);
+    return excess > spare ? std::max(truncation * std::max(spare / excess, most_fall), finest) : truncation;
+  }
+
+  /// Lowers the truncation until the error of the motion, as another march finds it, is tolerated.
+  void run_adaptive() {
+    double truncation = foreseen(std::max(first_share * options_.tolerance, finest)), before = INFINITY;
+    Marched companion;
+    for (int marches = 0; marches < most_marches; ++marches) {
+      const int degree = degree_for(truncation, lagrangian_);
+      Marched found = adaptive(truncation, degree, companion ? &companion.march.trajectory : nullptr);
+      if (!found.complete()) return fail(found.march, 0);
+      if (!companion || companion.truncation > companion_enough * truncation) {
+        companion = adaptive(std::max(companion_share * truncation, finest),
+                             std::min(degree + companion_degrees, max_degree), &found.march.trajectory);
+        if (!companion.complete()) return fail(companion.march, 0);
+      }
+      const MotionDeviation apart =
+          deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
+      double excess = apart.excess(options_.tolerance);
+      if (excess <= 1 && !holds_energy(found)) excess = 2 / spare;
+      if (excess <= 1 && !shorten_elements(found.march.trajectory)) return accept(std::move(found), apart);
+      if (excess <= 1) {
+        companion = {};
+        continue;
+      }
+      const bool stagnates = excess > stagnant * before && apart.error.q < near_motions * apart.range.q;
+      if (truncation <= finest || stagnates) return refuse_roundoff(apart);
+      before = excess;
+      truncation = std::max(truncation * std::clamp(spare / excess, most_fall, 0.5), finest);
+    }
+    solution_.message =
+        fmt::format("the error does not fall to the tolerance in {} marches; loosen it", most_marches);
+  }
+
+  /// Of a motion whose force elements overlook the energy drifts.
+  bool holds_energy(const Marched& found) {
+    solution_.trajectory = found.march.trajectory;
+    survey_ = observe_energy(lagrangian_, solution_);
+    if (!lagrangian_.structure().autonomous) return true;
+    return survey_ && conserves_energy(*survey_, solution_.trajectory, options_.tolerance);
+  }
+
+  /// Elements become so short that they find a force that depends on time and that these overlook. A force
+  /// that depends on positions alone makes the energy drift.
+  bool shorten_elements(const Trajectory& trajectory) {
+    if (lagrangian_.structure().autonomous) return false;
+    const std::optional<double> step = overlooked_force(lagrangian_, trajectory);
+    if (!step || !(steps_an_element * *step < longest_)) return false;
+    longest_ = steps_an_element * *step;
+    return true;
+  }
+
+  void refuse_roundoff(const MotionDeviation& apart) {
+    const double until = apart.exceeded(options_.tolerance);
+    solution_.status = Status::not_converged;
+    if (apart.error.q <= roundings * apart.magnitude) {
+      solution_.message = fmt::format(
+          "the tolerance {:.1e} of the range {:.1e} is less than what rounding leaves of coordinates up to "
+          "{:.1e} and of their velocities; loosen it",
+          options_.tolerance, apart.range.q, apart.magnitude);
+      return;
+    }
+    solution_.message = fmt::format(
+        "the motion amplifies roundoff: the tolerance {:.1e} holds until t = {:.6g}, at the end the error is "
+        "{:.1e}; shorten the duration to {:.6g}, or loosen the tolerance",
+        options_.tolerance, until, apart.error.q, shorter * until);
+  }
+
+  /// Equal elements of the scheme against a motion that is known much better.
+  void run_scheme() {
+    Marched companion = adaptive(scheme_companion, degree_for(scheme_companion, lagrangian_), nullptr);
+    if (companion.complete() && shorten_elements(companion.march.trajectory))
+      companion = adaptive(scheme_companion, degree_for(scheme_companion, lagrangian_), nullptr);
+    if (!companion.complete()) return fail(companion.march, 0);
+    int elements = options_.elements > 0 ? options_.elements : first_elements;
+    const int order = std::min(options_.scheme->order, options_.scheme->degree + 1);
+    for (double before = INFINITY;;) {
+      Marched found = uniform(elements);
+      if (!found.complete() && (options_.elements > 0 || found.march.end != March::End::no_element))
+        return fail(found.march, elements);
+      double growth = most_element_growth;
+      if (found.complete()) {
+        MotionDeviation apart = deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
+        if (companion.truncation > finest &&
+            apart.error.q < scheme_margin * companion.truncation * apart.range.q) {
+          companion = adaptive(finest, degree_for(finest, lagrangian_), &companion.march.trajectory);
+          if (!companion.complete()) return fail(companion.march, 0);
+          apart = deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
+        }
+        const double size = apart.range.q > 1e-12 * apart.magnitude ? apart.range.q : apart.magnitude;
+        const double excess = apart.error.q / (options_.tolerance * size);
+        if (options_.elements > 0 || apart.error.q == 0 || excess <= 1)
+          return accept(std::move(found), apart);
+        if (excess > stagnant * before && apart.error.q < 1e-9 * apart.range.q) return refuse_roundoff(apart);
+        before = excess;
+        growth = std::pow(2 * excess, 1.0 / order);
+        if (apart.error.q > near_motions * apart.range.q) growth = std::max(growth, 2.0);
+      }
+      const double next = elements * std::clamp(growth, 1.1, most_element_growth);
+      if (next > most_elements || !(elements * growth < 1e3 * most_elements)) {
+        solution_.message = fmt::format(
+            "{} needs more than {} elements for the tolerance {:.0e}; loosen it, or leave the scheme out",
+            options_.scheme->name, most_elements, options_.tolerance);
+        return;
+      }
+      elements = std::max(elements + 1, static_cast<int>(std::ceil(next)));
+    }
+  }
+
+  /// An exact quadrature takes more points until they do not change the action.
+  Marched uniform(int elements) {
+    const Scheme& scheme = *options_.scheme;
+    for (int points = scheme.points;; points += points < 8 ? 2 : 4) {
+      points = std::min(points, most_points);
+      const bool more = scheme.quadrature == Quadrature::exact && points < most_points;
+      const StepTables finer(scheme, std::min(points + 2, most_points), lagrangian_);
+      Marched result{std::make_unique<StepTables>(scheme, points, lagrangian_), {}, 0};
+      result.march = march_uniform(*problem_.initial, problem_.duration.value, *result.tables, elements,
+                                   options_.deadline, options_.progress, more ? &finer : nullptr);
+      steps_ += result.march.steps;
+      if (!more || !result.complete()) return result;
+      const March& march = result.march;
+      if (std::abs(march.finer_action - march.action) <= exact * std::abs(march.action)) return result;
+    }
+  }
+
+  void accept(Marched found, const MotionDeviation& apart) {
+    March& march = found.march;
+    solution_.status = Status::converged;
+    solution_.message = "converged";
+    if (const int kinked = options_.scheme ? kinked_elements(lagrangian_, march.trajectory) : 0; kinked > 0)
+      solution_.message += fmt::format(
+          "; the motion crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
+          kinked);
+    solution_.degree = found.tables->degree();
+    solution_.unknowns = static_cast<int>(std::min<long long>(
+        static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));
+    solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
+    solution_.trajectory = std::move(march.trajectory);
+    solution_.action = march.action;
+    solution_.residual = march.residual;
+    solution_.error_estimate = std::max(apart.error.q, unit_roundoff * apart.magnitude);
+    solution_.momentum_start = problem_.initial->p;
+    for (const LongSum& p : march.last.p) solution_.momentum_end.push_back(p.high);
+  }
+
+  /// Speeds at the end of the march are far above their mean.
+  static bool runs_away(const Trajectory& trajectory) {
+    const std::size_t n = trajectory.coordinates, count = trajectory.slopes.size();
+    if (count < 8 * n) return false;
+    double mean = 0, end = 0;
+    for (int k = 0; k < trajectory.elements(); ++k) {
+      double largest = 0;
+      for (std::size_t a = 0; a < n; ++a)
+        largest =
+            std::max(largest, std::abs(trajectory.slopes[(k + 1) * (trajectory.degree + 1) * n - n + a]));
+      mean += largest * trajectory.length(k) / trajectory.duration();
+    }
+    for (std::size_t a = count - n; a < count; ++a) end = std::max(end, std::abs(trajectory.slopes[a]));
+    return end > collision_speed * mean;
+  }
+
+  /// Says where the march ended; `elements` equal ones were asked for, or none.
+  void fail(const March& march, int elements) {
+    solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
+    solution_.trajectory = {};
+    const double t = march.reached;
+    if (march.end == March::End::deadline) {
+      solution_.status = Status::iteration_limit;
+      solution_.message = fmt::format(
+          "{} (solve.budget) is spent at t = {:.6g} of a march; raise it, shorten the duration or "
+          "loosen the tolerance",
+          options_.deadline.budget_text(), t);
+    } else if (march.end == March::End::memory) {
+      solution_.message = fmt::format(
+          "the motion takes more than {} elements until t = {:.6g}; shorten the duration or loosen the "
+          "tolerance",
+          march.trajectory.elements(), t);
+    } else if (elements > 0) {
+      solution_.message = fmt::format(
+          "element {} has no solution near the motion: {} from t = {:.9g} over {:.3g}; raise solve.elements, "
+          "or "
+          "leave scheme and elements out",
+          march.trajectory.elements() + 1, reason(march.reason), t, march.wanted);
+    } else if (runs_away(march.trajectory)) {
+      solution_.status = Status::collision;
+      solution_.message = fmt::format(
+          "the motion runs into a collision or another singularity of L at t = {:.9g}, where q' grows "
+          "without "
+          "bound; end it before, at a shorter duration",
+          t);
+    } else {
+      solution_.message = fmt::format(
+          "no element, however short, continues the motion beyond t = {:.9g}: {}; end it before, at a "
+          "shorter "
+          "duration",
+          t, reason(march.reason));
+    }
+  }
+
+  static const char* reason(ElementSolver::Result result) {
+    switch (result) {
+      case ElementSolver::Result::not_finite:
+        return "L is not finite there";
+      case ElementSolver::Result::singular:
+        return "the equations are singular, so that the momenta do not determine the motion";
+      case ElementSolver::Result::not_converged:
+        return "Newton's method does not converge";
+      case ElementSolver::Result::solved:
+        break;
+    }
+    return "its elements do not resolve it";
+  }
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  const Lagrangian& lagrangian_;
+  Solution solution_;
+  std::optional<Survey> survey_;
+  long long steps_ = 0;
+  double longest_ = INFINITY;  ///< element
+};
+
+}  // namespace
+
+Solution solve_initial(const Problem& problem, const SolveOptions& options) {
+  return InitialMotion(problem, options).run();
+}
+
+}  // namespace extremal

@@ -1,0 +1,102 @@
+#include "solve/march/overlooked.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "machine/aligned.hpp"
+#include "solution/element_point.hpp"
+#include "solve/march/limits.hpp"
+#include "solve/march/nodal_values.hpp"
+
+namespace extremal {
+
+using namespace limits::march;
+
+namespace {
+
+/// Points evaluated together; a multiple of the lanes.
+constexpr int points_together = 64;
+
+/// ∂L/∂q and ∂L/∂q' at points of a trajectory that come in order.
+class ForceReader {
+ public:
+  ForceReader(const Lagrangian& lagrangian, const Trajectory& trajectory)
+      : lagrangian_(lagrangian),
+        trajectory_(trajectory),
+        n_(trajectory.coordinates),
+        rows_((2 * n_ + 1) * points_together),
+        out_(static_cast<std::size_t>(lagrangian.rows(Order::gradient)) * points_together) {}
+
+  /// Point i of the batch.
+  void put(int i, double t) {
+    while (element_ + 1 < trajectory_.elements() && trajectory_.times[element_ + 1] < t) ++element_;
+    const double tau = (t - trajectory_.times[element_]) / trajectory_.length(element_);
+    nodal_values(trajectory_.degree, std::clamp(tau, 0.0, 1.0), value_);
+    double* const q = rows_.data() + i;
+    element_point(trajectory_, element_, {value_, nullptr}, q, q + n_ * points_together, points_together);
+    rows_[2 * n_ * points_together + i] = t;
+  }
+
+  /// Of all points of the batch: n rows each.
+  void read(AlignedDoubles& force, AlignedDoubles& momentum) {
+    const double *const q = rows_.data(), *const v = q + n_ * points_together;
+    lagrangian_.evaluate({points_together, points_together, q, v, v + n_ * points_together}, Order::gradient,
+                         out_.data(), scratch_);
+    force.assign(n_ * points_together, 0.0);
+    momentum.assign(n_ * points_together, 0.0);
+    const Structure& s = lagrangian_.structure();
+    const auto add = [&](AlignedDoubles& to, int row, double factor, const double* from) {
+      for (int i = 0; i < points_together; ++i) to[row * points_together + i] += factor * from[i];
+    };
+    for (const Triplet& m : s.mass) add(momentum, m.row, m.value, v + m.column * points_together);
+    for (const Triplet& c : s.gyroscopic) {
+      add(momentum, c.row, c.value, q + c.column * points_together);
+      add(force, c.column, c.value, v + c.row * points_together);
+    }
+    for (std::size_t k = 0; k < s.gradient.size(); ++k) {
+      const std::size_t z = s.gradient[k];
+      add(z < n_ ? force : momentum, static_cast<int>(z < n_ ? z : z - n_), 1,
+          out_.data() + (1 + k) * points_together);
+    }
+  }
+
+ private:
+  const Lagrangian& lagrangian_;
+  const Trajectory& trajectory_;
+  std::size_t n_;
+  AlignedDoubles rows_, out_;
+  Scratch scratch_;
+  double value_[max_degree + 1];
+  int element_ = 0;
+};
+
+}  // namespace
+
+std::optional<double> overlooked_force(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+  constexpr int steps_a_batch = points_together / 2 - 1;  // their ends and their middles
+  const int steps = std::max(least_force_steps, force_steps_an_element * trajectory.elements());
+  const double step = trajectory.duration() / steps;
+  const std::size_t n = trajectory.coordinates;
+  ForceReader reader(lagrangian, trajectory);
+  AlignedDoubles force, momentum;
+  double largest = 0, missed = 0;
+  for (int first = 0; first < steps; first += steps_a_batch) {
+    const int count = std::min(steps_a_batch, steps - first);
+    for (int i = 0; i < points_together; ++i)
+      reader.put(i, std::min((first + 0.5 * std::min(i, 2 * count)) * step, trajectory.duration()));
+    reader.read(force, momentum);
+    for (std::size_t a = 0; a < n; ++a)
+      for (int k = 0; k < count; ++k) {
+        const std::size_t at = a * points_together + 2 * k;
+        const double change = momentum[at + 2] - momentum[at], push = step * force[at + 1];
+        const double noise = momentum_noise * (std::abs(momentum[at]) + std::abs(momentum[at + 2]));
+        largest = std::max(largest, std::abs(push));
+        missed = std::max(missed, std::abs(change - push) - noise);
+      }
+  }
+  if (missed > 0.5 * largest) return step;
+  return std::nullopt;
+}
+
+}  // namespace extremal

@@ -1,0 +1,418 @@
+#include <numbers>
+
+#include "action/rule.hpp"
+#include "motion/flow.hpp"
+#include "rivals/shooting.hpp"
+#include "solve/laws.hpp"
+#include "solve/march/element_solver.hpp"
+#include "system/formula.hpp"
+
+/// \file Motions from initial data: the laws of the discrete flow of every scheme, and adaptive motions.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+std::shared_ptr<const Lagrangian> marched_system(std::vector<std::string> coordinates,
+                                                 std::string lagrangian) {
+  return compile({.coordinates = std::move(coordinates), .lagrangian = std::move(lagrangian)}).lagrangian;
+}
+
+/// x'' + c x' + k x = 0 beside the motion y of its mirror image in time; the mass is indefinite.
+std::shared_ptr<const Lagrangian> damped_and_driven() {
+  return marched_system({"x", "y"}, "x'*y' + 0.1*(x*y' - x'*y) - x*y");
+}
+
+struct MotionCase {
+  const char* name;
+  std::shared_ptr<const Lagrangian> lagrangian;
+  Values q, p;
+  double duration;
+  int elements;  ///< enough that the discrete motion is near
+};
+
+std::vector<MotionCase> motion_cases() {
+  return {{"pendulum", systems::pendulum(), {0.7}, {0.2}, 3, 40},
+          {"Kepler", systems::kepler(), {1, 0}, {0, 1.1}, 4, 60},
+          {"double pendulum", systems::double_pendulum(), {0.5, 0.4}, {0.3, -0.2}, 1, 60},
+          {"magnetic", systems::magnetic(), {0.3, -0.2}, {0.4, 0.5}, 3, 50},
+          {"driven", systems::driven(), {0.3}, {0.4}, 3, 50},
+          {"doubled", damped_and_driven(), {0.3, 0.1}, {0.4, -0.2}, 5, 50}};
+}
+
+Problem from(const MotionCase& c) { return initial_problem(c.lagrangian, {c.q, c.p}, c.duration); }
+Problem from(std::shared_ptr<const Lagrangian> lagrangian, Values q, Values p, double duration) {
+  return initial_problem(std::move(lagrangian), {std::move(q), std::move(p)}, duration);
+}
+
+/// The motion by DOP853.
+Values integrated(const Problem& problem, double t) {
+  Flow flow(*problem.lagrangian);
+  Values v(problem.coordinates());
+  if (!flow.velocity(problem.initial->q, problem.initial->p, 0, v)) throw std::runtime_error("no velocity");
+  return fly(*problem.lagrangian, problem.initial->q, v, Values{t}, 1e-13).q;
+}
+
+class Marching : public ::testing::TestWithParam<std::string> {
+ protected:
+  const Scheme tested = scheme(GetParam());
+};
+
+/// The same equations as between fixed ends.
+TEST_P(Marching, MeetsTheBoundarySolver) {
+  for (const MotionCase& c : motion_cases()) {
+    const Solution motion = solve(from(c), pinned(tested, c.elements));
+    Problem between = fixed_ends(c.lagrangian, c.q, node(motion.trajectory, c.elements), c.duration);
+    between = guessed(between, [&](double tau) { return at(motion.trajectory, tau * c.duration).q; });
+    const Solution path = solve(between, pinned(tested, c.elements));
+    for (int k = 0; k <= c.elements; ++k)
+      EXPECT_LT(largest_difference(node(path.trajectory, k), node(motion.trajectory, k)), 2e-12)
+          << c.name << ", node " << k;
+    EXPECT_LT(largest_difference(path.momentum_start, c.p), 2e-11) << c.name;
+    EXPECT_LT(largest_difference(path.momentum_end, motion.momentum_end), 2e-11) << c.name;
+    EXPECT_NEAR(path.action, motion.action, 1e-12 * (1 + std::abs(path.action))) << c.name;
+    EXPECT_LT(motion.residual, 1e-14) << c.name;
+    EXPECT_FALSE(motion.morse_index || motion.nullity || motion.minimizing);
+    EXPECT_TRUE(motion.windows.empty() && motion.conjugate_times.empty() && !motion.floquet);
+  }
+}
+
+TEST_P(Marching, HasTheOrderOfItsScheme) {
+  for (const MotionCase& c : motion_cases()) {
+    const Solution truth = solve(from(c), within(1e-12));
+    Refinement ends;
+    const int first = tested.order == 8   ? 6
+                      : tested.order == 6 ? 6
+                      : tested.order == 4 ? 10
+                      : tested.order == 2 ? 40
+                                          : 200;
+    for (const int elements : refinements(first * (c.elements > 50 ? 2 : 1), 6)) {
+      const Solution motion = solve(from(c), pinned(tested, elements));
+      ends.add(1.0 / elements,
+               std::max(largest_difference(node(motion.trajectory, elements),
+                                           node(truth.trajectory, truth.trajectory.elements())),
+                        largest_difference(motion.momentum_end, truth.momentum_end)));
+    }
+    EXPECT_NEAR(ends.slope(2e-14), tested.order, 0.12 * tested.order) << c.name;
+  }
+}
+
+/// Backwards in time the flow of a scheme is that of its mirror image; most are their own.
+TEST_P(Marching, RunsBackwards) {
+  const std::string mirrored = tested.name == "rectangle"         ? "rectangle-right"
+                               : tested.name == "rectangle-right" ? "rectangle"
+                                                                  : tested.name;
+  for (const MotionCase& c : motion_cases()) {
+    if (c.name == std::string("magnetic") || c.name == std::string("driven") ||
+        c.name == std::string("doubled"))
+      continue;  // not reversible
+    const Solution there = solve(from(c), pinned(tested, c.elements));
+    Values turned = there.momentum_end;
+    for (double& p : turned) p = -p;
+    const Solution back = solve(from(c.lagrangian, node(there.trajectory, c.elements), turned, c.duration),
+                                pinned(scheme(mirrored), c.elements));
+    EXPECT_LT(largest_difference(node(back.trajectory, c.elements), c.q), 1e-12) << c.name;
+    for (double& p : turned) p = 0;
+    for (std::size_t a = 0; a < c.p.size(); ++a) turned[a] = -back.momentum_end[a];
+    EXPECT_LT(largest_difference(turned, c.p), 1e-12) << c.name;
+  }
+}
+
+/// Columns (δq, δp) at the end, by differences; exact for a linear flow.
+std::vector<Values> linearised(const Problem& problem, const SolveOptions& options, double size) {
+  const std::size_t n = problem.coordinates();
+  std::vector<Values> columns;
+  for (std::size_t k = 0; k < 2 * n; ++k) {
+    const auto end = [&](double change) {
+      Problem moved = problem;
+      (k < n ? moved.initial->q[k] : moved.initial->p[k - n]) += change;
+      const Solution s =
+          solve(from(moved.lagrangian, moved.initial->q, moved.initial->p, moved.duration.value), options);
+      Values state = node(s.trajectory, options.elements);
+      state.insert(state.end(), s.momentum_end.begin(), s.momentum_end.end());
+      return state;
+    };
+    const Values ahead = end(size), behind = end(-size), far = end(2 * size), rear = end(-2 * size);
+    Values column(2 * n);
+    for (std::size_t i = 0; i < 2 * n; ++i)
+      column[i] = (8 * (ahead[i] - behind[i]) - (far[i] - rear[i])) / (12 * size);
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+double symplectic_defect(const std::vector<Values>& m) {
+  const std::size_t n = m.size() / 2;
+  double defect = 0;
+  for (std::size_t i = 0; i < 2 * n; ++i)
+    for (std::size_t j = 0; j < 2 * n; ++j) {
+      double form = 0;
+      for (std::size_t a = 0; a < n; ++a) form += m[i][a] * m[j][n + a] - m[i][n + a] * m[j][a];
+      const double expected = j == i + n ? 1 : i == j + n ? -1 : 0;
+      defect = std::max(defect, std::abs(form - expected));
+    }
+  return defect;
+}
+
+TEST_P(Marching, IsSymplectic) {
+  const auto linear = marched_system(
+      {"x", "y"}, "x'^2/2 + y'^2 + 0.3*x'*y' + 0.7*(x*y' - y*x') - x^2 - 0.6*y^2 + 0.4*x*y + 0.2*x'*y");
+  const SolveOptions options = pinned(tested, 7);
+  // Differences of a linear flow are exact whatever their size.
+  EXPECT_LT(symplectic_defect(linearised(from(linear, {0, 0}, {0, 0}, 3), options, 1)), 2e-14);
+  for (const MotionCase& c : motion_cases())
+    EXPECT_LT(symplectic_defect(linearised(from(c), pinned(tested, c.elements), 3e-4)), 2e-9) << c.name;
+}
+
+TEST_P(Marching, ConservesAngularMomentum) {
+  const Problem problem = from(systems::kepler(), {1, 0}, {0, 1.1}, 100);
+  const Solution motion = solve(problem, pinned(tested, 2000));
+  const Values q = node(motion.trajectory, 2000);
+  EXPECT_NEAR(q[0] * motion.momentum_end[1] - q[1] * motion.momentum_end[0], 1.1, 1e-13);
+}
+
+std::vector<std::string> tested_names() {
+  std::vector<std::string> list;
+  for (const Scheme& s : schemes_and_families()) list.push_back(s.name);
+  return list;
+}
+INSTANTIATE_TEST_SUITE_P(Schemes, Marching, ::testing::ValuesIn(tested_names()), [](const auto& info) {
+  std::string name;
+  for (const char c : info.param)
+    if (std::isalnum(static_cast<unsigned char>(c))) name += c;
+  return name;
+});
+
+/// q_{k+1} + q_{k−1} = 2 cos θ q_k.
+double discrete_cosine(const char* name, double z) {
+  const int elements = 1000;
+  const Solution s =
+      solve(from(systems::oscillator(1), {0.7}, {0.2}, elements * z), pinned(scheme(name), elements));
+  double above = 0, below = 0;
+  for (int k = 1; k < elements; ++k) {
+    const double q = node(s.trajectory, k)[0];
+    above += q * (node(s.trajectory, k + 1)[0] + node(s.trajectory, k - 1)[0]);
+    below += q * q;
+  }
+  return above / (2 * below);
+}
+
+TEST(MarchedMotion, HasTheFrequenciesOfItsScheme) {
+  for (const double z : {0.1, 0.5, 1.3}) {
+    const double square = z * z;
+    EXPECT_NEAR(discrete_cosine("rectangle", z), 1 - square / 2, 1e-13);
+    EXPECT_NEAR(discrete_cosine("rectangle-right", z), 1 - square / 2, 1e-13);
+    EXPECT_NEAR(discrete_cosine("trapezoid", z), 1 - square / 2, 1e-13);
+    EXPECT_NEAR(discrete_cosine("midpoint", z), std::cos(2 * std::atan(z / 2)), 1e-13);
+    EXPECT_NEAR(discrete_cosine("linear", z), (1 - square / 3) / (1 + square / 6), 1e-13);
+  }
+}
+
+TEST(MarchedMotion, StaysNearTheEnergyForLong) {
+  const Problem problem = from(systems::henon_heiles(), {0, 0.1}, {0.35, 0.1}, 1e4);
+  const Solution early = solve(from(systems::henon_heiles(), {0, 0.1}, {0.35, 0.1}, 1e2),
+                               pinned(scheme("midpoint"), 1000)),
+                 late = solve(problem, pinned(scheme("midpoint"), 100000));
+  EXPECT_LT(*late.energy_drift, 1.5 * *early.energy_drift);
+}
+
+double henon_heiles_energy(const Solution& s) {
+  const Values q = node(s.trajectory, s.trajectory.elements()), &p = s.momentum_end;
+  return (p[0] * p[0] + p[1] * p[1] + q[0] * q[0] + q[1] * q[1]) / 2 + q[0] * q[0] * q[1] -
+         q[1] * q[1] * q[1] / 3;
+}
+
+/// The random walk of 10⁵ roundings, not their sum.
+TEST(MarchedMotion, RoundoffDoesNotDrift) {
+  const Problem problem = from(systems::henon_heiles(), {0, 0.1}, {0.35, 0.1}, 1e5);
+  EXPECT_NEAR(henon_heiles_energy(solve(problem, pinned(scheme("gauss(8)"), 120000))),
+              0.35 * 0.35 / 2 + 0.01 - 1e-3 / 3, 1.5e-14);
+}
+
+/// Truth by integration in extended precision is not to be had here: by the tightest march, and by DOP853.
+TEST(MarchedMotion, ErrorEstimateIsHonest) {
+  const std::vector<MotionCase> cases = {
+      {"pendulum near its separatrix", systems::pendulum(), {3.1}, {0.01}, 40, 0},
+      {"Kepler, e = 0.9", systems::kepler(), {0.1, 0}, {0, std::sqrt(19.0)}, 30, 0},
+      {"double pendulum", systems::double_pendulum(), {1.5, 1.4}, {0, 0}, 5, 0},
+      {"Henon-Heiles", systems::henon_heiles(), {0, -0.1}, {0.5, 0.1}, 100, 0},
+      {"restricted three bodies", systems::restricted_three_body(), {0.3, 0, 0.1}, {0, 1.2, 0.05}, 6, 0},
+      {"magnetic", systems::magnetic(), {0.3, -0.2}, {0.4, 0.5}, 4, 0},
+      {"driven", systems::driven(), {0.3}, {0.4}, 8, 0},
+      {"doubled", damped_and_driven(), {0.3, 0.1}, {0.4, -0.2}, 30, 0}};
+  for (const MotionCase& c : cases) {
+    const Solution truth = solve(from(c), within(1e-12));
+    const Values end = node(truth.trajectory, truth.trajectory.elements());
+    EXPECT_LT(largest_difference(integrated(from(c), c.duration), end), 2e-9 * (1 + largest(end))) << c.name;
+    for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
+      const Solution s = solve(from(c), within(tolerance));
+      double error = 0, speed_error = 0, momentum_error = 0;
+      Values least, most, slow, fast, low, high;
+      Scratch scratch;
+      for (int i = 0; i <= 2000; ++i) {
+        const double t = c.duration * i / 2000;
+        const State found = at(s.trajectory, t), exact = at(truth.trajectory, t);
+        const Values p = evaluate_at(*c.lagrangian, found.q, found.v, t, Order::gradient, scratch).dv,
+                     r = evaluate_at(*c.lagrangian, exact.q, exact.v, t, Order::gradient, scratch).dv;
+        error = std::max(error, largest_difference(found.q, exact.q));
+        speed_error = std::max(speed_error, largest_difference(found.v, exact.v));
+        momentum_error = std::max(momentum_error, largest_difference(p, r));
+        const auto widen = [i](Values& lower, Values& upper, const Values& x) {
+          if (i == 0) lower = upper = x;
+          for (std::size_t a = 0; a < x.size(); ++a) {
+            lower[a] = std::min(lower[a], x[a]);
+            upper[a] = std::max(upper[a], x[a]);
+          }
+        };
+        widen(least, most, exact.q);
+        widen(slow, fast, exact.v);
+        widen(low, high, r);
+      }
+      EXPECT_LT(error, tolerance * largest_difference(least, most)) << c.name << ' ' << tolerance;
+      EXPECT_LT(speed_error, 10 * tolerance * largest_difference(slow, fast)) << c.name << ' ' << tolerance;
+      EXPECT_LT(momentum_error, 10 * tolerance * largest_difference(low, high)) << c.name << ' ' << tolerance;
+      EXPECT_LT(s.error_estimate, 10 * error) << c.name << ' ' << tolerance;
+      EXPECT_GT(s.error_estimate, 0.1 * error) << c.name << ' ' << tolerance;
+    }
+  }
+}
+
+TEST(MarchedMotion, PinnedErrorIsHonest) {
+  for (const MotionCase& c : motion_cases()) {
+    const Solution truth = solve(from(c), within(1e-13));
+    for (const char* name : {"rectangle", "midpoint", "linear", "quadratic", "gauss(3)", "lobatto(4)"})
+      for (const int elements : {20, 100, 500}) {
+        const Solution s = solve(from(c), pinned(scheme(name), elements));
+        const double error = sup_distance(s.trajectory, truth.trajectory, 3000);
+        if (error < 2e-13) continue;
+        EXPECT_LT(s.error_estimate, 10 * error) << c.name << ' ' << name << ' ' << elements;
+        EXPECT_GT(s.error_estimate, 0.1 * error) << c.name << ' ' << name << ' ' << elements;
+      }
+  }
+}
+
+TEST(MarchedMotion, SchemeAloneMeetsTheTolerance) {
+  for (const char* name : {"midpoint", "lobatto(4)"}) {
+    SolveOptions options = within(1e-5);
+    options.scheme = scheme(name);
+    const MotionCase c = motion_cases().front();
+    const Solution s = solve(from(c), options), truth = solve(from(c), within(1e-12));
+    EXPECT_LT(sup_distance(s.trajectory, truth.trajectory), 1e-5 * 1.6);
+    EXPECT_EQ(s.trajectory.degree, scheme(name).degree);
+  }
+}
+
+TEST(MarchedMotion, DampedBesideItsMirrorImage) {
+  const Solution s = solve(from(damped_and_driven(), {1, 0}, {0.2, -0.1}, 20), within(1e-10));
+  // p_x = y' − c y/2, p_y = x' + c x/2 with c = 0.2: x' = −0.1 − 0.1 at the start.
+  const double omega = std::sqrt(0.99);
+  EXPECT_LT(distance(s.trajectory,
+                     [&](double t) {
+                       const double x = std::exp(-0.1 * t) *
+                                        (std::cos(omega * t) + (-0.2 + 0.1) / omega * std::sin(omega * t));
+                       const double y = std::exp(0.1 * t) * 0.2 / omega * std::sin(omega * t);
+                       return Values{x, y};
+                     }),
+            1e-10 * 3);
+}
+
+TEST(MarchedMotion, EndsElementsOnKinks) {
+  const auto lagrangian = marched_system({"x"}, "x'^2/2 - abs(x)");
+  for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
+    const Solution s = solve(from(lagrangian, {1}, {-0.5}, 60), within(tolerance));
+    EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], 1, 1e-12);  // ten periods
+    EXPECT_NEAR(s.momentum_end[0], -0.5, 1e-12);
+    EXPECT_LT(s.trajectory.elements(), 200);
+  }
+  const Solution pushed =
+      solve(from(marched_system({"x"}, "x'^2/2 + x*step(t - 1)"), {0}, {1}, 3), within(1e-9));
+  EXPECT_NEAR(node(pushed.trajectory, pushed.trajectory.elements())[0], 5, 1e-12);
+}
+
+/// The impulse 0.1 √π at t = 5, a thousandth wide.
+TEST(MarchedMotion, FindsForcesBetweenThePointsOfElements) {
+  const auto lagrangian = marched_system({"x"}, "x'^2/2 - x^2/2 + 100*x*exp(-((t - 5)/1e-3)^2)");
+  const double end = std::cos(10) + 0.1 * std::sqrt(pi) * std::sin(5);
+  const Solution s = solve(from(lagrangian, {1}, {0}, 10), within(1e-7));
+  EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], end, 1e-6);
+  const Solution coarse = solve(from(lagrangian, {1}, {0}, 10), pinned(scheme("midpoint"), 500));
+  EXPECT_GT(coarse.error_estimate, 0.1);
+}
+
+/// Ranges of velocities that vanish, and momenta that grow while coordinates decay.
+TEST(MarchedMotion, UniformAndDamped) {
+  const Solution uniform = solve(from(marched_system({"x"}, "x'^2/2"), {1}, {2}, 10), within(1e-12));
+  EXPECT_NEAR(node(uniform.trajectory, uniform.trajectory.elements())[0], 21, 1e-13);
+  const Solution damped =
+      solve(from(marched_system({"x"}, "exp(t)*(x'^2 - x^2)/2"), {1}, {0}, 30), within(1e-9));
+  const double omega = std::sqrt(0.75);
+  const double speed = -std::exp(-15.0) / omega * std::sin(omega * 30);
+  EXPECT_NEAR(damped.momentum_end[0], std::exp(30.0) * speed, 1e-8 * std::exp(15.0));
+}
+
+TEST(MarchedMotion, AtRestStaysThere) {
+  for (const char* name : {"midpoint", "gauss(3)"}) {
+    const Solution s = solve(from(systems::pendulum(), {0}, {0}, 10), pinned(scheme(name), 10));
+    EXPECT_EQ(node(s.trajectory, 10)[0], 0);
+  }
+  const Solution s = solve(from(systems::pendulum(), {0}, {0}, 10), within(1e-9));
+  EXPECT_EQ(node(s.trajectory, s.trajectory.elements())[0], 0);
+}
+
+TEST(MarchedMotion, CollisionIsTold) {
+  // From rest at 1: r = 0 at t = π/(2√2).
+  for (const bool scheme_given : {false, true}) {
+    const Problem problem = from(systems::kepler(), {1, 0}, {0, 0}, 3);
+    Solver solver;
+    const Solution s = solver.solve(problem, scheme_given ? pinned(scheme("midpoint"), 100) : within(1e-8));
+    EXPECT_EQ(s.status, Status::collision) << s.message;
+    EXPECT_NE(s.message.find(fmt::format("t = {:.6g}", pi / (2 * std::sqrt(2.0)))), std::string::npos)
+        << s.message;
+  }
+}
+
+TEST(MarchedMotion, TellsUntilWhenRoundoffAllowsTheTolerance) {
+  const Problem problem = from(systems::henon_heiles(), {0, -0.1}, {0.55, 0.1}, 2000);
+  Solver solver;
+  const Solution s = solver.solve(problem, within(1e-8));
+  EXPECT_EQ(s.status, Status::not_converged);
+  EXPECT_NE(s.message.find("amplifies roundoff"), std::string::npos) << s.message;
+  const std::size_t at = s.message.find("holds until t = ");
+  ASSERT_NE(at, std::string::npos) << s.message;
+  const double until = std::stod(s.message.substr(at + 16));
+  EXPECT_GT(until, 100);
+  EXPECT_LT(until, 400);
+}
+
+TEST(MarchedMotion, TooFewElementsAreRefused) {
+  // e^q grows without bound: no root of the discrete equation over long elements.
+  const Problem problem = from(systems::bratu(-1), {0}, {0}, 2);
+  Solver solver;
+  const Solution s = solver.solve(problem, pinned(scheme("midpoint"), 1));
+  EXPECT_EQ(s.status, Status::not_converged);
+  EXPECT_NE(s.message.find("raise solve.elements"), std::string::npos) << s.message;
+}
+
+TEST(MarchedMotion, LatticesOfManyCoordinates) {
+  const int n = 60;
+  const auto chain =
+      compile({.coordinates = {"q[n]"},
+               .parameters = {{"n", {.value = {double(n)}}}},
+               .lagrangian = "sum(i, 1, n, q[i]'^2/2) - sum(i, 1, n - 1, (q[i+1] - q[i])^2/2 + "
+                             "(q[i+1] - q[i])^4/4) - (q[1]^2 + q[n]^2)/2"})
+          .lagrangian;
+  Values q(n), p(n);
+  for (int i = 0; i < n; ++i) q[i] = std::sin(pi * (i + 1) / (n + 1));
+  const Solution s = solve(from(chain, q, p, 30), within(1e-8));
+  EXPECT_LT(
+      largest_difference(fly(*chain, q, p, Values{30}, 1e-13).q, node(s.trajectory, s.trajectory.elements())),
+      2e-8);
+  const Solution verlet = solve(from(chain, q, p, 30), pinned(scheme("trapezoid"), 600));
+  EXPECT_LT(verlet.residual, 1e-14);
+  EXPECT_LT(largest_difference(node(verlet.trajectory, 600), node(s.trajectory, s.trajectory.elements())),
+            2e-2);
+}
+
+}  // namespace
+}  // namespace extremal::laws
