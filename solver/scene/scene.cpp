@@ -41,8 +41,8 @@ void check_system(const SystemTable& system) {
   if (system.coordinates.empty())
     throw SceneError(system.at, "[system] has no 'coordinates'; list them, or name a system by 'use'");
   if (!system.lagrangian && !system.hamiltonian)
-    throw SceneError(system.at,
-                     "[system] has no 'lagrangian'; write one, or a 'hamiltonian', or name a system by 'use'");
+    throw SceneError(
+        system.at, "[system] has no 'lagrangian'; write one, or a 'hamiltonian', or name a system by 'use'");
   if (system.curvature && system.curvature->value < 0)
     throw SceneError(system.curvature->at,
                      fmt::format("curvature = {}; need 0 or more", system.curvature->value));

@@ -60,8 +60,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   set_relation(scene.boundary, system, problem);
   problem.duration = read_duration(scene.boundary, system);
   // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
-  if (scene.guess.state && system.lagrangian->structure().quadratic)
-    check_regular(problem, scene.system);
+  if (scene.guess.state && system.lagrangian->structure().quadratic) check_regular(problem, scene.system);
   read_guess(scene, system, deadline, problem);
   try {
     problem = make_problem(std::move(problem));

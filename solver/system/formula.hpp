@@ -74,7 +74,7 @@ struct SystemText {
   std::map<std::string, std::string> definitions{};
   std::string lagrangian{};
   std::optional<std::string> hamiltonian{};  ///< instead of the Lagrangian
-  std::vector<std::string> active{};  ///< scalar parameters that derivatives are asked for
+  std::vector<std::string> active{};         ///< scalar parameters that derivatives are asked for
 };
 
 struct System : Vocabulary {
@@ -82,8 +82,8 @@ struct System : Vocabulary {
   std::shared_ptr<const Lagrangian> lagrangian;
 };
 
-/// Parses, differentiates and compiles. Throws FormulaError, also where the second derivative of a Hamiltonian
-/// by the momenta is singular.
+/// Parses, differentiates and compiles. Throws FormulaError, also where the second derivative of a
+/// Hamiltonian by the momenta is singular.
 System compile(const SystemText& text);
 
 /// Why a Hamiltonian whose H_pp is singular is refused.

@@ -98,9 +98,9 @@ void Names::declare(const std::string& name, Known known, const std::string& whe
   if (const char* meaning = reserved(name, known.meaning))
     throw FormulaError(fmt::format("'{}' is {}; choose another name for {}", name, meaning, what), where, 0);
   if (const auto [it, added] = table.try_emplace(name, known); !added)
-    throw FormulaError(fmt::format("'{}' is {} already; choose another name for {}", name,
-                                   description(it->second), what),
-                       where, 0);
+    throw FormulaError(
+        fmt::format("'{}' is {} already; choose another name for {}", name, description(it->second), what),
+        where, 0);
 }
 
 void Names::declare(const Coordinate& coordinate, const std::string& where) {

@@ -22,11 +22,11 @@ const Function* find_function(std::string_view name);  ///< or null
 
 /// What a kind of formula may use beside parameters and pi, itself or by definitions.
 enum class Kind {
-  number,      ///< nothing
-  guess,       ///< t, T
-  map,         ///< coordinates
-  condition,   ///< end values x(0), x(T)
-  quantity,    ///< end values x(0), x'(T)
+  number,       ///< nothing
+  guess,        ///< t, T
+  map,          ///< coordinates
+  condition,    ///< end values x(0), x(T)
+  quantity,     ///< end values x(0), x'(T)
   lagrangian,   ///< coordinates, velocities, t; so are definitions
   hamiltonian,  ///< coordinates, momenta, t; so are definitions, where a Hamiltonian is written
 };

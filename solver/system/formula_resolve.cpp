@@ -107,7 +107,8 @@ class Resolver {
     node.id = known.id;
     node.momentum = known.momentum;
     if (known.meaning == Meaning::coordinate) {
-      if (node.velocity && known.momentum) stop(node, fmt::format("'{}' is a momentum and has no velocity", name));
+      if (node.velocity && known.momentum)
+        stop(node, fmt::format("'{}' is a momentum and has no velocity", name));
       if (node.velocity && kind_ == Kind::hamiltonian)
         stop(node, fmt::format("\"{0}'\" is a velocity; a hamiltonian has momenta: {1}", name,
                                momentum_of(name, known)));

@@ -19,9 +19,9 @@ bool kinked_in_momenta(const LagrangianGraph& h) {
       if (term.table[e] >= n && term.table[e] < 2 * n) momentum[e % term.arity] = true;
     for (const NodeId id : nodes) {
       const Node& node = h.graph[id];
-      depends[id] = node.op == Op::input ? momentum[node.index]
-                                         : (arity(node.op) > 0 && depends[node.a]) ||
-                                               (arity(node.op) > 1 && depends[node.b]);
+      depends[id] = node.op == Op::input
+                        ? momentum[node.index]
+                        : (arity(node.op) > 0 && depends[node.a]) || (arity(node.op) > 1 && depends[node.b]);
       if (has_kink(node.op) && depends[id]) return true;
     }
   }

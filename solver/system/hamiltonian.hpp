@@ -8,9 +8,9 @@
 
 #include "system/tape.hpp"
 
-/// \file Systems given by a Hamiltonian H(q, p, t). The stationary points of ∫ (p·q' − H) dt in (q, p), with p
-/// one value at each quadrature point, have v = q' = ∂H/∂p there. Where ∂²H/∂p∂p is regular that determines p
-/// by q, v, t, and with
+/// \file Systems given by a Hamiltonian H(q, p, t). The stationary points of ∫ (p·q' − H) dt in (q, p), with
+/// p one value at each quadrature point, have v = q' = ∂H/∂p there. Where ∂²H/∂p∂p is regular that determines
+/// p by q, v, t, and with
 ///   L(q, v, t) = p·v − H(q, p, t)
 /// the phase-space action is the action of L in every scheme. The derivatives are
 ///   L_q = −H_q,  L_v = p,  L_vv = H_pp⁻¹,  L_vq = −H_pp⁻¹ H_pq,  L_qq = −H_qq + H_qp H_pp⁻¹ H_pq.
@@ -27,9 +27,9 @@ struct SingularHamiltonian : std::invalid_argument {
 /// Momenta that H_pp couples are solved for together; more than these at a time are refused.
 constexpr int most_coupled_momenta = 400;
 
-/// L as an expression graph, where H is quadratic in the momenta and H_pp couples few of them at a time. The
-/// velocity inputs of `hamiltonian` stand for momenta. Sums stay sums. Nothing where H is not such. Throws
-/// SingularHamiltonian.
+/// L as an expression graph, where H is made of quadratic forms of the momenta and of square roots of such,
+/// and H_pp couples few of them at a time. The velocity inputs of `hamiltonian` stand for momenta. Sums stay
+/// sums. Nothing where H is not such. Throws SingularHamiltonian.
 std::optional<LagrangianGraph> legendre_transform(const LagrangianGraph& hamiltonian);
 
 /// L of a Hamiltonian: a TapeLagrangian where it has an expression, else a LegendreLagrangian. Throws

@@ -36,8 +36,8 @@ int row_of_second(const Structure& s, int a, int b) {
 struct LegendreLagrangian::Evaluation {
   int count;
   std::ptrdiff_t stride;
-  double *p, *h;              ///< n rows; those of H
-  double *inverse, *product;  ///< of one block: H_pp⁻¹, H_pp⁻¹ H_pq
+  double *p, *h;                     ///< n rows; those of H
+  double *inverse, *product;         ///< of one block: H_pp⁻¹, H_pp⁻¹ H_pq
   double *matrix, *pivots, *vector;  ///< of one point
   double* further;
   double* row(double* rows, int k) const { return rows + k * stride; }

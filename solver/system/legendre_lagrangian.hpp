@@ -42,7 +42,8 @@ class LegendreLagrangian final : public Lagrangian {
 
   void make_blocks();
   void make_structure();
-  Evaluation evaluate_hamiltonian(const Points& points, Order order, std::size_t further, Scratch& scratch) const;
+  Evaluation evaluate_hamiltonian(const Points& points, Order order, std::size_t further,
+                                  Scratch& scratch) const;
   void invert(const Block& block, const Evaluation& at) const;
   void add_block(const Block& block, const Evaluation& at, double* out) const;
   template <class Number>

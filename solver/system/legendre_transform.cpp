@@ -8,11 +8,14 @@
 #include "system/derivative.hpp"
 #include "system/hamiltonian.hpp"
 
-/// \file The Legendre transform of a Hamiltonian that is quadratic in the momenta, on the expression graph.
-/// With H = ½ pᵀ a p + bᵀ p + c, all of them functions of q and t,
+/// \file The Legendre transform on the expression graph, of a Hamiltonian made of quadratic forms of the
+/// momenta and of square roots of such forms. With H = ½ pᵀ a p + bᵀ p + c, all of them functions of q and t,
 ///   L = ½ (v − b)ᵀ a⁻¹ (v − b) − c.
-/// The matrix a falls into blocks of momenta that it couples. Terms of H are cut into summands, and those of
-/// one block are put together; blocks that are made alike become the rows of one term, so sums stay sums.
+/// With H = g √K + bᵀ p, K = ½ pᵀ a p + βᵀ p + c, let u = v − b = g (a p + β)/(2 √K). Then p = a⁻¹(2 √K u/g −
+/// β), which put into K gives K (1 − 2 uᵀ a⁻¹ u/g²) = c₀ with c₀ = c − ½ βᵀ a⁻¹ β, and
+///   L = −g √(c₀/e) e − uᵀ a⁻¹ β,   e = 1 − 2 uᵀ a⁻¹ u/g².
+/// The momenta fall into blocks that H_pp couples. Terms of H are cut into summands, and those of one block
+/// are put together; blocks that are made alike become the rows of one term, so sums stay sums.
 
 namespace extremal {
 
@@ -63,7 +66,13 @@ std::vector<Rows> rows_by_kind(const LagrangianGraph& h) {
   return result;
 }
 
-/// What some momenta of a term contribute: ½ pᵀ a p + bᵀ p + c, in the inputs of the term.
+/// A summand of a term: factor · moving, where the factor has no momenta.
+struct Summand {
+  Scaled moving, factor;
+};
+
+/// What some momenta of a term contribute: ½ pᵀ a p + bᵀ p + c, or g times its square root, in the inputs of
+/// the term.
 struct Piece {
   struct Second {
     std::uint32_t row, column;  ///< inputs, both orders stand
@@ -73,8 +82,9 @@ struct Piece {
   std::vector<std::uint32_t> momenta;  ///< inputs
   std::vector<Second> a;
   std::vector<Partial> b;
-  Scaled c;
-  std::vector<std::uint32_t> read;  ///< inputs that a, b, c are made of
+  Scaled c, g;
+  bool root = false;
+  std::vector<std::uint32_t> read;  ///< inputs that a, b, c, g are made of
 };
 
 /// Sets of numbers that are merged.
@@ -105,27 +115,38 @@ class Transform {
  private:
   /// A block of one momentum, or of several that are coupled, with what contributes to it.
   struct Block {
-    std::vector<std::uint32_t> members;                       ///< coordinates, by first appearance
+    std::vector<std::uint32_t> members;                      ///< coordinates, by first appearance
     std::vector<std::pair<std::size_t, int>> contributions;  ///< pieces, and which row of each
   };
   /// Blocks that are made alike.
   struct Alike {
     Block first;
     std::vector<std::uint32_t> inputs;  ///< of the first block: velocities of its members, then what it reads
-    std::vector<std::vector<std::uint32_t>> bound;  ///< for each contribution, the input of what it reads
+    std::vector<std::vector<std::uint32_t>> bound;   ///< for each contribution, the input of what it reads
     std::vector<std::vector<std::uint32_t>> member;  ///< for each contribution, the member of its momenta
     std::vector<std::uint32_t> table;
   };
 
   bool depends(NodeId node, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known) const;
   void cut(Scaled f, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known,
-           std::vector<Scaled>& summands, Scaled& rest);
-  bool take_apart(std::size_t rows, Scaled summand, Scaled& rest);
+           std::vector<Summand>& summands, Scaled& rest);
+  std::optional<Piece> quadratic_piece(std::size_t rows, Scaled f, Sets& together);
+  bool take_apart(std::size_t rows, const Summand& summand, Scaled& rest);
+  void keep(Piece piece);
   Scaled at_rest(Scaled f, const std::vector<Input>& kinds);
   bool read_terms();
   void couple();
   std::vector<Block> blocks();
   void add_alike(const Block& block, std::map<std::vector<std::uint32_t>, Alike>& alike) const;
+  /// Of a block: ½ pᵀ a p + bᵀ p + c, or where g does not vanish g √(½ pᵀ a p + βᵀ p + under) + bᵀ p + c.
+  struct Forms {
+    Matrix a;
+    std::vector<Scaled> b, beta;
+    Scaled c, under, g;
+  };
+  std::optional<Forms> forms_of(const Alike& alike);
+  Scaled half_form(const Matrix& m, std::span<const Scaled> u);
+  Scaled form(const Matrix& m, std::span<const Scaled> u, std::span<const Scaled> w);
   bool add_term(const Alike& alike);
   std::optional<Matrix> inverse(const Matrix& a, const Block& block);
   Matrix inverse_of_numbers(const Matrix& a, const Block& block);
@@ -134,7 +155,6 @@ class Transform {
   [[noreturn]] static void singular(const Block& block);
 
   Scaled times(Scaled x, Scaled y) { return algebra_.multiply(x, y); }
-  Scaled half(Scaled x) { return times(algebra_.constant(0.5), x); }
 
   const LagrangianGraph& h_;
   const std::vector<Rows> rows_;
@@ -158,7 +178,7 @@ bool Transform::depends(NodeId node, const std::vector<Input>& kinds,
 
 /// f as a sum: summands that depend on momenta, and the rest. Factors without momenta are distributed.
 void Transform::cut(Scaled f, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known,
-                    std::vector<Scaled>& summands, Scaled& rest) {
+                    std::vector<Summand>& summands, Scaled& rest) {
   if (f.zero()) return;
   if (!depends(f.node, kinds, known)) {
     rest = algebra_.add(rest, f);
@@ -173,15 +193,15 @@ void Transform::cut(Scaled f, const std::vector<Input>& kinds, std::unordered_ma
   const bool product = n.op == Op::mul || n.op == Op::div;
   const bool first = product && depends(n.a, kinds, known), second = product && depends(n.b, kinds, known);
   if (first == second || (n.op == Op::div && second)) {
-    summands.push_back(f);
+    summands.push_back({{1, f.node}, algebra_.constant(f.factor)});
     return;
   }
-  const Scaled moving = algebra_.scaled(f.factor, first ? n.a : n.b), other{1, first ? n.b : n.a};
-  std::vector<Scaled> parts;
+  const Scaled other = algebra_.scaled(1, first ? n.b : n.a);
+  const Scaled factor = n.op == Op::div ? algebra_.reciprocal(other) : other;
+  std::vector<Summand> parts;
   Scaled still;
-  cut(moving, kinds, known, parts, still);
-  const Scaled factor = n.op == Op::div ? algebra_.reciprocal(other) : algebra_.scaled(1, other.node);
-  for (const Scaled part : parts) summands.push_back(times(part, factor));
+  cut(algebra_.scaled(f.factor, first ? n.a : n.b), kinds, known, parts, still);
+  for (const Summand& part : parts) summands.push_back({part.moving, times(part.factor, factor)});
   rest = algebra_.add(rest, times(still, factor));
 }
 
@@ -196,49 +216,71 @@ Scaled Transform::at_rest(Scaled f, const std::vector<Input>& kinds) {
   return value;
 }
 
-/// Makes pieces of a summand, one for each set of momenta that its own second derivatives couple; c goes to
-/// the rest where there are several. False where the summand is not quadratic.
-bool Transform::take_apart(std::size_t r, Scaled summand, Scaled& rest) {
+/// a, b, c of f; `together` joins inputs that f couples. Nothing where f is not quadratic.
+std::optional<Piece> Transform::quadratic_piece(std::size_t r, Scaled f, Sets& together) {
   const std::vector<Input>& kinds = rows_[r].kinds;
   std::vector<bool> momentum;
   for (const Input kind : kinds) momentum.push_back(kind == Input::momentum);
   std::unordered_map<NodeId, bool> known;
-  std::vector<Partial> slopes = differentiate(algebra_, summand, momentum);
-  std::vector<Piece::Second> seconds;
-  Sets together(kinds.size());
-  for (const Partial& slope : slopes) {
+  Piece piece;
+  piece.rows = r;
+  for (const Partial& slope : differentiate(algebra_, f, momentum)) {
+    piece.momenta.push_back(slope.input);
     for (const Partial& second : differentiate(algebra_, slope.value, momentum)) {
-      if (depends(second.value.node, kinds, known)) return false;
-      seconds.push_back({slope.input, second.input, second.value});
+      if (depends(second.value.node, kinds, known)) return std::nullopt;
+      piece.a.push_back({slope.input, second.input, second.value});
       together.merge(slope.input, second.input);
     }
-  }
-  std::map<std::uint32_t, Piece> pieces;
-  for (const Partial& slope : slopes) {
-    Piece& piece = pieces[together.find(slope.input)];
-    piece.rows = r;
-    piece.momenta.push_back(slope.input);
     if (const Scaled b = at_rest(slope.value, kinds); !b.zero()) piece.b.push_back({slope.input, b});
   }
-  for (const Piece::Second& second : seconds) pieces[together.find(second.row)].a.push_back(second);
-  const Scaled c = at_rest(summand, kinds);
-  if (pieces.size() == 1)
-    pieces.begin()->second.c = c;
-  else
-    rest = algebra_.add(rest, c);
-  for (auto& [first, piece] : pieces) {
-    std::vector<NodeId> nodes;
-    for (const Piece::Second& second : piece.a) nodes.push_back(second.value.node);
-    for (const Partial& b : piece.b) nodes.push_back(b.value.node);
-    if (!piece.c.zero()) nodes.push_back(piece.c.node);
-    for (const NodeId node : nodes) {
-      const std::vector<std::uint32_t> inputs = inputs_of(l_.graph, node);
-      piece.read.insert(piece.read.end(), inputs.begin(), inputs.end());
-    }
-    std::ranges::sort(piece.read);
-    piece.read.erase(std::unique(piece.read.begin(), piece.read.end()), piece.read.end());
-    pieces_.push_back(std::move(piece));
+  piece.c = at_rest(f, kinds);
+  return piece;
+}
+
+void Transform::keep(Piece piece) {
+  std::vector<Scaled> values{piece.c, piece.g};
+  for (const Piece::Second& second : piece.a) values.push_back(second.value);
+  for (const Partial& b : piece.b) values.push_back(b.value);
+  for (const Scaled value : values) {
+    if (value.zero()) continue;
+    const std::vector<std::uint32_t> inputs = inputs_of(l_.graph, value.node);
+    piece.read.insert(piece.read.end(), inputs.begin(), inputs.end());
   }
+  std::ranges::sort(piece.read);
+  piece.read.erase(std::unique(piece.read.begin(), piece.read.end()), piece.read.end());
+  pieces_.push_back(std::move(piece));
+}
+
+/// Makes pieces of a summand: of a quadratic one for each set of momenta that it couples, where c goes to the
+/// rest if there are several; of a root one. False where it is neither.
+bool Transform::take_apart(std::size_t r, const Summand& summand, Scaled& rest) {
+  Sets together(rows_[r].kinds.size());
+  std::optional<Piece> whole = quadratic_piece(r, summand.moving, together);
+  if (!whole) {
+    const Node n = l_.graph[summand.moving.node];
+    if (n.op == Op::sqrt) whole = quadratic_piece(r, algebra_.scaled(1, n.a), together);
+    if (!whole) return false;
+    whole->g = summand.factor;
+    whole->root = true;
+    keep(*std::move(whole));
+    return true;
+  }
+  for (Piece::Second& second : whole->a) second.value = times(second.value, summand.factor);
+  for (Partial& b : whole->b) b.value = times(b.value, summand.factor);
+  whole->c = times(whole->c, summand.factor);
+  std::map<std::uint32_t, Piece> pieces;
+  for (const std::uint32_t m : whole->momenta) {
+    Piece& piece = pieces[together.find(m)];
+    piece.rows = r;
+    piece.momenta.push_back(m);
+  }
+  for (const Piece::Second& second : whole->a) pieces[together.find(second.row)].a.push_back(second);
+  for (const Partial& b : whole->b) pieces[together.find(b.input)].b.push_back(b);
+  if (pieces.size() == 1)
+    pieces.begin()->second.c = whole->c;
+  else
+    rest = algebra_.add(rest, whole->c);
+  for (auto& [first, piece] : pieces) keep(std::move(piece));
   return true;
 }
 
@@ -247,10 +289,10 @@ bool Transform::read_terms() {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     const Rows& rows = rows_[r];
     std::unordered_map<NodeId, bool> known;
-    std::vector<Scaled> summands;
+    std::vector<Summand> summands;
     Scaled rest;
     cut(algebra_.import(h_.graph, rows.body), rows.kinds, known, summands, rest);
-    for (const Scaled summand : summands)
+    for (const Summand& summand : summands)
       if (!take_apart(r, summand, rest)) return false;
     if (!rest.zero()) l_.terms.push_back({algebra_.node(-rest), rows.arity, rows.table});
   }
@@ -259,10 +301,15 @@ bool Transform::read_terms() {
 
 void Transform::couple() {
   const auto n = static_cast<std::uint32_t>(h_.coordinates);
-  for (const Piece& piece : pieces_)
-    for (const Piece::Second& second : piece.a)
-      for (int row = 0; row < rows_[piece.rows].rows(); ++row)
-        coupled_.merge(rows_[piece.rows].at(row, second.row) - n, rows_[piece.rows].at(row, second.column) - n);
+  for (const Piece& piece : pieces_) {
+    const Rows& rows = rows_[piece.rows];
+    for (int row = 0; row < rows.rows(); ++row) {
+      for (const Piece::Second& second : piece.a)
+        coupled_.merge(rows.at(row, second.row) - n, rows.at(row, second.column) - n);
+      for (const std::uint32_t m : piece.root ? piece.momenta : std::vector<std::uint32_t>{})
+        coupled_.merge(rows.at(row, m) - n, rows.at(row, piece.momenta.front()) - n);
+    }
+  }
 }
 
 std::vector<Transform::Block> Transform::blocks() {
@@ -328,15 +375,15 @@ void Transform::singular(const Block& block) {
                             std::move(momenta));
 }
 
-/// Adds the term of some blocks that are alike. False where a⁻¹ has no expression.
-bool Transform::add_term(const Alike& group) {
+/// The forms of some blocks that are alike, in the inputs of their term. Nothing where roots stand beside
+/// quadratic forms.
+std::optional<Transform::Forms> Transform::forms_of(const Alike& group) {
   const Block& block = group.first;
   const std::size_t k = block.members.size();
   const std::uint32_t first_uniform = 2 * h_.coordinates + 1 + h_.parameters;
   const bool single = group.table.size() == group.inputs.size();
-  Matrix a(k, std::vector<Scaled>(k));
-  std::vector<Scaled> b(k);
-  Scaled c;
+  Forms forms{Matrix(k, std::vector<Scaled>(k)), std::vector<Scaled>(k), std::vector<Scaled>(k), {}, {}, {}};
+  int roots = 0, others = 0;
   for (std::size_t e = 0; e < block.contributions.size(); ++e) {
     const Piece& piece = pieces_[block.contributions[e].first];
     std::vector<Scaled> replacement(rows_[piece.rows].arity);
@@ -346,43 +393,75 @@ bool Transform::add_term(const Alike& group) {
                                        ? algebra_.constant(h_.uniforms[global - 2 * h_.coordinates - 1])
                                        : algebra_.input(group.bound[e][m]);
     }
-    const auto bound = [&](Scaled f) {
-      Scaled value = f.zero() ? f : algebra_.import(l_.graph, f.node, replacement);
+    const auto add = [&](Scaled& sum, Scaled f) {
+      if (f.zero()) return;
+      Scaled value = algebra_.import(l_.graph, f.node, replacement);
       value.factor *= f.factor;
-      return value;
+      sum = algebra_.add(sum, value);
     };
     const auto member = [&](std::uint32_t input) {
-      const auto at = std::ranges::find(piece.momenta, input) - piece.momenta.begin();
-      return group.member[e][at];
+      return group.member[e][std::ranges::find(piece.momenta, input) - piece.momenta.begin()];
     };
-    for (const Piece::Second& second : piece.a) {
-      Scaled& entry = a[member(second.row)][member(second.column)];
-      entry = algebra_.add(entry, bound(second.value));
-    }
-    for (const Partial& slope : piece.b) {
-      Scaled& entry = b[member(slope.input)];
-      entry = algebra_.add(entry, bound(slope.value));
-    }
-    c = algebra_.add(c, bound(piece.c));
+    for (const Piece::Second& second : piece.a)
+      add(forms.a[member(second.row)][member(second.column)], second.value);
+    for (const Partial& b : piece.b) add((piece.root ? forms.beta : forms.b)[member(b.input)], b.value);
+    add(piece.root ? forms.under : forms.c, piece.c);
+    add(forms.g, piece.g);
+    roots += piece.root;
+    others += !piece.root && !piece.a.empty();
   }
-  const std::optional<Matrix> m = inverse(a, block);
+  if (roots > 1 || (roots == 1 && others > 0)) return std::nullopt;
+  return forms;
+}
+
+/// ½ uᵀ m u.
+Scaled Transform::half_form(const Matrix& m, std::span<const Scaled> u) {
+  Scaled sum;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    Scaled row;
+    for (std::size_t j = 0; j <= i; ++j)
+      row = algebra_.add(row, times(algebra_.constant(j < i ? 2 : 1), times(m[i][j], u[j])));
+    sum = algebra_.add(sum, times(row, u[i]));
+  }
+  return times(algebra_.constant(0.5), sum);
+}
+
+/// uᵀ m w.
+Scaled Transform::form(const Matrix& m, std::span<const Scaled> u, std::span<const Scaled> w) {
+  Scaled sum;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    Scaled row;
+    for (std::size_t j = 0; j < w.size(); ++j) row = algebra_.add(row, times(m[i][j], w[j]));
+    sum = algebra_.add(sum, times(row, u[i]));
+  }
+  return sum;
+}
+
+/// Adds the term of some blocks that are alike. False where it has no expression.
+bool Transform::add_term(const Alike& group) {
+  const std::optional<Forms> f = forms_of(group);
+  if (!f) return false;
+  const std::optional<Matrix> m = inverse(f->a, group.first);
   if (!m) return false;
-  // L = ½ vᵀ m v − vᵀ m b + (½ bᵀ m b − c): written out, so that c cancels where b makes it, as in (p − A)².
-  Scaled quadratic, linear, constant;
-  for (std::uint32_t i = 0; i < k; ++i) {
-    const Scaled v = algebra_.input(i);
-    Scaled mv, mb;
-    for (std::uint32_t j = 0; j < k; ++j) {
-      const Scaled weight = j < i ? times(algebra_.constant(2), (*m)[i][j]) : (*m)[i][j];
-      if (j <= i) mv = algebra_.add(mv, times(weight, algebra_.input(j)));
-      mb = algebra_.add(mb, times((*m)[i][j], b[j]));
-    }
-    quadratic = algebra_.add(quadratic, times(mv, v));
-    linear = algebra_.add(linear, times(mb, v));
-    constant = algebra_.add(constant, times(mb, b[i]));
+  std::vector<Scaled> v;
+  for (std::uint32_t i = 0; i < f->b.size(); ++i) v.push_back(algebra_.input(i));
+  Scaled value;
+  if (f->g.zero()) {
+    // ½ vᵀ m v − vᵀ m b + (½ bᵀ m b − c): written out, so that c cancels where b makes it, as in (p − A)².
+    value = algebra_.add(algebra_.subtract(half_form(*m, v), form(*m, v, f->b)),
+                         algebra_.subtract(half_form(*m, f->b), f->c));
+  } else {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = algebra_.subtract(v[i], f->b[i]);
+    const Scaled rest = algebra_.subtract(f->under, half_form(*m, f->beta));
+    if (rest.zero()) singular(group.first);
+    const Scaled over = algebra_.reciprocal(times(f->g, f->g));
+    const Scaled e =
+        algebra_.subtract(algebra_.constant(1), times(algebra_.constant(4), times(half_form(*m, v), over)));
+    const bool positive = l_.graph.is_constant(rest.node) && rest.factor > 0;
+    const Scaled root = positive ? times(algebra_.unary(Op::sqrt, rest), algebra_.unary(Op::sqrt, e))
+                                 : times(e, algebra_.unary(Op::sqrt, times(rest, algebra_.reciprocal(e))));
+    value = -algebra_.add(algebra_.add(times(f->g, root), form(*m, v, f->beta)), f->c);
   }
-  const Scaled value =
-      algebra_.add(algebra_.subtract(half(quadratic), linear), algebra_.subtract(half(constant), c));
   l_.terms.push_back({algebra_.node(value), static_cast<int>(group.inputs.size()), group.table});
   return true;
 }
@@ -440,8 +519,7 @@ Matrix Transform::inverse_by_minors(const Matrix& a, const Block& block) {
   for (std::size_t i = 0; i < k; ++i)
     for (std::size_t j = 0; j <= i; ++j) m[i][j] = minor(i, j);
   Scaled determinant;
-  for (std::size_t j = 0; j < k; ++j)
-    determinant = algebra_.add(determinant, times(a[0][j], m[j][0]));
+  for (std::size_t j = 0; j < k; ++j) determinant = algebra_.add(determinant, times(a[0][j], m[j][0]));
   if (determinant.zero()) singular(block);
   const Scaled scale = algebra_.reciprocal(determinant);
   for (std::size_t i = 0; i < k; ++i)

@@ -10,6 +10,7 @@
 
 #include "machine/simd.hpp"
 #include "system/hamiltonian.hpp"
+#include "system/momentum_step.hpp"
 #include "system/structure.hpp"
 
 namespace extremal {
@@ -17,16 +18,12 @@ namespace extremal {
 namespace {
 
 constexpr int most_steps = 60;
-constexpr double smallest_damping = 0x1p-30;
-/// A step of this part of p, or from a residual of this part of v, is the last: it squares the error.
-constexpr double last_step = 1e-8, last_residual = 1e-14;
-/// A residual of this part of v that no step reduces is roundoff.
-constexpr double unreduced_residual = 1e-10;
 /// Where p begins, until one leads to a solution: at zero, at v, at ones of either sign.
 constexpr int starts = 4;
 double start_value(int start, double v) { return start == 0 ? 0 : start == 1 ? v : start == 2 ? 1 : -1; }
 
-constexpr double searching = 0, solved = 1, lost = 2;
+using AdvanceMomentum = double (*)(const MomentumRows&, int);
+AdvanceMomentum kernel() { return at_simd_level(EXTREMAL_AT_EACH_LEVEL(advance_momentum)); }
 
 }  // namespace
 
@@ -99,7 +96,8 @@ MomentumSearch::MomentumSearch(const LagrangianGraph& hamiltonian) : n_(hamilton
         made.rows.push_back(found == entries.end() ? -1 : found->second);
       }
     if (m == 1 && made.rows[0] < 0)
-      throw SingularHamiltonian("the second derivative of the Hamiltonian by the momenta is singular", momenta);
+      throw SingularHamiltonian("the second derivative of the Hamiltonian by the momenta is singular",
+                                momenta);
     largest_ = std::max(largest_, m);
     members_.push_back(momenta);
   }
@@ -155,15 +153,8 @@ double MomentumSearch::coupled_step(const Batch& b, const Block& block, int i, d
 /// From slopes at p: the next trial, or the end of the search.
 void MomentumSearch::step(const Batch& b, int k, int i) const {
   const Block& block = blocks_[k];
-  double size = 0, change = 0;
-  if (block.momenta.size() == 1) {
-    const std::ptrdiff_t at = b.at(block.momenta[0], i);
-    b.step[at] = (b.points.v[at] - b.slopes[at]) / b.slopes[b.at(block.rows[0], i)];
-    size = std::abs(b.p[at]);
-    change = std::abs(b.step[at]);
-  } else {
-    change = coupled_step(b, block, i, size);
-  }
+  double size = 0;
+  const double change = coupled_step(b, block, i, size);
   if (!std::isfinite(change)) {
     b.state[b.at(k, i)] = lost;
     return;
@@ -178,10 +169,8 @@ void MomentumSearch::step(const Batch& b, int k, int i) const {
   if (last) b.state[b.at(k, i)] = solved;
 }
 
-/// |v − H_p| in units of H^(1/2), for one momentum in those of v.
+/// |v − H_p| in units of H^(1/2).
 double MomentumSearch::residual(const Batch& b, const Block& block, int i) const {
-  const std::ptrdiff_t first = b.at(block.momenta[0], i);
-  if (block.momenta.size() == 1) return std::abs(b.points.v[first] - b.slopes[first]);
   double sum = 0;
   for (const int a : block.momenta) {
     const std::ptrdiff_t at = b.at(a, i);
@@ -196,6 +185,37 @@ void MomentumSearch::play(const Batch& b) const {
   slopes_.play({points.count, points.stride, points.q, b.trial, points.t}, b.slopes, b.scratch);
 }
 
+/// The first step of one momentum: its trial, the start, is accepted if H_p is a number there.
+void MomentumSearch::begin_single(const Batch& b, int k) const {
+  const int a = blocks_[k].momenta[0];
+  const double *v = b.points.v + b.at(a, 0), *slope = b.slopes + b.at(a, 0);
+  double *state = b.state + b.at(k, 0), *norm = b.norm + b.at(k, 0), *scale = b.scale + b.at(k, 0);
+  double* damping = b.damping + b.at(k, 0);
+  for (int i = 0; i < b.points.count; ++i) {
+    state[i] = state[i] == solved ? solved : searching;
+    norm[i] = std::numeric_limits<double>::infinity();
+    scale[i] = std::abs(v[i] - slope[i]) + std::abs(v[i]);
+    damping[i] = 0.5;
+  }
+  advance_single(b, k);
+}
+
+bool MomentumSearch::advance_single(const Batch& b, int k) const {
+  const Block& block = blocks_[k];
+  const int a = block.momenta[0];
+  const MomentumRows rows{.v = b.points.v + b.at(a, 0),
+                          .slope = b.slopes + b.at(a, 0),
+                          .curvature = b.slopes + b.at(block.rows[0], 0),
+                          .p = b.p + b.at(a, 0),
+                          .trial = b.trial + b.at(a, 0),
+                          .step = b.step + b.at(a, 0),
+                          .state = b.state + b.at(k, 0),
+                          .norm = b.norm + b.at(k, 0),
+                          .scale = b.scale + b.at(k, 0),
+                          .damping = b.damping + b.at(k, 0)};
+  return kernel()(rows, b.points.count) > 0;
+}
+
 /// Puts what is not solved at a start.
 void MomentumSearch::begin(const Batch& b, int start) const {
   const int count = b.points.count;
@@ -208,6 +228,10 @@ void MomentumSearch::begin(const Batch& b, int start) const {
   for (int k = 0; k < static_cast<int>(blocks_.size()); ++k) {
     const Block& block = blocks_[k];
     const int m = static_cast<int>(block.momenta.size());
+    if (m == 1) {
+      begin_single(b, k);
+      continue;
+    }
     for (int i = 0; i < count; ++i) {
       const std::ptrdiff_t at = b.at(k, i);
       if (b.state[at] == solved) continue;
@@ -217,7 +241,7 @@ void MomentumSearch::begin(const Batch& b, int start) const {
         const int diagonal = block.rows[e * m + e];
         const double w = diagonal < 0 ? 1 : std::abs(b.slopes[b.at(diagonal, i)]);
         b.weight[a] = w > 0 && std::isfinite(w) ? w : 1;
-        of_v += b.points.v[a] * b.points.v[a] / (m == 1 ? 1 : b.weight[a]);
+        of_v += b.points.v[a] * b.points.v[a] / b.weight[a];
       }
       b.state[at] = searching;
       b.damping[at] = 1;
@@ -235,6 +259,10 @@ bool MomentumSearch::advance(const Batch& b) const {
   bool left = false;
   for (int k = 0; k < static_cast<int>(blocks_.size()); ++k) {
     const Block& block = blocks_[k];
+    if (block.momenta.size() == 1) {
+      left = advance_single(b, k) || left;
+      continue;
+    }
     for (int i = 0; i < count; ++i) {
       const std::ptrdiff_t at = b.at(k, i);
       if (b.state[at] != searching) continue;

@@ -32,7 +32,9 @@ class MomentumSearch {
   struct Batch;
   void play(const Batch& batch) const;
   void begin(const Batch& batch, int start) const;
+  void begin_single(const Batch& batch, int k) const;
   bool advance(const Batch& batch) const;
+  bool advance_single(const Batch& batch, int k) const;
   double residual(const Batch& batch, const Block& block, int i) const;
   void step(const Batch& batch, int k, int i) const;
   double coupled_step(const Batch& batch, const Block& block, int i, double& size) const;

@@ -48,6 +48,10 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   std::optional<ClosingMap> closed;
   if (problem.periodic) closed = closing_map(problem);
   if (!memory.assemble(problem.lagrangian, solution.trajectory, {}, closed ? &*closed : nullptr)) {
+    if (!memory.too_many()) {  // the negative eigenvalues are as many as the mesh has room for
+      solution.morse_index.reset();
+      solution.minimizing = false;
+    }
     solution.message += memory.too_many()
                             ? "; windows are not found: Jacobi fields vary too fast for its elements"
                             : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";

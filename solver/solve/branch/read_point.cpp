@@ -96,7 +96,9 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   if (!problem.periodic) return point;
   SecondVariation& variation = w.variation;
   if (problem.coordinates() <= most_coordinates_for_multipliers)
-    variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed());
+    if (!variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed()) &&
+        !variation.too_many())
+      solution.morse_index.reset();
   read_stability(problem, variation, tracker.sizes().q, solution, false);
   state.doubling_tests = solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN};
   return point;
