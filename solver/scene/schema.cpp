@@ -8,8 +8,8 @@ namespace {
 
 constexpr KeyRecord keys[] = {
     {"", "title", Kind::text, "empty", "Text above tables and plots.", R"(title = "Planar transfer")"},
-    {"", "system", Kind::table, "required", "The Lagrangian: coordinates, parameters and formulas.",
-     R"(system.use = "kepler")"},
+    {"", "system", Kind::table, "required",
+     "The Lagrangian or Hamiltonian: coordinates, parameters and formulas.", R"(system.use = "kepler")"},
     {"", "boundary", Kind::table, "required", "Conditions at the ends, and the duration.",
      "boundary.duration = 2.5"},
     {"", "guess", Kind::table, "the default guess", "The path from which the search begins.",

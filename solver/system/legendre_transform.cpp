@@ -130,6 +130,8 @@ class Transform {
   bool depends(NodeId node, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known) const;
   void cut(Scaled f, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known,
            std::vector<Summand>& summands, Scaled& rest);
+  void cut_product(Scaled f, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known,
+                   std::vector<Summand>& summands, Scaled& rest);
   std::optional<Piece> quadratic_piece(std::size_t rows, Scaled f, Sets& together);
   bool take_apart(std::size_t rows, const Summand& summand, Scaled& rest);
   void keep(Piece piece);
@@ -166,6 +168,7 @@ class Transform {
 
 bool Transform::depends(NodeId node, const std::vector<Input>& kinds,
                         std::unordered_map<NodeId, bool>& known) const {
+  if (const auto at = known.find(node); at != known.end()) return at->second;
   for (const NodeId id : nodes_of(l_.graph, node)) {
     const auto [at, added] = known.emplace(id, false);
     if (!added) continue;
@@ -179,17 +182,27 @@ bool Transform::depends(NodeId node, const std::vector<Input>& kinds,
 /// f as a sum: summands that depend on momenta, and the rest. Factors without momenta are distributed.
 void Transform::cut(Scaled f, const std::vector<Input>& kinds, std::unordered_map<NodeId, bool>& known,
                     std::vector<Summand>& summands, Scaled& rest) {
-  if (f.zero()) return;
-  if (!depends(f.node, kinds, known)) {
-    rest = algebra_.add(rest, f);
-    return;
+  std::vector<Scaled> waiting{f};  // the next one last: sums may be long
+  while (!waiting.empty()) {
+    f = waiting.back();
+    waiting.pop_back();
+    if (f.zero()) continue;
+    const Node n = l_.graph[f.node];
+    if (!depends(f.node, kinds, known)) {
+      rest = algebra_.add(rest, f);
+    } else if (n.op == Op::add || n.op == Op::sub) {
+      waiting.push_back(algebra_.scaled(n.op == Op::add ? f.factor : -f.factor, n.b));
+      waiting.push_back(algebra_.scaled(f.factor, n.a));
+    } else {
+      cut_product(f, kinds, known, summands, rest);
+    }
   }
+}
+
+void Transform::cut_product(Scaled f, const std::vector<Input>& kinds,
+                            std::unordered_map<NodeId, bool>& known, std::vector<Summand>& summands,
+                            Scaled& rest) {
   const Node n = l_.graph[f.node];
-  if (n.op == Op::add || n.op == Op::sub) {
-    cut(algebra_.scaled(f.factor, n.a), kinds, known, summands, rest);
-    cut(algebra_.scaled(n.op == Op::add ? f.factor : -f.factor, n.b), kinds, known, summands, rest);
-    return;
-  }
   const bool product = n.op == Op::mul || n.op == Op::div;
   const bool first = product && depends(n.a, kinds, known), second = product && depends(n.b, kinds, known);
   if (first == second || (n.op == Op::div && second)) {
