@@ -17,9 +17,7 @@ std::vector<NonlinearCase> nonlinear_cases() {
       {"pendulum", fixed_ends(systems::pendulum(), {0}, {1.5}, 2), true, 1},
       {"Kepler arc", fixed_ends(systems::kepler(), {1, 0}, {-0.6, 0.9}, 2.5), true, 1},
       {"double pendulum", fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8), false, 2},
-      {"magnetic", fixed_ends(systems::magnetic(), {0.3, -0.2}, {0.9, 0.5}, 1.5), false, 1},
-      {"quartic Hamiltonian", fixed_ends(systems::quartic_hamiltonian(), {0.3, -0.2}, {0.9, 0.5}, 0.8), false,
-       1}};
+      {"magnetic", fixed_ends(systems::magnetic(), {0.3, -0.2}, {0.9, 0.5}, 1.5), false, 1}};
 }
 
 /// Errors at and below this are roundoff: the reference is good to a few times 1e-15.

@@ -94,6 +94,32 @@ TEST_F(HamiltonianScenes, EqualTheirLagrangianWithinATolerance) {
   }
 }
 
+/// Of a Hamiltonian that is solved at each point, by the momentum at the start.
+TEST_F(HamiltonianScenes, HaveTheOrderOfTheirScheme) {
+  Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\n"
+      "definitions = { s = \"p_x^2 + p_x*p_y/2 + p_y^2\" }\n"
+      "hamiltonian = \"s*(1 + x^2/4)/2 + s^2/16 + (x*p_y - y*p_x)/4 + x^2*y\"\n" +
+      between("x = 0.3, y = -0.2", "x = 0.9, y = 0.5", 0.8));
+  s.options.tolerance = 1e-13;
+  const double truth = run(s).momentum_start[0];
+  const auto error = [&](const Scheme& scheme, int elements) {
+    s.options.scheme = scheme;
+    s.options.elements = elements;
+    const Solution solution = run(s);
+    EXPECT_TRUE(solution.converged()) << scheme.name << ": " << solution.message;
+    return std::abs(solution.momentum_start[0] - truth);
+  };
+  for (const char* name : {"rectangle", "rectangle-right", "midpoint", "trapezoid", "simpson", "linear",
+                           "quadratic", "lobatto(2)", "lobatto(3)", "gauss(2)", "gauss(3)"}) {
+    const Scheme tested = scheme(name);
+    const int elements = tested.order == 1 ? 160 : tested.order == 2 ? 40 : tested.order == 4 ? 8 : 4;
+    EXPECT_NEAR(std::log2(error(tested, elements) / error(tested, 2 * elements)), tested.order,
+                0.1 * tested.order)
+        << name;
+  }
+}
+
 /// x = cos(t) of amplitude 2, by its momentum at both ends.
 TEST_F(HamiltonianScenes, MomentaAtTheEnds) {
   const Solution s = run(study("[system]\ncoordinates = [\"x\"]\nhamiltonian = \"p_x^2/2 + x^2/2\"\n" +
