@@ -165,6 +165,27 @@ TEST_F(HamiltonianScenes, OrbitsAndTheirMultipliers) {
   }
 }
 
+/// A Duffing orbit beside an oscillator of negative mass, which its multipliers show: exp(±iωT).
+TEST_F(HamiltonianScenes, MultipliersWhereTheMassIsIndefinite) {
+  const Solution s =
+      run(study("[system]\ncoordinates = [\"x\", \"y\"]\n"
+                "hamiltonian = \"p_x^2/2 + x^2/2 + x^4/4 - p_y^2/2 - 1.3*y^2\"\n"
+                "[boundary]\nperiodic = true\nduration = \"free\"\nenergy = 0.5\n"
+                "[guess]\nx = \"0.85*sin(2*pi*t/T)\"\ny = \"0\"\nduration = 5\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_FALSE(s.morse_index);
+  ASSERT_TRUE(s.floquet) << s.message;
+  ASSERT_EQ(s.floquet->multipliers.size(), 4u);
+  const std::complex<double> expected = std::polar(1.0, std::sqrt(2.6) * s.duration());
+  double nearest = 1, trivial = 0;
+  for (const std::complex<double>& multiplier : s.floquet->multipliers) {
+    nearest = std::min(nearest, std::abs(multiplier - expected));
+    trivial += std::abs(multiplier - 1.0) < 1e-6;
+  }
+  EXPECT_LT(nearest, 1e-8);
+  EXPECT_EQ(trivial, 2);
+}
+
 TEST_F(HamiltonianScenes, HaveFamilies) {
   const Twin twin{"Hénon-Heiles", "\"x\", \"y\"", "(x'^2 + y'^2)/2 - (x^2 + y^2)/2 - x^2*y + y^3/3",
                   "(p_x^2 + p_y^2)/2 + (x^2 + y^2)/2 + x^2*y - y^3/3",

@@ -81,12 +81,16 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   }
   std::optional<ClosingMap> closed;
   if (problem.periodic) closed = closing_map(problem);
-  if (!memory.assemble(problem.lagrangian, solution.trajectory, {}, closed ? &*closed : nullptr)) {
-    if (!memory.too_many()) return without_minima(solution);
+  const ClosingMap* map = closed ? &*closed : nullptr;
+  const bool assembled = memory.assemble(problem.lagrangian, solution.trajectory, {}, map);
+  if (memory.too_many()) {
     solution.message += "; windows are not found: Jacobi fields vary too fast for its elements";
     return INFINITY;
   }
-  if (!legendre_condition(*problem.lagrangian, solution.trajectory)) return without_minima(solution);
+  if (!assembled || !legendre_condition(*problem.lagrangian, solution.trajectory)) {
+    if (problem.periodic) memory.assemble(problem.lagrangian, solution.trajectory, {}, map, false);
+    return without_minima(solution);
+  }
   const bool bounded = problem.curvature && is_natural(problem.lagrangian->structure());
   Minimality found =
       bounded ? minimality(memory, longest_window(problem, options, solution)) : minimality(memory);
