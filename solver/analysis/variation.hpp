@@ -41,9 +41,11 @@ class SecondVariation {
   /// many, since elements do not resolve the fields by far. There are no pieces then. Throws
   /// std::invalid_argument for more than most_coordinates.
   /// Elements that another condensed are the pieces if they resolve the fields well enough for it.
-  /// Beyond T a path that is `closed` goes on; null: it ends there.
+  /// Beyond T a path that is `closed` goes on; null: it ends there. Where L_vv is not positive definite no
+  /// piece is minimising: without `minimising` pieces are those that resolve Jacobi fields, for their flow
+  /// alone.
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
-                const Condensed& condensed = {}, const ClosingMap* closed = nullptr);
+                const Condensed& condensed = {}, const ClosingMap* closed = nullptr, bool minimising = true);
   /// Whether assemble() failed because there would be too many pieces.
   bool too_many() const { return too_many_; }
 
@@ -92,7 +94,7 @@ class SecondVariation {
   const SchemeTables* scheme_ = nullptr;
   ElementTables tables_;
 
-  bool too_many_ = false;
+  bool too_many_ = false, minimising_ = true;
   std::vector<Kept> pieces_;
   std::vector<double> forms_;  ///< A, B, D of each piece
 

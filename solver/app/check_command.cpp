@@ -74,6 +74,7 @@ void print_structure(const Inspection& found) {
                      found.velocity_free ? "; separable: the rest of L depends on positions only" : ""));
   else
     line("velocities", "L is not quadratic in them with a constant mass");
+  if (found.momenta_solved) line("momenta", "∂H/∂p = q' is solved for p at each point; L has no expression");
   line("Hessian", fmt::format("entries evaluated: {}; in (q, q): {}, in (q', q): {}, in (q', q'): {}",
                               found.qq + found.vq + found.vv, found.qq, found.vq, found.vv));
   if (found.kinks > 0)

@@ -46,6 +46,7 @@ void print_formulas(const SystemTable& system) {
   lines("parameters", parameters);
   lines("definitions", definitions);
   if (system.lagrangian) line("Lagrangian", system.lagrangian->value);
+  if (system.hamiltonian) line("Hamiltonian", system.hamiltonian->value);
 }
 
 }  // namespace

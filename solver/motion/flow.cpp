@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "system/hamiltonian.hpp"
+
 namespace extremal {
 
 namespace {
@@ -35,6 +37,8 @@ Flow::Flow(const Lagrangian& lagrangian)
       mass_(n_),
       v_(n_),
       residual_(n_) {
+  if (const Lagrangian* hamiltonian = hamiltonian_of(lagrangian))
+    hamiltonian_ = std::make_unique<PointEvaluator>(*hamiltonian);
   if (structure_.quadratic && !mass_.factor(structure_.mass))
     throw std::invalid_argument("the mass matrix of the Lagrangian is singular");
 }
@@ -67,10 +71,11 @@ bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, do
   return point_.evaluate(q, v_, t, order);
 }
 
-/// Newton from the last velocity: one step where L is quadratic in q'.
+/// Newton from ∂H/∂p, where that is known, or from the last velocity: one step where L is quadratic in q'.
 bool Flow::solve_newton(std::span<const double> q, std::span<const double> p, double t) {
   double before = std::numeric_limits<double>::infinity();
   double scale = 0;  // of all terms so far: at rest they vanish
+  if (hamiltonian_ && hamiltonian_->evaluate(q, p, t, Order::gradient)) v_ = hamiltonian_->dv();
   for (int i = 0; i < most_iterations; ++i) {
     if (!point_.evaluate(q, v_, t, Order::gradient)) return false;
     for (int a = 0; a < n_; ++a) residual_[a] = p[a] - point_.dv()[a];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,7 @@ class Flow {
   int n_;
   const Structure& structure_;
   PointEvaluator point_;
+  std::unique_ptr<PointEvaluator> hamiltonian_;  ///< where L is made of it: q' = ∂H/∂p
   MassMatrix mass_;
   std::vector<double> v_, last_v_, residual_;
 };

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "linear/dense.hpp"
+#include "system/hamiltonian.hpp"
 
 namespace extremal {
 
@@ -19,6 +20,7 @@ constexpr double roundoff = 2e-15, quadratic = 1e-8, acceptable = 1e-12;
 
 LaneFlow::LaneFlow(const Lagrangian& lagrangian)
     : lagrangian_(lagrangian),
+      hamiltonian_(hamiltonian_of(lagrangian)),
       structure_(lagrangian.structure()),
       n_(structure_.coordinates),
       kernels_(at_simd_level(EXTREMAL_AT_EACH_LEVEL(lane_kernels))()),
@@ -101,6 +103,13 @@ void LaneFlow::solve_velocity(const double* t, const double* y, Order order) {
                           v_.data(), 1, 0, 0);
     evaluate(t, y, order);
     return;
+  }
+  if (hamiltonian_) {
+    hamiltonian_->evaluate({lanes_, lanes_, y, p, t}, Order::gradient, out_.data(), scratch_);
+    for (int a = 0; a < n_; ++a)
+      std::copy_n(out_.data() + gradient_v_[a] * lanes_, lanes_, v_.data() + a * lanes_);
+    std::replace_if(
+        v_.begin(), v_.end(), [](double v) { return !std::isfinite(v); }, 0.0);
   }
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_iterations; ++i) {

@@ -38,6 +38,7 @@ class LaneFlow {
   void vary(const double* y, int columns, double* slope);
 
   const Lagrangian& lagrangian_;
+  const Lagrangian* hamiltonian_;  ///< where L is made of it: q' = ∂H/∂p; rows of its gradient are those of L
   const Structure& structure_;
   const int n_, lanes_ = simd_lanes();
   LaneKernels kernels_;

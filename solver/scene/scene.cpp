@@ -29,7 +29,10 @@ SystemTable merge(SystemTable file, const SystemTable& scene) {
   file.use = scene.use;
   overlay(file.parameters, scene.parameters);
   overlay(file.definitions, scene.definitions);
-  if (scene.lagrangian) file.lagrangian = scene.lagrangian;
+  if (scene.lagrangian || scene.hamiltonian) {
+    file.lagrangian = scene.lagrangian;
+    file.hamiltonian = scene.hamiltonian;
+  }
   if (scene.curvature) file.curvature = scene.curvature;
   return file;
 }
@@ -37,8 +40,9 @@ SystemTable merge(SystemTable file, const SystemTable& scene) {
 void check_system(const SystemTable& system) {
   if (system.coordinates.empty())
     throw SceneError(system.at, "[system] has no 'coordinates'; list them, or name a system by 'use'");
-  if (!system.lagrangian)
-    throw SceneError(system.at, "[system] has no 'lagrangian'; write one, or name a system by 'use'");
+  if (!system.lagrangian && !system.hamiltonian)
+    throw SceneError(
+        system.at, "[system] has no 'lagrangian'; write one, or a 'hamiltonian', or name a system by 'use'");
   if (system.curvature && system.curvature->value < 0)
     throw SceneError(system.curvature->at,
                      fmt::format("curvature = {}; need 0 or more", system.curvature->value));

@@ -45,9 +45,12 @@ struct SystemTable {
   std::vector<Text> coordinates;
   std::vector<Assignment> parameters;
   std::vector<Definition> definitions;
-  std::optional<Text> lagrangian;
+  std::optional<Text> lagrangian, hamiltonian;  ///< one of them
   std::optional<Number> curvature;
   std::vector<Text> axes, centres;  ///< of [about], as written
+
+  /// The Lagrangian or the Hamiltonian.
+  const Text& law() const { return hamiltonian ? *hamiltonian : *lagrangian; }
 };
 
 struct BoundaryTable {

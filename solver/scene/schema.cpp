@@ -8,8 +8,8 @@ namespace {
 
 constexpr KeyRecord keys[] = {
     {"", "title", Kind::text, "empty", "Text above tables and plots.", R"(title = "Planar transfer")"},
-    {"", "system", Kind::table, "required", "The Lagrangian: coordinates, parameters and formulas.",
-     R"(system.use = "kepler")"},
+    {"", "system", Kind::table, "required",
+     "The Lagrangian or Hamiltonian: coordinates, parameters and formulas.", R"(system.use = "kepler")"},
     {"", "boundary", Kind::table, "required", "Conditions at the ends, and the duration.",
      "boundary.duration = 2.5"},
     {"", "guess", Kind::table, "the default guess", "The path from which the search begins.",
@@ -41,11 +41,14 @@ constexpr KeyRecord keys[] = {
     {"system", "lagrangian", Kind::text, "required without `use`",
      "Formula of L in coordinates, velocities (`x'`), `t`, parameters and definitions.",
      R"(lagrangian = "(x'^2 + y'^2)/2 + mu/r")"},
+    {"system", "hamiltonian", Kind::text, "none",
+     "Instead of `lagrangian`: formula of H in coordinates, momenta (`p_x`, `p_x[i]`), `t`, parameters and "
+     "definitions. ∂²H/∂p∂p must be regular.",
+     R"(hamiltonian = "(p_x^2 + p_y^2)/2 - mu/r")"},
     {"system", "curvature", Kind::number, "none",
      "Bound of M⁻¹V'' for all positions. With it the windows of L = q'ᵀMq'/2 − V have the certificate "
      "`global`.",
      "curvature = 4.0"},
-    {"system", "hamiltonian", Kind::text, "", "", "", false, false},
     {"system", "constraints", Kind::texts, "", "", "", false, false},
     {"system", "force", Kind::text, "", "", "", true, false},
 
@@ -138,6 +141,7 @@ constexpr KeyRecord keys[] = {
 constexpr Exclusion pairs[] = {
     {"solve.tolerance", "solve.elements", "'elements' fixes the discretisation and with it the error"},
     {"system.use", "system.coordinates", "the system file declares the coordinates"},
+    {"system.lagrangian", "system.hamiltonian", "either of them is the law of the system; leave one out"},
     {"boundary.periodic", "boundary.start", "a periodic orbit has no fixed ends; 'where' selects it"},
     {"boundary.periodic", "boundary.end", "a periodic orbit has no fixed ends; 'where' selects it"},
     {"boundary.periodic", "boundary.conditions", "both relate the ends"},

@@ -97,6 +97,7 @@ std::vector<Text> texts_of(const Document& document, std::string_view key) {
 SystemTable table_of(const FoundSystem& system) {
   const Document& document = system.document;
   check_keys(document, document.root, "system file");
+  check_relations(document);
   const toml::table* table = document.root["system"].as_table();
   if (!table) throw SceneError(document.at(document.root), "a system file needs the table [system]");
   if (const toml::node* nested = table->get("use"))

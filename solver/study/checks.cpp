@@ -8,11 +8,15 @@
 #include "linear/dense.hpp"
 #include "machine/simd.hpp"
 #include "problem/nearby.hpp"
+#include "system/formula.hpp"
+#include "system/hamiltonian.hpp"
 
 namespace extremal {
 namespace {
 
 constexpr int tries = 64;
+constexpr int largest_dense = 200;  ///< matrices that eigenvalues are taken of
+constexpr double singular = 1e-12;
 
 /// The smallest eigenvalue over the largest, in modulus, of the mass matrix brought to unit rows; `weak` is
 /// the coordinate that its eigenvector has most of.
@@ -75,6 +79,38 @@ bool is_length(const Problem& problem) {
       at, fmt::format("the Lagrangian is not regular: its second derivative by the velocities is singular, "
                       "so the momenta do not determine {}'",
                       problem.names[coordinate]));
+}
+
+[[noreturn]] void refuse_singular(const Problem& problem, int coordinate, const Location& at) {
+  const std::string momentum = "p_" + problem.names[coordinate];
+  throw SceneError(at, singular_hamiltonian({&momentum, 1}));
+}
+
+/// H_pp at points about the guess, with momenta of any size.
+void check_hamiltonian(const Problem& problem, const Lagrangian& hamiltonian, const Location& at) {
+  constexpr double sizes[] = {1, 0.1, 10};
+  const int n = problem.coordinates();
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, p;
+  int found = 0, weak = 0, first = -1;
+  for (int k = 0; k < tries; ++k) {
+    const double t = points.next(q, p);
+    for (double& component : p) component *= sizes[k % std::size(sizes)];
+    const PointValues values = evaluate_at(hamiltonian, q, p, t, Order::hessian, scratch);
+    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
+    if (!mass.allFinite()) continue;
+    ++found;
+    if (!(regularity(mass, weak) > singular)) continue;
+    const auto negative = static_cast<int>((symmetric_eigenvalues(mass).array() < 0).count());
+    if (first >= 0 && negative != first)
+      throw SceneError(at, fmt::format("H_pp changes its signature: it has {} and {} negative eigenvalues at "
+                                       "two points near the guess, so that several momenta have the same "
+                                       "velocity; such Hamiltonians are not available yet",
+                                       std::min(first, negative), std::max(first, negative)));
+    first = negative;
+  }
+  if (found > 0 && first < 0) refuse_singular(problem, weak, at);
 }
 
 std::string point_text(const Problem& problem, const double* q) {
@@ -150,12 +186,14 @@ void check_guess_finite(const Problem& problem, const Location& at) {
                     point_text(problem, guess.q.data() + std::size_t(k) * problem.coordinates())));
 }
 
-void check_regular(const Problem& problem, const Location& at) {
-  constexpr int largest_dense = 200, needed = 3;
-  constexpr double singular = 1e-12;
+void check_regular(const Problem& problem, const SystemTable& system) {
+  constexpr int needed = 3;
+  const Location& at = system.law().at;
   const int n = problem.coordinates(), without = massless(problem.lagrangian->structure());
   if (without >= 0) refuse_irregular(problem, without, at);
   if (n > largest_dense) return;
+  if (const Lagrangian* hamiltonian = hamiltonian_of(*problem.lagrangian))
+    return check_hamiltonian(problem, *hamiltonian, at);
   NearbyPoints points(problem);
   Scratch scratch;
   std::vector<double> q, v;
@@ -168,7 +206,9 @@ void check_regular(const Problem& problem, const Location& at) {
     if (regularity(mass, weak) > singular) return;
     ++found;
   }
-  if (found > 0) refuse_irregular(problem, weak, at);
+  if (found == 0) return;
+  if (system.hamiltonian) refuse_singular(problem, weak, at);
+  refuse_irregular(problem, weak, at);
 }
 
 void check_energy_at_ends(const Problem& problem, const Location& at) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "problem/problem.hpp"
-#include "scene/source.hpp"
+#include "scene/scene.hpp"
 
 /// \file What can be told of a problem before it is solved.
 
@@ -12,8 +12,9 @@ namespace extremal {
 void check_guess_finite(const Problem& problem, const Location& at);
 
 /// Throws SceneError if ∂²L/∂q'∂q' is singular at every point tried near the guess: the velocities do not
-/// follow from the momenta.
-void check_regular(const Problem& problem, const Location& at);
+/// follow from the momenta. Of a Hamiltonian ∂²H/∂p∂p must be regular, and its eigenvalues must not change
+/// their signs, so that the momenta follow from the velocities.
+void check_regular(const Problem& problem, const SystemTable& system);
 
 /// Throws SceneError at `at` if an end that is fixed wholly cannot have the energy that closes the duration:
 /// where L is convex in the velocities, E = q'·∂L/∂q' − L is least at rest, −L(q, 0).

@@ -6,6 +6,7 @@
 #include "scene/schema.hpp"
 #include "scene/systems.hpp"
 #include "study/suggestion.hpp"
+#include "system/hamiltonian.hpp"
 #include "system/tape_lagrangian.hpp"
 
 namespace extremal {
@@ -39,7 +40,9 @@ Inspection inspect(const Study& study) {
   }
   if (const Kinks* kinks = study.system.lagrangian->kinks())
     found.kinks = static_cast<int>(kinks->surfaces().size());
-  found.tapes = tapes_of(*study.system.lagrangian);
+  const Lagrangian* hamiltonian = hamiltonian_of(*study.system.lagrangian);
+  found.momenta_solved = hamiltonian != nullptr;
+  found.tapes = tapes_of(hamiltonian ? *hamiltonian : *study.system.lagrangian);
   found.derivatives = check_derivatives(study.problem, deadline_of(study));
   return found;
 }

@@ -17,8 +17,9 @@ struct Inspection {
   bool quadratic = false;      ///< M, C, a are constant
   bool velocity_free = false;  ///< R does not depend on q'
   int mass_entries = 0, gyroscopic_entries = 0;
-  int qq = 0, vq = 0, vv = 0;  ///< Hessian entries of R in (q, q), (q', q), (q', q'), lower triangle
-  int kinks = 0;               ///< surfaces on which L is not smooth
+  int qq = 0, vq = 0, vv = 0;   ///< Hessian entries of R in (q, q), (q', q), (q', q'), lower triangle
+  bool momenta_solved = false;  ///< of a Hamiltonian, at each point; the tapes are then those of H
+  int kinks = 0;                ///< surfaces on which L is not smooth
   struct Tape {
     std::string order;  ///< "value", "gradient", "Hessian"
     int kernels = 0, instructions = 0;

@@ -17,7 +17,7 @@ std::map<std::string, Text> places_of(const SystemTable& table) {
         places[fmt::format("parameters.{}[{}]", p.name, k + 1)] = {*formula, p.values[k].at};
   }
   for (const Definition& d : table.definitions) places["definitions." + d.name] = d.formula;
-  places["lagrangian"] = *table.lagrangian;
+  places[table.hamiltonian ? "hamiltonian" : "lagrangian"] = table.law();
   return places;
 }
 
@@ -32,7 +32,8 @@ SystemText text_of(const SystemTable& table) {
     for (const Quantity& q : p.values) entry.values.push_back(q.value);
   }
   text.parameters = evaluate_parameters(entries, text.definitions);
-  text.lagrangian = table.lagrangian->value;
+  if (table.lagrangian) text.lagrangian = table.lagrangian->value;
+  if (table.hamiltonian) text.hamiltonian = table.hamiltonian->value;
   return text;
 }
 
@@ -50,7 +51,7 @@ System make_system(const SystemTable& table) {
   } catch (const FormulaError& e) {
     throw at_its_place(table, e);
   } catch (const std::invalid_argument& e) {
-    throw SceneError(table.lagrangian->at, e.what());
+    throw SceneError(table.law().at, e.what());
   }
 }
 

@@ -83,8 +83,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   if (problem.initial) check_initial_data(scene, purpose);
   problem.duration = read_duration(scene.boundary, system);
   // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
-  if (scene.guess.state && system.lagrangian->structure().quadratic)
-    check_regular(problem, scene.system.lagrangian->at);
+  if (scene.guess.state && system.lagrangian->structure().quadratic) check_regular(problem, scene.system);
   read_guess(scene, system, deadline, problem);
   try {
     problem = make_problem(std::move(problem));
@@ -93,7 +92,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   } catch (const std::invalid_argument& e) {
     throw SceneError(scene.boundary.at, e.what());
   }
-  check_regular(problem, scene.system.lagrangian->at);
+  check_regular(problem, scene.system);
   if (scene.boundary.energy) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
   return problem;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -65,14 +66,15 @@ std::map<std::string, ParameterText> evaluate_parameters(
     const std::map<std::string, ParameterEntry>& entries,
     const std::map<std::string, std::string>& definitions);
 
-/// A system as text. Where a FormulaError comes from is named "coordinates[0]", "definitions.r",
-/// "lagrangian".
+/// A system as text: a Lagrangian, or a Hamiltonian of coordinates and momenta p_x, p_x[i]. Where a
+/// FormulaError comes from is named "coordinates[0]", "definitions.r", "lagrangian", "hamiltonian".
 struct SystemText {
   std::vector<std::string> coordinates{};  ///< "x", "x[32]", "x[n]"
   std::map<std::string, ParameterText> parameters{};
   std::map<std::string, std::string> definitions{};
   std::string lagrangian{};
-  std::vector<std::string> active{};  ///< scalar parameters that derivatives are asked for
+  std::optional<std::string> hamiltonian{};  ///< instead of the Lagrangian
+  std::vector<std::string> active{};         ///< scalar parameters that derivatives are asked for
 };
 
 struct System : Vocabulary {
@@ -80,8 +82,12 @@ struct System : Vocabulary {
   std::shared_ptr<const Lagrangian> lagrangian;
 };
 
-/// Parses, differentiates and compiles. Throws FormulaError.
+/// Parses, differentiates and compiles. Throws FormulaError, also where the second derivative of a
+/// Hamiltonian by the momenta is singular.
 System compile(const SystemText& text);
+
+/// Why a Hamiltonian whose H_pp is singular is refused.
+std::string singular_hamiltonian(std::span<const std::string> momenta);
 
 /// A number written as a formula of parameters and of definitions that are numbers ("2*pi/omega") and, for an
 /// element of an array, the index i = `index` >= 1 (0: there is none). `where` names the text in errors.

@@ -191,7 +191,7 @@ NodeId Binder::velocity(TermBuilder& builder, NodeId value) {
 NodeId Binder::coordinate(TermBuilder& builder, const Formula& formula, const Syntax& node,
                           const Scope& scope) {
   const Coordinate& declared = names_.coordinates[node.id];
-  const bool second = node.velocity || node.meaning == Meaning::end || at_end_;
+  const bool second = node.velocity || node.momentum || node.meaning == Meaning::end || at_end_;
   const std::uint32_t base = declared.first + (second ? names_.elements : 0);
   if (!node.indexed) return same_input(builder, base);
   std::vector<std::uint32_t> column(builder.rows());

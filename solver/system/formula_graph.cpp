@@ -185,8 +185,8 @@ class Splitter {
 
 }  // namespace
 
-LagrangianGraph graph_of(Names& names, const std::string& lagrangian) {
-  Formula formula = parse(lagrangian, "lagrangian");
+LagrangianGraph graph_of(Names& names, const std::string& text, const std::string& where) {
+  Formula formula = parse(text, where);
   resolve(formula, names);
   LagrangianGraph target;
   Splitter(names, target).split(formula);

@@ -3,13 +3,14 @@
 #include "system/formula_names.hpp"
 #include "system/tape.hpp"
 
-/// \file A Lagrangian that is written as a formula, as terms over a graph.
+/// \file A Lagrangian or Hamiltonian that is written as a formula, as terms over a graph.
 
 namespace extremal::formula {
 
 /// Sums that are summands of L, up to factors, become kernels with one row an index combination (nested
 /// sums are flattened, factors move inside); the rest of L is one plain term, which comes first. Sums
 /// elsewhere are written out. Throws FormulaError.
-LagrangianGraph graph_of(Names& names, const std::string& lagrangian);
+/// `where` names the text in errors. Of a Hamiltonian the velocity inputs are momenta.
+LagrangianGraph graph_of(Names& names, const std::string& text, const std::string& where);
 
 }  // namespace extremal::formula

@@ -23,9 +23,9 @@ constexpr std::array all_functions{
 
 constexpr int most_elements = 1'000'000;
 
-const char* description(Meaning meaning) {
-  if (meaning == Meaning::coordinate) return "a coordinate";
-  return meaning == Meaning::definition ? "a definition" : "a parameter";
+const char* description(const Known& known) {
+  if (known.meaning == Meaning::coordinate) return known.momentum ? "a momentum" : "a coordinate";
+  return known.meaning == Meaning::definition ? "a definition" : "a parameter";
 }
 
 /// What the language itself means by a name, or null.
@@ -90,7 +90,7 @@ const Known* Names::find(std::string_view name) const {
 }
 
 void Names::declare(const std::string& name, Known known, const std::string& where) {
-  const char* what = description(known.meaning);
+  const char* what = description(known);
   if (!is_name(name))
     throw FormulaError(fmt::format("'{}' is not a name: it takes letters, digits and _, and no digit first",
                                    name.substr(0, 40)),
@@ -98,9 +98,9 @@ void Names::declare(const std::string& name, Known known, const std::string& whe
   if (const char* meaning = reserved(name, known.meaning))
     throw FormulaError(fmt::format("'{}' is {}; choose another name for {}", name, meaning, what), where, 0);
   if (const auto [it, added] = table.try_emplace(name, known); !added)
-    throw FormulaError(fmt::format("'{}' is {} already; choose another name for {}", name,
-                                   description(it->second.meaning), what),
-                       where, 0);
+    throw FormulaError(
+        fmt::format("'{}' is {} already; choose another name for {}", name, description(it->second), what),
+        where, 0);
 }
 
 void Names::declare(const Coordinate& coordinate, const std::string& where) {
@@ -111,6 +111,14 @@ void Names::declare(const Coordinate& coordinate, const std::string& where) {
           where);
   coordinates.push_back(coordinate);
   elements += coordinate.count;
+}
+
+void Names::declare_momenta() {
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    const Coordinate& c = coordinates[k];
+    declare("p_" + c.name, {Meaning::coordinate, static_cast<int>(k), c.count, c.array, true},
+            fmt::format("coordinates[{}]", k));
+  }
 }
 
 void Names::declare(const std::map<std::string, std::string>& texts) {
@@ -148,9 +156,10 @@ Names names_of(const SystemText& text) {
   names.declare(text.parameters, text.active);
   for (std::size_t k = 0; k < text.coordinates.size(); ++k) declare_coordinate(names, text, k);
   if (names.elements == 0) throw FormulaError("no coordinates; need at least 1", "coordinates", 0);
+  names.kind = text.hamiltonian ? Kind::hamiltonian : Kind::lagrangian;
+  if (names.kind == Kind::hamiltonian) names.declare_momenta();
   names.declare(text.definitions);
   for (Formula& definition : names.definitions) definition = parse(definition.text, definition.where);
-  names.kind = Kind::lagrangian;
   return names;
 }
 

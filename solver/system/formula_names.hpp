@@ -22,12 +22,13 @@ const Function* find_function(std::string_view name);  ///< or null
 
 /// What a kind of formula may use beside parameters and pi, itself or by definitions.
 enum class Kind {
-  number,      ///< nothing
-  guess,       ///< t, T
-  map,         ///< coordinates
-  condition,   ///< end values x(0), x(T)
-  quantity,    ///< end values x(0), x'(T)
-  lagrangian,  ///< coordinates, velocities, t; definitions are formulas of this kind
+  number,       ///< nothing
+  guess,        ///< t, T
+  map,          ///< coordinates
+  condition,    ///< end values x(0), x(T)
+  quantity,     ///< end values x(0), x'(T)
+  lagrangian,   ///< coordinates, velocities, t; so are definitions
+  hamiltonian,  ///< coordinates, momenta, t; so are definitions, where a Hamiltonian is written
 };
 
 /// What a declared name is.
@@ -36,6 +37,7 @@ struct Known {
   int id = 0;
   int count = 1;  ///< elements of an array or list
   bool array = false;
+  bool momentum = false;  ///< of the coordinate with this id
 };
 
 struct Names {
@@ -49,9 +51,13 @@ struct Names {
   std::vector<std::string> indices;  ///< known outside every sum: i in formulas of an array
 
   const Known* find(std::string_view name) const;
+  /// The kind of a definition.
+  Kind of_definitions() const { return kind == Kind::hamiltonian ? kind : Kind::lagrangian; }
   /// Throws FormulaError where the name is malformed, reserved or taken.
   void declare(const std::string& name, Known known, const std::string& where);
   void declare(const Coordinate& coordinate, const std::string& where);
+  /// Declares p_x for each coordinate x.
+  void declare_momenta();
   /// Declares definitions, not parsed.
   void declare(const std::map<std::string, std::string>& definitions);
   /// Declares parameters; those of `active` stay symbolic.

@@ -91,7 +91,8 @@ class Resolver {
       return;
     } else if (name == "pi") {
       node.meaning = Meaning::pi;
-    } else if (name == "t" && (kind_ == Kind::guess || kind_ == Kind::lagrangian)) {
+    } else if (name == "t" &&
+               (kind_ == Kind::guess || kind_ == Kind::lagrangian || kind_ == Kind::hamiltonian)) {
       node.meaning = Meaning::time;
     } else {
       unknown(node, name);
@@ -104,7 +105,13 @@ class Resolver {
   void declared(Syntax& node, const std::string& name, const Known& known) const {
     node.meaning = known.meaning;
     node.id = known.id;
+    node.momentum = known.momentum;
     if (known.meaning == Meaning::coordinate) {
+      if (node.velocity && known.momentum)
+        stop(node, fmt::format("'{}' is a momentum and has no velocity", name));
+      if (node.velocity && kind_ == Kind::hamiltonian)
+        stop(node, fmt::format("\"{0}'\" is a velocity; a hamiltonian has momenta: {1}", name,
+                               momentum_of(name, known)));
       if (kind_ == Kind::condition)
         stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values",
                                spelled(name, known)));
@@ -129,9 +136,17 @@ class Resolver {
     return formula.nodes[formula.root];
   }
 
+  static std::string momentum_of(const std::string& coordinate, const Known& known) {
+    return fmt::format("p_{}{}", coordinate, known.array ? "[1]" : "");
+  }
+
   /// Whether a definition may stand in a formula of this kind, by what it is made of.
   void defined(const Syntax& node, const std::string& name) const {
     const std::uint8_t reads = root_of(node).reads;
+    if (node.velocity && kind_ == Kind::hamiltonian)
+      stop(node, fmt::format("\"{0}'\" is a velocity; a hamiltonian has momenta: {1}", name,
+                             momentum_of(names_.coordinates.front().name,
+                                         {.array = names_.coordinates.front().array})));
     if (node.velocity && kind_ != Kind::lagrangian)
       stop(node, fmt::format("\"{}'\" is a velocity; it can stand in the Lagrangian only", name));
     if (node.velocity && (reads & of_velocities))
@@ -141,10 +156,10 @@ class Resolver {
     if (kind_ == Kind::quantity && (reads & ~of_time))
       stop(node,
            fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values", name));
-    const std::uint8_t allowed = kind_ == Kind::lagrangian ? 0xff
-                                 : kind_ == Kind::map      ? of_coordinates
-                                 : kind_ == Kind::guess    ? of_time
-                                                           : 0;
+    const std::uint8_t allowed = kind_ == Kind::lagrangian || kind_ == Kind::hamiltonian ? 0xff
+                                 : kind_ == Kind::map                                    ? of_coordinates
+                                 : kind_ == Kind::guess                                  ? of_time
+                                                                                         : 0;
     if (reads & ~allowed)
       stop(node, fmt::format("the definition '{}' depends on {}, which cannot stand here", name,
                              reads & ~allowed & of_coordinates  ? "coordinates"
@@ -234,9 +249,23 @@ class Resolver {
       for (const Function& function : functions()) mend += fmt::format(" {}", function.name);
     }
     if (kind_ == Kind::lagrangian && !velocity_mend(name, call).empty()) mend = velocity_mend(name, call);
+    if (kind_ != Kind::guess && !call && !momentum_mend(name).empty()) mend = momentum_mend(name);
     if (name == "t") mend = "; the time cannot stand here";
     if (name == "T") mend = "; T is the duration only in a guess, and in x(T) in a condition";
     stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80), mend));
+  }
+
+  /// For p_x where it does not stand for a momentum, and p_y where there is no y.
+  std::string momentum_mend(const std::string& name) const {
+    if (!name.starts_with("p_") || names_.coordinates.empty()) return {};
+    const Coordinate& first = names_.coordinates.front();
+    const Known* known = names_.find(name.substr(2));
+    if (known != nullptr && known->meaning == Meaning::coordinate && kind_ == Kind::lagrangian)
+      return fmt::format("; momenta stand in a hamiltonian; here are velocities: {}{}'", name.substr(2),
+                         known->array ? "[1]" : "");
+    if (kind_ != Kind::hamiltonian) return {};
+    return fmt::format("; there is no coordinate '{}'; momenta are those of coordinates: {}", name.substr(2),
+                       momentum_of(first.name, {.array = first.array}));
   }
 
   /// For dx/dt, x_dot, v_x, diff(x, t) and the like.
@@ -285,7 +314,7 @@ class Resolver {
   std::uint8_t read_by(const Syntax& node) const {
     switch (node.meaning) {
       case Meaning::coordinate:
-        return node.velocity ? of_velocities : of_coordinates;
+        return node.velocity || node.momentum ? of_velocities : of_coordinates;
       case Meaning::time:
         return of_time;
       case Meaning::active:
@@ -365,7 +394,7 @@ void resolve(Formula& formula, Names& names) {
     if (visit.definition < 0)
       Resolver(formula, names, names.kind, names.indices).visit(formula.root);
     else if (Formula& needed = names.definitions[visit.definition]; true)
-      Resolver(needed, names, Kind::lagrangian, {}).visit(needed.root);
+      Resolver(needed, names, names.of_definitions(), {}).visit(needed.root);
     if (visit.definition >= 0) state[visit.definition] = done;
     path.pop_back();
   }

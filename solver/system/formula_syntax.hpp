@@ -52,8 +52,9 @@ struct Link {
 struct Syntax {
   Form form = Form::number;
   Meaning meaning = Meaning::none;
-  Op op = Op::constant;  ///< of a call
-  bool velocity = false;
+  Op op = Op::constant;   ///< of a call
+  bool velocity = false;  ///< written with '
+  bool momentum = false;  ///< p_x; the id is that of x
   bool indexed = false;
   bool numeric = false;                  ///< made of numbers, parameters and indices alone: reads == 0
   bool additive = false;                 ///< a sum(…) stands in it as a summand, up to factors

@@ -1,15 +1,42 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <utility>
 
 #include "system/formula_graph.hpp"
+#include "system/hamiltonian.hpp"
 
 namespace extremal {
+
+namespace {
+
+std::shared_ptr<const Lagrangian> compile_hamiltonian(formula::Names& names, const SystemText& text,
+                                                      std::span<const std::string> coordinates) {
+  const LagrangianGraph hamiltonian = formula::graph_of(names, *text.hamiltonian, "hamiltonian");
+  try {
+    return make_lagrangian_of(hamiltonian);
+  } catch (const SingularHamiltonian& e) {
+    constexpr std::size_t most = 6;
+    std::vector<std::string> momenta;
+    for (const int a : e.momenta) momenta.push_back("p_" + coordinates[a]);
+    if (momenta.size() > most) momenta[most] = "…";
+    momenta.resize(std::min(momenta.size(), most + 1));
+    throw FormulaError(singular_hamiltonian(momenta), "hamiltonian", 0);
+  }
+}
+
+}  // namespace
+
+std::string singular_hamiltonian(std::span<const std::string> momenta) {
+  return fmt::format(
+      "H_pp is singular: the velocities do not determine {}; the second derivative of the Hamiltonian by the "
+      "momenta must be regular",
+      fmt::join(momenta, ", "));
+}
 
 System compile(const SystemText& text) {
   formula::Names names = formula::names_of(text);
   System system;
-  system.lagrangian = make_lagrangian(formula::graph_of(names, text.lagrangian));
   system.parameters = text.parameters;
   system.definitions = text.definitions;
   for (const Coordinate& coordinate : names.coordinates) {
@@ -17,6 +44,9 @@ System compile(const SystemText& text) {
     for (int i = 1; coordinate.array && i <= coordinate.count; ++i)
       system.names.push_back(fmt::format("{}[{}]", coordinate.name, i));
   }
+  system.lagrangian = text.hamiltonian
+                          ? compile_hamiltonian(names, text, system.names)
+                          : make_lagrangian(formula::graph_of(names, text.lagrangian, "lagrangian"));
   system.coordinates = std::move(names.coordinates);
   return system;
 }

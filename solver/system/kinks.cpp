@@ -8,9 +8,9 @@
 
 namespace extremal {
 
-namespace {
-
 bool has_kink(Op op) { return op == Op::abs || op == Op::min || op == Op::max || op == Op::step; }
+
+namespace {
 
 /// The body of a term in a graph of its own.
 struct Body {

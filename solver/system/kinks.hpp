@@ -31,6 +31,9 @@ class Kinks {
   std::vector<KinkSurface> surfaces_;
 };
 
+/// abs, min, max and step.
+bool has_kink(Op op);
+
 /// Null where L is smooth. Surfaces on which only parameters decide do not count.
 std::shared_ptr<const Kinks> find_kinks(const LagrangianGraph& lagrangian);
 

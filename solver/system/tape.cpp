@@ -106,6 +106,12 @@ void Tape::play(const Track& track, const Chunk& chunk) {
   }
 }
 
+std::size_t Tape::doubles(int points) const {
+  const int lanes = simd_lanes();
+  const std::size_t used = static_cast<std::size_t>(slots_ + 1) * width(points / lanes) * lanes;
+  return (used + most_lanes - 1) / most_lanes * most_lanes;
+}
+
 void Tape::play(const Points& points, double* out, Scratch& scratch) const {
   const int lanes = simd_lanes();
   if (points.count % lanes != 0)

@@ -82,6 +82,13 @@ void TapeLagrangian::evaluate(const Points& points, Order order, double* out, Sc
   orders_[static_cast<int>(order)].play(points, out, scratch);
 }
 
+std::size_t TapeLagrangian::doubles(int points) const {
+  std::size_t most = 0;
+  for (const Tape& tape : orders_) most = std::max(most, tape.doubles(points));
+  for (const Tape& tape : sensitivities_) most = std::max(most, tape.doubles(points));
+  return most;
+}
+
 void TapeLagrangian::sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const {
   if (parameter < 0 || parameter >= structure_.parameters)
     throw std::out_of_range("parameter " + std::to_string(parameter) + " of " +

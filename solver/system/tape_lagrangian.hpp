@@ -40,6 +40,8 @@ class Tape {
   /// Asks for as much scratch memory as the other, so that none is allocated in going from one to the other.
   void fit(const Tape& other);
   TapeSummary summary() const;
+  /// Of scratch memory, that playing so many points takes from its beginning; whole rows of 64 bytes.
+  std::size_t doubles(int points) const;
 
  private:
   struct Target {
@@ -83,6 +85,8 @@ class TapeLagrangian final : public Lagrangian {
                          DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const override;
 
   TapeSummary summary(Order order) const { return orders_[static_cast<int>(order)].summary(); }
+  /// Of scratch memory, that an evaluation at so many points takes from its beginning.
+  std::size_t doubles(int points) const;
 
  private:
   Tape orders_[3];

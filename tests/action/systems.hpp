@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "system/hamiltonian.hpp"
 #include "system/symbol.hpp"
 #include "system/tape.hpp"
 
@@ -47,6 +48,15 @@ inline std::shared_ptr<const Lagrangian> magnetic() {
   return trace(2, [](auto q, auto v, auto) {
     const auto field = 1 + q[0] * q[0] / 4;
     return (v[0] * v[0] + v[1] * v[1]) / 2 + field * (q[0] * v[1] - q[1] * v[0]) / 2 - q[0] * q[0] * q[1];
+  });
+}
+
+/// A Hamiltonian whose Legendre transform has no expression; the momenta couple with each other and with q.
+inline std::shared_ptr<const Lagrangian> quartic_hamiltonian() {
+  return trace_hamiltonian(2, [](auto q, auto p, auto) {
+    const auto square = p[0] * p[0] + p[0] * p[1] / 2 + p[1] * p[1];
+    return square * (1 + q[0] * q[0] / 4) / 2 + square * square / 16 + (q[0] * p[1] - q[1] * p[0]) / 4 +
+           q[0] * q[0] * q[1];
   });
 }
 

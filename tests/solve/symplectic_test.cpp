@@ -29,7 +29,8 @@ struct NeighboursCase {
 
 std::vector<NeighboursCase> neighbours_cases() {
   return {{"double pendulum", systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 0.8},
-          {"magnetic", systems::magnetic(), {0.3, -0.2}, {0.9, 0.5}, 1.5}};
+          {"magnetic", systems::magnetic(), {0.3, -0.2}, {0.9, 0.5}, 1.5},
+          {"quartic Hamiltonian", systems::quartic_hamiltonian(), {0.3, -0.2}, {0.9, 0.5}, 0.8}};
 }
 
 /// The solution with end e (q(0), then q(T)) moved by `step`.

@@ -11,7 +11,7 @@ namespace extremal {
 
 inline LagrangianGraph graph_of(const SystemText& text) {
   formula::Names names = formula::names_of(text);
-  return formula::graph_of(names, text.lagrangian);
+  return formula::graph_of(names, text.lagrangian, "lagrangian");
 }
 
 /// L at a point, term by term and row by row.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,6 +28,39 @@ double longest_window(const Problem& problem, const SolveOptions& options, const
   return unit * std::min(pi, window_bound(*options.scheme, whole));
 }
 
+bool positive_definite(const Eigen::MatrixXd& m) { return m.allFinite() && m.llt().info() == Eigen::Success; }
+
+/// Legendre's condition, ∂²L/∂q'∂q' > 0, at the ends and in the middle of elements, or where they are many at
+/// some of these points.
+bool legendre_condition(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+  constexpr int most_points = 64;
+  const Structure& s = lagrangian.structure();
+  const int n = s.coordinates;
+  if (s.quadratic) {
+    Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n, n);
+    for (const Triplet& entry : s.mass) mass(entry.row, entry.column) += entry.value;
+    return positive_definite(mass);
+  }
+  const int points = std::min(2 * trajectory.elements(), most_points);
+  std::vector<double> q(n), v(n);
+  Scratch scratch;
+  for (int k = 0; k <= points; ++k) {
+    const double t = trajectory.duration() * k / points;
+    trajectory.at(t, q, v);
+    const PointValues values = evaluate_at(lagrangian, q, v, t, Order::hessian, scratch);
+    if (!positive_definite(Eigen::Map<const Eigen::MatrixXd>(values.vv.data(), n, n))) return false;
+  }
+  return true;
+}
+
+/// There is no part that is a minimum, and the negative eigenvalues are as many as the mesh has room for.
+double without_minima(Solution& solution) {
+  solution.message += "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
+  solution.morse_index.reset();
+  solution.minimizing = false;
+  return INFINITY;
+}
+
 /// Morse's theorem: with fixed ends the index is the number of conjugate times. These are found on pieces
 /// that resolve Jacobi fields, which elements that resolve the path need not. Of pinned elements it is their
 /// own.
@@ -47,11 +81,15 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   }
   std::optional<ClosingMap> closed;
   if (problem.periodic) closed = closing_map(problem);
-  if (!memory.assemble(problem.lagrangian, solution.trajectory, {}, closed ? &*closed : nullptr)) {
-    solution.message += memory.too_many()
-                            ? "; windows are not found: Jacobi fields vary too fast for its elements"
-                            : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
+  const ClosingMap* map = closed ? &*closed : nullptr;
+  const bool assembled = memory.assemble(problem.lagrangian, solution.trajectory, {}, map);
+  if (memory.too_many()) {
+    solution.message += "; windows are not found: Jacobi fields vary too fast for its elements";
     return INFINITY;
+  }
+  if (!assembled || !legendre_condition(*problem.lagrangian, solution.trajectory)) {
+    if (problem.periodic) memory.assemble(problem.lagrangian, solution.trajectory, {}, map, false);
+    return without_minima(solution);
   }
   const bool bounded = problem.curvature && is_natural(problem.lagrangian->structure());
   Minimality found =

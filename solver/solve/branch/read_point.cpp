@@ -95,8 +95,13 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   point.momentum_difference = momentum_difference(tracker, solution);
   if (!problem.periodic) return point;
   SecondVariation& variation = w.variation;
-  if (problem.coordinates() <= most_coordinates_for_multipliers)
-    variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed());
+  if (problem.coordinates() <= most_coordinates_for_multipliers) {
+    if (!variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed()) &&
+        !variation.too_many()) {  // no part is minimising
+      solution.morse_index.reset();
+      variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), nullptr, false);
+    }
+  }
   read_stability(problem, variation, tracker.sizes().q, solution, false);
   state.doubling_tests = solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN};
   return point;
