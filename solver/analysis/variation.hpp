@@ -42,8 +42,9 @@ class SecondVariation {
   /// std::invalid_argument for more than most_coordinates.
   /// Elements that another condensed are the pieces if they resolve the fields well enough for it.
   /// Beyond T a path that is `closed` goes on; null: it ends there.
+  /// Of two copies of the coordinates the form of each piece has as many negative squares as positive ones.
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
-                const Condensed& condensed = {}, const ClosingMap* closed = nullptr);
+                const Condensed& condensed = {}, const ClosingMap* closed = nullptr, bool paired = false);
   /// Whether assemble() failed because there would be too many pieces.
   bool too_many() const { return too_many_; }
 
@@ -92,7 +93,7 @@ class SecondVariation {
   const SchemeTables* scheme_ = nullptr;
   ElementTables tables_;
 
-  bool too_many_ = false;
+  bool too_many_ = false, paired_ = false;
   std::vector<Kept> pieces_;
   std::vector<double> forms_;  ///< A, B, D of each piece
 

@@ -71,7 +71,7 @@ Json object(const BranchPoint& point, const std::vector<std::string>& names) {
           {"morse_index", known(solution.morse_index)},
           {"nullity", known(solution.nullity)},
           {"multipliers", multipliers(solution)},
-          {"krein", solution.floquet ? Json(solution.floquet->krein) : Json(nullptr)},
+          {"krein", solution.floquet && solution.floquet->paired ? Json(solution.floquet->krein) : Json(nullptr)},
           {"kind", name(point.kind)},
           {"start", std::move(state)}};
 }

@@ -41,13 +41,16 @@ constexpr KeyRecord keys[] = {
     {"system", "lagrangian", Kind::text, "required without `use`",
      "Formula of L in coordinates, velocities (`x'`), `t`, parameters and definitions.",
      R"(lagrangian = "(x'^2 + y'^2)/2 + mu/r")"},
+    {"system", "force", Kind::quantities, "none",
+     "Forces F that no Lagrangian has: d/dt ∂L/∂q' − ∂L/∂q = F. A formula of coordinates, velocities, `t`, "
+     "parameters and definitions; for an array a list or one formula in the index `i`.",
+     R"(force = { x = "-c*x'", q = "-c*q[i]'" })", true},
     {"system", "curvature", Kind::number, "none",
      "Bound of M⁻¹V'' for all positions. With it the windows of L = q'ᵀMq'/2 − V have the certificate "
      "`global`.",
      "curvature = 4.0"},
     {"system", "hamiltonian", Kind::text, "", "", "", false, false},
     {"system", "constraints", Kind::texts, "", "", "", false, false},
-    {"system", "force", Kind::text, "", "", "", true, false},
 
     {"boundary", "start", Kind::quantities, "none",
      "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
@@ -138,6 +141,7 @@ constexpr Exclusion pairs[] = {
     {"boundary.conditions", "boundary.start", "write the fixed ends as conditions too"},
     {"boundary.conditions", "boundary.end", "write the fixed ends as conditions too"},
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration"},
+    {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
     {"guess.file", "guess.state", "a guess has one source"},
     {"guess.file", "guess.*", "a guess has one source"},
     {"guess.state", "guess.*", "a guess has one source"},

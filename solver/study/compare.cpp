@@ -39,7 +39,7 @@ class Comparer {
       : study_(study),
         options_(options),
         total_(deadline_of(study)),
-        shifts_(study.problem.periodic && study.problem.lagrangian->structure().autonomous) {
+        shifts_(study.problem.periodic && study.problem.motion().structure().autonomous) {
     study_.options.elements = 0;
     study_.options.progress = nullptr;
     result_.title = study.title;
@@ -129,7 +129,8 @@ class Comparer {
     if (shot.converged() && result_.reference)
       row.error = error({shot.duration(), [&](const std::vector<double>& times) {
                            Flight flight =
-                               follow(*study_.problem.lagrangian, shot, times, precise, deadline());
+                               follow(study_.problem.motion(), shot, times, precise, deadline(),
+                                      study_.problem.motion_copies());
                            return MotionSamples{std::move(flight.q), std::move(flight.v)};
                          }});
     if (shot.converged() && result_.reference && !row.error) row.status = Status::not_converged;

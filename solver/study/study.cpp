@@ -54,6 +54,7 @@ Location recurrence_location(const BoundaryTable& boundary) {
 Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
+  problem.copies = system.copies;
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
@@ -80,7 +81,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
 void check_memory(const Scene& scene, const Study& study) {
   const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
   const int degree = study.options.scheme ? study.options.scheme->degree : 2;
-  const double needed = solve_bytes(study.problem.lagrangian->structure(), elements, degree);
+  const double needed = solve_bytes(study.problem.motion().structure(), elements, degree);
   const double available = available_bytes();
   if (needed > available)
     throw SceneError(

@@ -42,6 +42,7 @@ class NamesUsed {
     add(system.parameters);
     add(system.definitions);
     add(system.lagrangian);
+    add(system.force);
   }
   void add(const BoundaryTable& boundary) {
     for (const auto* ends : {&boundary.start, &boundary.end, &boundary.map}) add(*ends);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "system/formula_names.hpp"
 #include "system/tape.hpp"
 
@@ -11,5 +14,9 @@ namespace extremal::formula {
 /// sums are flattened, factors move inside); the rest of L is one plain term, which comes first. Sums
 /// elsewhere are written out. Throws FormulaError.
 LagrangianGraph graph_of(Names& names, const std::string& lagrangian);
+
+/// Σ F_a λ_a over the forces, likewise. λ stand as coordinates n … 2n − 1 beside the n of `names`. Throws
+/// FormulaError.
+LagrangianGraph power_of(Names& names, std::span<const ForceText> forces);
 
 }  // namespace extremal::formula

@@ -7,6 +7,7 @@
 
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/branch/motion_sign.hpp"
 #include "solve/newton/ends.hpp"
 
 namespace extremal {
@@ -118,6 +119,17 @@ void Branch::hold_along(const Move& direction) {
   std::vector<double> weighted = direction.step.nodes;
   for (std::size_t i = 0; i < weighted.size(); ++i) weighted[i] *= weight(static_cast<int>(i / n));
   phases_.add(weighted);
+  if (!problem_.paired) return;
+  // Of two copies the direction holds the mean alone: their difference is held by what it is across.
+  negate_second(weighted);
+  phases_.add(weighted);
+}
+
+/// Of two copies at each node.
+void Branch::negate_second(std::vector<double>& nodes) const {
+  const std::size_t n = path_.coordinates();
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (i % n >= n / 2) nodes[i] = -nodes[i];
 }
 
 bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {
@@ -256,6 +268,7 @@ double Branch::change(bool along) const {
 }
 
 const Inertia& Branch::inertia() const {
+  if (problem_.paired) inertia_ = Inertia{};
   if (!inertia_) inertia_ = w_.iteration.model().inertia(threshold_);
   return *inertia_;
 }
@@ -280,6 +293,11 @@ void Branch::respond(const Move& onward, Move& response) {
       const double tau = path_.mesh()[k], weight = path_.mesh()[k + 1] - path_.mesh()[k - 1];
       load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
     }
+  if (problem_.paired) {  // a force, which is the derivative by the difference of the copies
+    for (std::size_t i = 0; i < load.size(); ++i)
+      if (i % n >= n / 2) load[i] = load[i - n / 2];
+    negate_second(load);
+  }
   ClosingEquation equation;
   const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, path_, equation);
   w_.iteration.second_variation()->respond(w_.iteration.action(), closing, load, response.step);
@@ -288,6 +306,12 @@ void Branch::respond(const Move& onward, Move& response) {
 }
 
 int Branch::orientation(double onward) const {
+  if (problem_.paired) {
+    ClosingEquation equation;
+    const int sign = motion_sign(problem_, w_.iteration.action(), *tables_, path_,
+                                 closing_equation(problem_, path_, equation));
+    return sign == 0 || (sign < 0) == (onward * direction.parameter < 0) ? 1 : -1;
+  }
   const bool negative = (inertia().negative % 2 != 0) != (onward * direction.parameter * closing_sign_ < 0);
   return negative ? -1 : 1;
 }

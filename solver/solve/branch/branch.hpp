@@ -104,6 +104,7 @@ class Branch : public ExtremalCurve {
   bool linearise_parameter();
   bool evaluate(const ClosingEquation* closing, Factors factors);
   void hold_along(const Move& direction);
+  void negate_second(std::vector<double>& nodes) const;
   double energy_change(const Move& move) const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);

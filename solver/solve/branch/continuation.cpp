@@ -34,6 +34,7 @@ double growth(const Tracker& tracker) {
 /// The action a little onward and back against the integral of its derivative, by Simpson's rule; nearer by
 /// where that is not exact enough. Infinite where neither is known.
 double action_difference(Tracker& tracker) {
+  if (tracker.branch().problem().paired) return INFINITY;  // the action of two copies is zero
   const BranchState at = tracker.state;
   // −E T alone may be large: S vanishes for small swings.
   const double size = std::max({std::abs(at.action), std::abs(at.action_rate), at.energy_time});

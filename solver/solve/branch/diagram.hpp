@@ -43,6 +43,7 @@ class Diagram {
   bool begin_next();
   void note();
 
+  std::optional<ProblemFamily> with_forces_;  ///< of one copy, if the family is of two
   ProblemFamily family_;
   ContinuationOptions options_;
   std::optional<Continuation> current_;

@@ -96,7 +96,7 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   if (!problem.periodic) return point;
   SecondVariation& variation = w.variation;
   if (problem.coordinates() <= most_coordinates_for_multipliers)
-    variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed());
+    variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), nullptr, problem.paired);
   read_stability(problem, variation, tracker.sizes().q, solution, false);
   state.doubling_tests = solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN};
   return point;

@@ -247,7 +247,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
 
 /// Inverse iteration from the step, which has most of that direction already.
 bool NewtonIteration::hold_softest(const Path& path) {
-  if (model_ != condensed_.get()) return false;
+  if (model_ != condensed_.get() || problem_->paired) return false;
   held_.clear();
   if (!factor(path) || std::isnan(solve_for_step(path, step_))) return false;
   const std::size_t n = path.coordinates(), elements = path.elements();

@@ -29,6 +29,12 @@ void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* dir
     }
 }
 
+/// Zero in the other of two copies.
+void keep_copy(int copy, std::size_t n, std::span<double> direction) {
+  for (std::size_t row = 0; row < direction.size(); row += n)
+    std::fill_n(direction.begin() + static_cast<std::ptrdiff_t>(row + (copy == 0 ? n / 2 : 0)), n / 2, 0.0);
+}
+
 void add_motion(const Path& path, const Generator& generator, double* direction) {
   const int n = path.coordinates(), elements = path.elements();
   const std::span<const double> mesh = path.mesh();
@@ -47,11 +53,17 @@ void add_motion(const Path& path, const Generator& generator, double* direction)
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases) {
   const bool shifts = with_time && problem.periodic && problem.lagrangian->structure().autonomous;
-  phases.count = shifts + static_cast<int>(problem.symmetries.size());
+  // A period that is given closes nothing: two copies are held one by one, as by other symmetries.
+  const bool twice = shifts && problem.paired && !problem.duration.free;
+  phases.count = shifts + twice + static_cast<int>(problem.symmetries.size());
   const std::size_t size = path.nodes().size();
   phases.directions.assign(phases.count * size, 0);
   double* direction = phases.directions.data();
-  if (shifts) add_shift_of_time(path, scheme, std::exchange(direction, direction + size));
+  for (int copy = 0; copy < shifts + twice; ++copy) {
+    add_shift_of_time(path, scheme, direction);
+    if (twice) keep_copy(copy, path.coordinates(), {direction, size});
+    direction += size;
+  }
   for (const Generator& generator : problem.symmetries)
     add_motion(path, generator, std::exchange(direction, direction + size));
 }
