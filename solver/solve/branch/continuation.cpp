@@ -175,6 +175,7 @@ bool Continuation::begin_from_solve() {
 /// crossed, and across it that branch does not go far.
 bool Continuation::begin_from_start() {
   const BranchStart start = *std::exchange(start_, std::nullopt);
+  if (start.regular) tracker_.branch().set_regular();
   if (tracker_.begin(start.path, start.coordinate, start.units, rest * start.units.extent)) {
     Branch& branch = tracker_.branch();
     const BranchState& state = tracker_.state;
