@@ -81,7 +81,7 @@ Json object(const BranchRecord& record) {
           {"status", status(record.end)},
           {"message", printable(record.message, 2000)},
           {"points", record.points},
-          {"action_defect", record.worst_action_slope},
+          {"action_defect", known(record.worst_action_slope)},
           {"momentum_defect", record.worst_momentum}};
 }
 
@@ -119,8 +119,11 @@ std::string record_text(const FollowedBranch& branch, std::size_t number) {
                         record.points);
   text += fmt::format("{:<16}{}\n", "end", printable(record.message, 2000));
   if (record.points == 0) return text;
-  return text + fmt::format("{:<16}{} along the branch to {:.1e} of S; dS/dq = p to {:.1e}\n", "check",
-                            law(branch), record.worst_action_slope, record.worst_momentum);
+  const std::string action = record.worst_action_slope
+                                 ? fmt::format("{} along the branch to {:.1e} of S; dS/dq = p", law(branch),
+                                               *record.worst_action_slope)
+                                 : "momenta of the action against dL/dq'";
+  return text + fmt::format("{:<16}{} to {:.1e}\n", "check", action, record.worst_momentum);
 }
 
 }  // namespace

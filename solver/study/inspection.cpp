@@ -41,6 +41,9 @@ Inspection inspect(const Study& study) {
     found.kinks = static_cast<int>(kinks->surfaces().size());
   found.tapes = tapes_of(*study.system.lagrangian);
   found.derivatives = check_derivatives(study.problem, deadline_of(study));
+  if (!study.problem.pair) return found;
+  found.forces_autonomous = study.problem.copies->structure().autonomous;
+  found.with_forces = check_derivatives(*study.problem.pair, deadline_of(study));
   return found;
 }
 

@@ -90,6 +90,19 @@ void check_memory(const Scene& scene, const Study& study) {
                     elements, degree, byte_text(needed), byte_text(available)));
 }
 
+/// What forces exclude: several extremals are told apart, and interior points found, by the action.
+void check_forces(const Scene& scene) {
+  if (scene.system.force.empty()) return;
+  if (scene.search)
+    throw SceneError(scene.search->solutions.at,
+                     "[search] looks for extremals, and with forces there are none; leave it out, and give "
+                     "a guess for each motion");
+  const std::optional<Text>& method = scene.solve.method;
+  if (method && method->value == name(Method::ipopt))
+    throw SceneError(position(*method, 0),
+                     "method 'ipopt' needs an action without forces; write \"newton\" or \"ceres\"");
+}
+
 Study make_study(const Scene& scene, Purpose purpose) {
   Study study;
   study.scene = scene.path;
@@ -100,6 +113,8 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.title = scene.title;
   study.system = make_system(scene.system);
   check_parameters_used(scene);
+  study.forces = scene.system.force;
+  check_forces(scene);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;
   study.options = read_options(scene.solve);

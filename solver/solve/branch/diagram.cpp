@@ -96,7 +96,10 @@ void Diagram::note() {
   BranchRecord& record = branches_.back();
   record.end = current_->end();
   record.message = current_->message();
-  record.worst_action_slope = current_->worst_action_slope();
+  if (with_forces_)
+    record.worst_action_slope.reset();
+  else
+    record.worst_action_slope = current_->worst_action_slope();
   record.worst_momentum = current_->worst_momentum();
 }
 

@@ -116,6 +116,7 @@ int motion_sign(const Problem& problem, const DiscreteAction& action, const Elem
   PhaseConditions phases;
   measure_phases(problem, path, tables.scheme(), true, phases);
   const bool by_phase = closing && closing->row.empty();
+  if (by_phase && phases.count == 0) return 0;
   if (closing) matrix.add_duration(*closing, by_phase ? phases.direction(0) : std::span<const double>());
   for (int j = by_phase; j < phases.count; ++j)
     if (matrix.moves_first(phases.direction(j))) matrix.add_symmetry(phases.direction(j));

@@ -29,12 +29,6 @@ void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* dir
     }
 }
 
-/// Zero in the other of two copies.
-void keep_copy(int copy, std::size_t n, std::span<double> direction) {
-  for (std::size_t row = 0; row < direction.size(); row += n)
-    std::fill_n(direction.begin() + static_cast<std::ptrdiff_t>(row + (copy == 0 ? n / 2 : 0)), n / 2, 0.0);
-}
-
 void add_motion(const Path& path, const Generator& generator, double* direction) {
   const int n = path.coordinates(), elements = path.elements();
   const std::span<const double> mesh = path.mesh();
@@ -48,24 +42,53 @@ void add_motion(const Path& path, const Generator& generator, double* direction)
   }
 }
 
+/// Of two copies what moves both alike is a null direction of the linearised equations, and a force along it
+/// closes them: a direction of one copy each. A free period takes the place of that force for the shift of
+/// time. Along a circle a rotation is a shift of time, and no direction of its own. `given`: the shift of
+/// time first, of both copies, then symmetries of one copy and of the other in turn.
+PhaseConditions of_copies(const PhaseConditions& given, std::size_t n, bool shifts, bool free_duration) {
+  constexpr double dependent = 1e-3;
+  PhaseConditions result;
+  std::vector<Eigen::VectorXd> known;  // of the first copy, orthonormal
+  for (int j = 0; j < given.count; j += j == 0 && shifts ? 1 : 2) {
+    const std::span<const double> both = given.direction(j);
+    Eigen::VectorXd part = Eigen::Map<const Eigen::VectorXd>(both.data(), std::ssize(both));
+    for (Eigen::Index row = 0; row < part.size(); row += static_cast<Eigen::Index>(n))
+      part.segment(row + static_cast<Eigen::Index>(n / 2), static_cast<Eigen::Index>(n / 2)).setZero();
+    const double before = part.norm();
+    for (const Eigen::VectorXd& other : known) part -= other.dot(part) * other;
+    if (!(part.norm() > dependent * before)) continue;
+    known.push_back(part.normalized());
+    Eigen::VectorXd other = Eigen::VectorXd::Zero(part.size());
+    for (Eigen::Index row = 0; row < part.size(); row += static_cast<Eigen::Index>(n))
+      other.segment(row + static_cast<Eigen::Index>(n / 2), static_cast<Eigen::Index>(n / 2)) =
+          part.segment(row, static_cast<Eigen::Index>(n / 2));
+    const auto add = [&](const Eigen::VectorXd& x) {
+      result.add({x.data(), static_cast<std::size_t>(x.size())});
+    };
+    if (j == 0 && shifts && free_duration) {
+      add(part + other);
+    } else {
+      add(part);
+      add(other);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases) {
   const bool shifts = with_time && problem.periodic && problem.lagrangian->structure().autonomous;
-  // A period that is given closes nothing: two copies are held one by one, as by other symmetries.
-  const bool twice = shifts && problem.paired && !problem.duration.free;
-  phases.count = shifts + twice + static_cast<int>(problem.symmetries.size());
+  phases.count = shifts + static_cast<int>(problem.symmetries.size());
   const std::size_t size = path.nodes().size();
   phases.directions.assign(phases.count * size, 0);
   double* direction = phases.directions.data();
-  for (int copy = 0; copy < shifts + twice; ++copy) {
-    add_shift_of_time(path, scheme, direction);
-    if (twice) keep_copy(copy, path.coordinates(), {direction, size});
-    direction += size;
-  }
+  if (shifts) add_shift_of_time(path, scheme, std::exchange(direction, direction + size));
   for (const Generator& generator : problem.symmetries)
     add_motion(path, generator, std::exchange(direction, direction + size));
+  if (problem.paired) phases = of_copies(phases, path.coordinates(), shifts, problem.duration.free);
 }
 
 PhaseConditions independent(const PhaseConditions& phases) {
