@@ -101,9 +101,8 @@ void sort_by_modulus(Floquet& floquet, const Modulus& modulus) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return modulus(a) > modulus(b); });
   for (auto first = order.begin(); first != order.end();) {
-    const auto end = std::find_if(first, order.end(), [&](std::size_t k) {
-      return modulus(k) < (1 - same_modulus) * modulus(*first);
-    });
+    const auto end = std::find_if(
+        first, order.end(), [&](std::size_t k) { return modulus(k) < (1 - same_modulus) * modulus(*first); });
     std::stable_sort(first, end, by_argument);
     first = end;
   }

@@ -25,8 +25,8 @@ double largest(std::span<const double> x) {
 
 bool Flow::suits(const Lagrangian& lagrangian, int copies) {
   const Structure& structure = lagrangian.structure();
-  return !structure.quadratic || MassMatrix(structure.coordinates / copies)
-                                     .factor(PointEvaluator(lagrangian, copies).constant_vv());
+  return !structure.quadratic ||
+         MassMatrix(structure.coordinates / copies).factor(PointEvaluator(lagrangian, copies).constant_vv());
 }
 
 Flow::Flow(const Lagrangian& lagrangian, int copies)

@@ -50,7 +50,7 @@ class PointEvaluator {
   bool read_hessian();
 
   const Lagrangian& lagrangian_;
-  const std::size_t n_, all_;  ///< coordinates, and those of the Lagrangian
+  const std::size_t n_, all_;       ///< coordinates, and those of the Lagrangian
   const int lanes_ = simd_lanes();  ///< the point fills a whole batch
   std::vector<double> dq_, dv_;
   std::vector<double> linear_;

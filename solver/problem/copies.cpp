@@ -29,8 +29,7 @@ BoundaryRelation relation_of_both(const BoundaryRelation& one) {
   const int n = one.coordinates;
   for (const int copy : {0, 1})
     for (const Triplet& e : one.matrix)
-      both.matrix.push_back(
-          {copy * one.rows + e.row, (e.column < n ? 0 : n) + copy * n + e.column, e.value});
+      both.matrix.push_back({copy * one.rows + e.row, (e.column < n ? 0 : n) + copy * n + e.column, e.value});
   both.value.insert(both.value.end(), one.value.begin(), one.value.end());
   return both;
 }
@@ -70,8 +69,8 @@ Eigen::VectorXd on_first(const Generator& generator) {
     part[static_cast<Eigen::Index>(n * n + a)] = generator.shift[a];
     for (std::size_t b = 0; b < n; ++b) {
       part[static_cast<Eigen::Index>(a * n + b)] = generator.matrix[a * m + b];
-      mixed = std::max({mixed, std::abs(generator.matrix[a * m + n + b]),
-                        std::abs(generator.matrix[(n + a) * m + b])});
+      mixed = std::max(
+          {mixed, std::abs(generator.matrix[a * m + n + b]), std::abs(generator.matrix[(n + a) * m + b])});
     }
   }
   for (const double x : generator.matrix) size = std::max(size, std::abs(x));

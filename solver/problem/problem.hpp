@@ -87,7 +87,7 @@ struct Problem {
   std::shared_ptr<const Lagrangian> copies;
   std::shared_ptr<const Problem> pair;  ///< with forces: the problem of both copies, which is solved
   bool paired = false;                  ///< the coordinates are two copies, which agree along a solution
-  std::vector<std::string> names;  ///< of the coordinates: "x", "q[1]"
+  std::vector<std::string> names;       ///< of the coordinates: "x", "q[1]"
   BoundaryRelation boundary;
   EndMap ends;                        ///< of `boundary`
   bool periodic = false;              ///< closed, perhaps up to a symmetry

@@ -63,17 +63,18 @@ Json object(const BranchPoint& point, const std::vector<std::string>& names) {
   Json state = Json::object();
   for (std::size_t a = 0; a < names.size(); ++a) state[names[a]] = start.q[a];
   for (std::size_t a = 0; a < names.size(); ++a) state[velocity_key(names[a])] = start.v[a];
-  return {{"branch", point.branch},
-          {"parameter", point.parameter},
-          {"duration", solution.duration()},
-          {"energy", known(solution.energy)},
-          {"action", solution.action},
-          {"morse_index", known(solution.morse_index)},
-          {"nullity", known(solution.nullity)},
-          {"multipliers", multipliers(solution)},
-          {"krein", solution.floquet && solution.floquet->paired ? Json(solution.floquet->krein) : Json(nullptr)},
-          {"kind", name(point.kind)},
-          {"start", std::move(state)}};
+  return {
+      {"branch", point.branch},
+      {"parameter", point.parameter},
+      {"duration", solution.duration()},
+      {"energy", known(solution.energy)},
+      {"action", solution.action},
+      {"morse_index", known(solution.morse_index)},
+      {"nullity", known(solution.nullity)},
+      {"multipliers", multipliers(solution)},
+      {"krein", solution.floquet && solution.floquet->paired ? Json(solution.floquet->krein) : Json(nullptr)},
+      {"kind", name(point.kind)},
+      {"start", std::move(state)}};
 }
 
 Json object(const BranchRecord& record) {

@@ -79,8 +79,8 @@ void LaneFlow::invert_mass() {
     }
 }
 
-/// Of the first copy in all of them: see PointEvaluator. The Hessian by velocities is that of the first alone,
-/// as the forces do not change it where copies agree; its lower triangle is listed.
+/// Of the first copy in all of them: see PointEvaluator. The Hessian by velocities is that of the first
+/// alone, as the forces do not change it where copies agree; its lower triangle is listed.
 void LaneFlow::list_entry(int row, int column, const double* value) {
   if (row % all_ >= n_) return;
   const LaneEntry entry{row % all_, (column % all_) % n_, value};

@@ -69,8 +69,7 @@ void check_duration(const Scene& scene) {
                            "leave 'energy' out"
                          : "with forces the energy is no constant; close the duration by 'where'");
   if (forced && boundary.periodic && boundary.where)
-    throw SceneError(boundary.where->at,
-                     "with forces an orbit has a period of its own; leave 'where' out");
+    throw SceneError(boundary.where->at, "with forces an orbit has a period of its own; leave 'where' out");
   if (boundary.free && !closing && forced && !boundary.periodic)
     throw SceneError(boundary.duration.at, "a free duration with forces needs 'where' to close it");
   if (boundary.free && !closing && !forced)

@@ -128,9 +128,8 @@ class Comparer {
     ComparisonRow row{method.name, tolerance, median(std::move(seconds)), std::nullopt, shot.status};
     if (shot.converged() && result_.reference)
       row.error = error({shot.duration(), [&](const std::vector<double>& times) {
-                           Flight flight =
-                               follow(study_.problem.motion(), shot, times, precise, deadline(),
-                                      study_.problem.motion_copies());
+                           Flight flight = follow(study_.problem.motion(), shot, times, precise, deadline(),
+                                                  study_.problem.motion_copies());
                            return MotionSamples{std::move(flight.q), std::move(flight.v)};
                          }});
     if (shot.converged() && result_.reference && !row.error) row.status = Status::not_converged;

@@ -14,10 +14,10 @@ NodeId copied(const Graph& from, NodeId body, std::span<const NodeId> inputs, Gr
   std::unordered_map<NodeId, NodeId> image;
   for (const NodeId id : nodes_of(from, body)) {
     const Node n = from[id];
-    image[id] = n.op == Op::constant  ? to.constant(n.value)
-                : n.op == Op::input   ? inputs[n.index]
-                : arity(n.op) == 1    ? to.unary(n.op, image[n.a])
-                                      : to.binary(n.op, image[n.a], image[n.b]);
+    image[id] = n.op == Op::constant ? to.constant(n.value)
+                : n.op == Op::input  ? inputs[n.index]
+                : arity(n.op) == 1   ? to.unary(n.op, image[n.a])
+                                     : to.binary(n.op, image[n.a], image[n.b]);
   }
   return image[body];
 }

@@ -138,8 +138,8 @@ TEST(Forces, OrdersAreThoseOfTheSchemes) {
   const Problem problem = between(pendulum_with_drag, 2, start, end);
   const double exact = solved(problem, "lobatto(8)", 40).momentum_start[0];
   const std::tuple<const char*, int, double> schemes[] = {
-      {"rectangle", 64, 1}, {"rectangle-right", 64, 1}, {"midpoint", 32, 2},   {"trapezoid", 32, 2},
-      {"simpson", 32, 2},   {"linear", 32, 2},          {"quadratic", 16, 4},  {"lobatto(2)", 16, 4},
+      {"rectangle", 64, 1}, {"rectangle-right", 64, 1}, {"midpoint", 32, 2},  {"trapezoid", 32, 2},
+      {"simpson", 32, 2},   {"linear", 32, 2},          {"quadratic", 16, 4}, {"lobatto(2)", 16, 4},
       {"lobatto(3)", 8, 6}, {"gauss(2)", 16, 4},        {"gauss(3)", 8, 6}};
   for (const auto& [name, elements, order] : schemes) {
     const double coarse = momentum_error(problem, name, elements, exact),
@@ -193,8 +193,8 @@ TEST(Forces, NewtonsStepsKeepTheCopiesTogether) {
 /// d/dt ∂L/∂q' − ∂L/∂q = F holds for any split of the motion between L and F.
 TEST(Forces, PotentialForcesAreThoseOfTheLagrangian) {
   const double start[] = {1.0, 0.2}, end[] = {-0.3, 0.8};
-  const Problem forces = between({{"x", "y"}, "(x'^2 + 2*y'^2)/2 + x'*y*0.3", {"-x - y^2", "-2*x*y - y"}}, 1.5,
-                                 start, end);
+  const Problem forces =
+      between({{"x", "y"}, "(x'^2 + 2*y'^2)/2 + x'*y*0.3", {"-x - y^2", "-2*x*y - y"}}, 1.5, start, end);
   const Problem potential =
       between({{"x", "y"}, "(x'^2 + 2*y'^2)/2 + x'*y*0.3 - (x^2 + y^2)/2 - x*y^2", {}}, 1.5, start, end);
   for (const char* name : {"midpoint", "lobatto(4)", "gauss(3)"}) {
@@ -267,9 +267,9 @@ TEST(Forces, VanDerPolsLimitCycle) {
 
 /// a'' = m − c a' turns at the rate m/c.
 TEST(Forces, APeriodOfItsOwnUpToAMap) {
-  const Problem problem = closed_problem({{"a"}, "a'^2/2", {"0.5 - 0.2*a'"}}, 2.2, true,
-                                         [](double tau) { return 2 * pi * tau + 0.1 * std::sin(2 * pi * tau); },
-                                         2 * pi);
+  const Problem problem = closed_problem(
+      {{"a"}, "a'^2/2", {"0.5 - 0.2*a'"}}, 2.2, true,
+      [](double tau) { return 2 * pi * tau + 0.1 * std::sin(2 * pi * tau); }, 2 * pi);
   const Solution solution = Solver().solve(problem, {.tolerance = 1e-12});
   ASSERT_TRUE(solution.converged()) << solution.message;
   EXPECT_NEAR(solution.duration(), 2 * pi * 0.2 / 0.5, 1e-11);
@@ -350,13 +350,14 @@ TEST(Forces, FoldsOfDuffingsResponse) {
   EXPECT_NEAR(folds[1], 1.3242362, 1e-6);
 }
 
-/// The pendulum with q = 2 driven at the rate 2/3: symmetric orbits lose their stability to a pair that is not,
-/// and the period of that doubles (G. L. Baker and J. P. Gollub, Chaotic Dynamics, 2nd edition, chapter 3).
+/// The pendulum with q = 2 driven at the rate 2/3: symmetric orbits lose their stability to a pair that is
+/// not, and the period of that doubles (G. L. Baker and J. P. Gollub, Chaotic Dynamics, 2nd edition, chapter
+/// 3).
 TEST(Forces, DrivenPendulumLosesItsSymmetryAndDoublesItsPeriod) {
   const double T = 3 * pi;
   const auto pendulum = [&](double a) {
-    return closed_problem({{"x"}, "x'^2/2 + cos(x)", {fmt::format("-x'/2 + {:.17g}*cos(2*t/3)", a)}}, T, false,
-                          [](double tau) { return 1.2 * std::sin(2 * pi * tau); });
+    return closed_problem({{"x"}, "x'^2/2 + cos(x)", {fmt::format("-x'/2 + {:.17g}*cos(2*t/3)", a)}}, T,
+                          false, [](double tau) { return 1.2 * std::sin(2 * pi * tau); });
   };
   const std::vector<BranchPoint> points = points_of(driven_family(pendulum, 0.6, 1.08), 100, true);
   const auto slope_for = [](double a) -> Slope {

@@ -17,16 +17,17 @@ std::string damped(const std::string& force, const std::string& boundary, const 
          force + " }\n[boundary]\n" + boundary + "\n" + rest;
 }
 
-const std::string ends =
-    "start = { x = 1, q = \"0*i\" }\nend = { x = 0, q = [1, 2, 3] }\nduration = 2";
+const std::string both_ends = "start = { x = 1, q = \"0*i\" }\nend = { x = 0, q = [1, 2, 3] }\nduration = 2";
 
 }  // namespace
 
 TEST_F(Scenes, ForcesOfCoordinatesArraysAndElements) {
-  const Study shared = study(damped("x = \"-x'\", q = \"-c*i*q[i]'\"", ends));
-  const Study listed = study(damped("x = \"-x'\", q = [\"-c*q[1]'\", \"-c*2*q[i]'\", \"-c*i*q[3]'\"]", ends));
-  const Study single =
-      study(damped("x = \"-x'\", \"q[1]\" = \"-c*q[1]'\", \"q[2]\" = \"-2*c*q[2]'\", \"q[3]\" = \"-3*c*q[3]'\"", ends));
+  const Study shared = study(damped("x = \"-x'\", q = \"-c*i*q[i]'\"", both_ends));
+  const Study listed =
+      study(damped("x = \"-x'\", q = [\"-c*q[1]'\", \"-c*2*q[i]'\", \"-c*i*q[3]'\"]", both_ends));
+  const Study single = study(
+      damped("x = \"-x'\", \"q[1]\" = \"-c*q[1]'\", \"q[2]\" = \"-2*c*q[2]'\", \"q[3]\" = \"-3*c*q[3]'\"",
+             both_ends));
   const Solution a = run(shared), b = run(listed), c = run(single);
   ASSERT_TRUE(a.converged() && b.converged() && c.converged()) << a.message;
   for (int k = 0; k < 4; ++k) {
@@ -38,7 +39,7 @@ TEST_F(Scenes, ForcesOfCoordinatesArraysAndElements) {
 }
 
 TEST_F(Scenes, ForcesThatAreWrong) {
-  const auto force = [&](const std::string& text) { return message(damped(text, ends)); };
+  const auto force = [&](const std::string& text) { return message(damped(text, both_ends)); };
   EXPECT_EQ(force("z = \"-c\""), "scene.toml:5:11: unknown coordinate 'z'; the system has x, q");
   EXPECT_EQ(force("\"x'\" = \"-c\"").substr(0, 40), "scene.toml:5:11: unknown coordinate 'x''");
   EXPECT_EQ(force("x = \"-c*w\"").substr(0, 36), "scene.toml:5:19: unknown name 'w'; d");
@@ -48,9 +49,10 @@ TEST_F(Scenes, ForcesThatAreWrong) {
   EXPECT_EQ(force("q = [\"-c\", \"-c\", \"-b\"]").substr(0, 34), "scene.toml:5:28: unknown name 'b';");
   const std::string periodic = "periodic = true\nduration = \"free\"\n";
   const std::string guess = "[guess]\nx = \"cos(t)\"\nduration = 6\n";
-  EXPECT_EQ(message(damped("x = \"-c*x'\"", periodic + "energy = 1", guess)),
-            "scene.toml:9:10: with forces the energy is no constant, and the orbit has a period of its own; leave "
-            "'energy' out");
+  EXPECT_EQ(
+      message(damped("x = \"-c*x'\"", periodic + "energy = 1", guess)),
+      "scene.toml:9:10: with forces the energy is no constant, and the orbit has a period of its own; leave "
+      "'energy' out");
   EXPECT_EQ(message(damped("x = \"-c*x'\"", periodic + "where = \"x(0) = 1\"", guess)),
             "scene.toml:9:9: with forces an orbit has a period of its own; leave 'where' out");
   EXPECT_EQ(message(damped("x = \"-c*x'\"", "start = { x = 1 }\nduration = \"free\"\nenergy = 1", guess)),
@@ -58,12 +60,14 @@ TEST_F(Scenes, ForcesThatAreWrong) {
   EXPECT_EQ(message(damped("x = \"-c*x'\"", "start = { x = 1 }\nduration = \"free\"", guess)),
             "scene.toml:8:12: a free duration with forces needs 'where' to close it");
   EXPECT_EQ(message(damped("x = \"-c*x' + sin(t)\"", periodic, guess)),
-            "scene.toml:8:12: a free duration needs a Lagrangian that does not depend on t, and forces that do not");
-  EXPECT_EQ(message(damped("x = \"-c*x'\"", ends, "[search]\nsolutions = 3\n")).substr(0, 50),
+            "scene.toml:8:12: a free duration needs a Lagrangian that does not depend on t, and forces that "
+            "do not");
+  EXPECT_EQ(message(damped("x = \"-c*x'\"", both_ends, "[search]\nsolutions = 3\n")).substr(0, 50),
             "scene.toml:11:13: [search] looks for extremals, an");
-  EXPECT_EQ(message(damped("x = \"-c*x' + sin(t)\"", "periodic = true\nduration = 6", "[guess]\nx = \"cos(t)\"\n"))
-                .substr(0, 74),
-            "scene.toml:8:12: L does not repeat after the duration 6: the force on x ch");
+  EXPECT_EQ(
+      message(damped("x = \"-c*x' + sin(t)\"", "periodic = true\nduration = 6", "[guess]\nx = \"cos(t)\"\n"))
+          .substr(0, 74),
+      "scene.toml:8:12: L does not repeat after the duration 6: the force on x ch");
 }
 
 TEST_F(Scenes, AGuessedStateMovesByTheForces) {
@@ -77,7 +81,8 @@ TEST_F(Scenes, RivalsShootMotionsWithForces) {
   const std::string system =
       "[system]\ncoordinates = [\"x\", \"y\"]\ndefinitions = { v = \"sqrt(x'^2 + y'^2)\" }\n"
       "lagrangian = \"v^2/2*(1 + x^2/10) - 3*y\"\nforce = { x = \"-v*x'/10\", y = \"-v*y'/10 + x/5\" }\n";
-  const Study s = study(system + "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 2, y = 0.5 }\nduration = 1.5\n");
+  const Study s =
+      study(system + "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 2, y = 0.5 }\nduration = 1.5\n");
   const Solution solution = run(s);
   ASSERT_TRUE(solution.converged()) << solution.message;
   const Verification found = verify(s.problem, solution.trajectory, {.tolerance = 1e-9});
@@ -99,7 +104,7 @@ TEST_F(Scenes, RivalsShootMotionsWithForces) {
 }
 
 TEST_F(Scenes, DerivativesOfForcesAreChecked) {
-  const Inspection found = inspect(study(damped("x = \"-x'*q[2]\", q = \"-c*sin(q[i])*x\"", ends)));
+  const Inspection found = inspect(study(damped("x = \"-x'*q[2]\", q = \"-c*sin(q[i])*x\"", both_ends)));
   ASSERT_TRUE(found.with_forces);
   EXPECT_TRUE(found.with_forces->agree());
   EXPECT_TRUE(found.forces_autonomous);

@@ -28,7 +28,8 @@ TEST(TwoCopies, AreTheDifferenceOfLagrangiansAndThePowerOfTheMeanForce) {
   const double t = 0.7;
   const std::vector<double> a{0.3, 0.8}, b{-0.2, 0.4}, va{1.1, 0.2}, vb{0.5, -0.6};
   const double x = 0.05, y = 0.6, vx = 0.8, vy = -0.2;  // means
-  const double power = (-vx * (x * x + y) + std::sin(t)) * (a[0] - b[0]) + (2 * x * vx + vy) / 3 * (a[1] - b[1]);
+  const double power =
+      (-vx * (x * x + y) + std::sin(t)) * (a[0] - b[0]) + (2 * x * vx + vy) / 3 * (a[1] - b[1]);
   EXPECT_NEAR(value(*both, {a[0], a[1], b[0], b[1]}, {va[0], va[1], vb[0], vb[1]}, t),
               value(*one, a, va, t) - value(*one, b, vb, t) + power, 1e-14);
 }
@@ -37,7 +38,8 @@ TEST(TwoCopies, AreTheDifferenceOfLagrangiansAndThePowerOfTheMeanForce) {
 /// opposites.
 TEST(TwoCopies, GiveTheForceWhereTheyAgree) {
   const SystemText text{.coordinates = {"x"}, .lagrangian = "x'^2*(1 + x^2)/2 - x^4"};
-  const auto both = compile_forces(text, std::vector<ForceText>{{.formula = "-3*x'*x^2", .where = "force.x"}});
+  const auto both =
+      compile_forces(text, std::vector<ForceText>{{.formula = "-3*x'*x^2", .where = "force.x"}});
   const auto one = compile(text).lagrangian;
   Scratch scratch;
   const std::vector<double> q{0.6}, v{1.3}, qq{0.6, 0.6}, vv{1.3, 1.3};
@@ -52,16 +54,17 @@ TEST(TwoCopies, GiveTheForceWhereTheyAgree) {
   EXPECT_NEAR(two.qq[0] + two.qq[1], l.qq[0] - 6 * 1.3 * 0.6, 1e-14);  // ∂F/∂q = −6 x' x
 }
 
-/// One formula in the index is one kernel with a row an element, whatever sums it holds; a list says the same.
+/// One formula in the index is one kernel with a row an element, whatever sums it holds; a list says the
+/// same.
 TEST(TwoCopies, OneFormulaServesAnArray) {
   const SystemText text{.coordinates = {"z", "q[40]"},
                         .lagrangian = "z'^2/2 + sum(i, 1, 40, q[i]'^2/2 - q[i]^2/2)"};
-  const auto shared = compile_forces(
-      text, std::vector<ForceText>{{.first = 1,
-                                    .count = 40,
-                                    .index = 1,
-                                    .formula = "-i*q[i]' + sum(j, 1, i, q[j])/10 + (-1)^i*z",
-                                    .where = "force.q"}});
+  const auto shared =
+      compile_forces(text, std::vector<ForceText>{{.first = 1,
+                                                   .count = 40,
+                                                   .index = 1,
+                                                   .formula = "-i*q[i]' + sum(j, 1, i, q[j])/10 + (-1)^i*z",
+                                                   .where = "force.q"}});
   std::vector<ForceText> list;
   for (int i = 1; i <= 40; ++i) {
     std::string sum;

@@ -77,9 +77,7 @@ class MotionMatrix {
   double form(int k, int i, int j) const {
     return i >= j ? action_.condensed(k, i, j) : action_.condensed(k, j, i);
   }
-  std::vector<Share> shares(int element, int row) const {
-    return shares_of(element + (row >= n_), row % n_);
-  }
+  std::vector<Share> shares(int element, int row) const { return shares_of(element + (row >= n_), row % n_); }
   std::vector<Share> shares_of(int node, int a) const {
     if (node > 0 && node < elements_) return {{(node - 1) * n_ + a, 1}};
     std::vector<Share> result;

@@ -99,7 +99,7 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
       solution.minimal_period = solution.duration() / parts;
   if (problem.coordinates() > most_coordinates_for_multipliers) {
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
-                                    most_coordinates_for_multipliers);
+                                    most_coordinates_for_multipliers / (problem.paired ? 2 : 1));
   } else if (variation.count() == 0) {
     solution.message += "; multipliers are not found";
   } else {
