@@ -142,6 +142,7 @@ constexpr Exclusion pairs[] = {
     {"boundary.conditions", "boundary.start", "write the fixed ends as conditions too"},
     {"boundary.conditions", "boundary.end", "write the fixed ends as conditions too"},
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration"},
+    {"system.force", "system.curvature", "with forces there are no windows to certify"},
     {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
     {"guess.file", "guess.state", "a guess has one source"},
     {"guess.file", "guess.*", "a guess has one source"},

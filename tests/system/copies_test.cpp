@@ -34,6 +34,16 @@ TEST(TwoCopies, AreTheDifferenceOfLagrangiansAndThePowerOfTheMeanForce) {
               value(*one, a, va, t) - value(*one, b, vb, t) + power, 1e-14);
 }
 
+TEST(TwoCopies, OfTracedFunctors) {
+  const LagrangianGraph l =
+      trace_graph(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 - q[0] * q[0]; });
+  const LagrangianGraph power =
+      trace_graph(2, [](auto z, auto v, auto t) { return (t - v[0] * z[0]) * z[1]; });  // (q, λ)
+  const auto both = make_lagrangian(two_copies(l, power));
+  EXPECT_NEAR(value(*both, {0.5, 0.1}, {2, 1}, 3), (2 - 0.25) - (0.5 - 0.01) + (3 - 1.5 * 0.3) * 0.4, 1e-14);
+  EXPECT_THROW(two_copies(l, l), std::invalid_argument);
+}
+
 /// Where the copies agree the derivatives by the first are those of L and the force, by the second their
 /// opposites.
 TEST(TwoCopies, GiveTheForceWhereTheyAgree) {
