@@ -84,10 +84,17 @@ Solution solved(const Problem& problem, const std::string& name, int elements) {
   return Solver().solve(problem, {.scheme = scheme(name), .elements = elements});
 }
 
-double momentum_error(const Problem& problem, const std::string& name, int elements, double exact) {
+/// Of both momenta and of q at nodes that the meshes share.
+double error_at_nodes(const Problem& problem, const std::string& name, int elements, const Solution& exact) {
   const Solution solution = solved(problem, name, elements);
   EXPECT_TRUE(solution.converged()) << name << ": " << solution.message;
-  return std::abs(solution.momentum_start.at(0) - exact);
+  double sum = std::pow(solution.momentum_start.at(0) - exact.momentum_start[0], 2) +
+               std::pow(solution.momentum_end.at(0) - exact.momentum_end[0], 2);
+  for (int k = 1; k < 8; ++k) {
+    const double t = k * exact.duration() / 8;
+    sum += std::pow(at(solution, t) - at(exact, t), 2);
+  }
+  return std::sqrt(sum);
 }
 
 /// State by (t, state) → slope, by Runge and Kutta's steps of order four, extrapolated.
@@ -136,14 +143,14 @@ std::array<double, 2> start_of(const Solution& solution) {
 TEST(Forces, OrdersAreThoseOfTheSchemes) {
   const double start[] = {0.4}, end[] = {1.3};
   const Problem problem = between(pendulum_with_drag, 2, start, end);
-  const double exact = solved(problem, "lobatto(8)", 40).momentum_start[0];
+  const Solution exact = solved(problem, "lobatto(8)", 40);
   const std::tuple<const char*, int, double> schemes[] = {
       {"rectangle", 64, 1}, {"rectangle-right", 64, 1}, {"midpoint", 32, 2},  {"trapezoid", 32, 2},
       {"simpson", 32, 2},   {"linear", 32, 2},          {"quadratic", 16, 4}, {"lobatto(2)", 16, 4},
       {"lobatto(3)", 8, 6}, {"gauss(2)", 16, 4},        {"gauss(3)", 8, 6}};
   for (const auto& [name, elements, order] : schemes) {
-    const double coarse = momentum_error(problem, name, elements, exact),
-                 fine = momentum_error(problem, name, 2 * elements, exact);
+    const double coarse = error_at_nodes(problem, name, elements, exact),
+                 fine = error_at_nodes(problem, name, 2 * elements, exact);
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.3) << name << " " << coarse << " " << fine;
   }
 }

@@ -8,6 +8,7 @@
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/branch/motion_sign.hpp"
+#include "solve/newton/agreement.hpp"
 #include "solve/newton/ends.hpp"
 
 namespace extremal {
@@ -109,6 +110,10 @@ bool Branch::linearise(Factors factors) {
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   }
   const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter();
+  if (problem_.paired) {
+    make_agree(correction.step, problem_.coordinates());
+    make_agree(direction.step, problem_.coordinates());
+  }
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
 }
@@ -301,6 +306,7 @@ void Branch::respond(const Move& onward, Move& response) {
   ClosingEquation equation;
   const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, path_, equation);
   w_.iteration.second_variation()->respond(w_.iteration.action(), closing, load, response.step);
+  if (problem_.paired) make_agree(response.step, problem_.coordinates());
   response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
   response.add(direction, -dot(onward, response) / dot(onward, direction));
 }
