@@ -14,6 +14,8 @@ namespace {
 constexpr int most_iterations = 20;
 /// ∂L/∂q' agrees with p to roundoff; from below `quadratic` the next step of Newton ends in it.
 constexpr double roundoff = 2e-15, quadratic = 1e-8, acceptable = 1e-12;
+/// Where the search for q' begins: at rest |q'| has no derivative.
+constexpr double nearly_at_rest = 1e-6;
 
 }  // namespace
 
@@ -29,6 +31,7 @@ LaneFlow::LaneFlow(const Lagrangian& lagrangian, int copies)
       out_(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * lanes_),
       work_(static_cast<std::size_t>(n_) * lanes_),
       copies_(copies == 1 ? 0 : static_cast<std::size_t>(2 * all_) * lanes_) {
+  std::fill(v_.begin(), v_.end(), nearly_at_rest);
   for (std::size_t k = 0; k < structure_.gradient.size(); ++k) {
     const int z = structure_.gradient[k];
     if (z % all_ < n_) (z < all_ ? gradient_q_[z] : gradient_v_[z - all_]) = static_cast<int>(1 + k);
@@ -165,7 +168,7 @@ bool LaneFlow::correct_velocity(const double* p, double& before) {
   for (int i = 0; i < n_ * lanes_; ++i) {
     v_[i] += work_[i];
     // A lane that has been lost starts anew.
-    if (!std::isfinite(v_[i])) v_[i] = 0;
+    if (!std::isfinite(v_[i])) v_[i] = nearly_at_rest;
   }
   return true;
 }

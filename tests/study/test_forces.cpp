@@ -42,11 +42,11 @@ TEST_F(Scenes, ForcesThatAreWrong) {
   const auto force = [&](const std::string& text) { return message(damped(text, both_ends)); };
   EXPECT_EQ(force("z = \"-c\""), "scene.toml:5:11: unknown coordinate 'z'; the system has x, q");
   EXPECT_EQ(force("\"x'\" = \"-c\"").substr(0, 40), "scene.toml:5:11: unknown coordinate 'x''");
-  EXPECT_EQ(force("x = \"-c*w\"").substr(0, 36), "scene.toml:5:19: unknown name 'w'; d");
+  EXPECT_EQ(force("x = \"-c*w\"").substr(0, 36), "scene.toml:5:19: unknown name 'w'; i");
   EXPECT_EQ(force("q = [\"-c\", \"2\"]"), "scene.toml:5:15: 'q' has 3 elements; found 2 values");
   EXPECT_EQ(force("q = \"-c\", \"q[2]\" = \"-c\""),
-            "scene.toml:5:25: the force on q[2] is given by 'q' already");
-  EXPECT_EQ(force("q = [\"-c\", \"-c\", \"-b\"]").substr(0, 34), "scene.toml:5:28: unknown name 'b';");
+            "scene.toml:5:21: the force on q[2] is given by 'q' already");
+  EXPECT_EQ(force("q = [\"-c\", \"-c\", \"-b\"]").substr(0, 34), "scene.toml:5:30: unknown name 'b';");
   const std::string periodic = "periodic = true\nduration = \"free\"\n";
   const std::string guess = "[guess]\nx = \"cos(t)\"\nduration = 6\n";
   EXPECT_EQ(
