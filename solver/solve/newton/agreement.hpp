@@ -6,8 +6,8 @@
 
 namespace extremal {
 
-/// Moves both copies by the mean of what a step of a problem of two copies moves them by. The exact step moves
-/// both alike; along the adjoint fields its roundoff has as little against it as the equations are singular.
+/// Moves both copies by the mean of what a step moves them by. The exact step moves both alike; its roundoff
+/// along the adjoint fields grows as the equations become singular.
 void make_agree(Step& step, int coordinates);
 
 }  // namespace extremal
