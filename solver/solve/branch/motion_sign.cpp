@@ -12,9 +12,7 @@ namespace {
 class MotionMatrix {
  public:
   MotionMatrix(const Problem& problem, const DiscreteAction& action, const Path& path)
-      : problem_(problem),
-        action_(action),
-        path_(path),
+      : action_(action),
         all_(path.coordinates()),
         n_(all_ / 2),
         elements_(path.elements()),
@@ -94,9 +92,7 @@ class MotionMatrix {
         }
   }
 
-  const Problem& problem_;
   const DiscreteAction& action_;
-  const Path& path_;
   const int all_, n_, elements_;
   int rows_;
   std::map<int, int> columns_;  ///< of free unknowns of the ends
