@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/dichotomy.hpp"
 #include "analysis/symplectic.hpp"
@@ -87,6 +88,31 @@ std::ptrdiff_t shifting(const std::vector<Factor>& factors) {
   });
 }
 
+/// Largest modulus first; those of equal moduli by |argument|, the positive one first. Moduli may be known
+/// better than the numbers tell.
+template <class Modulus>
+void sort_by_modulus(Floquet& floquet, const Modulus& modulus) {
+  std::vector<std::size_t> order(floquet.multipliers.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  const auto by_argument = [&](std::size_t a, std::size_t b) {
+    const double x = std::arg(floquet.multipliers[a]), y = std::arg(floquet.multipliers[b]);
+    return std::abs(x) != std::abs(y) ? std::abs(x) < std::abs(y) : x > y;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return modulus(a) > modulus(b); });
+  for (auto first = order.begin(); first != order.end();) {
+    const auto end = std::find_if(
+        first, order.end(), [&](std::size_t k) { return modulus(k) < (1 - same_modulus) * modulus(*first); });
+    std::stable_sort(first, end, by_argument);
+    first = end;
+  }
+  const Floquet unsorted = floquet;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    floquet.multipliers[k] = unsorted.multipliers[order[k]];
+    if (!unsorted.krein.empty()) floquet.krein[k] = unsorted.krein[order[k]];
+  }
+}
+
 /// Multipliers as they are found, a pair or four at a time.
 class Collection {
  public:
@@ -135,23 +161,11 @@ class Collection {
   std::optional<Floquet> ordered() {
     for (const Entry& entry : entries_)
       if (!std::isfinite(entry.modulus) || entry.modulus == 0) return std::nullopt;
-    const auto by_argument = [](const Entry& a, const Entry& b) {
-      const double x = std::arg(a.value), y = std::arg(b.value);
-      return std::abs(x) != std::abs(y) ? std::abs(x) < std::abs(y) : x > y;
-    };
-    std::stable_sort(entries_.begin(), entries_.end(),
-                     [](const Entry& a, const Entry& b) { return a.modulus > b.modulus; });
-    for (auto first = entries_.begin(); first != entries_.end();) {
-      const auto end = std::find_if(first, entries_.end(), [&](const Entry& entry) {
-        return entry.modulus < (1 - same_modulus) * first->modulus;
-      });
-      std::stable_sort(first, end, by_argument);
-      first = end;
-    }
     for (const Entry& entry : entries_) {
       result_.multipliers.push_back(entry.value);
       result_.krein.push_back(entry.sign);
     }
+    sort_by_modulus(result_, [this](std::size_t k) { return entries_[k].modulus; });
     return result_;
   }
 
@@ -178,7 +192,16 @@ class Collection {
 
 }  // namespace
 
+void sort_multipliers(Floquet& floquet) {
+  sort_by_modulus(floquet, [&](std::size_t k) { return std::abs(floquet.multipliers[k]); });
+}
+
 std::vector<double> doubling_tests(const Floquet& floquet) {
+  if (!floquet.paired) {
+    Complex product = 1;
+    for (const Complex& value : floquet.multipliers) product *= (1.0 + value) / (1 + std::abs(value));
+    return {product.real()};
+  }
   std::vector<double> tests;
   bool first_of_two = false;  // of a pair at −1
   for (const Complex& value : floquet.multipliers) {

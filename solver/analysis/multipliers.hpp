@@ -25,6 +25,14 @@ struct ClosedOrbit {
 /// overflows, or where the error of the orbit hides its shift in time, as next to a homoclinic orbit.
 std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit);
 
+/// The same of a system with forces, by the second variation of two copies of its coordinates; `orbit` is of
+/// both. Each multiplier is as good, relative, as the flow along the orbit.
+std::optional<Floquet> floquet_with_forces(const SecondVariation& variation, const ClosedOrbit& orbit);
+
+/// Largest modulus first; those of equal moduli by |argument|, the positive one first.
+void sort_multipliers(Floquet& floquet);
+
+/// With forces Π (1 + λ)/(1 + |λ|), which changes its sign where one multiplier passes −1. Without,
 /// λ + 1/λ + 2 of every pair on the unit circle or real, divided by |λ| >= 1; ascending. One changes its sign
 /// where its pair passes −1. Pairs at 1 are left out.
 std::vector<double> doubling_tests(const Floquet& floquet);

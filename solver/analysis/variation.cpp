@@ -54,7 +54,7 @@ int degree_for(int n, int trajectory_degree) {
 }  // namespace
 
 bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
-                               const Condensed& condensed, const ClosingMap* closed, bool minimising) {
+                               const Condensed& condensed, const ClosingMap* closed, Definite definite) {
   if (trajectory.coordinates > most_coordinates)
     throw std::invalid_argument(fmt::format("second variation of {} coordinates; at most {} are possible",
                                             trajectory.coordinates, most_coordinates));
@@ -69,7 +69,7 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   pieces_.clear();
   forms_.clear();
   too_many_ = false;
-  minimising_ = minimising;
+  definite_ = definite;
   const bool taken = condensed.action && take(condensed), regular = taken || cut();
   if (!regular) pieces_.clear();
   if (regular && lagrangian_->kinks()) add_corners(closed);
@@ -185,7 +185,10 @@ bool SecondVariation::take(const Condensed& condensed) {
 
 /// Whether pieces are short enough, tried with one Jacobi field that has a share of all.
 bool SecondVariation::resolved(const DiscreteAction& action, int count, double allowed) {
-  if ((minimising_ && action.nodes.negative > 0) || !(action.nodes.pivot_ratio > least_pivot)) return false;
+  const int paired = count * action.tables().inner() / 2;
+  const int negative = definite_ == Definite::paired ? paired : 0;
+  if (definite_ != Definite::none && action.nodes.negative != negative) return false;
+  if (!(action.nodes.pivot_ratio > least_pivot)) return false;
   const SchemeTables& scheme = action.tables().scheme();
   const int n = coordinates(), functions = scheme.functions;
   steps_.resize(static_cast<std::size_t>(count + 1) * n);

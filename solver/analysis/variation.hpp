@@ -27,6 +27,11 @@ struct Condensed {
   double tail = 0;
 };
 
+/// What the form of a short piece with fixed ends must be: positive definite, so that it minimises; of as
+/// many negative squares as positive ones, as for two copies of the coordinates; or anything, where the flow
+/// of its Jacobi fields alone is wanted.
+enum class Definite { positive, paired, none };
+
 /// Pieces so short that the fixed-end form of each is positive definite and that polynomials resolve its
 /// Jacobi fields: the elements of the trajectory, halved as often as that takes. Keeps memory.
 class SecondVariation {
@@ -41,11 +46,11 @@ class SecondVariation {
   /// many, since elements do not resolve the fields by far. There are no pieces then. Throws
   /// std::invalid_argument for more than most_coordinates.
   /// Elements that another condensed are the pieces if they resolve the fields well enough for it.
-  /// Beyond T a path that is `closed` goes on; null: it ends there. Where L_vv is not positive definite no
-  /// piece is minimising: without `minimising` pieces are those that resolve Jacobi fields, for their flow
-  /// alone.
+  /// Beyond T a path that is `closed` goes on; null: it ends there. Pieces have the squares that `definite`
+  /// says.
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
-                const Condensed& condensed = {}, const ClosingMap* closed = nullptr, bool minimising = true);
+                const Condensed& condensed = {}, const ClosingMap* closed = nullptr,
+                Definite definite = Definite::positive);
   /// Whether assemble() failed because there would be too many pieces.
   bool too_many() const { return too_many_; }
 
@@ -94,7 +99,8 @@ class SecondVariation {
   const SchemeTables* scheme_ = nullptr;
   ElementTables tables_;
 
-  bool too_many_ = false, minimising_ = true;
+  bool too_many_ = false;
+  Definite definite_ = Definite::positive;
   std::vector<Kept> pieces_;
   std::vector<double> forms_;  ///< A, B, D of each piece
 

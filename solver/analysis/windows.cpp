@@ -11,7 +11,7 @@ namespace {
 constexpr double margin = 1e-6;
 
 /// Of the last piece: farther off, the distance of a conjugate time is not measured.
-constexpr double near = 0.05;
+constexpr double near_piece = 0.05;
 
 /// Conjugate times to the start of piece 0, those at T left out.
 void find_conjugate_times(SecondVariation& variation, Minimality& result) {
@@ -22,7 +22,7 @@ void find_conjugate_times(SecondVariation& variation, Minimality& result) {
   for (int k = 1; k <= last; ++k) {
     const Piece piece = variation.piece(k);
     const double distance = k == last ? fields.distance(variation, k) : INFINITY;
-    if (distance < near) result.distance = distance * piece.length;
+    if (distance < near_piece) result.distance = distance * piece.length;
     for (double tau : fields.advance(variation, k))
       if (k < last || tau < 1) times.push_back(piece.start + tau * piece.length);
   }

@@ -61,12 +61,27 @@ void print_ends(const Problem& problem) {
 
 std::string duration_text(const Duration& duration) {
   if (!duration.free) return fmt::format("{}", duration.value);
-  const std::string closed = duration.energy ? fmt::format("energy = {}", *duration.energy) : "where";
+  const std::string closed = duration.energy  ? fmt::format("energy = {}", *duration.energy)
+                             : duration.where ? "where"
+                                              : "the orbit itself";
   return fmt::format("free, guess {}, closed by {}", duration.value, closed);
 }
 
+/// Formulas as they are written.
+std::vector<std::string> force_texts(const Study& study) {
+  std::vector<std::string> texts;
+  for (const Assignment& force : study.forces) texts.push_back(assignment_text(force));
+  return texts;
+}
+
 void print_structure(const Inspection& found) {
-  line("time", found.autonomous ? "L does not depend on t: energy is conserved" : "L depends on t");
+  if (!found.autonomous)
+    line("time", "L depends on t");
+  else if (!found.with_forces)
+    line("time", "L does not depend on t: energy is conserved");
+  else
+    line("time", found.forces_autonomous ? "L and the forces do not depend on t"
+                                         : "L does not depend on t, but the forces do");
   if (found.quadratic)
     line("velocities",
          fmt::format("constant mass, entries: {}; gyroscopic: {}{}", found.mass_entries,
@@ -115,6 +130,7 @@ int check(const CheckArguments& arguments) {
   if (!study.title.empty()) line("title", study.title);
   line("coordinates", coordinates_text(study.system));
   lines("parameters", parameter_texts(study.system));
+  lines("forces", force_texts(study));
   print_ends(study.problem);
   line("duration", duration_text(study.problem.duration));
   print_structure(found);
@@ -122,7 +138,11 @@ int check(const CheckArguments& arguments) {
                                   derivatives.points, derivatives.columns, 2 * study.problem.coordinates()));
   print_worst(study, "first", derivatives.gradient);
   print_worst(study, "second", derivatives.hessian);
-  if (derivatives.agree()) return Exit::done;
+  if (found.with_forces) {
+    print_worst(study, "forces, first", found.with_forces->gradient);
+    print_worst(study, "second", found.with_forces->hessian);
+  }
+  if (derivatives.agree() && (!found.with_forces || found.with_forces->agree())) return Exit::done;
   print_error(fmt::format("{}: {}", arguments.scene,
                           derivatives.points ? "derivatives and difference quotients do not agree"
                                              : "L is not finite at any point that was tried"));

@@ -26,4 +26,12 @@ std::string parameter_text(const std::string& name, const std::vector<std::strin
                      values.size() > most ? fmt::format(", … {} values", values.size()) : "");
 }
 
+std::string assignment_text(const Assignment& assignment) {
+  std::vector<std::string> values;
+  for (const Quantity& q : assignment.values)
+    values.push_back(q.formula() ? std::get<std::string>(q.value)
+                                 : fmt::format("{}", std::get<double>(q.value)));
+  return parameter_text(assignment.name, values, assignment.list);
+}
+
 }  // namespace extremal::app

@@ -28,14 +28,6 @@ int list_all() {
   return Exit::done;
 }
 
-std::string assignment_text(const Assignment& parameter) {
-  std::vector<std::string> values;
-  for (const Quantity& q : parameter.values)
-    values.push_back(q.formula() ? std::get<std::string>(q.value)
-                                 : fmt::format("{}", std::get<double>(q.value)));
-  return parameter_text(parameter.name, values, parameter.list);
-}
-
 void print_formulas(const SystemTable& system) {
   std::vector<std::string> coordinates, parameters, definitions;
   for (const Assignment& p : system.parameters) parameters.push_back(assignment_text(p));
@@ -47,6 +39,9 @@ void print_formulas(const SystemTable& system) {
   lines("definitions", definitions);
   if (system.lagrangian) line("Lagrangian", system.lagrangian->value);
   if (system.hamiltonian) line("Hamiltonian", system.hamiltonian->value);
+  std::vector<std::string> forces;
+  for (const Assignment& force : system.force) forces.push_back(assignment_text(force));
+  lines("forces", forces);
 }
 
 }  // namespace

@@ -25,21 +25,22 @@ double largest(std::span<const double> x) {
 
 }  // namespace
 
-bool Flow::suits(const Lagrangian& lagrangian) {
+bool Flow::suits(const Lagrangian& lagrangian, int copies) {
   const Structure& structure = lagrangian.structure();
-  return !structure.quadratic || MassMatrix(structure.coordinates).factor(structure.mass);
+  return !structure.quadratic ||
+         MassMatrix(structure.coordinates / copies).factor(PointEvaluator(lagrangian, copies).constant_vv());
 }
 
-Flow::Flow(const Lagrangian& lagrangian)
-    : n_(lagrangian.structure().coordinates),
+Flow::Flow(const Lagrangian& lagrangian, int copies)
+    : n_(lagrangian.structure().coordinates / copies),
       structure_(lagrangian.structure()),
-      point_(lagrangian),
+      point_(lagrangian, copies),
       mass_(n_),
       v_(n_),
       residual_(n_) {
   if (const Lagrangian* hamiltonian = hamiltonian_of(lagrangian))
     hamiltonian_ = std::make_unique<PointEvaluator>(*hamiltonian);
-  if (structure_.quadratic && !mass_.factor(structure_.mass))
+  if (structure_.quadratic && !mass_.factor(point_.constant_vv()))
     throw std::invalid_argument("the mass matrix of the Lagrangian is singular");
 }
 
@@ -65,8 +66,8 @@ bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, 
 /// p = M q' + C q + a.
 bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, double t, Order order) {
   std::copy(p.begin(), p.end(), v_.begin());
-  for (const Triplet& c : structure_.gyroscopic) v_[c.row] -= c.value * q[c.column];
-  for (std::size_t a = 0; a < structure_.linear.size(); ++a) v_[a] -= structure_.linear[a];
+  for (const Triplet& c : point_.constant_vq()) v_[c.row] -= c.value * q[c.column];
+  for (std::size_t a = 0; a < point_.linear().size(); ++a) v_[a] -= point_.linear()[a];
   mass_.solve(v_);
   return point_.evaluate(q, v_, t, order);
 }
@@ -117,7 +118,7 @@ bool Flow::slope_with_variations(double t, std::span<const double> y, std::span<
     mass_.solve(dv);
     std::fill(force.begin(), force.end(), 0.0);
     for (const Triplet& e : point_.qq()) force[e.row] += e.value * dq[e.column];
-    for (const Triplet& e : point_.vq()) force[e.column] += e.value * dv[e.row];
+    for (const Triplet& e : point_.qv()) force[e.row] += e.value * dv[e.column];
   }
   return true;
 }

@@ -14,12 +14,14 @@ namespace extremal {
 /// q' from ∂L/∂q'(q, q', t) = p, and p' = ∂L/∂q. Holds for every regular L and needs no derivative in t. The
 /// variations follow from the second derivatives of L:
 ///   L_vv δq' = δp − L_vq δq,   δp' = L_qq δq + L_vqᵀ δq'.
+/// With forces F, p' = ∂L/∂q + F: then `lagrangian` is that of two copies of the coordinates, and
+/// copies = 2, see PointEvaluator.
 class Flow {
  public:
   /// Not where constant inertia is singular: then there is no such flow.
-  static bool suits(const Lagrangian& lagrangian);
+  static bool suits(const Lagrangian& lagrangian, int copies = 1);
   /// `lagrangian` must outlive it. Throws std::invalid_argument where it does not suit.
-  explicit Flow(const Lagrangian& lagrangian);
+  explicit Flow(const Lagrangian& lagrangian, int copies = 1);
 
   int coordinates() const { return n_; }
 

@@ -5,69 +5,82 @@
 
 namespace extremal {
 
-PointEvaluator::PointEvaluator(const Lagrangian& lagrangian) : lagrangian_(lagrangian) {
+/// Coordinates a, then velocities n + a, of the first copy, are rows; of all copies columns.
+void PointEvaluator::place(int row, int column, double value, int source) {
+  const auto n = static_cast<int>(n_), all = static_cast<int>(all_);
+  const auto folded = [&](int z) { return (z % all) % n; };
+  if (row % all >= n) return;  // the second copy
+  const int block = 2 * (row >= all) + (column >= all);
+  if (source >= 0) places_.push_back({source, block, second_[block].size()});
+  second_[block].push_back({folded(row), folded(column), value});
+}
+
+PointEvaluator::PointEvaluator(const Lagrangian& lagrangian, int copies)
+    : lagrangian_(lagrangian),
+      n_(lagrangian.structure().coordinates / copies),
+      all_(lagrangian.structure().coordinates) {
   const Structure& s = lagrangian.structure();
-  const std::size_t inputs = 2 * s.coordinates + 1;
+  const std::size_t inputs = 2 * all_ + 1;
   point_ = storage_.reserve((inputs + lagrangian.rows(Order::hessian)) * lanes_);
   out_ = point_ + inputs * lanes_;
-  dq_.resize(s.coordinates);
-  dv_.resize(s.coordinates);
-  vq_ = s.gyroscopic;
-  vv_ = s.mass;
-  const int n = s.coordinates;
-  for (const auto& [row, column] : s.hessian) {
-    auto& block = row < n ? qq_ : column < n ? vq_ : vv_;
-    const int i = row < n ? row : row - n, j = column < n ? column : column - n;
-    block.push_back({i, j, 0.0});
-    if ((row < n) == (column < n) && i != j) block.push_back({j, i, 0.0});
+  dq_.resize(n_);
+  dv_.resize(n_);
+  linear_ = s.linear;
+  linear_.resize(s.linear.empty() ? 0 : n_);
+  const auto all = static_cast<int>(all_);
+  for (const Triplet& m : s.mass) place(all + m.row, all + m.column, m.value, -1);
+  for (const Triplet& c : s.gyroscopic) {
+    place(all + c.row, c.column, c.value, -1);
+    place(c.column, all + c.row, c.value, -1);
+  }
+  for (int block = 0; block < 4; ++block) constant_[block] = second_[block].size();
+  for (int k = 0; k < std::ssize(s.hessian); ++k) {
+    const auto [row, column] = s.hessian[k];
+    place(row, column, 0, k);
+    if (row != column) place(column, row, 0, k);
   }
 }
 
 bool PointEvaluator::evaluate(std::span<const double> q, std::span<const double> v, double t, Order order) {
-  const std::size_t n = dq_.size();
-  for (std::size_t a = 0; a < n; ++a) {
-    std::fill_n(point_ + a * lanes_, lanes_, q[a]);
-    std::fill_n(point_ + (n + a) * lanes_, lanes_, v[a]);
+  for (std::size_t a = 0; a < all_; ++a) {
+    std::fill_n(point_ + a * lanes_, lanes_, q[a % n_]);
+    std::fill_n(point_ + (all_ + a) * lanes_, lanes_, v[a % n_]);
   }
-  double* const times = point_ + 2 * n * lanes_;
+  double* const times = point_ + 2 * all_ * lanes_;
   std::fill_n(times, lanes_, t);
-  lagrangian_.evaluate({lanes_, lanes_, point_, point_ + n * lanes_, times}, order, out_, scratch_);
+  lagrangian_.evaluate({lanes_, lanes_, point_, point_ + all_ * lanes_, times}, order, out_, scratch_);
   return read_gradient(q, v) && (order != Order::hessian || read_hessian());
 }
 
 bool PointEvaluator::read_gradient(std::span<const double> q, std::span<const double> v) {
   const Structure& s = lagrangian_.structure();
   std::fill(dq_.begin(), dq_.end(), 0.0);
-  std::fill(dv_.begin(), dv_.end(), 0.0);
-  for (const Triplet& m : s.mass) dv_[m.row] += m.value * v[m.column];
-  for (const Triplet& c : s.gyroscopic) {
-    dv_[c.row] += c.value * q[c.column];
-    dq_[c.column] += c.value * v[c.row];
-  }
-  for (std::size_t a = 0; a < s.linear.size(); ++a) dv_[a] += s.linear[a];
+  std::copy(linear_.begin(), linear_.end(), dv_.begin());
+  if (linear_.empty()) std::fill(dv_.begin(), dv_.end(), 0.0);
+  const auto add = [&](int block, std::vector<double>& to, std::span<const double> x) {
+    for (std::size_t k = 0; k < constant_[block]; ++k) {
+      const Triplet& e = second_[block][k];
+      to[e.row] += e.value * x[e.column];
+    }
+  };
+  add(1, dq_, v);
+  add(2, dv_, q);
+  add(3, dv_, v);
   for (std::size_t k = 0; k < s.gradient.size(); ++k) {
     const auto z = static_cast<std::size_t>(s.gradient[k]);
-    (z < dq_.size() ? dq_[z] : dv_[z - dq_.size()]) += out_[(1 + k) * lanes_];
+    if (z % all_ < n_) (z < all_ ? dq_ : dv_)[z % all_] += out_[(1 + k) * lanes_];
   }
   const auto finite = [](double x) { return std::isfinite(x); };
   return std::all_of(dq_.begin(), dq_.end(), finite) && std::all_of(dv_.begin(), dv_.end(), finite);
 }
 
-/// The entries stand in the order in which the constructor listed them, after the constant ones.
 bool PointEvaluator::read_hessian() {
-  const Structure& s = lagrangian_.structure();
-  const int n = s.coordinates;
-  const double* const rows = out_ + (1 + s.gradient.size()) * lanes_;
-  std::size_t in_qq = 0, in_vq = s.gyroscopic.size(), in_vv = s.mass.size();
+  const double* const rows = out_ + (1 + lagrangian_.structure().gradient.size()) * lanes_;
   bool finite = true;
-  for (std::size_t k = 0; k < s.hessian.size(); ++k) {
-    const auto [row, column] = s.hessian[k];
-    const double value = rows[k * lanes_];
+  for (const Place& place : places_) {
+    const double value = rows[static_cast<std::size_t>(place.source) * lanes_];
     finite = finite && std::isfinite(value);
-    auto& block = row < n ? qq_ : column < n ? vq_ : vv_;
-    std::size_t& next = row < n ? in_qq : column < n ? in_vq : in_vv;
-    block[next++].value = value;
-    if ((row < n) == (column < n) && row != column) block[next++].value = value;
+    second_[place.block][place.at].value = value;
   }
   return finite;
 }

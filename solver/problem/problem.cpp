@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "problem/copies.hpp"
 #include "problem/recurrence.hpp"
 #include "problem/reduction.hpp"
 
@@ -33,7 +34,9 @@ void check_dimensions(const Problem& problem) {
           problem.boundary.rows);
 }
 
-void check_duration(const Duration& duration, bool autonomous) {
+void check_duration(const Problem& problem) {
+  const Duration& duration = problem.duration;
+  const bool autonomous = problem.motion().structure().autonomous;
   require(std::isfinite(duration.value) && duration.value > 0, "duration = {}; need a positive number",
           duration.value);
   const int closures = (duration.energy ? 1 : 0) + (duration.where ? 1 : 0);
@@ -42,10 +45,20 @@ void check_duration(const Duration& duration, bool autonomous) {
             duration.value);
     return;
   }
-  require(closures == 1, "a free duration needs exactly one of energy, where; {} given", closures);
+  require(!problem.copies || !duration.energy, "with forces the energy varies; it closes no free duration");
+  if (problem.copies && problem.periodic)
+    require(closures == 0, "with forces an orbit has a period of its own; nothing else closes it");
+  else
+    require(closures == 1, "a free duration needs exactly one of energy, where; {} given", closures);
   require(!duration.energy || std::isfinite(*duration.energy), "energy = {}; need a finite number",
           duration.energy.value_or(0));
   require(autonomous, "a free duration needs a Lagrangian that does not depend on t");
+}
+
+void check_copies(const Problem& problem) {
+  if (!problem.copies) return;
+  const int n = problem.coordinates(), found = problem.copies->structure().coordinates;
+  require(found == 2 * n, "the Lagrangian of two copies has {} coordinates; need {}", found, 2 * n);
 }
 
 void check_guess(const Guess& guess, int coordinates) {
@@ -72,7 +85,8 @@ void check_guess(const Guess& guess, int coordinates) {
 void check_initial(const Problem& problem) {
   if (!problem.initial) return;
   const std::size_t n = problem.coordinates();
-  const auto& [q, p] = *problem.initial;
+  const auto& [q, p, paired] = *problem.initial;
+  require(paired == problem.paired, "initial data are those of two copies of the coordinates or not");
   require(q.size() == n && p.size() == n, "initial data of {} coordinates and {} momenta; the system has {}",
           q.size(), p.size(), n);
   for (std::size_t a = 0; a < n; ++a)
@@ -96,13 +110,21 @@ Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialDat
 
 Problem make_problem(Problem problem) {
   check_dimensions(problem);
-  check_duration(problem.duration, problem.lagrangian->structure().autonomous);
+  check_copies(problem);
+  check_duration(problem);
   check_guess(problem.guess, problem.coordinates());
   check_initial(problem);
   problem.ends = solve_relation(problem.boundary);
+  if (problem.copies) {
+    problem.pair = std::make_shared<const Problem>(make_problem(pair_of(problem)));
+    return problem;
+  }
   check_recurrence(problem);
   if (problem.periodic) problem.symmetries = continuous_symmetries(problem);
-  problem.reduction = reduction_of(problem);
+  if (problem.paired)
+    problem.symmetries = symmetries_of_copies(problem.symmetries);
+  else
+    problem.reduction = reduction_of(problem);
   return problem;
 }
 

@@ -81,6 +81,7 @@ struct Guess {
 /// q(0) and the canonical momentum −∂S_h/∂q(0), n each: the motion is marched from there.
 struct InitialData {
   std::vector<double> q, p;
+  bool paired = false;  ///< of two copies of the coordinates, see copies.hpp
 };
 
 struct Reduction;
@@ -88,7 +89,11 @@ struct Reduction;
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
 struct Problem {
   std::shared_ptr<const Lagrangian> lagrangian;
-  std::vector<std::string> names;  ///< of the coordinates: "x", "q[1]"
+  /// With forces: the Lagrangian of two copies of the coordinates (system/copies.hpp). Null: there are none.
+  std::shared_ptr<const Lagrangian> copies;
+  std::shared_ptr<const Problem> pair;  ///< with forces: the problem of both copies, which is solved
+  bool paired = false;                  ///< the coordinates are two copies, which agree along a solution
+  std::vector<std::string> names;       ///< of the coordinates: "x", "q[1]"
   BoundaryRelation boundary;
   EndMap ends;                        ///< of `boundary`
   bool periodic = false;              ///< closed, perhaps up to a symmetry
@@ -101,13 +106,17 @@ struct Problem {
   std::optional<InitialData> initial;
 
   int coordinates() const { return boundary.coordinates; }
+  /// What the equations of motion are made of: they depend on t where this does.
+  const Lagrangian& motion() const { return copies ? *copies : *lagrangian; }
+  int motion_copies() const { return copies ? 2 : 1; }  ///< of the coordinates there
 };
 
 /// The problem whose motion starts at (q, p) and lasts that long. Throws as make_problem().
 Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration);
 
-/// Checks dimensions, durations and relations, and fills `ends`, `symmetries` and `reduction`. Throws
-/// std::invalid_argument, which a RecurrenceError is, or RelationError.
+/// Checks dimensions, durations and relations, and fills `ends`, `symmetries`, `reduction` and `pair`. Throws
+/// std::invalid_argument, which a RecurrenceError is, or RelationError. With forces a free period needs
+/// nothing that closes it.
 Problem make_problem(Problem problem);
 
 }  // namespace extremal

@@ -63,17 +63,18 @@ Json object(const BranchPoint& point, const std::vector<std::string>& names) {
   Json state = Json::object();
   for (std::size_t a = 0; a < names.size(); ++a) state[names[a]] = start.q[a];
   for (std::size_t a = 0; a < names.size(); ++a) state[velocity_key(names[a])] = start.v[a];
-  return {{"branch", point.branch},
-          {"parameter", point.parameter},
-          {"duration", solution.duration()},
-          {"energy", known(solution.energy)},
-          {"action", solution.action},
-          {"morse_index", known(solution.morse_index)},
-          {"nullity", known(solution.nullity)},
-          {"multipliers", multipliers(solution)},
-          {"krein", solution.floquet ? Json(solution.floquet->krein) : Json(nullptr)},
-          {"kind", name(point.kind)},
-          {"start", std::move(state)}};
+  return {
+      {"branch", point.branch},
+      {"parameter", point.parameter},
+      {"duration", solution.duration()},
+      {"energy", known(solution.energy)},
+      {"action", solution.action},
+      {"morse_index", known(solution.morse_index)},
+      {"nullity", known(solution.nullity)},
+      {"multipliers", multipliers(solution)},
+      {"krein", solution.floquet && solution.floquet->paired ? Json(solution.floquet->krein) : Json(nullptr)},
+      {"kind", name(point.kind)},
+      {"start", std::move(state)}};
 }
 
 Json object(const BranchRecord& record) {
@@ -81,7 +82,7 @@ Json object(const BranchRecord& record) {
           {"status", status(record.end)},
           {"message", printable(record.message, 2000)},
           {"points", record.points},
-          {"action_defect", record.worst_action_slope},
+          {"action_defect", known(record.worst_action_slope)},
           {"momentum_defect", record.worst_momentum}};
 }
 
@@ -119,8 +120,11 @@ std::string record_text(const FollowedBranch& branch, std::size_t number) {
                         record.points);
   text += fmt::format("{:<16}{}\n", "end", printable(record.message, 2000));
   if (record.points == 0) return text;
-  return text + fmt::format("{:<16}{} along the branch to {:.1e} of S; dS/dq = p to {:.1e}\n", "check",
-                            law(branch), record.worst_action_slope, record.worst_momentum);
+  const std::string action = record.worst_action_slope
+                                 ? fmt::format("{} along the branch to {:.1e} of S; dS/dq = p", law(branch),
+                                               *record.worst_action_slope)
+                                 : "momenta of the action against dL/dq'";
+  return text + fmt::format("{:<16}{} to {:.1e}\n", "check", action, record.worst_momentum);
 }
 
 }  // namespace

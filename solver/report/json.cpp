@@ -66,6 +66,7 @@ class Fields {
     append_number("action", known(any, solution.action));
     append_number("energy", solution.energy);
     append_number("energy_drift", solution.energy_drift);
+    if (solution.work) append_number("work", solution.work);
     append_number("error_estimate", known(converged_, solution.error_estimate));
     append_number("residual", known(any, solution.residual));
   }
@@ -102,10 +103,11 @@ class Fields {
       for (const std::complex<double>& value : floquet->multipliers)
         values.push_back({number("multipliers", value.real()), number("multipliers", value.imag())});
     append(object_, "multipliers", floquet ? std::move(values) : Json(nullptr));
-    append(object_, "krein", floquet ? Json(floquet->krein) : Json(nullptr));
+    const bool paired = floquet && floquet->paired;
+    append(object_, "krein", paired ? Json(floquet->krein) : Json(nullptr));
     if (converged_ && result_.solution.minimal_period)
       append_number("minimal_period", result_.solution.minimal_period);
-    append_number("symplectic_defect", floquet ? std::optional(floquet->symplectic_defect) : std::nullopt);
+    append_number("symplectic_defect", paired ? std::optional(floquet->symplectic_defect) : std::nullopt);
   }
 
   void spectrum(const SolutionSpectrum& spectrum) {

@@ -86,6 +86,10 @@ std::string stability_text(const Solution& solution) {
   const Floquet& floquet = *solution.floquet;
   std::string text = floquet.stable() ? "stable" : "unstable";
   const char* separator = ": ";
+  const auto outside =
+      std::ranges::count_if(floquet.multipliers, [](const auto& x) { return std::norm(x) > 1; });
+  if (!floquet.paired && outside > 0)
+    text += fmt::format(": {} outside of the unit circle", counted(static_cast<int>(outside), "multiplier"));
   const auto list = [&](int count, const char* noun, const char* rest) {
     if (count > 0) text += std::exchange(separator, ", ") + counted(count, noun) + rest;
   };
@@ -181,6 +185,7 @@ std::string summary(const Result& result) {
     lines.add_number("duration", solution.duration());
     lines.add_number("action", solution.action);
     lines.add("energy", energy_text(solution));
+    if (solution.work) lines.add_number("work of forces", *solution.work);
     if (solution.converged()) lines.add_small("error estimate", solution.error_estimate);
     lines.add_small("residual", solution.residual);
     lines.add("index", index_text(solution));

@@ -98,6 +98,7 @@ void EndConditions::add_closing(const EndStates& ends, Values& values) const {
     }
     return;
   }
+  if (!problem_.duration.where) return;  // a period that follows by itself: the condition is none
   std::vector<double> gradient(2 * n);
   values.residual[row] = problem_.duration.where({ends.q_start.data(), n}, {ends.q_end.data(), n}, gradient);
   for (int a = 0; a < n_; ++a) {

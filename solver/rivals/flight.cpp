@@ -42,26 +42,26 @@ void check_times(std::span<const double> times) {
 }  // namespace
 
 Flight fly(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
-           std::span<const double> times, double tolerance) {
-  const std::size_t n = lagrangian.structure().coordinates;
+           std::span<const double> times, double tolerance, int copies) {
+  const std::size_t n = lagrangian.structure().coordinates / copies;
   if (q.size() != n || v.size() != n)
     throw std::invalid_argument(fmt::format(
         "a state of {} coordinates and {} velocities for a Lagrangian of {}", q.size(), v.size(), n));
   check_times(times);
-  Flow flow(lagrangian);
+  Flow flow(lagrangian, copies);
   Flight flight;
   flight.complete = carry(flow, 0, q, v, times, tolerance, {}, flight);
   return flight;
 }
 
 Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const double> times, double tolerance,
-              const Deadline& deadline) {
+              const Deadline& deadline, int copies) {
   check_times(times);
-  const std::size_t n = lagrangian.structure().coordinates;
+  const std::size_t n = lagrangian.structure().coordinates / copies;
   if (!shot.converged() || (!times.empty() && times.back() > shot.duration()))
     throw std::invalid_argument(fmt::format("a motion to {} from one of duration {}",
                                             times.empty() ? 0 : times.back(), shot.duration()));
-  Flow flow(lagrangian);
+  Flow flow(lagrangian, copies);
   Flight flight;
   auto next = times.begin();
   for (std::size_t k = 0; k + 1 < shot.times.size(); ++k) {

@@ -65,7 +65,7 @@ IntegrationCheck::IntegrationCheck(const Problem& problem, const Trajectory& tra
       n_(problem.coordinates()),
       complete_(n_ <= most_complete),
       columns_(complete_ ? 2 * n_ : probes),
-      flow_(*problem.lagrangian),
+      flow_(problem.motion(), problem.motion_copies()),
       integrator_([this](double t, auto y, auto slope) { return flow_.slope_with_variations(t, y, slope); },
                   static_cast<int>(2 * n_ * (1 + columns_))),
       shorter_([this](double t, auto y, auto slope) { return flow_.slope(t, y, slope); },

@@ -15,24 +15,30 @@ namespace {
 constexpr int most_iterations = 20;
 /// ∂L/∂q' agrees with p to roundoff; from below `quadratic` the next step of Newton ends in it.
 constexpr double roundoff = 2e-15, quadratic = 1e-8, acceptable = 1e-12;
+/// Where the search for q' begins: at rest |q'| has no derivative.
+constexpr double nearly_at_rest = 1e-6;
 
 }  // namespace
 
-LaneFlow::LaneFlow(const Lagrangian& lagrangian)
+LaneFlow::LaneFlow(const Lagrangian& lagrangian, int copies)
     : lagrangian_(lagrangian),
       hamiltonian_(hamiltonian_of(lagrangian)),
       structure_(lagrangian.structure()),
-      n_(structure_.coordinates),
+      all_(structure_.coordinates),
+      n_(all_ / copies),
       kernels_(at_simd_level(EXTREMAL_AT_EACH_LEVEL(lane_kernels))()),
       gradient_q_(n_, -1),
       gradient_v_(n_, -1),
       v_(static_cast<std::size_t>(n_) * lanes_),
       out_(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * lanes_),
-      work_(static_cast<std::size_t>(n_) * lanes_) {
+      work_(static_cast<std::size_t>(n_) * lanes_),
+      copies_(copies == 1 ? 0 : static_cast<std::size_t>(2 * all_) * lanes_) {
+  std::fill(v_.begin(), v_.end(), nearly_at_rest);
   for (std::size_t k = 0; k < structure_.gradient.size(); ++k) {
     const int z = structure_.gradient[k];
-    (z < n_ ? gradient_q_[z] : gradient_v_[z - n_]) = static_cast<int>(1 + k);
+    if (z % all_ < n_) (z < all_ ? gradient_q_[z] : gradient_v_[z - all_]) = static_cast<int>(1 + k);
   }
+  if (!structure_.linear.empty()) linear_.assign(structure_.linear.begin(), structure_.linear.begin() + n_);
   if (structure_.quadratic)
     invert_mass();
   else
@@ -42,7 +48,8 @@ LaneFlow::LaneFlow(const Lagrangian& lagrangian)
 
 void LaneFlow::invert_mass() {
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n_, n_);
-  for (const Triplet& m : structure_.mass) mass(m.row, m.column) += m.value;
+  for (const Triplet& m : structure_.mass)
+    if (m.row < n_ && m.column < n_) mass(m.row, m.column) += m.value;
   const Eigen::PartialPivLU<Eigen::MatrixXd> factors(mass);
   if (!(factors.matrixLU().diagonal().cwiseAbs().minCoeff() > 0))
     throw std::invalid_argument("the mass matrix of the Lagrangian is singular");
@@ -54,39 +61,65 @@ void LaneFlow::invert_mass() {
         mass_inverse_.push_back({i, j, nullptr});
         values.push_back(inverse(i, j));
       }
-  for (const Triplet& c : structure_.gyroscopic) {
-    vq_.push_back({c.row, c.column, nullptr});
-    values.push_back(c.value);
-  }
+  for (const Triplet& c : structure_.gyroscopic)
+    if (c.row < n_) {
+      vq_.push_back({c.row, c.column % n_, nullptr});
+      values.push_back(c.value);
+    }
+  for (const Triplet& c : structure_.gyroscopic)
+    if (c.column < n_) {
+      qv_.push_back({c.column, c.row % n_, nullptr});
+      values.push_back(c.value);
+    }
+  constant_vq_ = static_cast<int>(vq_.size());
+  constant_qv_ = static_cast<int>(qv_.size());
   constants_.resize(values.size() * lanes_);
   for (std::size_t k = 0; k < values.size(); ++k)
     std::fill_n(constants_.data() + k * lanes_, lanes_, values[k]);
   const double* next = constants_.data();
-  for (std::vector<LaneEntry>* list : {&mass_inverse_, &vq_})
+  for (std::vector<LaneEntry>* list : {&mass_inverse_, &vq_, &qv_})
     for (LaneEntry& entry : *list) {
       entry.value = next;
       next += lanes_;
     }
 }
 
-/// Second derivatives where the tape writes them; both triangles of ∂²L/∂q∂q, the lower one of ∂²L/∂q'∂q'.
+/// Of the first copy in all of them: see PointEvaluator. The Hessian by velocities is that of the first
+/// alone, as the forces do not change it where copies agree; its lower triangle is listed.
+void LaneFlow::list_entry(int row, int column, const double* value) {
+  if (row % all_ >= n_) return;
+  const LaneEntry entry{row % all_, (column % all_) % n_, value};
+  if (row < all_) {
+    (column < all_ ? qq_ : qv_).push_back(entry);
+  } else if (column < all_) {
+    vq_.push_back(entry);
+  } else if (column - all_ < n_ && column <= row) {
+    vv_.push_back(entry);
+  }
+}
+
+/// Second derivatives where the tape writes them.
 void LaneFlow::list_entries() {
   const double* value = out_.data() + (1 + structure_.gradient.size()) * lanes_;
   for (const auto& [row, column] : structure_.hessian) {
-    if (row < n_) {
-      qq_.push_back({row, column, value});
-      if (row != column) qq_.push_back({column, row, value});
-    } else if (column < n_) {
-      vq_.push_back({row - n_, column, value});
-    } else {
-      vv_.push_back({row - n_, column - n_, value});
-    }
+    list_entry(row, column, value);
+    if (row != column) list_entry(column, row, value);
     value += lanes_;
   }
 }
 
 void LaneFlow::evaluate(const double* t, const double* y, Order order) {
-  lagrangian_.evaluate({lanes_, lanes_, y, v_.data(), t}, order, out_.data(), scratch_);
+  const std::size_t half = static_cast<std::size_t>(n_) * lanes_;
+  const double *q = y, *v = v_.data();
+  if (n_ < all_) {
+    for (int copy = 0; copy < 2; ++copy) {
+      std::copy_n(y, half, copies_.data() + copy * half);
+      std::copy_n(v_.data(), half, copies_.data() + (2 + copy) * half);
+    }
+    q = copies_.data();
+    v = q + 2 * half;
+  }
+  lagrangian_.evaluate({lanes_, lanes_, q, v, t}, order, out_.data(), scratch_);
 }
 
 /// q' from p, left in v_; and in out_ the derivatives up to `order` there.
@@ -94,10 +127,9 @@ void LaneFlow::solve_velocity(const double* t, const double* y, Order order) {
   const double* const p = y + static_cast<std::size_t>(n_) * lanes_;
   if (structure_.quadratic) {
     std::copy_n(p, n_ * lanes_, work_.data());
-    kernels_.add_products(vq_.data(), static_cast<int>(structure_.gyroscopic.size()), -1, y, work_.data(), 1,
-                          0, 0);
-    for (std::size_t a = 0; a < structure_.linear.size(); ++a)
-      for (int lane = 0; lane < lanes_; ++lane) work_[a * lanes_ + lane] -= structure_.linear[a];
+    kernels_.add_products(vq_.data(), constant_vq_, -1, y, work_.data(), 1, 0, 0);
+    for (std::size_t a = 0; a < linear_.size(); ++a)
+      for (int lane = 0; lane < lanes_; ++lane) work_[a * lanes_ + lane] -= linear_[a];
     std::fill(v_.begin(), v_.end(), 0.0);
     kernels_.add_products(mass_inverse_.data(), static_cast<int>(mass_inverse_.size()), 1, work_.data(),
                           v_.data(), 1, 0, 0);
@@ -145,7 +177,7 @@ bool LaneFlow::correct_velocity(const double* p, double& before) {
   for (int i = 0; i < n_ * lanes_; ++i) {
     v_[i] += work_[i];
     // A lane that has been lost starts anew.
-    if (!std::isfinite(v_[i])) v_[i] = 0;
+    if (!std::isfinite(v_[i])) v_[i] = nearly_at_rest;
   }
   return true;
 }
@@ -159,8 +191,7 @@ void LaneFlow::write_force(double* force) {
     else
       std::copy_n(out_.data() + gradient_q_[a] * lanes_, lanes_, to);
   }
-  kernels_.add_transposed(vq_.data(), static_cast<int>(structure_.gyroscopic.size()), v_.data(), force, 1, 0,
-                          0);
+  kernels_.add_products(qv_.data(), constant_qv_, 1, v_.data(), force, 1, 0, 0);
 }
 
 /// L_vv δq' = δp − L_vq δq,  δp' = L_qq δq + L_vqᵀ δq'.
@@ -182,7 +213,7 @@ void LaneFlow::vary(const double* y, int columns, double* slope) {
   else
     kernels_.solve(factors_.data(), n_, slope, columns, stride);
   kernels_.add_products(qq_.data(), count(qq_), 1, y, slope + half, columns, stride, stride);
-  kernels_.add_transposed(vq_.data(), count(vq_), slope, slope + half, columns, stride, stride);
+  kernels_.add_products(qv_.data(), count(qv_), 1, slope, slope + half, columns, stride, stride);
 }
 
 void LaneFlow::slope(const double* t, const double* y, int columns, double* slope) {

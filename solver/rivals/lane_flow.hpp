@@ -16,8 +16,9 @@ namespace extremal {
 /// q then p; blocks of variations (δq, δp) may follow, the same number in every lane.
 class LaneFlow {
  public:
-  /// `lagrangian` must outlive it. Throws std::invalid_argument for a singular constant mass.
-  explicit LaneFlow(const Lagrangian& lagrangian);
+  /// `lagrangian` must outlive it. Throws std::invalid_argument for a singular constant mass. For `copies`
+  /// see Flow.
+  explicit LaneFlow(const Lagrangian& lagrangian, int copies = 1);
   LaneFlow(const LaneFlow&) = delete;
   LaneFlow& operator=(const LaneFlow&) = delete;
 
@@ -30,6 +31,7 @@ class LaneFlow {
 
  private:
   void list_entries();
+  void list_entry(int row, int column, const double* value);
   void invert_mass();
   void evaluate(const double* t, const double* y, Order order);
   void solve_velocity(const double* t, const double* y, Order order);
@@ -40,11 +42,13 @@ class LaneFlow {
   const Lagrangian& lagrangian_;
   const Lagrangian* hamiltonian_;  ///< where L is made of it: q' = ∂H/∂p; rows of its gradient are those of L
   const Structure& structure_;
-  const int n_, lanes_ = simd_lanes();
+  const int all_, n_, lanes_ = simd_lanes();  ///< coordinates of the Lagrangian, and of the motion
   LaneKernels kernels_;
-  std::vector<LaneEntry> mass_inverse_, qq_, vq_, vv_;
+  std::vector<LaneEntry> mass_inverse_, qq_, qv_, vq_, vv_;
+  int constant_qv_ = 0, constant_vq_ = 0;  ///< the first entries
+  std::vector<double> linear_;
   std::vector<int> gradient_q_, gradient_v_;  ///< rows of output, or −1
-  AlignedDoubles constants_, v_, out_, work_, factors_;
+  AlignedDoubles constants_, v_, out_, work_, factors_, copies_;
   std::array<double, most_lanes> residual_ = {};  ///< of p = ∂L/∂q', by its size
   Scratch scratch_;
 };

@@ -26,9 +26,6 @@ struct LaneKernels {
   /// Row `row` of y += ± value × row `column` of x, for each entry and each of `columns` blocks of rows.
   void (*add_products)(const LaneEntry* entries, int count, double sign, const double* x, double* y,
                        int columns, long x_stride, long y_stride);
-  /// The same with the entries transposed.
-  void (*add_transposed)(const LaneEntry* entries, int count, const double* x, double* y, int columns,
-                         long x_stride, long y_stride);
   /// Sums over a block of rows of (Σ first × slope / s)² and (Σ second × slope / s)², where s is `tolerance`
   /// times the largest of y and next there; added to the first and the second group of `sums`.
   void (*add_errors)(const double* y, const double* next, const LaneStage* first, int first_count,

@@ -33,16 +33,6 @@ void add_products(const LaneEntry* entries, int count, double sign, const double
   }
 }
 
-void add_transposed(const LaneEntry* entries, int count, const double* x, double* y, int columns,
-                    long x_stride, long y_stride) {
-  for (int e = 0; e < count; ++e) {
-    const Vec value = at(entries[e].value);
-    const double* from = x + lanes * entries[e].row;
-    double* to = y + lanes * entries[e].column;
-    for (int c = 0; c < columns; ++c) row(to, c * y_stride) += value * row(from, c * x_stride);
-  }
-}
-
 void add_errors(const double* y, const double* next, const LaneStage* first, int first_count,
                 const LaneStage* second, int second_count, double tolerance, double* sums, int rows) {
   Vec scale = broadcast(0), squares5 = scale, squares3 = scale;
@@ -85,6 +75,6 @@ void solve(const double* factors, int n, double* x, int columns, long stride) {
 
 }  // namespace
 
-LaneKernels lane_kernels() { return {combine, add_products, add_transposed, add_errors, factor, solve}; }
+LaneKernels lane_kernels() { return {combine, add_products, add_errors, factor, solve}; }
 
 }  // namespace extremal::EXTREMAL_LEVEL

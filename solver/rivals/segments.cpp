@@ -26,8 +26,8 @@ Segments::Segments(const Problem& problem, int segments, const Deadline& deadlin
       segments_(segments),
       deadline_(deadline),
       conditions_(problem),
-      flow_(*problem.lagrangian),
-      lane_flow_(*problem.lagrangian),
+      flow_(problem.motion(), problem.motion_copies()),
+      lane_flow_(problem.motion(), problem.motion_copies()),
       integrator_(lane_flow_),
       first_steps_(std::max(segments, 1), 0.0),
       first_tolerances_(std::max(segments, 1), 1.0) {

@@ -21,9 +21,9 @@ struct Flight {
 };
 
 /// Integrates from (q, q') at time 0 through ascending `times` >= 0. Throws std::invalid_argument for a
-/// singular constant mass, wrong sizes or times that do not ascend.
+/// singular constant mass, wrong sizes or times that do not ascend. For `copies` see Flow.
 Flight fly(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
-           std::span<const double> times, double tolerance = 1e-13);
+           std::span<const double> times, double tolerance = 1e-13, int copies = 1);
 
 struct ShootingOptions {
   double tolerance = 1e-9;  ///< of the last correction of q, relative to the largest range or value
@@ -54,6 +54,6 @@ Shot shoot(const Problem& problem, const ShootingOptions& options = {});
 
 /// The motion found, at ascending times in [0, T]: each from the start of its segment.
 Flight follow(const Lagrangian& lagrangian, const Shot& shot, std::span<const double> times,
-              double tolerance = 1e-13, const Deadline& deadline = {});
+              double tolerance = 1e-13, const Deadline& deadline = {}, int copies = 1);
 
 }  // namespace extremal

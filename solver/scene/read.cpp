@@ -72,6 +72,7 @@ SystemTable read_system_table(const Document& document, const toml::table& table
           {std::string(key->str()), document.at(key->source()), text(document, *value)});
   system.lagrangian = text(document, table, "lagrangian");
   system.hamiltonian = text(document, table, "hamiltonian");
+  system.force = assignments(document, table["force"].as_table());
   system.curvature = number(document, table, "curvature");
   return system;
 }

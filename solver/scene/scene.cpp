@@ -33,6 +33,7 @@ SystemTable merge(SystemTable file, const SystemTable& scene) {
     file.lagrangian = scene.lagrangian;
     file.hamiltonian = scene.hamiltonian;
   }
+  overlay(file.force, scene.force);
   if (scene.curvature) file.curvature = scene.curvature;
   return file;
 }
@@ -64,7 +65,18 @@ void check_duration(const Scene& scene) {
     throw SceneError(
         scene.guess.duration->at,
         "'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or leave the guess out");
-  if (boundary.free && !closing)
+  const bool forced = !scene.system.force.empty();
+  if (forced && boundary.energy)
+    throw SceneError(boundary.energy->at,
+                     boundary.periodic
+                         ? "with forces the energy is no constant, and the orbit has a period of its own; "
+                           "leave 'energy' out"
+                         : "with forces the energy is no constant; close the duration by 'where'");
+  if (forced && boundary.periodic && boundary.where)
+    throw SceneError(boundary.where->at, "with forces an orbit has a period of its own; leave 'where' out");
+  if (boundary.free && !closing && forced && !boundary.periodic)
+    throw SceneError(boundary.duration.at, "a free duration with forces needs 'where' to close it");
+  if (boundary.free && !closing && !forced)
     throw SceneError(boundary.duration.at, "a free duration needs 'energy' or 'where' to close it");
   if (boundary.free && !scene.guess.duration && !scene.guess.file)
     throw SceneError(boundary.duration.at, "a free duration needs 'duration' in [guess], or a guess file");

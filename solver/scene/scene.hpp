@@ -46,6 +46,7 @@ struct SystemTable {
   std::vector<Assignment> parameters;
   std::vector<Definition> definitions;
   std::optional<Text> lagrangian, hamiltonian;  ///< one of them
+  std::vector<Assignment> force;
   std::optional<Number> curvature;
   std::vector<Text> axes, centres;  ///< of [about], as written
 

@@ -45,12 +45,15 @@ constexpr KeyRecord keys[] = {
      "Instead of `lagrangian`: formula of H in coordinates, momenta (`p_x`, `p_x[i]`), `t`, parameters and "
      "definitions. ∂²H/∂p∂p must be regular.",
      R"(hamiltonian = "(p_x^2 + p_y^2)/2 - mu/r")"},
+    {"system", "force", Kind::quantities, "none",
+     "Forces F that no Lagrangian has: d/dt ∂L/∂q' − ∂L/∂q = F. A formula of coordinates, velocities, `t`, "
+     "parameters and definitions; for an array a list or one formula in the index `i`.",
+     R"(force = { x = "-c*x'", q = "-c*q[i]'" })", true},
     {"system", "curvature", Kind::number, "none",
      "Bound of M⁻¹V'' for all positions. With it the windows of L = q'ᵀMq'/2 − V have the certificate "
      "`global`.",
      "curvature = 4.0"},
     {"system", "constraints", Kind::texts, "", "", "", false, false},
-    {"system", "force", Kind::text, "", "", "", true, false},
 
     {"boundary", "start", Kind::quantities, "none",
      "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
@@ -60,7 +63,8 @@ constexpr KeyRecord keys[] = {
      R"(start = { x = 1.0, p_y = 0.3, q = "0.1*i" })", true},
     {"boundary", "end", Kind::quantities, "none", "The same at t = T.",
      R"(end = { x = "-mu", "q[2]" = 0.5 })", true},
-    {"boundary", "duration", Kind::quantity, "required", R"(T > 0, or `"free"` with `energy` or `where`.)",
+    {"boundary", "duration", Kind::quantity, "required",
+     R"(T > 0, or `"free"` with `energy` or `where`; a free period with forces needs neither.)",
      "duration = \"2*pi/sqrt(mu)\""},
     {"boundary", "energy", Kind::quantity, "none",
      "Energy p·q' − L of the extremal; it determines a free duration.", "energy = -0.4"},
@@ -148,6 +152,8 @@ constexpr Exclusion pairs[] = {
     {"boundary.conditions", "boundary.start", "write the fixed ends as conditions too"},
     {"boundary.conditions", "boundary.end", "write the fixed ends as conditions too"},
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration"},
+    {"system.force", "system.curvature", "with forces there are no windows to certify"},
+    {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
     {"guess.file", "guess.state", "a guess has one source"},
     {"guess.file", "guess.*", "a guess has one source"},
     {"guess.state", "guess.*", "a guess has one source"},

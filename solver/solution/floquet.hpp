@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <complex>
 #include <vector>
 
@@ -15,7 +16,11 @@ namespace extremal {
 /// eigenvalue with one eigenvector. An error δ of the matrix moves such an eigenvalue by √δ, but μ = λ + 1/λ
 /// by δ only. Where μ cannot be told from ±2 the pair is given as exactly ±1, and counts as trivial: pairs
 /// nearer to ±1 than √δ are not resolved. The pair of the shift in time is known, and given as 1.
+///
+/// With forces the flow is not symplectic, and the eigenvalues do not come in pairs; those of an orbit that
+/// can be shifted in time have one 1 among them.
 struct Floquet {
+  bool paired = true;                             ///< as they are without forces
   std::vector<std::complex<double>> multipliers;  ///< 2n, largest modulus first, then by |argument|, + first
   /// Beside them: sign of i vᴴJv of the eigenvector v = (q, p), J = (0 I; −I 0), for multipliers on the unit
   /// circle; 0 off it and for trivial ones.
@@ -26,8 +31,11 @@ struct Floquet {
   double symplectic_defect = 0;  ///< largest |λ·λ' − 1| of pairs that are not trivial
   int trivial_pairs = 0, circle_pairs = 0, real_pairs = 0, quadruples = 0;
 
-  /// All on the unit circle.
-  bool stable() const { return real_pairs == 0 && quadruples == 0; }
+  /// None outside of the unit circle.
+  bool stable() const {
+    return paired ? real_pairs == 0 && quadruples == 0
+                  : std::ranges::all_of(multipliers, [](const auto& x) { return std::norm(x) <= 1; });
+  }
 };
 
 }  // namespace extremal

@@ -78,6 +78,7 @@ struct Solution {
 
   double action = 0;
   std::optional<double> energy, energy_drift;  ///< absent where L depends on t
+  std::optional<double> work;                  ///< with forces: theirs, ∫ F·q' dt
   double error_estimate = 0;                   ///< supremum over [0, T] of the error of q, in units of q
   double residual = 0;
   std::optional<int> morse_index, nullity;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "solution/one_copy.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
 #include "solve/march/initial_motion.hpp"
@@ -115,6 +116,8 @@ Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
 Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
+  if (problem.pair)
+    return one_copy(problem, solve(*problem.pair, options), options.scheme ? &*options.scheme : nullptr);
   std::vector<Iteration> history;
   history.reserve(32);
   SolveOptions recording = options;
@@ -129,6 +132,13 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
   if (problem.initial) return {solve(problem, options)};
+  if (problem.pair) {
+    std::vector<Solution> found = solve_all(*problem.pair, options, most);
+    for (Solution& solution : found)
+      solution = one_copy(problem, std::move(solution), options.scheme ? &*options.scheme : nullptr);
+    sort_by_action(found);
+    return found;
+  }
   Workspace& w = memory_->workspace;
   w.levels.bind(problem.lagrangian);
   SolveOptions adaptive = options;

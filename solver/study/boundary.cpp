@@ -197,8 +197,10 @@ Duration read_duration(const BoundaryTable& boundary, const System& system) {
                        fmt::format("duration = {}; it must be positive", duration.value));
     return duration;
   }
-  if (!system.lagrangian->structure().autonomous)
-    throw SceneError(boundary.duration.at, "a free duration needs a Lagrangian that does not depend on t");
+  if (!(system.copies ? system.copies : system.lagrangian)->structure().autonomous)
+    throw SceneError(boundary.duration.at,
+                     fmt::format("a free duration needs a Lagrangian that does not depend on t{}",
+                                 system.copies ? ", and forces that do not" : ""));
   if (boundary.energy) duration.energy = evaluate(*boundary.energy, system);
   if (boundary.where)
     duration.where = placed(*boundary.where, [&](const std::string& s) {

@@ -41,7 +41,7 @@ class Comparer {
       : study_(study),
         options_(options),
         total_(deadline_of(study)),
-        shifts_(study.problem.periodic && study.problem.lagrangian->structure().autonomous) {
+        shifts_(study.problem.periodic && study.problem.motion().structure().autonomous) {
     study_.options.elements = 0;
     study_.options.progress = nullptr;
     result_.title = study.title;
@@ -142,8 +142,8 @@ class Comparer {
     ComparisonRow row{method.name, tolerance, median(std::move(seconds)), std::nullopt, shot.status};
     if (shot.converged() && result_.reference)
       row.error = error({shot.duration(), [&](const std::vector<double>& times) {
-                           Flight flight =
-                               follow(*study_.problem.lagrangian, shot, times, precise, deadline());
+                           Flight flight = follow(study_.problem.motion(), shot, times, precise, deadline(),
+                                                  study_.problem.motion_copies());
                            return MotionSamples{std::move(flight.q), std::move(flight.v)};
                          }});
     if (shot.converged() && result_.reference && !row.error) row.status = Status::not_converged;

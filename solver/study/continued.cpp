@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "problem/copies.hpp"
 #include "problem/recurrence.hpp"
 #include "study/boundary.hpp"
 #include "study/modelling.hpp"
@@ -34,9 +35,13 @@ Continued varied_duration(const ContinuationTable& table, const Problem& problem
   if (problem.duration.free)
     throw SceneError(position(table.parameter, 0),
                      "the duration is free, so it cannot be varied; vary \"energy\" or a parameter");
-  if (!problem.lagrangian->structure().autonomous)
+  if (!problem.motion().structure().autonomous)
     throw SceneError(position(table.parameter, 0),
                      "varying the duration needs a Lagrangian that does not depend on t");
+  if (problem.copies && problem.periodic)
+    throw SceneError(position(table.parameter, 0),
+                     "with forces that do not depend on t an orbit has a period of its own; write "
+                     "duration = \"free\" and vary a parameter");
   if (!(table.to.value > 0))
     throw SceneError(table.to.at, fmt::format("to = {}; a duration must be positive", table.to.value));
   return {"duration", {problem, Varied::duration, problem.duration.value, table.to.value, {}}};
@@ -78,6 +83,7 @@ class VariedScene {
     const System system = make_system(system_);
     Problem problem = problem_;
     problem.lagrangian = system.lagrangian;
+    problem.copies = system.copies;
     set_relation(boundary_, system, problem);
     problem.duration = read_duration(boundary_, system);
     return problem;
@@ -105,7 +111,7 @@ void check_recurrence_along(VariedScene& varied, const Problem& problem, const C
     at.guess = problem.guess;
     if (at.duration.free) at.duration.value = problem.duration.value;
     try {
-      check_recurrence(at);
+      check_recurrence(at.copies ? pair_of(at) : at);
     } catch (const RecurrenceError& e) {
       throw SceneError(
           position(table.parameter, 0),

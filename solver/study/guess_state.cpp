@@ -107,7 +107,7 @@ struct Bounds {
 };
 
 template <class Real, class AnyFlow>
-SampledMotion sample(const InitialState& state, double from, double to, const Bounds& bounds,
+SampledMotion sample(AnyFlow&& flow, const InitialState& state, double from, double to, const Bounds& bounds,
                      const Anchor<Real>& anchor = {}) {
   SampledMotion samples;
   int taken = 0;
@@ -116,8 +116,7 @@ SampledMotion sample(const InitialState& state, double from, double to, const Bo
     return steps < most && !bounds.deadline.passed();
   };
   const MotionSampling options{tolerance<Real>, samples_a_step, bounds.problem.duration.value, more};
-  const Lagrangian& lagrangian = *bounds.problem.lagrangian;
-  if (!sample_motion<Real>(AnyFlow(lagrangian), state.q, state.v, from, to, options, samples, anchor))
+  if (!sample_motion<Real>(flow, state.q, state.v, from, to, options, samples, anchor))
     bounds.refuse(samples, from, taken);
   return samples;
 }
@@ -168,12 +167,15 @@ class ExactMotion {
 
 /// Where it takes many steps, with as many digits as L can be evaluated in.
 SampledMotion motion_from(const InitialState& state, double from, double to, const Bounds& bounds) {
-  SampledMotion samples = sample<double, Flow>(state, from, to, bounds);
-  const Lagrangian& lagrangian = *bounds.problem.lagrangian;
+  const Problem& problem = bounds.problem;
+  SampledMotion samples =
+      sample<double>(Flow(problem.motion(), problem.motion_copies()), state, from, to, bounds);
+  const Lagrangian& lagrangian = *problem.lagrangian;
+  if (problem.copies) return samples;
   if (samples.tau.size() <= many_steps * samples_a_step || !ExtendedFlow<DoubleDouble>::suits(lagrangian))
     return samples;
   ExactMotion exact(state, from, lagrangian);
-  return sample<Extended, ExtendedFlow<Extended>>(state, from, to, bounds, std::ref(exact));
+  return sample<Extended>(ExtendedFlow<Extended>(lagrangian), state, from, to, bounds, std::ref(exact));
 }
 
 /// Where an orbit that closes arrives.

@@ -44,6 +44,9 @@ Inspection inspect(const Study& study) {
   found.momenta_solved = hamiltonian != nullptr;
   found.tapes = tapes_of(hamiltonian ? *hamiltonian : *study.system.lagrangian);
   found.derivatives = check_derivatives(study.problem, deadline_of(study));
+  if (!study.problem.pair) return found;
+  found.forces_autonomous = study.problem.copies->structure().autonomous;
+  found.with_forces = check_derivatives(*study.problem.pair, deadline_of(study));
   return found;
 }
 

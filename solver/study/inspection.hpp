@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct Inspection {
   };
   std::vector<Tape> tapes;  ///< none for a Lagrangian that is not a tape
   DerivativeCheck derivatives;
+  bool forces_autonomous = true;                    ///< forces, if there are any, do not depend on t
+  std::optional<DerivativeCheck> with_forces = {};  ///< of the Lagrangian of two copies of the coordinates
 };
 Inspection inspect(const Study& study);
 

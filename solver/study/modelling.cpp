@@ -2,8 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "study/naming.hpp"
+
 namespace extremal {
 namespace {
+
+std::string force_place(const Assignment& force, std::size_t value) {
+  return force.list ? fmt::format("force.{}[{}]", force.name, value + 1) : "force." + force.name;
+}
 
 /// The texts of a system under the names that their errors have.
 std::map<std::string, Text> places_of(const SystemTable& table) {
@@ -18,6 +24,10 @@ std::map<std::string, Text> places_of(const SystemTable& table) {
   }
   for (const Definition& d : table.definitions) places["definitions." + d.name] = d.formula;
   places[table.hamiltonian ? "hamiltonian" : "lagrangian"] = table.law();
+  for (const Assignment& force : table.force)
+    for (std::size_t k = 0; k < force.values.size(); ++k)
+      if (const auto* formula = std::get_if<std::string>(&force.values[k].value))
+        places[force_place(force, k)] = {*formula, force.values[k].at};
   return places;
 }
 
@@ -37,6 +47,35 @@ SystemText text_of(const SystemTable& table) {
   return text;
 }
 
+std::string formula_of(const Quantity& quantity) {
+  return quantity.formula() ? std::get<std::string>(quantity.value)
+                            : fmt::format("{}", std::get<double>(quantity.value));
+}
+
+/// One entry for each formula; that of a whole array serves all of its elements.
+std::vector<ForceText> forces_of(const SystemTable& table, const System& system) {
+  std::vector<ForceText> forces;
+  std::vector<const Assignment*> given(system.names.size());
+  for (const Assignment& force : table.force) {
+    const Range range = range_of(force.name, force.name_at, system);
+    const std::size_t before = forces.size();
+    for_each_value(force, range, [&](int coordinate, const Quantity& value, int index) {
+      if (given[coordinate])
+        throw SceneError(force.name_at, fmt::format("the force on {} is given by '{}' already",
+                                                    system.names[coordinate], given[coordinate]->name));
+      given[coordinate] = &force;
+      const bool shared = range.array && !force.list;
+      if (shared && forces.size() > before) {
+        ++forces.back().count;
+        return;
+      }
+      const auto k = static_cast<std::size_t>(&value - force.values.data());
+      forces.push_back({coordinate, 1, index, formula_of(value), force_place(force, k)});
+    });
+  }
+  return forces;
+}
+
 }  // namespace
 
 SceneError at_its_place(const SystemTable& table, const FormulaError& e) {
@@ -47,7 +86,10 @@ SceneError at_its_place(const SystemTable& table, const FormulaError& e) {
 
 System make_system(const SystemTable& table) {
   try {
-    return compile(text_of(table));
+    const SystemText text = text_of(table);
+    System system = compile(text);
+    if (!table.force.empty()) system.copies = compile_forces(text, forces_of(table, system));
+    return system;
   } catch (const FormulaError& e) {
     throw at_its_place(table, e);
   } catch (const std::invalid_argument& e) {

@@ -76,6 +76,7 @@ void check_initial_data(const Scene& scene, Purpose purpose) {
 Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline, Purpose purpose) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
+  problem.copies = system.copies;
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
@@ -104,13 +105,26 @@ void check_memory(const Scene& scene, const Study& study) {
   const int degree = study.options.scheme ? study.options.scheme->degree : 2;
   const double needed = study.problem.initial
                             ? march_bytes(n, elements, degree)
-                            : solve_bytes(study.problem.lagrangian->structure(), elements, degree);
+                            : solve_bytes(study.problem.motion().structure(), elements, degree);
   const double available = available_bytes();
   if (needed > available)
     throw SceneError(
         scene.solve.elements ? scene.solve.elements->at : scene.system.at,
         fmt::format("{} coordinates and {} elements of degree {} need {} of memory; {} are available", n,
                     elements, degree, byte_text(needed), byte_text(available)));
+}
+
+/// What forces exclude: several extremals are told apart, and interior points found, by the action.
+void check_forces(const Scene& scene) {
+  if (scene.system.force.empty()) return;
+  if (scene.search)
+    throw SceneError(scene.search->solutions.at,
+                     "[search] looks for extremals, and with forces there are none; leave it out, and give "
+                     "a guess for each motion");
+  const std::optional<Text>& method = scene.solve.method;
+  if (method && method->value == name(Method::ipopt))
+    throw SceneError(position(*method, 0),
+                     "method 'ipopt' needs an action without forces; write \"newton\" or \"ceres\"");
 }
 
 Study make_study(const Scene& scene, Purpose purpose) {
@@ -123,6 +137,8 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.title = scene.title;
   study.system = make_system(scene.system);
   check_parameters_used(scene);
+  study.forces = scene.system.force;
+  check_forces(scene);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;
   study.options = read_options(scene.solve);

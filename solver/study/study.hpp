@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "problem/problem.hpp"
+#include "scene/scene.hpp"
 #include "solution/solution.hpp"
 #include "solve/solve.hpp"
 #include "study/continued.hpp"
@@ -27,6 +28,7 @@ struct Study {
   double budget = 60;  ///< seconds after which a verb tries nothing further; options.deadline may be earlier
   int solutions = 0;   ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
+  std::vector<Assignment> forces;   ///< as written; none: the problem has none
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
   double seconds_read = 0;  ///< from opening the file until this was ready

@@ -43,6 +43,7 @@ class NamesUsed {
     add(system.definitions);
     add(system.lagrangian);
     add(system.hamiltonian);
+    add(system.force);
   }
   void add(const BoundaryTable& boundary) {
     for (const auto* ends : {&boundary.start, &boundary.end, &boundary.map}) add(*ends);

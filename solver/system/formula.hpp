@@ -80,7 +80,19 @@ struct SystemText {
 struct System : Vocabulary {
   std::vector<std::string> names;  ///< of the coordinates, one an element: "x", "q[1]"
   std::shared_ptr<const Lagrangian> lagrangian;
+  std::shared_ptr<const Lagrangian> copies;  ///< with forces: see two_copies(). Null: there are none
 };
+
+/// The force on q[first] … q[first + count - 1]: one formula for all of them, in the index i.
+struct ForceText {
+  int first = 0, count = 1;
+  int index = 0;  ///< i of the first in its array; 0 for a coordinate that is none: then there is no i
+  std::string formula{};
+  std::string where{};  ///< names the text in errors
+};
+
+/// The Lagrangian of two copies of a system with forces, see two_copies(). Throws FormulaError.
+std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces);
 
 /// Parses, differentiates and compiles. Throws FormulaError, also where the second derivative of a
 /// Hamiltonian by the momenta is singular.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "system/formula_binder.hpp"
@@ -38,6 +39,28 @@ class Splitter {
 
   void split(const Formula& formula) {
     walk(plain_, formula, formula.root, {}, false);
+    finish();
+  }
+
+  /// Adds Σ factor · formula over the rows of an index that both know, `from`, `from` + 1, …
+  void add_rows(const Formula& formula, const Formula& factor, int from, int rows) {
+    const bool single = rows == 1;
+    std::vector<double> indices(rows);
+    std::iota(indices.begin(), indices.end(), from);
+    const Scope scope{single ? Slot{-1, indices[0]} : Slot{0, 0}};
+    factors_.push_back({&factor, factor.root, false, scope});
+    if (single) {
+      walk(plain_, formula, formula.root, scope, false);
+    } else {
+      TermBuilder builder(target_.graph, rows, 1, std::move(indices));
+      walk(builder, formula, formula.root, scope, false);
+      if (Term term = builder.finish(); term.arity > 0) target_.terms.push_back(std::move(term));
+    }
+    factors_.pop_back();
+  }
+
+  /// The rest of the summands becomes the first term.
+  void finish() {
     if (!target_.graph.is_constant(plain_.body(), 0) || target_.terms.empty())
       target_.terms.insert(target_.terms.begin(), plain_.finish());
   }
@@ -190,6 +213,32 @@ LagrangianGraph graph_of(Names& names, const std::string& text, const std::strin
   resolve(formula, names);
   LagrangianGraph target;
   Splitter(names, target).split(formula);
+  return target;
+}
+
+LagrangianGraph power_of(Names& names, std::span<const ForceText> forces) {
+  const int n = names.elements;
+  std::string multiplier = "multiplier";
+  while (names.find(multiplier)) multiplier += '_';
+  names.declare(Coordinate{multiplier, n, n, true}, "force");
+  std::vector<Formula> formulas, factors;
+  names.indices = {"i"};
+  for (const ForceText& force : forces) {  // the multiplier of q[first] belongs to i = index, or to i = 1
+    const int before = force.first + 1 - std::max(force.index, 1);
+    factors.push_back(parse(fmt::format("{}[i + ({})]", multiplier, before), "force"));
+    resolve(factors.back(), names);
+  }
+  names.table.erase(multiplier);
+  for (const ForceText& force : forces) {
+    formulas.push_back(parse(force.formula, force.where));
+    names.indices.clear();
+    resolve_at(formulas.back(), names, force.index);
+  }
+  LagrangianGraph target;
+  Splitter splitter(names, target);
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    splitter.add_rows(formulas[k], factors[k], std::max(forces[k].index, 1), forces[k].count);
+  splitter.finish();
   return target;
 }
 

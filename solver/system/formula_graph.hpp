@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "system/formula_names.hpp"
 #include "system/tape.hpp"
 
@@ -12,5 +15,9 @@ namespace extremal::formula {
 /// elsewhere are written out. Throws FormulaError.
 /// `where` names the text in errors. Of a Hamiltonian the velocity inputs are momenta.
 LagrangianGraph graph_of(Names& names, const std::string& text, const std::string& where);
+
+/// Σ F_a λ_a over the forces, likewise. λ stand as coordinates n … 2n − 1 beside the n of `names`. Throws
+/// FormulaError.
+LagrangianGraph power_of(Names& names, std::span<const ForceText> forces);
 
 }  // namespace extremal::formula

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "system/copies.hpp"
 #include "system/formula_graph.hpp"
 #include "system/hamiltonian.hpp"
 
@@ -49,6 +50,12 @@ System compile(const SystemText& text) {
                           : make_lagrangian(formula::graph_of(names, text.lagrangian, "lagrangian"));
   system.coordinates = std::move(names.coordinates);
   return system;
+}
+
+std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces) {
+  formula::Names names = formula::names_of(text), of_forces = formula::names_of(text);
+  const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian);
+  return make_lagrangian(two_copies(lagrangian, formula::power_of(of_forces, forces)));
 }
 
 }  // namespace extremal

@@ -228,6 +228,10 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   add_fields("solve", lines + "against = \"other.json\"\n", fields);
   add_fields("solve", "system.use = \"driven-oscillator\"\nboundary = { start = { x = 0 }, duration = 2 }\n",
              fields);
+  add_fields("solve",
+             "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2\", force = { x = \"-x'\" } }\n"
+             "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
+             fields);
   EXPECT_EQ(fields, names_in("## Fields of a result"));
 }
 

@@ -210,7 +210,5 @@ TEST_F(SceneFiles, WhatIsNotAvailableYet) {
   for (const std::string table : {"path", "fit"})
     EXPECT_EQ(message(pendulum + "[" + table + "]\nx = 1\n"),
               "scene.toml:8:2: [" + table + "] is not available yet");
-  EXPECT_EQ(message(with("lagrangian", "force = { q = \"-q'\" }\nlagrangian")),
-            "scene.toml:3:1: 'force' in [system] is not available yet");
   EXPECT_EQ(message(pendulum + "[solve]\nmethod = \"newtom\"\n"), "scene.toml:9:11: unknown method 'newtom'");
 }

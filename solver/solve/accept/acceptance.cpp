@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "action/energies.hpp"
+#include "solution/one_copy.hpp"
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
 #include "solve/accept/limits.hpp"
@@ -44,6 +45,10 @@ void read_equations(const Problem& problem, const Path& path, const Outcome& out
   const double momentum = action.momentum_scale();
   solution.residual = newton.residual() / (momentum > 0 ? momentum : 1);
   if (!factored) return;
+  if (problem.paired) {  // the inertia of two copies tells nothing
+    solution.nullity = 0;
+    return;
+  }
   const double size = scales(path, *outcome.tables).q;
   const Inertia inertia = newton.model().inertia(zero_eigenvalue_along(size, outcome.error, path.elements()));
   solution.morse_index = inertia.negative;
@@ -65,6 +70,16 @@ struct Examined {
   bool hopeless = false;
 };
 
+/// Copies that differ are no motion.
+std::optional<Refusal> copies_differ(const Trajectory& pair, double size) {
+  const double difference = difference_of_copies(pair);
+  if (difference <= most_difference_of_copies * size) return std::nullopt;
+  return Refusal{Status::not_converged,
+                 fmt::format("two copies of the coordinates, which agree along a motion with forces, differ "
+                             "by {:.1e}; try another guess",
+                             difference)};
+}
+
 Examined refused(Refusal refusal, Solution& solution) {
   solution.status = refusal.status;
   solution.message = std::move(refusal.message);
@@ -83,6 +98,9 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   read_path(problem, path, outcome, w, solution);
   if (auto fails = equations_fail(problem, options, outcome, path, w.iteration, solution))
     return refused(*std::move(fails), solution);
+  if (problem.paired)
+    if (auto fails = copies_differ(solution.trajectory, scales(path, *outcome.tables).q))
+      return refused(*std::move(fails), solution);
   Examined result{observe_energy(*problem.lagrangian, solution)};
   if (auto fails =
           elements_fail(problem, options, outcome, path, result.survey, w.iteration.action(), solution))
@@ -169,13 +187,16 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
   const Examined examined = examine_all(problem, options, found, w, better, check, solution);
   const Path& path = better ? *better : found.path;
   if (solution.converged()) {
-    const double distance = read_minimality(problem, options, w.variation, solution);
+    const double distance =
+        problem.paired ? INFINITY : read_minimality(problem, options, w.variation, solution);
+    if (problem.paired && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers)
+      w.variation.assemble(problem.lagrangian, solution.trajectory, {}, nullptr, Definite::paired);
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
     judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
   solution.pinned = options.scheme.has_value();
-  if (solution.pinned && problem.lagrangian->structure().autonomous)
+  if (solution.pinned && !problem.paired && problem.lagrangian->structure().autonomous)
     solution.element_energies = discrete_energies(*problem.lagrangian, *found.tables, path);
   const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
   if (!solution.converged()) solution = without_path(solution);

@@ -30,15 +30,17 @@ bool closed(const Problem& problem, const SolveOptions& options, const Path& pat
             const ElementTables& tables, NewtonIteration& newton) {
   const ClosingEquation* closing = newton.closing(path);
   if (!closing) return true;
+  const double duration = path.duration();
+  const bool in_range = duration > 0 && duration < longest_duration * problem.duration.value;
+  // The energy of two copies vanishes wherever they agree.
+  if (problem.paired && closing->row.empty()) return in_range;
   const double slope = newton.action().slope_duration();
   const double size = closing->row.empty() ? energy_unit(newton.action(), path.duration())
                                            : std::max(1.0, scales(path, tables).magnitude);
   const double value = closing->row.empty() ? slope + closing->value : closing->value;
   const double allowed =
       std::max(closing_tolerances * (options.elements > 0 ? 0 : options.tolerance), least_closing);
-  const double duration = path.duration();
-  return std::abs(value) <= allowed * size && duration > 0 &&
-         duration < longest_duration * problem.duration.value;
+  return std::abs(value) <= allowed * size && in_range;
 }
 
 /// The residual of the natural conditions must be within the error that momenta may have: where forces hardly

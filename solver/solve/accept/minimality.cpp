@@ -88,7 +88,7 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
     return INFINITY;
   }
   if (!assembled || !legendre_condition(*problem.lagrangian, solution.trajectory)) {
-    if (problem.periodic) memory.assemble(problem.lagrangian, solution.trajectory, {}, map, false);
+    if (problem.periodic) memory.assemble(problem.lagrangian, solution.trajectory, {}, map, Definite::none);
     return without_minima(solution);
   }
   const bool bounded = problem.curvature && is_natural(problem.lagrangian->structure());

@@ -8,6 +8,8 @@
 #include "action/energies.hpp"
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/branch/motion_sign.hpp"
+#include "solve/newton/agreement.hpp"
 #include "solve/newton/ends.hpp"
 
 namespace extremal {
@@ -109,6 +111,10 @@ bool Branch::linearise(Factors factors) {
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   }
   const bool solved = by_duration() ? linearise_duration(factors) : linearise_parameter();
+  if (problem_.paired) {
+    make_agree(correction.step, problem_.coordinates());
+    make_agree(direction.step, problem_.coordinates());
+  }
   const double length = solved ? dot(direction, direction) : 0;
   return std::isfinite(length) && length > 0 && std::isfinite(dot(correction, correction));
 }
@@ -119,6 +125,17 @@ void Branch::hold_along(const Move& direction) {
   std::vector<double> weighted = direction.step.nodes;
   for (std::size_t i = 0; i < weighted.size(); ++i) weighted[i] *= weight(static_cast<int>(i / n));
   phases_.add(weighted);
+  if (!problem_.paired) return;
+  // Of two copies the direction holds the mean alone: their difference is held by what it is across.
+  negate_second(weighted);
+  phases_.add(weighted);
+}
+
+/// Of two copies at each node.
+void Branch::negate_second(std::vector<double>& nodes) const {
+  const std::size_t n = path_.coordinates();
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (i % n >= n / 2) nodes[i] = -nodes[i];
 }
 
 bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {
@@ -275,6 +292,7 @@ double Branch::change(bool along) const {
 }
 
 const Inertia& Branch::inertia() const {
+  if (problem_.paired) inertia_ = Inertia{};
   if (!inertia_) inertia_ = w_.iteration.model().inertia(threshold_);
   return *inertia_;
 }
@@ -299,14 +317,26 @@ void Branch::respond(const Move& onward, Move& response) {
       const double tau = path_.mesh()[k], weight = path_.mesh()[k + 1] - path_.mesh()[k - 1];
       load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
     }
+  if (problem_.paired) {  // a force, which is the derivative by the difference of the copies
+    for (std::size_t i = 0; i < load.size(); ++i)
+      if (i % n >= n / 2) load[i] = load[i - n / 2];
+    negate_second(load);
+  }
   ClosingEquation equation;
   const ClosingEquation* closing = by_duration() ? &closing_ : closing_equation(problem_, path_, equation);
   w_.iteration.second_variation()->respond(w_.iteration.action(), closing, load, response.step);
+  if (problem_.paired) make_agree(response.step, problem_.coordinates());
   response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
   response.add(direction, -dot(onward, response) / dot(onward, direction));
 }
 
 int Branch::orientation(double onward) const {
+  if (problem_.paired) {
+    ClosingEquation equation;
+    const int sign = motion_sign(problem_, w_.iteration.action(), *tables_, path_,
+                                 closing_equation(problem_, path_, equation));
+    return sign == 0 || (sign < 0) == (onward * direction.parameter < 0) ? 1 : -1;
+  }
   const bool negative = (inertia().negative % 2 != 0) != (onward * direction.parameter * closing_sign_ < 0);
   return negative ? -1 : 1;
 }

@@ -52,6 +52,10 @@ class Branch : public ExtremalCurve {
   bool linearise(Factors factors = Factors::anew) override;
   /// Whether there are factors of a path in the same problem and on the same elements.
   bool factored() const { return factored_; }
+  /// Whether null directions of the equations are those of single points, as of folds, and not of a family
+  /// that is degenerate; a branch that begins at such a point knows it from the branch that it leaves.
+  bool regular() const { return folds_ == true; }
+  void set_regular() { folds_ = true; }
   /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
   bool defined() const { return defined_; }
   /// Over (q(0), q(T)): a displacement of the ends that had better close the equations near the path that was
@@ -107,6 +111,7 @@ class Branch : public ExtremalCurve {
   bool linearise_parameter();
   bool evaluate(const ClosingEquation* closing, Factors factors);
   void hold_along(const Move& direction);
+  void negate_second(std::vector<double>& nodes) const;
   double energy_change(const Move& move) const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);

@@ -32,6 +32,7 @@ struct BranchStart {
   Path path;          ///< after a period doubling that of the orbit run through twice
   double coordinate;  ///< see Branch
   Branch::Units units;
+  bool regular = false;  ///< see Branch, of the branch that is left
 };
 
 /// A point, and where another branch begins at it.

@@ -219,7 +219,7 @@ std::optional<BranchStart> branch_start(Tracker& tracker, const EventSearch& sea
   if (!tracker.reach(from, at - start_distance) && !tracker.reach(from, at + start_distance))
     return std::nullopt;
   const BranchState& state = tracker.state;
-  BranchStart start{kind, state.path, state.coordinate, state.units};
+  BranchStart start{kind, state.path, state.coordinate, state.units, tracker.branch().regular()};
   if (kind == PointKind::branch) return start;
   double_path(tracker.branch().problem(), state.path, tracker.branch().tables(), start.path);
   start.units.duration *= 2;

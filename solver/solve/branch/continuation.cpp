@@ -34,6 +34,7 @@ double growth(const Tracker& tracker) {
 /// The action a little onward and back against the integral of its derivative, by Simpson's rule; nearer by
 /// where that is not exact enough. Infinite where neither is known.
 double action_difference(Tracker& tracker) {
+  if (tracker.branch().problem().paired) return INFINITY;  // the action of two copies is zero
   const BranchState at = tracker.state;
   // −E T alone may be large: S vanishes for small swings.
   const double size = std::max({std::abs(at.action), std::abs(at.action_rate), at.energy_time});
@@ -174,6 +175,7 @@ bool Continuation::begin_from_solve() {
 /// crossed, and across it that branch does not go far.
 bool Continuation::begin_from_start() {
   const BranchStart start = *std::exchange(start_, std::nullopt);
+  if (start.regular) tracker_.branch().set_regular();
   if (tracker_.begin(start.path, start.coordinate, start.units, rest * start.units.extent)) {
     Branch& branch = tracker_.branch();
     const BranchState& state = tracker_.state;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "problem/copies.hpp"
+#include "solution/one_copy.hpp"
 #include "solve/periodic/doubled_orbit.hpp"
 
 namespace extremal {
@@ -25,10 +27,47 @@ ProblemFamily doubled(const ProblemFamily& family) {
   return twice;
 }
 
+/// The same problem for another duration, where that is not free.
+Problem lasting(const Problem& problem, double duration) {
+  Problem result = problem;
+  result.duration.value = duration;
+  return result;
+}
+
+/// The family of a problem with forces, its duration a parameter like others.
+ProblemFamily by_parameter(ProblemFamily family) {
+  if (family.varied != Varied::duration) return family;
+  family.varied = Varied::parameter;
+  family.at = [problem = family.problem](double duration) -> std::optional<Problem> {
+    if (!(duration > 0)) return std::nullopt;
+    return lasting(problem, duration);
+  };
+  return family;
+}
+
+/// The family of problems of two copies.
+ProblemFamily family_of_pairs(const ProblemFamily& family) {
+  ProblemFamily pairs = family;
+  pairs.problem = *family.problem.pair;
+  pairs.at = [at = family.at,
+              symmetries = pairs.problem.symmetries](double parameter) -> std::optional<Problem> {
+    const std::optional<Problem> problem = at(parameter);
+    if (!problem) return std::nullopt;
+    Problem pair = pair_of(*problem);
+    pair.symmetries = symmetries;
+    return pair;
+  };
+  return pairs;
+}
+
 }  // namespace
 
 Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
     : family_(std::move(family)), options_(std::move(options)) {
+  if (family_.problem.pair) {
+    with_forces_ = by_parameter(std::move(family_));
+    family_ = family_of_pairs(*with_forces_);
+  }
   current_.emplace(family_, options_);
   branches_.emplace_back();
 }
@@ -40,6 +79,9 @@ bool Diagram::advance() {
   }
   note();
   point_ = current_->point();
+  if (with_forces_)
+    if (const std::optional<Problem> one = with_forces_->at(point_.parameter))
+      point_.solution = one_copy(*one, std::move(point_.solution), nullptr);
   point_.branch = static_cast<int>(branches_.size()) - 1;
   ++branches_.back().points;
   if (const std::optional<BranchStart>& start = current_->start()) {
@@ -54,7 +96,10 @@ void Diagram::note() {
   BranchRecord& record = branches_.back();
   record.end = current_->end();
   record.message = current_->message();
-  record.worst_action_slope = current_->worst_action_slope();
+  if (with_forces_)
+    record.worst_action_slope.reset();
+  else
+    record.worst_action_slope = current_->worst_action_slope();
   record.worst_momentum = current_->worst_momentum();
 }
 

@@ -17,7 +17,8 @@ struct BranchRecord {
   BranchEnd end = BranchEnd::none;
   std::string message = {};  ///< why it ended
   int points = 0;
-  double worst_action_slope = 0, worst_momentum = 0;  ///< see Continuation
+  std::optional<double> worst_action_slope = 0;  ///< see Continuation; none with forces
+  double worst_momentum = 0;                     ///< likewise
 };
 
 /// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches
@@ -43,6 +44,7 @@ class Diagram {
   bool begin_next();
   void note();
 
+  std::optional<ProblemFamily> with_forces_;  ///< of one copy, if the family is of two
   ProblemFamily family_;
   ContinuationOptions options_;
   std::optional<Continuation> current_;

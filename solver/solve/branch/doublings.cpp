@@ -36,8 +36,11 @@ std::vector<double> read_doubling_tests(Tracker& tracker) {
   const Problem& problem = tracker.branch().problem();
   const Trajectory trajectory = trajectory_of(tracker.state.path);
   SecondVariation& variation = tracker.workspace().variation;
-  if (!variation.assemble(problem.lagrangian, trajectory, tracker.condensed())) return {NAN};
-  const std::optional<Floquet> found = floquet(variation, closed_orbit(problem, trajectory, 0));
+  if (!variation.assemble(problem.lagrangian, trajectory, tracker.condensed(), nullptr,
+                          problem.paired ? Definite::paired : Definite::positive))
+    return {NAN};
+  const std::optional<Floquet> found =
+      multipliers_of(problem, variation, closed_orbit(problem, trajectory, 0));
   return found ? doubling_tests(*found) : std::vector<double>{NAN};
 }
 

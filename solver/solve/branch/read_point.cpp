@@ -96,10 +96,13 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   if (!problem.periodic) return point;
   SecondVariation& variation = w.variation;
   if (problem.coordinates() <= most_coordinates_for_multipliers) {
-    if (!variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed()) &&
-        !variation.too_many()) {  // no part is minimising
-      solution.morse_index.reset();
-      variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), nullptr, false);
+    const auto assemble = [&](Definite definite) {
+      return variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), nullptr,
+                                definite);
+    };
+    if (!assemble(problem.paired ? Definite::paired : Definite::positive) && !variation.too_many()) {
+      solution.morse_index.reset();  // no part is minimising
+      assemble(Definite::none);
     }
   }
   read_stability(problem, variation, tracker.sizes().q, solution, false);

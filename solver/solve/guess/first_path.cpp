@@ -80,8 +80,23 @@ std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, co
   return displacement;
 }
 
-void bend_path(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path) {
-  if (bend.size == 0 || bend_closed(problem, bend, tables, path)) return;
+namespace {
+
+/// The second of two copies becomes the first.
+void make_agree(Path& path) {
+  const std::size_t n = path.coordinates();
+  std::vector<double> values((path.degree() + 1) * n);
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, values.data());
+    for (auto row = values.begin(); row != values.end(); row += static_cast<std::ptrdiff_t>(n))
+      std::copy_n(row, n / 2, row + static_cast<std::ptrdiff_t>(n / 2));
+    path.set_element(k, values.data());
+  }
+  path.load_ends();
+}
+
+void add_noise(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path) {
+  if (bend_closed(problem, bend, tables, path)) return;
   const std::size_t n = path.coordinates();
   const std::vector<double> extent = extents(path, negligible_extent[bend.seed % 2]);
   Noise noise(bend.seed);
@@ -93,6 +108,14 @@ void bend_path(const Problem& problem, const Bend& bend, const ElementTables& ta
         point[a] +=
             bend.size * extent[a] / m * amplitude[(m - 1) * n + a] * std::sin(m * std::numbers::pi * tau);
   });
+}
+
+}  // namespace
+
+void bend_path(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path) {
+  if (bend.size == 0) return;
+  add_noise(problem, bend, tables, path);
+  if (problem.paired) make_agree(path);
 }
 
 }  // namespace extremal

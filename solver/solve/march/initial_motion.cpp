@@ -141,7 +141,7 @@ class InitialMotion {
   bool holds_energy(const Marched& found) {
     solution_.trajectory = found.march.trajectory;
     survey_ = observe_energy(lagrangian_, solution_);
-    if (!lagrangian_.structure().autonomous) return true;
+    if (!lagrangian_.structure().autonomous || problem_.paired) return true;
     return survey_ && conserves_energy(*survey_, solution_.trajectory, options_.tolerance);
   }
 

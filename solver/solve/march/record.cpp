@@ -7,6 +7,7 @@ namespace extremal {
 MarchRecord::MarchRecord(const StepTables& tables, const InitialData& start, std::size_t expected,
                          bool recovering)
     : n_(tables.coordinates()),
+      paired_(start.paired),
       output_(tables, recovering),
       low_(3 * start.q.size(), INFINITY),
       high_(3 * start.q.size(), -INFINITY) {
@@ -43,6 +44,7 @@ void MarchRecord::add(const ElementSolver& solver, std::span<const double> x, do
   residual_ = std::max(residual_, solver.residual());
   before_ = state_;
   solver.advance(state_, time);
+  if (paired_) agree();
   double *const q = t.nodes.data() + first, *const v = t.slopes.data() + first;
   output_.read(before_, x, state_, h, q, v);
   for (int a = 0; a < n_; ++a) {
@@ -59,6 +61,15 @@ void MarchRecord::add(const ElementSolver& solver, std::span<const double> x, do
     low_[2 * n_ + a] = std::min({low_[2 * n_ + a], before_.p[a].high, p});
     high_[2 * n_ + a] = std::max({high_[2 * n_ + a], before_.p[a].high, p});
     range_p_ = std::max(range_p_, high_[2 * n_ + a] - low_[2 * n_ + a]);
+  }
+}
+
+/// The second copy becomes the first: their difference follows the adjoint equations, which amplify roundoff
+/// where forces damp the motion.
+void MarchRecord::agree() {
+  for (int a = 0, n = n_ / 2; a < n; ++a) {
+    state_.q[n + a] = state_.q[a];
+    state_.p[n + a] = {-state_.p[a].high, -state_.p[a].low};
   }
 }
 

@@ -34,7 +34,10 @@ class MarchRecord {
   March finish(March::End end);
 
  private:
+  void agree();
+
   const int n_;
+  const bool paired_;
   DenseOutput output_;
   MotionState state_, before_;
   March march_;

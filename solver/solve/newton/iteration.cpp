@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "solve/newton/agreement.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/newton/krylov.hpp"
 #include "solve/newton/limits.hpp"
@@ -115,6 +116,7 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
   model_->solve(action_, closing(path), step);
   model_->set_refining(true);
   if (refined_ && action_.extended()) refine_by_krylov(action_, *model_, path, closing(path), step);
+  if (problem_->paired) make_agree(step, problem_->coordinates());
   return length(path, step);
 }
 
@@ -247,7 +249,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
 
 /// Inverse iteration from the step, which has most of that direction already.
 bool NewtonIteration::hold_softest(const Path& path) {
-  if (model_ != condensed_.get()) return false;
+  if (model_ != condensed_.get() || problem_->paired) return false;
   held_.clear();
   if (!factor(path) || std::isnan(solve_for_step(path, step_))) return false;
   const std::size_t n = path.coordinates(), elements = path.elements();

@@ -42,6 +42,40 @@ void add_motion(const Path& path, const Generator& generator, double* direction)
   }
 }
 
+/// Of two copies what moves both alike is a null direction of the linearised equations, and a force along it
+/// closes them: a direction of one copy each. A free period takes the place of that force for the shift of
+/// time. Along a circle a rotation is a shift of time, and no direction of its own. `given`: the shift of
+/// time first, of both copies, then symmetries of one copy and of the other in turn.
+PhaseConditions of_copies(const PhaseConditions& given, std::size_t n, bool shifts, bool free_duration) {
+  constexpr double dependent = 1e-3;
+  PhaseConditions result;
+  std::vector<Eigen::VectorXd> known;  // of the first copy, orthonormal
+  for (int j = 0; j < given.count; j += j == 0 && shifts ? 1 : 2) {
+    const std::span<const double> both = given.direction(j);
+    Eigen::VectorXd part = Eigen::Map<const Eigen::VectorXd>(both.data(), std::ssize(both));
+    for (Eigen::Index row = 0; row < part.size(); row += static_cast<Eigen::Index>(n))
+      part.segment(row + static_cast<Eigen::Index>(n / 2), static_cast<Eigen::Index>(n / 2)).setZero();
+    const double before = part.norm();
+    for (const Eigen::VectorXd& other : known) part -= other.dot(part) * other;
+    if (!(part.norm() > dependent * before)) continue;
+    known.push_back(part.normalized());
+    Eigen::VectorXd other = Eigen::VectorXd::Zero(part.size());
+    for (Eigen::Index row = 0; row < part.size(); row += static_cast<Eigen::Index>(n))
+      other.segment(row + static_cast<Eigen::Index>(n / 2), static_cast<Eigen::Index>(n / 2)) =
+          part.segment(row, static_cast<Eigen::Index>(n / 2));
+    const auto add = [&](const Eigen::VectorXd& x) {
+      result.add({x.data(), static_cast<std::size_t>(x.size())});
+    };
+    if (j == 0 && shifts && free_duration) {
+      add(part + other);
+    } else {
+      add(part);
+      add(other);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
@@ -54,6 +88,7 @@ void measure_phases(const Problem& problem, const Path& path, const SchemeTables
   if (shifts) add_shift_of_time(path, scheme, std::exchange(direction, direction + size));
   for (const Generator& generator : problem.symmetries)
     add_motion(path, generator, std::exchange(direction, direction + size));
+  if (problem.paired) phases = of_copies(phases, path.coordinates(), shifts, problem.duration.free);
 }
 
 PhaseConditions independent(const PhaseConditions& phases) {

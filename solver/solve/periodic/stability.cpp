@@ -85,6 +85,11 @@ ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, d
           .symmetries = moving_symmetries(problem, trajectory)};
 }
 
+std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariation& variation,
+                                      const ClosedOrbit& orbit) {
+  return problem.paired ? floquet_with_forces(variation, orbit) : floquet(variation, orbit);
+}
+
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors) {
   if (!problem.periodic) return;
@@ -94,17 +99,17 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
       solution.minimal_period = solution.duration() / parts;
   if (problem.coordinates() > most_coordinates_for_multipliers) {
     solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
-                                    most_coordinates_for_multipliers);
+                                    most_coordinates_for_multipliers / (problem.paired ? 2 : 1));
   } else if (variation.count() == 0) {
     solution.message += "; multipliers are not found";
   } else {
     const double error = size > 0 ? solution.error_estimate / size : 0;
     const ClosedOrbit orbit = closed_orbit(problem, solution.trajectory, error);
-    solution.floquet = floquet(variation, orbit);
+    solution.floquet = multipliers_of(problem, variation, orbit);
     if (!solution.floquet)
       solution.message +=
           "; multipliers are not known: they are too large, or the orbit passes too near to a point of rest";
-    if (solution.floquet && vectors) add_vectors(variation, orbit, *solution.floquet);
+    if (solution.floquet && vectors && !problem.paired) add_vectors(variation, orbit, *solution.floquet);
   }
 }
 

@@ -13,6 +13,10 @@ namespace extremal {
 /// coordinates.
 ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, double relative_error);
 
+/// The Floquet multipliers, of one copy where the problem is of two.
+std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariation& variation,
+                                      const ClosedOrbit& orbit);
+
 /// Distances along a solution of `size` above this are not zero.
 double distinct_distance(const Solution& solution, double size);
 

@@ -87,7 +87,7 @@ bool Search::found(const char* strategy) {
 
 /// Downhill in windows.
 bool Search::by_descent(const std::vector<double>& mesh) {
-  if (refinement_.exhausted()) return false;
+  if (refinement_.exhausted() || problem_.paired) return false;
   start(mesh, bend_);
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   int steps = refinement_.steps_left() / 2;  // others may need fewer
@@ -97,7 +97,8 @@ bool Search::by_descent(const std::vector<double>& mesh) {
 
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.
 bool Search::through_other_durations() {
-  if (refinement_.exhausted() || problem_.duration.free || !problem_.lagrangian->structure().autonomous)
+  if (refinement_.exhausted() || problem_.duration.free || problem_.paired ||
+      !problem_.lagrangian->structure().autonomous)
     return false;
   const auto count = [this] { return refinement_.count_step(); };
   start(mesh_, bend_, homotopy_degree);

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "analysis/multipliers.hpp"
+#include "analysis/symplectic.hpp"
+#include "linear/dense.hpp"
+
+/// \file Floquet multipliers of orbits of systems with forces. The second variation of two copies,
+///   u = (q₁ + q₂)/2 and λ = q₁ − q₂, has in (u, λ) the form 2 λᵀA u: the linearised equations of motion.
+
+namespace extremal {
+
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Of the shift in time after a part of the orbit.
+constexpr double known_shift = 0.1;
+/// Growth within a group of columns whose block is formed: log of a factor by which it may cost accuracy.
+const double most_spread = std::log(1e4);
+/// Leading columns are mapped into themselves within this.
+constexpr double invariant_within = 1e-13;
+constexpr int most_passes = 64;
+
+/// Rows of λ and columns of u of a form of both copies: exchanging these changes its sign.
+MatrixXd linearised(const Eigen::Ref<const MatrixXd>& form) {
+  const auto n = form.rows() / 2;
+  return form.topLeftCorner(n, n) + form.topRightCorner(n, n);
+}
+
+/// From (q, p) at the start of a piece to its end: as transfer(), of forms that are not symmetric. By λ_a the
+/// action of two copies has the derivative −p_a, by λ_b p_b.
+MatrixXd motion_transfer(const Piece& piece, const VectorXd& unit) {
+  const auto n = piece.a.rows() / 2;
+  const VectorXd inverse = unit.cwiseInverse();
+  const auto scaled = [&](const MatrixXd& form) -> MatrixXd {
+    return inverse.asDiagonal() * linearised(form) * inverse.asDiagonal();
+  };
+  MatrixXd result(2 * n, 2 * n);
+  result.topLeftCorner(n, n) = scaled(piece.a);
+  result.topRightCorner(n, n).setIdentity();
+  result.topRows(n) = solved(-scaled(piece.b.transpose()), result.topRows(n));
+  result.bottomRows(n) = scaled(piece.d) * result.topRows(n);
+  result.bottomLeftCorner(n, n) += scaled(piece.b);
+  return result;
+}
+
+/// The field of the shift in time at the start of piece k, of one copy.
+VectorXd shift_of_one(const SecondVariation& variation, int k, const VectorXd& unit) {
+  const auto n = unit.size();
+  const VectorXd both = variation.shift(k);
+  VectorXd field(2 * n);
+  field << unit.asDiagonal() * both.head(n), unit.cwiseInverse().asDiagonal() * both.segment(2 * n, n);
+  return field;
+}
+
+/// The flow over the pieces, and R⁻¹ after the last; across the shift in time where it is known along the
+/// whole orbit.
+struct Factors {
+  std::vector<MatrixXd> flow;
+  bool shifted = false;
+};
+
+Factors factors_of(const SecondVariation& variation, const ClosedOrbit& orbit) {
+  const int n = variation.coordinates() / 2, count = variation.count();
+  const VectorXd unit = symplectic_units(variation).head(n);
+  Factors result;
+  std::vector<VectorXd> shifts;
+  for (int k = 0; k < count; ++k) {
+    result.flow.push_back(motion_transfer(variation.piece(k), unit));
+    shifts.push_back(shift_of_one(variation, k, unit));
+  }
+  if (orbit.map.size() > 0) {
+    const MatrixXd map = orbit.map.topLeftCorner(n, n);
+    const MatrixXd scaled = unit.asDiagonal() * map * unit.cwiseInverse().asDiagonal();
+    MatrixXd& last = result.flow.back();
+    last.topRows(n) = solved(scaled, last.topRows(n));
+    last.bottomRows(n) = (scaled.transpose() * last.bottomRows(n)).eval();
+  }
+  shifts.push_back(shifts.front());
+  result.shifted = orbit.autonomous;
+  for (int k = 0; k < count && result.shifted; ++k) {
+    const double size = shifts[k + 1].norm();
+    result.shifted = size > 0 && (result.flow[k] * shifts[k] - shifts[k + 1]).norm() <= known_shift * size;
+  }
+  if (!result.shifted) return result;
+  std::vector<MatrixXd> across;
+  for (const VectorXd& shift : shifts) across.push_back(complement(shift));
+  for (int k = 0; k < count; ++k)
+    result.flow[k] = (across[k + 1].transpose() * result.flow[k] * across[k]).eval();
+  return result;
+}
+
+/// Eigenvalues of a product of factors by orthogonal iteration through them: leading columns become invariant
+/// where the growth drops, and each group of columns has a block of its own, so that small multipliers are as
+/// good as large ones.
+class ProductEigenvalues {
+ public:
+  explicit ProductEigenvalues(const std::vector<MatrixXd>& factors)
+      : factors_(factors), n_(factors.front().rows()), triangles_(factors.size()) {
+    MatrixXd start(n_, n_);
+    for (Eigen::Index i = 0; i < start.size(); ++i) start.data()[i] = std::cos(1 + 2.4 * i);
+    after_ = start.householderQr().householderQ();
+  }
+
+  std::vector<Complex> run() {
+    for (int sweep = 0; sweep < most_passes; ++sweep) {
+      pass();
+      find_groups();
+      if (sweep > 0 && moderate()) break;
+    }
+    std::vector<Complex> values;
+    for (std::size_t g = 0; g + 1 < first_.size(); ++g) add_group(first_[g], first_[g + 1], values);
+    return values;
+  }
+
+ private:
+  void pass() {
+    before_ = after_;
+    growth_.setZero(n_);
+    for (std::size_t k = 0; k < factors_.size(); ++k) {
+      const Eigen::HouseholderQR<MatrixXd> qr(factors_[k] * after_);
+      after_ = qr.householderQ();
+      triangles_[k] = qr.matrixQR().triangularView<Eigen::Upper>();
+      growth_ += triangles_[k].diagonal().cwiseAbs().array().max(1e-300).log().matrix();
+    }
+    shift_ = before_.transpose() * after_;
+  }
+
+  void find_groups() {
+    first_.assign(1, 0);
+    for (Eigen::Index u = 1; u < n_; ++u)
+      if (shift_.bottomLeftCorner(n_ - u, u).cwiseAbs().maxCoeff() <= invariant_within) first_.push_back(u);
+    first_.push_back(n_);
+  }
+
+  bool moderate() const {
+    for (std::size_t g = 0; g + 1 < first_.size(); ++g) {
+      const auto growth = growth_.segment(first_[g], first_[g + 1] - first_[g]);
+      if (growth.maxCoeff() - growth.minCoeff() > most_spread) return false;
+    }
+    return true;
+  }
+
+  void add_group(Eigen::Index from, Eigen::Index to, std::vector<Complex>& values) const {
+    const Eigen::Index count = to - from;
+    MatrixXd block = MatrixXd::Identity(count, count);
+    double scale = 0;  // log
+    for (const MatrixXd& triangle : triangles_) {
+      block = (triangle.block(from, from, count, count) * block).eval();
+      const double size = block.cwiseAbs().maxCoeff();
+      if (!(size > 0)) break;
+      block /= size;
+      scale += std::log(size);
+    }
+    block = (shift_.block(from, from, count, count) * block).eval();
+    for (const Complex& value : general_eigenvalues(block)) values.push_back(value * std::exp(scale));
+  }
+
+  const std::vector<MatrixXd>& factors_;
+  const Eigen::Index n_;
+  std::vector<MatrixXd> triangles_;
+  MatrixXd before_, after_, shift_;
+  VectorXd growth_;  ///< log, of each column in the last pass
+  std::vector<Eigen::Index> first_;
+};
+
+}  // namespace
+
+std::optional<Floquet> floquet_with_forces(const SecondVariation& variation, const ClosedOrbit& orbit) {
+  const Factors factors = factors_of(variation, orbit);
+  for (const MatrixXd& factor : factors.flow)
+    if (!factor.allFinite()) return std::nullopt;
+  Floquet result;
+  result.paired = false;
+  if (factors.flow.front().size() > 0) result.multipliers = ProductEigenvalues(factors.flow).run();
+  if (factors.shifted) result.multipliers.emplace_back(1.0);
+  for (const Complex& value : result.multipliers)
+    if (!std::isfinite(std::abs(value))) return std::nullopt;
+  sort_multipliers(result);
+  return result;
+}
+
+}  // namespace extremal
