@@ -248,6 +248,12 @@ void check_free_steps(const Problem& problem, const Location& at) {
     throw SceneError(at,
                      "free steps give all elements the same energy, which is not conserved where L depends "
                      "on t; leave 'steps' out");
+  if (problem.copies)
+    throw SceneError(at, "free steps give all elements the same energy, which forces change; leave 'steps' out");
+  if (problem.initial)
+    throw SceneError(at,
+                     "free steps need ends: from initial data each element follows the one before; leave "
+                     "'steps' out");
   if (problem.periodic)
     throw SceneError(at,
                      "free steps need ends: the nodes of a closed orbit can all be shifted along it; leave "

@@ -157,8 +157,9 @@ class Comparer {
     const std::size_t n = initial.q.size();
     const double duration = study_.problem.duration.value;
     ComparisonRow row{"dop853", tolerance, 0, std::nullopt, Status::not_converged};
-    if (!Flow::suits(*study_.problem.lagrangian)) return row;
-    Flow flow(*study_.problem.lagrangian);
+    const int copies = study_.problem.motion_copies();
+    if (!Flow::suits(study_.problem.motion(), copies)) return row;
+    Flow flow(study_.problem.motion(), copies);
     const IntegrationOptions options{
         .tolerance = tolerance, .block = static_cast<int>(n), .deadline = deadline()};
     std::vector<double> y(2 * n), between(2 * n), v(n);

@@ -54,7 +54,7 @@ System compile(const SystemText& text) {
 
 std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces) {
   formula::Names names = formula::names_of(text), of_forces = formula::names_of(text);
-  const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian);
+  const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian, "lagrangian");
   return make_lagrangian(two_copies(lagrangian, formula::power_of(of_forces, forces)));
 }
 

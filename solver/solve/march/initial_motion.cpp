@@ -238,6 +238,7 @@ class InitialMotion {
           "; the motion crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
           kinked);
     solution_.degree = found.tables->degree();
+    solution_.pinned = options_.scheme.has_value();
     solution_.unknowns = static_cast<int>(std::min<long long>(
         static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));
     solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
