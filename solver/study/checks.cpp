@@ -249,7 +249,8 @@ void check_free_steps(const Problem& problem, const Location& at) {
                      "free steps give all elements the same energy, which is not conserved where L depends "
                      "on t; leave 'steps' out");
   if (problem.copies)
-    throw SceneError(at, "free steps give all elements the same energy, which forces change; leave 'steps' out");
+    throw SceneError(at,
+                     "free steps give all elements the same energy, which forces change; leave 'steps' out");
   if (problem.initial)
     throw SceneError(at,
                      "free steps need ends: from initial data each element follows the one before; leave "

@@ -222,6 +222,7 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   const std::string orbit = without("", "search");
   add_fields("solve", orbit, fields);
   add_fields("solve", complete, fields, {"--samples", "2"});
+  add_fields("solve", orbit, fields, {"--set", "solve.scheme=lobatto(4)"});
   const std::string lines = orbit + "[spectrum]\n";
   add_fields("spectrum", lines, fields);
   fs::rename(folder / "out.json", folder / "other.json");

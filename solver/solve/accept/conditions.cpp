@@ -35,12 +35,15 @@ bool closed(const Problem& problem, const SolveOptions& options, const Path& pat
   // The energy of two copies vanishes wherever they agree.
   if (problem.paired && closing->row.empty()) return in_range;
   const double slope = newton.action().slope_duration();
-  const double size = closing->row.empty() ? energy_unit(newton.action(), path.duration())
+  // An energy may be zero: then it is known against those along the path.
+  const double size = closing->row.empty() ? std::abs(slope) + std::abs(closing->value)
                                            : std::max(1.0, scales(path, tables).magnitude);
+  const double unit = closing->row.empty() ? energy_unit(newton.action(), path.duration()) : size;
   const double value = closing->row.empty() ? slope + closing->value : closing->value;
-  const double allowed =
+  const double share =
       std::max(closing_tolerances * (options.elements > 0 ? 0 : options.tolerance), least_closing);
-  return std::abs(value) <= allowed * size && in_range;
+  const double allowed = std::max(share * size, closing_roundoff * unit);
+  return std::abs(value) <= allowed && in_range;
 }
 
 /// The residual of the natural conditions must be within the error that momenta may have: where forces hardly

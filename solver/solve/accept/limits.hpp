@@ -24,8 +24,9 @@ namespace conditions {
 inline constexpr double largest_residual = 1e-6;
 /// Strong forces sum up a hundred times as many terms as those that cancel along a body at rest.
 inline constexpr double strong_force_roundoff = 100 * force_roundoff;
-/// The closing equation holds to so many tolerances, or to this, relative to its terms.
-inline constexpr double closing_tolerances = 10, least_closing = 1e-6;
+/// The closing equation holds to so many tolerances, or to this, relative to its terms; or to roundoff of the
+/// energies along the path.
+inline constexpr double closing_tolerances = 10, least_closing = 1e-6, closing_roundoff = 1e-13;
 /// A duration this much longer than the guess's has run away.
 inline constexpr double longest_duration = 1e6;
 /// Forces that hold closed paths, in tolerances of the range of momenta: a small part of

@@ -185,7 +185,8 @@ bool Refinement::closes_beside_kinks() const {
   const DiscreteAction& action = w_.iteration.action();
   return std::ranges::all_of(action.corners(), [&](const Corner& corner) {
     const double away = std::abs(corner.u / corner.rate) / path_.duration();
-    return corner.node < path_.elements() || away <= std::max(options_.tolerance, limits::kinks::least_misplacement);
+    return corner.node < path_.elements() ||
+           away <= std::max(options_.tolerance, limits::kinks::least_misplacement);
   });
 }
 
