@@ -5,6 +5,17 @@ namespace {
 
 std::vector<Recipe> one_coordinate() {
   return {
+      {.system = "lotka-volterra",
+       .parameters = {{"a", 0.5, 2}, {"b", 0.5, 2}, {"c", 0.5, 2}, {"d", 0.5, 2}},
+       .positions = {{"y", -1.5, 1}},
+       .velocities = {{"y", -0.8, 0.8}},
+       .time = 7},
+      {.system = "relativistic-oscillator",
+       .parameters = {{"m", 0.3, 3}, {"c", 0.5, 5}, {"k", 0.3, 3}},
+       .positions = {{"x", -1.5, 1.5}},
+       .velocities = {{"x", -0.4, 0.4}},
+       .time = 7,
+       .maps = {R"({ x = "-x" })"}},
       {.system = "oscillator",
        .parameters = {{"m", 0.2, 5}, {"omega", 0.3, 3}},
        .positions = {{"x", -1, 1}},
@@ -35,6 +46,38 @@ std::vector<Recipe> one_coordinate() {
        .velocities = {{"theta", -7, 7}},
        .time = 2.5,
        .maps = {R"({ theta = "-theta" })", R"({ theta = "theta + 2*pi" })"}},
+  };
+}
+
+std::vector<Recipe> with_forces() {
+  return {
+      {.system = "damped-pendulum",
+       .parameters = {{"l", 0.2, 3}, {"g", 1, 20}, {"c", 0.05, 3}},
+       .positions = {{"theta", -3.1, 3.1}},
+       .velocities = {{"theta", -7, 7}},
+       .time = 2.5,
+       .forced = true},
+      {.system = "duffing",
+       .parameters = {{"b", 0.1, 2}, {"c", 0.02, 1}, {"f", 0.05, 2}, {"w", 0.3, 3}},
+       .positions = {{"x", -1.5, 1.5}},
+       .velocities = {{"x", -1.5, 1.5}},
+       .time = 6,
+       .autonomous = false,
+       .forced = true,
+       .period = "2*pi/w"},
+      {.system = "projectile",
+       .parameters = {{"k", 1e-4, 0.01}},
+       .positions = {{"x", -20, 20}, {"y", 0, 20}},
+       .velocities = {{"x", -30, 30}, {"y", -30, 30}},
+       .time = 2,
+       .forced = true},
+      {.system = "van-der-pol",
+       .parameters = {{"mu", 0.1, 5}},
+       .positions = {{"x", -2, 2}},
+       .velocities = {{"x", -3, 3}},
+       .time = 6.5,
+       .maps = {R"({ x = "-x" })"},
+       .forced = true},
   };
 }
 
@@ -190,8 +233,8 @@ std::vector<Recipe> many_coordinates() {
 const std::vector<Recipe>& catalogue() {
   static const std::vector<Recipe> all = [] {
     std::vector<Recipe> recipes;
-    for (const auto& some :
-         {one_coordinate(), two_coordinates(), three_coordinates(), many_coordinates(), written_recipes()})
+    for (const auto& some : {one_coordinate(), with_forces(), two_coordinates(), three_coordinates(),
+                             many_coordinates(), written_recipes()})
       recipes.insert(recipes.end(), some.begin(), some.end());
     return recipes;
   }();

@@ -24,6 +24,7 @@ struct Recipe {
   int least = 0, most = 0;             ///< sizes n; 0: the system has none
   std::vector<std::string> maps = {};  ///< symmetries, as they are written in a boundary
   bool autonomous = true;
+  bool forced = false;          ///< by forces that no Lagrangian has
   std::string lagrangian = {};  ///< a formula written in the scene; empty: `system` is a file
   std::string period = {};      ///< of L in t, a formula; empty: it has none
 };

@@ -80,6 +80,18 @@ void draw_coupled(Draft& draft) {
   set_duration(draft);
 }
 
+/// All of the start, momenta too, and nothing of the end.
+void draw_initial(Draft& draft) {
+  Entries entries;
+  for (std::size_t a = 0; a < draft.names.size(); ++a) {
+    entries.emplace_back(quoted(draft.names[a]), number_text(draft.motion.start.q[a]));
+    entries.emplace_back(quoted("p_" + draft.names[a]), number_text(draft.motion.momentum[a]));
+  }
+  draft.boundary.emplace_back("start", inline_table(entries));
+  set_duration(draft);
+  draft.known = draft.real;
+}
+
 /// energy or where, for a duration that is free.
 void close_duration(Draft& draft, const std::vector<std::size_t>& open) {
   draft.boundary.emplace_back("duration", quoted("free"));
@@ -106,6 +118,11 @@ void draw_periodic(Draft& draft) {
   if (!draft.recipe.maps.empty() && draft.random.chance(0.4))
     draft.boundary.emplace_back("map", draft.random.pick(draft.recipe.maps));
   if (!draft.recipe.autonomous) return set_driven_duration(draft);
+  if (draft.recipe.forced) {
+    draft.boundary.emplace_back("duration", quoted("free"));
+    draft.guess.emplace_back("duration", number_text(draft.duration()));
+    return;
+  }
   if (draft.random.chance(0.5)) return set_duration(draft);
   std::vector<std::size_t> open(draft.names.size());
   std::iota(open.begin(), open.end(), 0);
@@ -136,16 +153,19 @@ void draw_boundary(Draft& draft) {
     void (*draw)(Draft&);
     bool autonomous = false;
   };
-  constexpr Kind kinds[] = {{"fixed", 0.40, draw_fixed},       {"natural", 0.12, draw_natural},
-                            {"mixed", 0.10, draw_mixed},       {"coupled", 0.12, draw_coupled},
-                            {"periodic", 0.12, draw_periodic}, {"free", 0.14, draw_free, true}};
+  constexpr Kind kinds[] = {{"fixed", 0.32, draw_fixed},     {"natural", 0.12, draw_natural},
+                            {"initial", 0.08, draw_initial}, {"mixed", 0.10, draw_mixed},
+                            {"coupled", 0.12, draw_coupled}, {"periodic", 0.12, draw_periodic},
+                            {"free", 0.14, draw_free, true}};
   double x = draft.random.unit();
   const Kind* chosen = kinds;
   for (const Kind& kind : kinds) {
     chosen = &kind;
     if ((x -= kind.share) < 0) break;
   }
-  if (chosen->autonomous && !draft.recipe.autonomous) chosen = kinds;
+  const bool has_energy = draft.recipe.autonomous && !draft.recipe.forced;
+  if (chosen->autonomous && !has_energy) chosen = kinds;
+  if (chosen->draw == draw_initial && draft.motion.momentum.empty()) chosen = kinds;
   draft.kind = chosen->name;
   chosen->draw(draft);
 }

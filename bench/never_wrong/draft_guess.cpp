@@ -65,6 +65,7 @@ double tightest_for(const extremal::Scheme& scheme) {
 
 void draw_guess(Draft& draft) {
   const double x = draft.random.unit();
+  if (draft.kind == "initial") return;
   const bool needed = draft.kind == "periodic";
   if (x < 0.5 && !needed) return;
   if (x < 0.75 || !draft.real)

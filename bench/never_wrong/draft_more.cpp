@@ -29,7 +29,9 @@ void draw_family(Draft& draft) {
     draft.continuation.emplace_back("points", std::to_string(random.between(3, 12)));
   };
   if (by_energy && random.chance(0.6)) return put("energy", draft.motion.energy);
-  if (!free && draft.recipe.autonomous && random.chance(0.6)) return put("duration", draft.duration());
+  const bool isolated = draft.recipe.forced && draft.kind == "periodic";
+  if (!free && !isolated && draft.recipe.autonomous && random.chance(0.6))
+    return put("duration", draft.duration());
   if (draft.varied.empty()) return;
   const auto& [name, value] = random.pick(draft.varied);
   put(name, std::stod(value));
@@ -39,6 +41,7 @@ void draw_family(Draft& draft) {
 
 void draw_more(Draft& draft) {
   const double x = draft.random.unit();
+  if (draft.kind == "initial" || (draft.recipe.forced && x < searches)) return;
   if (x < searches) return draw_search(draft);
   const bool pinned = has(draft.solve, "scheme");
   if (x < searches + families && !pinned) draw_family(draft);

@@ -29,10 +29,10 @@ double start_velocity(const extremal::Solution& solution) {
 
 /// A velocity between two at which the end is passed from one side to the other; none where a motion cannot
 /// be followed.
-std::optional<double> crossing(const extremal::Lagrangian& lagrangian, double start, double end,
-                               double duration, double low, double high) {
+std::optional<double> crossing(const extremal::Problem& problem, double start, double end, double duration,
+                               double low, double high) {
   const auto miss = [&](double v) {
-    const Motion motion = follow(lagrangian, {{start}, {v}}, duration);
+    const Motion motion = follow(problem, {{start}, {v}}, duration);
     return motion.duration == duration ? motion.end.q[0] - end : NAN;
   };
   double at_low = miss(low);
@@ -58,14 +58,14 @@ std::vector<Fault> find_gap(const extremal::Study& study, const std::vector<extr
   double before = NAN, last = NAN;
   for (int k = 0; k <= velocities; ++k) {
     const double v = *low + k * step;
-    const Motion motion = follow(*problem.lagrangian, {{start}, {v}}, T);
+    const Motion motion = follow(problem, {{start}, {v}}, T);
     const double miss = motion.duration == T ? motion.end.q[0] - end : NAN;
     if (before * miss < 0 && std::none_of(known.begin(), known.end(),
                                           [&](double x) { return x >= last - step && x <= v + step; })) {
-      const auto velocity = crossing(*problem.lagrangian, start, end, T, last, v);
+      const auto velocity = crossing(problem, start, end, T, last, v);
       if (!velocity) continue;
       extremal::Study beside = study;
-      beside.problem.guess = motion_guess(*problem.lagrangian, {{start}, {*velocity}}, T);
+      beside.problem.guess = motion_guess(problem, {{start}, {*velocity}}, T);
       if (!beside.problem.guess.given()) continue;
       const extremal::Solution missed = run(beside);
       const double margin = same_action * (std::abs(found.front().action) + std::abs(found.back().action));

@@ -40,16 +40,17 @@ double carry(extremal::Flow& flow, std::span<double> y, double duration) {
 
 }  // namespace
 
-Motion follow(const extremal::Lagrangian& lagrangian, const State& start, double duration) {
+Motion follow(const extremal::Problem& problem, const State& start, double duration) {
   const std::size_t n = start.q.size();
   Motion motion{.start = start, .end = start};
-  extremal::Flow flow(lagrangian);
+  extremal::Flow flow(problem.motion(), problem.motion_copies());
   std::vector<double> first(start.q);
   first.resize(2 * n);
   if (!flow.momentum(start.q, start.v, 0, std::span(first).subspan(n))) return motion;
+  motion.momentum.assign(first.begin() + static_cast<std::ptrdiff_t>(n), first.end());
   motion.starts_without_momentum =
       std::all_of(first.begin() + n, first.end(), [](double p) { return p == 0; });
-  motion.energy = energy_of(lagrangian, start);
+  motion.energy = energy_of(*problem.lagrangian, start);
 
   std::vector<double> y = first;
   double reached = carry(flow, y, duration);
@@ -68,9 +69,10 @@ Motion follow(const extremal::Lagrangian& lagrangian, const State& start, double
   return motion;
 }
 
-extremal::Guess motion_guess(const extremal::Lagrangian& lagrangian, const State& start, double duration) {
+extremal::Guess motion_guess(const extremal::Problem& problem, const State& start, double duration) {
   extremal::SampledMotion samples;
-  const bool done = sample_motion<double>(extremal::Flow(lagrangian), start.q, start.v, 0, duration,
+  const bool done = sample_motion<double>(extremal::Flow(problem.motion(), problem.motion_copies()), start.q,
+                                          start.v, 0, duration,
                                           {.tolerance = 1e-10,
                                            .a_step = 16,
                                            .unit = duration,

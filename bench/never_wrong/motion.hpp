@@ -16,13 +16,15 @@ struct Motion {
   State start, end;
   double duration = 0;  ///< 0 where it could not be integrated at all
   double energy = 0;
+  std::vector<double> momentum = {};  ///< at the start
   bool starts_without_momentum = false;
 };
 
-/// From `start` over `duration`, or less where the integrator does not come so far.
-Motion follow(const extremal::Lagrangian& lagrangian, const State& start, double duration);
+/// From `start` over `duration`, or less where the integrator does not come so far; with the forces of the
+/// problem.
+Motion follow(const extremal::Problem& problem, const State& start, double duration);
 
 /// The motion as a guess; not given where it cannot be followed.
-extremal::Guess motion_guess(const extremal::Lagrangian& lagrangian, const State& start, double duration);
+extremal::Guess motion_guess(const extremal::Problem& problem, const State& start, double duration);
 
 }  // namespace bench

@@ -44,7 +44,7 @@ void draw_motion(Draft& draft, const std::string& scratch) {
   const double duration = draft.recipe.time * draft.random.log_uniform(shortest, longest);
   draft.real = draft.random.chance(real_motions);
   const extremal::Problem problem = system_alone(draft, start, scratch);
-  draft.motion = follow(*problem.lagrangian, start, draft.real ? duration : draft.recipe.time * shortest);
+  draft.motion = follow(problem, start, draft.real ? duration : draft.recipe.time * shortest);
   draft.real = draft.real && draft.motion.duration > 0;
   if (draft.real) return;
   draft.motion.duration = duration;

@@ -60,6 +60,7 @@ class Refutation {
  private:
   /// The motion must have no reason to leave: |q''| T²/2 below what is allowed, q'' = L_vv⁻¹ L_q at rest.
   std::vector<Fault> at_rest() {
+    if (problem_.copies) return {};
     const std::size_t n = problem_.coordinates();
     std::vector<double> q(n), v(n);
     trajectory_.at(0, q, v);

@@ -36,7 +36,7 @@ Flow::Flow(const Lagrangian& lagrangian, int copies)
       structure_(lagrangian.structure()),
       point_(lagrangian, copies),
       mass_(n_),
-      v_(n_),
+      v_(n_, nearly_at_rest),
       residual_(n_) {
   if (const Lagrangian* hamiltonian = hamiltonian_of(lagrangian))
     hamiltonian_ = std::make_unique<PointEvaluator>(*hamiltonian);
@@ -72,11 +72,15 @@ bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, do
   return point_.evaluate(q, v_, t, order);
 }
 
-/// Newton from ∂H/∂p, where that is known, or from the last velocity: one step where L is quadratic in q'.
+/// ∂H/∂p, where that is known; else Newton from the last velocity: one step where L is quadratic in q'.
 bool Flow::solve_newton(std::span<const double> q, std::span<const double> p, double t) {
   double before = std::numeric_limits<double>::infinity();
   double scale = 0;  // of all terms so far: at rest they vanish
-  if (hamiltonian_ && hamiltonian_->evaluate(q, p, t, Order::gradient)) v_ = hamiltonian_->dv();
+  if (hamiltonian_) {
+    if (!hamiltonian_->evaluate(q, p, t, Order::gradient)) return false;
+    v_ = hamiltonian_->dv();
+    return point_.evaluate(q, v_, t, Order::gradient);
+  }
   for (int i = 0; i < most_iterations; ++i) {
     if (!point_.evaluate(q, v_, t, Order::gradient)) return false;
     for (int a = 0; a < n_; ++a) residual_[a] = p[a] - point_.dv()[a];

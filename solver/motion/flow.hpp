@@ -11,6 +11,9 @@
 
 namespace extremal {
 
+/// Velocities from which searches begin: |q'| has no derivative at rest.
+inline constexpr double nearly_at_rest = 1e-6;
+
 /// q' from ∂L/∂q'(q, q', t) = p, and p' = ∂L/∂q. Holds for every regular L and needs no derivative in t. The
 /// variations follow from the second derivatives of L:
 ///   L_vv δq' = δp − L_vq δq,   δp' = L_qq δq + L_vqᵀ δq'.

@@ -86,10 +86,8 @@ std::string stability_text(const Solution& solution) {
   const Floquet& floquet = *solution.floquet;
   std::string text = floquet.stable() ? "stable" : "unstable";
   const char* separator = ": ";
-  const auto outside =
-      std::ranges::count_if(floquet.multipliers, [](const auto& x) { return std::norm(x) > 1; });
-  if (!floquet.paired && outside > 0)
-    text += fmt::format(": {} outside of the unit circle", counted(static_cast<int>(outside), "multiplier"));
+  if (!floquet.paired && floquet.outside() > 0)
+    text += fmt::format(": {} outside of the unit circle", counted(floquet.outside(), "multiplier"));
   const auto list = [&](int count, const char* noun, const char* rest) {
     if (count > 0) text += std::exchange(separator, ", ") + counted(count, noun) + rest;
   };

@@ -15,8 +15,6 @@ namespace {
 constexpr int most_iterations = 20;
 /// ∂L/∂q' agrees with p to roundoff; from below `quadratic` the next step of Newton ends in it.
 constexpr double roundoff = 2e-15, quadratic = 1e-8, acceptable = 1e-12;
-/// Where the search for q' begins: at rest |q'| has no derivative.
-constexpr double nearly_at_rest = 1e-6;
 
 }  // namespace
 

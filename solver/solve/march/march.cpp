@@ -48,14 +48,16 @@ void join_pieces(const StepTables& tables, const std::vector<double>& parts, std
 }
 
 /// Where Newton's method finds no element from the guess, it starts from shorter ones.
-Result solve_by_pieces(ElementSolver& solver, const MotionState& state, double h, int cuts) {
+Result solve_by_pieces(ElementSolver& solver, UniformMotion& uniform, const MotionState& state, double h,
+                       int cuts) {
   const StepTables& tables = solver.tables();
   std::vector<double> parts;
   MotionState now = state;
   for (int i = 0; i < pieces; ++i) {
-    if (i == 0) std::fill(solver.x().begin(), solver.x().end(), 0.0);
+    if (i == 0) uniform.predict(now, h / pieces, solver.x());
     Result result = solver.solve(now, h / pieces);
-    if (result != Result::solved && cuts > 1) result = solve_by_pieces(solver, now, h / pieces, cuts - 1);
+    if (result != Result::solved && cuts > 1)
+      result = solve_by_pieces(solver, uniform, now, h / pieces, cuts - 1);
     if (result != Result::solved) return result;
     parts.insert(parts.end(), solver.x().begin(), solver.x().end());
     solver.advance(now, now.time + h / pieces);
@@ -76,6 +78,7 @@ class AdaptiveMarch {
         record_(tables, start, 1024, true),
         solver_(tables),
         kinks_(tables, record_.state()),
+        uniform_(tables, start.paired),
         continuation_(tables),
         last_(tables.unknowns(), 0.0),
         length_(first_length * duration) {
@@ -111,6 +114,8 @@ class AdaptiveMarch {
       reader_->predict(state.time, std::min(h, duration_ - state.time), solver_.x());
     else if (last_length_ > 0)
       continuation_.predict(last_, h / last_length_, solver_.x());
+    else
+      uniform_.predict(state, h, solver_.x());
     const Result result = solver_.solve_cheaply(state, h);
     record_.count(solver_.steps());
     record_.march().reason = result;
@@ -187,6 +192,7 @@ class AdaptiveMarch {
   ElementSolver solver_;
   KinkWatch kinks_;
   int kink_tries_ = 0;
+  UniformMotion uniform_;
   PolynomialContinuation continuation_;
   PolynomialContinuation::Tail tail_;
   std::optional<TrajectoryReader> reader_;
@@ -203,6 +209,7 @@ March march_uniform(const InitialData& start, double duration, const StepTables&
                     const Deadline& deadline, const MarchProgress& progress, const StepTables* finer) {
   MarchRecord record(tables, start, elements, false);
   ElementSolver solver(tables);
+  UniformMotion uniform(tables, start.paired);
   Differences differences(tables.unknowns());
   std::optional<ElementSolver> sum;
   if (finer) sum.emplace(*finer);
@@ -212,10 +219,13 @@ March march_uniform(const InitialData& start, double duration, const StepTables&
       if (deadline.passed()) return record.finish(March::End::deadline);
       report(record, solver, progress);
     }
-    if (!differences.empty()) differences.predict(solver.x());
+    if (differences.empty())
+      uniform.predict(record.state(), h, solver.x());
+    else
+      differences.predict(solver.x());
     Result result = solver.solve(record.state(), h);
     record.count(solver.steps());
-    if (result != Result::solved) result = solve_by_pieces(solver, record.state(), h, most_cuts);
+    if (result != Result::solved) result = solve_by_pieces(solver, uniform, record.state(), h, most_cuts);
     if (result != Result::solved) {
       record.march().reason = result;
       record.march().wanted = h;

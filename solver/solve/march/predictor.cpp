@@ -11,6 +11,26 @@ namespace extremal {
 
 using limits::march::most_differences;
 
+UniformMotion::UniformMotion(const StepTables& tables, bool paired)
+    : degree_(tables.degree()), copies_(paired ? 2 : 1) {
+  if (tables.lagrangian().structure().quadratic) return;
+  flow_.emplace(tables.lagrangian(), copies_);
+  q_.resize(flow_->coordinates());
+  p_.resize(q_.size());
+  v_.resize(q_.size());
+}
+
+void UniformMotion::predict(const MotionState& state, double h, std::span<double> x) {
+  std::fill(x.begin(), x.end(), 0.0);
+  for (std::size_t a = 0; a < q_.size(); ++a) {
+    q_[a] = state.q[a].high;
+    p_[a] = state.p[a].high;
+  }
+  if (!flow_ || !flow_->velocity(q_, p_, state.time, v_)) return;
+  for (std::size_t a = 0; a < v_.size(); ++a)
+    for (int copy = 0; copy < copies_; ++copy) x[(copy * v_.size() + a) * degree_ + degree_ - 1] = v_[a] * h;
+}
+
 Differences::Differences(int size)
     : size_(size), table_(static_cast<std::size_t>(most_differences + 1) * size, 0.0), work_(size) {}
 

@@ -1,14 +1,31 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "motion/flow.hpp"
 #include "solution/solution.hpp"
 #include "solve/march/element_solver.hpp"
 
 /// \file The first guess of the next element.
 
 namespace extremal {
+
+/// Uniform motion with the velocity that the momentum has, for the first element: rest where the velocities
+/// are not found, and where L is quadratic in them, for which Newton's method begins anywhere. Others may not
+/// be differentiable at rest.
+class UniformMotion {
+ public:
+  /// `paired`: of two copies of the coordinates.
+  UniformMotion(const StepTables& tables, bool paired);
+  void predict(const MotionState& state, double h, std::span<double> x);
+
+ private:
+  const int degree_, copies_;
+  std::optional<Flow> flow_;
+  std::vector<double> q_, p_, v_;
+};
 
 /// Unknowns of equal elements continued by their backward differences: Σ_i ∇^i x, to the order that served
 /// the last element best.
