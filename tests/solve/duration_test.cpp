@@ -27,6 +27,21 @@ TEST(FreeDuration, OscillatorAtGivenEnergy) {
   EXPECT_NEAR(second.momentum_start[0], 2, 1e-12);
 }
 
+/// Barker's equation: from the pericentre q to the true anomaly ν on a parabola, whose energy is zero,
+/// T = √(2q³) (D + D³/3) with D = tan(ν/2).
+TEST(FreeDuration, ParabolaHasNoEnergy) {
+  const double q = 0.5, nu = 2, r = 2 * q / (1 + std::cos(nu)), D = std::tan(nu / 2);
+  const Problem fixed = fixed_ends(systems::kepler(), {q, 0}, {r * std::cos(nu), r * std::sin(nu)}, 1);
+  for (const SolveOptions& options : {within(1e-6), within(1e-11)}) {
+    const Solution s = solve(at_energy(fixed, 0, 1.2), options);
+    EXPECT_NEAR(s.duration(), std::sqrt(2 * q * q * q) * (D + D * D * D / 3), 10 * options.tolerance);
+    EXPECT_NEAR(*s.energy, 0, 100 * options.tolerance);
+  }
+  const SolveOptions discrete = pinned(scheme("midpoint"), 40);
+  EXPECT_NEAR(solve(at_energy(fixed, 0, 1.2), discrete).duration(),
+              std::sqrt(2 * q * q * q) * (D + D * D * D / 3), 0.01);
+}
+
 /// Range d at speed v: sin 2θ = g d/v², T = 2 v sin θ/g; the flat throw and the steep one.
 TEST(FreeDuration, ProjectileAtGivenEnergy) {
   const double g = 9.81, speed = 12, d = 10;

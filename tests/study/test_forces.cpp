@@ -109,3 +109,63 @@ TEST_F(Scenes, DerivativesOfForcesAreChecked) {
   EXPECT_TRUE(found.with_forces->agree());
   EXPECT_TRUE(found.forces_autonomous);
 }
+
+/// x = e^{−ct/2}(cos wt + (c/2w) sin wt): the copies of a damped motion would part like e^{ct/2} by roundoff.
+TEST_F(Scenes, ForcedMotionFromInitialData) {
+  const double c = 0.8, w = std::sqrt(1 - c * c / 4);
+  const std::string scene =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"(x'^2 - x^2)/2\"\n"
+      "force = { x = \"-0.8*x'\" }\n[boundary]\nstart = { x = 1, p_x = 0 }\nduration = 200\n";
+  const auto truth = [&](double t) {
+    return std::exp(-c * t / 2) * (std::cos(w * t) + c / (2 * w) * std::sin(w * t));
+  };
+  for (const char* solving : {"", "[solve]\nscheme = \"gauss(4)\"\nelements = 400\n"}) {
+    const Solution s = run(study(scene + solving));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_EQ(s.trajectory.coordinates, 1);
+    for (const double t : {0.5, 5.0, 20.0, 200.0}) {
+      double q, v;
+      s.trajectory.at(t, {&q, 1}, {&v, 1});
+      EXPECT_NEAR(q, truth(t), 1e-8) << t;
+    }
+    EXPECT_NEAR(*s.work, -0.5, 1e-9);
+    EXPECT_FALSE(s.morse_index || s.energy_drift);
+  }
+  const Comparison comparison = compare(study(scene));
+  for (const ComparisonRow& row : comparison.rows) {
+    const bool precise = row.method == "dop853" && row.tolerance < 1e-10;
+    EXPECT_LT(precise ? row.error.value_or(1) : 0, 1e-7);
+  }
+}
+
+/// A force by |q'|, which has no derivative at rest: x'' = −k x'|x'| has the solution log(1 + k v t)/k.
+TEST_F(Scenes, DragFromInitialData) {
+  const std::string scene =
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n"
+      "force = { x = \"-0.5*sqrt(x'^2 + y'^2)*x'\", y = \"-0.5*sqrt(x'^2 + y'^2)*y'\" }\n"
+      "[boundary]\nstart = { x = 0, y = 0, p_x = 3, p_y = 4 }\nduration = 2\n";
+  const Solution s = run(study(scene));
+  ASSERT_TRUE(s.converged()) << s.message;
+  double q[2], v[2];
+  s.trajectory.at(2, q, v);
+  EXPECT_NEAR(q[0], 0.6 * std::log(1 + 0.5 * 5 * 2) / 0.5, 1e-8);
+  EXPECT_NEAR(q[1], 0.8 * std::log(1 + 0.5 * 5 * 2) / 0.5, 1e-8);
+}
+
+/// A potential written as a force: each orbit has its own period.
+TEST_F(Scenes, PeriodsThatAreNotIsolated) {
+  const Solution s =
+      run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"(x'^2 - x^2)/2\"\n"
+                "force = { x = \"-x^3\" }\n[boundary]\nperiodic = true\nduration = \"free\"\n"
+                "[guess]\nx = \"cos(2*pi*t/T)\"\nduration = 5\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NE(s.message.find("its period is not isolated"), std::string::npos) << s.message;
+  EXPECT_TRUE(s.floquet->stable());
+}
+
+TEST_F(Scenes, ForcesOfAHamiltonian) {
+  EXPECT_EQ(message("[system]\ncoordinates = [\"x\"]\nhamiltonian = \"p_x^2/2\"\nforce = { x = \"-x'\" }\n"
+                    "[boundary]\nstart = { x = 1 }\nend = { x = 0 }\nduration = 1\n")
+                .find("scene.toml:4"),
+            0u);
+}

@@ -71,8 +71,8 @@ int moving_symmetries(const Problem& problem, const Trajectory& orbit) {
   return static_cast<int>((squares.array() > dependent).count()) - shifts;
 }
 
-/// Whether orbits beside one with forces, which are no images of it, close as well: more multipliers are 1 than
-/// the shift in time and symmetries explain.
+/// Whether orbits beside one with forces, which are no images of it, close as well: more multipliers are 1
+/// than the shift in time and symmetries explain.
 bool one_of_a_family(const ClosedOrbit& orbit, const Floquet& floquet) {
   constexpr double told_apart = 1e-6;
   const auto ones = std::ranges::count_if(floquet.multipliers,
@@ -118,9 +118,11 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     if (!solution.floquet)
       solution.message +=
           "; multipliers are not known: they are too large, or the orbit passes too near to a point of rest";
-    if (solution.floquet && problem.paired && problem.duration.free && one_of_a_family(orbit, *solution.floquet))
+    if (solution.floquet && problem.paired && problem.duration.free &&
+        one_of_a_family(orbit, *solution.floquet))
       solution.message +=
-          "; a multiplier beside that of the shift in time is 1: the orbit is one of a family, near the guess, "
+          "; a multiplier beside that of the shift in time is 1: the orbit is one of a family, near the "
+          "guess, "
           "and its period is not isolated";
     if (solution.floquet && vectors && !problem.paired) add_vectors(variation, orbit, *solution.floquet);
   }
