@@ -28,6 +28,10 @@ constexpr double least_distance = 1.5;
 constexpr double near = 2 * (window_power + 1);
 /// ... and where their number has grown by this factor since they were last.
 constexpr double growth = 1.25;
+/// Changes after which waves are refined no further: while others are still to be found, and in the end.
+constexpr double good_enough = 1e-9, roundoff = 1e-13;
+/// Steps with one matrix.
+constexpr int matrix_steps = 3;
 /// Rows of the least-squares matrix at a time.
 constexpr Eigen::Index chunk = 2048;
 
@@ -35,6 +39,34 @@ constexpr Eigen::Index chunk = 2048;
 struct Wave {
   double frequency = 0, a = 0, b = 0;
   double amplitude() const { return std::hypot(a, b); }
+};
+
+/// cos ωτ and sin ωτ at equal steps of τ: exact at every 32nd, turned from there by angles of a table, which
+/// rounds once more and costs a tenth.
+class Turns {
+ public:
+  Turns(double frequency, double step) : frequency_(frequency), step_(step) {
+    for (int k = 0; k < length; ++k) {
+      cosine_[k] = std::cos(frequency * (step * k));
+      sine_[k] = std::sin(frequency * (step * k));
+    }
+  }
+  /// At tau, tau + step, …, as many as there are places.
+  void fill(double tau, Eigen::Index count, double* cosine, double* sine) const {
+    for (Eigen::Index first = 0; first < count; first += length) {
+      const double angle = frequency_ * (tau + step_ * static_cast<double>(first));
+      const double c = std::cos(angle), s = std::sin(angle);
+      const Eigen::Index last = std::min<Eigen::Index>(count - first, length);
+      for (Eigen::Index k = 0; k < last; ++k) {
+        cosine[first + k] = c * cosine_[k] - s * sine_[k];
+        sine[first + k] = s * cosine_[k] + c * sine_[k];
+      }
+    }
+  }
+
+ private:
+  static constexpr int length = 32;
+  double frequency_, step_, cosine_[length], sine_[length];
 };
 
 class Fit {
@@ -51,19 +83,22 @@ class Fit {
   void take(const Wave& wave);
   /// Leaves all but these.
   void leave(const std::vector<Wave>& waves);
-  /// Corrects waves until what they leave is least, and takes them away. False where a step is not
-  /// finite.
-  bool refine(std::vector<Wave>& waves);
+  /// Corrects waves until what they leave is least, to changes of `goal`, and takes them away. False where a
+  /// step is not finite.
+  bool refine(std::vector<Wave>& waves, double goal);
 
  private:
-  /// One Gauss-Newton step for `waves`, which `values` is to be the sum of; the largest change, in units of
-  /// the bin and relative to the largest amplitude.
-  double step(std::vector<Wave>& waves, const VectorXd& values);
+  /// One Gauss-Newton step for `waves`, which `values` is to be the sum of, with the matrix of the step
+  /// before unless `anew`; the largest change, in units of the bin and relative to the largest amplitude.
+  double step(std::vector<Wave>& waves, const VectorXd& values, bool anew);
 
   Eigen::Index count_;
   double step_;
   VectorXd values_, weights_, left_;
-  std::vector<std::complex<double>> transformed_, windowed_;
+  std::vector<std::complex<double>> transformed_;
+  std::vector<double> windowed_;
+  VectorXd unit_;  ///< of the columns of the matrix
+  Eigen::LDLT<MatrixXd> factors_;
   Eigen::FFT<double> fft_;
 };
 
@@ -85,56 +120,70 @@ Wave Fit::largest() {
   for (Eigen::Index j = 0; j < count_; ++j) windowed_[j] = weights_[j] * left_[j];
   fft_.fwd(transformed_, windowed_);
   std::size_t peak = 0;
-  for (std::size_t k = 0; k <= transformed_.size() / 2; ++k)
+  for (std::size_t k = 0; k <= windowed_.size() / 2; ++k)
     if (std::norm(transformed_[k]) > std::norm(transformed_[peak])) peak = k;
   std::vector<Wave> wave{
-      {2 * pi * static_cast<double>(peak) / (step_ * static_cast<double>(transformed_.size()))}};
+      {2 * pi * static_cast<double>(peak) / (step_ * static_cast<double>(windowed_.size()))}};
   // A line within a bin of zero is a constant: a period longer than the signal cannot be told.
   for (int k = 0; k < 20; ++k) {
     if (wave[0].frequency < bin()) wave[0].frequency = 0;
-    if (step(wave, left_) < 1e-9) break;
+    if (step(wave, left_, true) < 1e-9) break;
   }
   return wave[0];
 }
 
-double Fit::step(std::vector<Wave>& waves, const VectorXd& values) {
-  const Eigen::Index columns = 3 * static_cast<Eigen::Index>(waves.size());
-  MatrixXd normal = MatrixXd::Zero(columns, columns), rows(std::min(chunk, count_), columns);
-  VectorXd right = VectorXd::Zero(columns), left(rows.rows());
+double Fit::step(std::vector<Wave>& waves, const VectorXd& values, bool anew) {
+  const Eigen::Index columns = 3 * static_cast<Eigen::Index>(waves.size()), most = std::min(chunk, count_);
+  MatrixXd cosine(most, columns / 3), sine(most, columns / 3);
+  MatrixXd normal = MatrixXd::Zero(anew ? columns : 0, anew ? columns : 0), rows(anew ? most : 0, columns);
+  VectorXd right = VectorXd::Zero(columns), left(most), tau(most), root(most);
   const double scale = middle();
+  std::vector<Turns> turns;
+  for (const Wave& wave : waves) turns.emplace_back(wave.frequency, step_);
   for (Eigen::Index from = 0; from < count_; from += chunk) {
     const Eigen::Index n = std::min(chunk, count_ - from);
-    const VectorXd root = weights_.segment(from, n).cwiseSqrt();
+    const double first = step_ * static_cast<double>(from) - middle();
     left.head(n) = values.segment(from, n);
     for (std::size_t w = 0; w < waves.size(); ++w) {
-      const auto& [omega, a, b] = waves[w];
-      const Eigen::Index c = 3 * static_cast<Eigen::Index>(w);
-      for (Eigen::Index j = 0; j < n; ++j) {
-        const double tau = step_ * static_cast<double>(from + j) - middle();
-        const double cosine = std::cos(omega * tau), sine = std::sin(omega * tau);
-        rows(j, c) = root[j] * cosine;
-        rows(j, c + 1) = root[j] * sine;
-        rows(j, c + 2) = root[j] * tau / scale * (b * cosine - a * sine);
-        left[j] -= a * cosine + b * sine;
-      }
+      const auto k = static_cast<Eigen::Index>(w);
+      turns[w].fill(first, n, cosine.col(k).data(), sine.col(k).data());
+      left.head(n) -= waves[w].a * cosine.col(k).head(n) + waves[w].b * sine.col(k).head(n);
     }
-    const auto part = rows.topRows(n);
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-    right += part.transpose() * root.cwiseProduct(left.head(n));
+    left.head(n).array() *= weights_.segment(from, n).array();
+    tau.head(n) = VectorXd::LinSpaced(n, first, first + step_ * static_cast<double>(n - 1)) / scale;
+    if (anew) root.head(n) = weights_.segment(from, n).cwiseSqrt();
+    for (std::size_t w = 0; w < waves.size(); ++w) {
+      const auto k = static_cast<Eigen::Index>(w);
+      const auto& [omega, a, b] = waves[w];
+      const auto x = cosine.col(k).head(n), y = sine.col(k).head(n);
+      const auto by_frequency = tau.head(n).cwiseProduct(b * x - a * y);
+      right[3 * k] += x.dot(left.head(n));
+      right[3 * k + 1] += y.dot(left.head(n));
+      right[3 * k + 2] += by_frequency.dot(left.head(n));
+      if (!anew) continue;
+      rows.col(3 * k).head(n) = root.head(n).cwiseProduct(x);
+      rows.col(3 * k + 1).head(n) = root.head(n).cwiseProduct(y);
+      rows.col(3 * k + 2).head(n) = root.head(n).cwiseProduct(by_frequency);
+    }
+    if (anew) normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.topRows(n).transpose());
   }
   // A constant has no sine and no frequency, and a wave without amplitude no frequency yet.
   for (std::size_t w = 0; w < waves.size(); ++w)
     for (Eigen::Index c = 3 * static_cast<Eigen::Index>(w) + 1, k = 0; k < 2; ++k, ++c)
       if (waves[w].frequency == 0 || (k == 1 && waves[w].amplitude() == 0)) {
+        right[c] = 0;
+        if (!anew) continue;
         normal.row(c).setZero();
         normal.col(c).setZero();
         normal(c, c) = 1;
-        right[c] = 0;
       }
   // Columns of waves differ by their amplitudes: scaled to unit diagonal, the matrix is near the unit matrix.
-  const VectorXd unit = normal.diagonal().cwiseSqrt().cwiseInverse();
-  normal = unit.asDiagonal() * MatrixXd(normal.selfadjointView<Eigen::Lower>()) * unit.asDiagonal();
-  const VectorXd change = unit.asDiagonal() * normal.ldlt().solve(unit.asDiagonal() * right);
+  if (anew) {
+    unit_ = normal.diagonal().cwiseSqrt().cwiseInverse();
+    factors_.compute(unit_.asDiagonal() * MatrixXd(normal.selfadjointView<Eigen::Lower>()) *
+                     unit_.asDiagonal());
+  }
+  const VectorXd change = unit_.asDiagonal() * factors_.solve(unit_.asDiagonal() * right);
   double largest = 0, amplitude = 0;
   for (std::size_t w = 0; w < waves.size(); ++w) {
     const Eigen::Index c = 3 * static_cast<Eigen::Index>(w);
@@ -152,18 +201,21 @@ double Fit::step(std::vector<Wave>& waves, const VectorXd& values) {
 }
 
 void Fit::take(const Wave& wave) {
-  for (Eigen::Index j = 0; j < count_; ++j) {
-    const double phase = wave.frequency * (step_ * static_cast<double>(j) - middle());
-    left_[j] -= wave.a * std::cos(phase) + wave.b * std::sin(phase);
+  const Turns turns(wave.frequency, step_);
+  VectorXd cosine(std::min(chunk, count_)), sine(cosine.size());
+  for (Eigen::Index from = 0; from < count_; from += chunk) {
+    const Eigen::Index n = std::min(chunk, count_ - from);
+    turns.fill(step_ * static_cast<double>(from) - middle(), n, cosine.data(), sine.data());
+    left_.segment(from, n) -= wave.a * cosine.head(n) + wave.b * sine.head(n);
   }
 }
 
-bool Fit::refine(std::vector<Wave>& waves) {
+bool Fit::refine(std::vector<Wave>& waves, double goal) {
   bool settled = false;
   for (int k = 0; k < 10 && !settled; ++k) {
-    const double change = step(waves, values_);
+    const double change = step(waves, values_, k % matrix_steps == 0);
     if (!std::isfinite(change)) return false;
-    settled = change < 1e-13;
+    settled = change < goal;
   }
   leave(waves);
   return true;
@@ -219,7 +271,7 @@ Spectrum line_spectrum(std::span<const double> samples, double step, SpectrumGoa
     const double before = fit.residual();
     if (enough_for_now) {
       fit.take(wave);
-    } else if (fit.refine(more) && fit.residual() < before) {
+    } else if (fit.refine(more, good_enough) && fit.residual() < before) {
       fitted = static_cast<double>(more.size());
     } else {
       fit.leave(waves);
@@ -227,7 +279,7 @@ Spectrum line_spectrum(std::span<const double> samples, double step, SpectrumGoa
     }
     waves = std::move(more);
   }
-  if (fitted < static_cast<double>(waves.size())) fit.refine(waves);
+  if (!waves.empty()) fit.refine(waves, roundoff);
   std::vector<SpectralLine> lines;
   for (const Wave& wave : waves) lines.push_back(spectral_line(wave, fit.middle()));
   return sorted(std::move(lines), fit.residual());
