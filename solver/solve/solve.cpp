@@ -22,6 +22,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Of the time there is, where what a search finds is then to be solved for with a scheme.
+constexpr double search_share = 0.7;
+
 /// The problem with a solution as its guess.
 Problem guessed_by(const Problem& problem, const Solution& solution) {
   const Trajectory& trajectory = solution.trajectory;
@@ -144,6 +147,7 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   SolveOptions adaptive = options;
   adaptive.scheme.reset();
   adaptive.elements = 0;
+  if (options.scheme) adaptive.deadline = options.deadline.share(search_share);
   std::vector<Solution> found = Several(problem, adaptive, w).run(most);
   if (!options.scheme || !found.front().converged()) return found;
   std::vector<Solution> discrete;

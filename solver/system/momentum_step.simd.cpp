@@ -36,7 +36,7 @@ double advance_momentum(const MomentumRows& rows, int count) {
     const Vec given_up = rest <= unreduced_residual * scale ? broadcast(solved) : broadcast(lost);
     after = stuck ? given_up : after;
     Vec to = from + (last ? one : part) * next;
-    to = stuck | (after == broadcast(lost)) ? from : to;
+    to = (stuck | (after == broadcast(lost))) ? from : to;
 
     const Mask active = state == broadcast(searching);
     p = active ? (last ? to : from) : p;
