@@ -321,8 +321,11 @@ TEST(MarchedMotion, EndsElementsOnKinks) {
   const auto lagrangian = marched_system({"x"}, "x'^2/2 - abs(x)");
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     const Solution s = solve(from(lagrangian, {1}, {-0.5}, 60), within(tolerance));
-    EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], 1, 1e-12);  // ten periods
-    EXPECT_NEAR(s.momentum_end[0], -0.5, 1e-12);
+    // Ten periods of parabolas, which elements of any length hold exactly: errors are those of the times of
+    // kinks.
+    const double allowed = std::min(2.25 * tolerance, 1e-10);
+    EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], 1, allowed);
+    EXPECT_NEAR(s.momentum_end[0], -0.5, allowed);
     EXPECT_LT(s.trajectory.elements(), 200);
   }
   const Solution pushed =

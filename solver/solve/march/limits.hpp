@@ -77,7 +77,7 @@ inline constexpr int first_elements = 16, most_elements = 20'000'000;
 inline constexpr double most_element_growth = 16;
 /// Elements that end so near before a kink, relative to their length, are made to end on it, as precisely as
 /// the third number tells, relative to the duration. One that crosses it is cut to no less than the second.
-inline constexpr double kink_near = 0.1, kink_least = 0.02, kink_precision = 2e-16;
+inline constexpr double kink_near = 0.1, kink_least = 0.02, kink_precision = 1e-15;
 inline constexpr int most_kink_tries = 12;
 /// Steps in which forces are looked for that elements overlook, at least and for each element; elements are
 /// then no longer than so many. Momenta are known to the last number.
