@@ -69,6 +69,8 @@ struct Crossings {
   std::vector<Event> events = {};
   int change = 0;  ///< of the index along the step, on the elements that it begins with
   bool complete = true;
+  /// The equations are nearly singular where no branches meet: the step leads from one branch to another.
+  bool leaps = false;
 };
 Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step);
 /// Points where a period doubles.

@@ -54,9 +54,14 @@ std::vector<Move> singular_directions(Tracker& tracker, const Move& response, in
 
 /// The branch point. Nothing along the singular directions is corrected there: the other equations are
 /// regular. So the predictor must be good along them: it is corrected by the mean of what states as far on
-/// either side differ from it. Where that fails, the nearest point before it that is reached.
-std::optional<BranchPoint> branch_point_at(Tracker& tracker, const BranchState& from, double at,
-                                           double length, const std::vector<Move>& singular) {
+/// either side differ from it. Where that fails, the nearest point before it that is reached. What is left of
+/// the forces along the singular directions must vanish; else two branches pass near each other there.
+struct FoundBranchPoint {
+  std::optional<BranchPoint> point = {};
+  bool balanced = false;
+};
+FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, double at, double length,
+                                 const std::vector<Move>& singular) {
   bool reached = false;
   for (const double share : offsets) {
     const double off = share * length;
@@ -76,10 +81,15 @@ std::optional<BranchPoint> branch_point_at(Tracker& tracker, const BranchState& 
     reached = std::ranges::any_of(
         beside, [&](double share) { return tracker.reach_smoothly(from, at - share * length); });
   }
-  std::optional<BranchPoint> point;
-  if (reached) point = read_point(tracker, PointKind::branch);
+  FoundBranchPoint found;
+  if (reached) {
+    const DiscreteAction& action = tracker.workspace().iteration.action();
+    const double allowed = std::max(momentum_tolerances * tracker.tolerance(), least_momentum);
+    found.balanced = action.residual() <= allowed * action.momentum_scale();
+    found.point = read_point(tracker, PointKind::branch);
+  }
   tracker.hold({});
-  return point;
+  return found;
 }
 
 /// To a state at `guess`, or aside of it where the equations are too singular. NaN if there is none. Where
@@ -200,10 +210,15 @@ Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const 
         point = std::move(again);
       }
     }
-    std::optional<BranchPoint> read = branch_point_at(tracker, base, point.at, length, point.singular);
-    if (!read) return found;
+    FoundBranchPoint read = branch_point_at(tracker, base, point.at, length, point.singular);
+    if (!read.point) return found;
+    if (!read.balanced) {
+      found.leaps = true;
+      return found;
+    }
     found.events.push_back(
-        {first.at, {*std::move(read), branch_start(tracker, search, PointKind::branch, base, point.at)}});
+        {first.at,
+         {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at)}});
     low = first.at + beyond_it * length;
     if (!(low < length) || !tracker.reach(from, low, true)) return found;
     before = tracker.state;

@@ -90,6 +90,7 @@ struct SpecialPoints {
   std::vector<Sample> extremes;
   int index_change = 0;
   bool index_known = true;
+  bool leaps = false;  ///< see Crossings
 };
 
 SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
@@ -101,6 +102,7 @@ SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, c
   Crossings crossings = find_branch_points(tracker, search, step);
   result.index_change = crossings.change;
   result.index_known = crossings.complete;
+  result.leaps = crossings.leaps;
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
   std::erase_if(folds, [&](const Event& fold) {
     return std::ranges::any_of(crossings.events, [&](const Event& crossing) {
@@ -167,6 +169,7 @@ StepEvents locate_events(Tracker& tracker, const EventSearch& search, const Bran
     aimed = tracker.with_cubic(step);
   const BranchStep along{aimed ? *aimed : start, to, length};
   SpecialPoints found = find_special_points(tracker, search, along);
+  if (found.leaps) return {.missed = true};
   std::vector<Event>& events = found.events;
   End end = find_end(tracker, search, along, found.extremes);
   if (end.missed) return {.missed = true};

@@ -31,7 +31,9 @@ struct StepEvents {
   std::string message = {};
   int index_change = 0;  ///< see Crossings
   bool index_known = true;
-  bool missed = false;  ///< the value that the branch is to lead to was passed, and is not found
+  /// The value that the branch is to lead to was passed, and is not found; or the step leads to another
+  /// branch.
+  bool missed = false;
 };
 
 /// Leaves the tracker at another state.

@@ -77,6 +77,7 @@ class Tracker {
   Workspace& workspace() { return w_; }
   const Move& tangent() const { return tangent_; }
 
+  double tolerance() const { return tolerance_; }
   double error() const { return error_; }    ///< of q, absolute
   double cosine() const { return cosine_; }  ///< of the angle by which the last step turned
   bool turned_little() const { return cosine_ > sharpest_turn; }
