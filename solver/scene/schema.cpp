@@ -161,7 +161,7 @@ constexpr Exclusion pairs[] = {
 
 constexpr Requirement needs[] = {
     {"solve.elements", "solve.scheme", "the number of elements alone does not fix a discretisation"},
-    {"solve.steps", "solve.elements", "free steps need a number of elements, whose times they are"},
+    {"solve.steps", "solve.elements", "the times of the nodes are found for a given number of elements"},
     {"boundary.map", "boundary.periodic", "a map relates the ends of a periodic orbit"},
 };
 

@@ -204,4 +204,20 @@ std::optional<Survey> observe_energy(const Lagrangian& lagrangian, Solution& sol
   return found;
 }
 
+std::vector<double> element_energies(const Lagrangian& lagrangian, std::span<const double> nodes,
+                                     std::span<const double> weights, const Trajectory& trajectory) {
+  if (!lagrangian.structure().autonomous || trajectory.elements() > most_energies) return {};
+  std::vector<double> energies(trajectory.elements()), q(trajectory.coordinates), v(q.size());
+  Scratch scratch;
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      trajectory.in_element(k, nodes[i], q, v);
+      const PointValues at = evaluate_at(lagrangian, q, v, 0, Order::gradient, scratch);
+      double energy = -at.value;
+      for (std::size_t a = 0; a < v.size(); ++a) energy += at.dv[a] * v[a];
+      energies[k] += weights[i] * energy;
+    }
+  return energies;
+}
+
 }  // namespace extremal

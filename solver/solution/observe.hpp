@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "solution/solution.hpp"
@@ -26,5 +27,11 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory);
 /// Sets energy and drift of a solution, from the survey that is returned; leaves all absent where L depends
 /// on t or the energy is not finite.
 std::optional<Survey> observe_energy(const Lagrangian& lagrangian, Solution& solution);
+
+/// The discrete energy −∂L_d/∂h of each element (Chen-Guo-Wu (3.3)): p·q' − L summed by the quadrature on [0,
+/// 1] that the elements were solved with. Empty where L depends on t, and beyond most_energies elements.
+std::vector<double> element_energies(const Lagrangian& lagrangian, std::span<const double> nodes,
+                                     std::span<const double> weights, const Trajectory& trajectory);
+inline constexpr int most_energies = 100'000;
 
 }  // namespace extremal

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "action/rule.hpp"
+#include "solution/observe.hpp"
 
 namespace extremal {
 
@@ -104,7 +105,11 @@ Solution one_copy(const Problem& problem, Solution pair, const Scheme* scheme) {
   solution.trajectory = one_of(std::move(solution.trajectory));
   const int degree = solution.trajectory.degree;
   const bool exact = !scheme || scheme->quadrature == Quadrature::exact;
-  integrate(problem, exact ? gauss_rule(std::min(degree + 4, max_points)) : rule_of(*scheme, 0), solution);
+  const Rule rule = exact ? gauss_rule(std::min(degree + 4, max_points)) : rule_of(*scheme, 0);
+  integrate(problem, rule, solution);
+  if (solution.pinned && solution.converged())
+    solution.element_energies =
+        element_energies(*problem.lagrangian, rule.nodes, rule.weights, solution.trajectory);
   return solution;
 }
 

@@ -95,7 +95,7 @@ struct Solution {
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
   bool pinned = false;  ///< the scheme of its elements was asked for
-  /// Of those elements: the discrete energy −∂L_d/∂h of each. Empty where L depends on t.
+  /// Of those elements: the discrete energy −∂L_d/∂h of each. Empty as element_energies() (observe.hpp) is.
   std::vector<double> element_energies;
 
   int degree = 0;  ///< of the elements that were solved for; the trajectory's may be higher

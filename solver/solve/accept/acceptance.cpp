@@ -6,7 +6,6 @@
 #include <chrono>
 #include <utility>
 
-#include "action/energies.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
@@ -196,8 +195,11 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
   solution.pinned = options.scheme.has_value();
-  if (solution.pinned && !problem.paired && problem.lagrangian->structure().autonomous)
-    solution.element_energies = discrete_energies(*problem.lagrangian, *found.tables, path);
+  if (solution.pinned && solution.converged() && !problem.paired) {
+    const SchemeTables& scheme = found.tables->scheme();
+    solution.element_energies =
+        element_energies(*problem.lagrangian, scheme.node, scheme.weight, solution.trajectory);
+  }
   const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
   if (!solution.converged()) solution = without_path(solution);
   solution.strategy = found.strategy;

@@ -243,6 +243,10 @@ class InitialMotion {
         static_cast<long long>(march.trajectory.elements()) * found.tables->unknowns(), INT_MAX));
     solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
     solution_.trajectory = std::move(march.trajectory);
+    const SchemeTables& scheme = found.tables->scheme();
+    if (solution_.pinned && !problem_.paired)
+      solution_.element_energies =
+          element_energies(lagrangian_, scheme.node, scheme.weight, solution_.trajectory);
     solution_.action = march.action;
     solution_.residual = march.residual;
     solution_.error_estimate = std::max(apart.error.q, unit_roundoff * apart.magnitude);
