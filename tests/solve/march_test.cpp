@@ -354,6 +354,18 @@ TEST(MarchedMotion, UniformAndDamped) {
   EXPECT_NEAR(damped.momentum_end[0], std::exp(30.0) * speed, 1e-8 * std::exp(15.0));
 }
 
+/// The midpoint rule conserves the energy of an oscillator, which is (v² + ω² q²)/2 at the middle of each
+/// element.
+TEST(MarchedMotion, ElementsHaveTheirEnergies) {
+  const Solution s =
+      solve(from(marched_system({"x"}, "(x'^2 - x^2)/2"), {1}, {0}, 10), pinned(scheme("midpoint"), 40));
+  ASSERT_EQ(s.element_energies.size(), 40u);
+  const double h = 0.25, energy = 0.5 / (1 + h * h / 4);
+  for (const double found : s.element_energies) EXPECT_NEAR(found, energy, 1e-14);
+  const Solution adaptive = solve(from(marched_system({"x"}, "(x'^2 - x^2)/2"), {1}, {0}, 10), within(1e-9));
+  EXPECT_TRUE(adaptive.element_energies.empty());
+}
+
 TEST(MarchedMotion, AtRestStaysThere) {
   for (const char* name : {"midpoint", "gauss(3)"}) {
     const Solution s = solve(from(systems::pendulum(), {0}, {0}, 10), pinned(scheme(name), 10));
