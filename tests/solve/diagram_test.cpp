@@ -68,6 +68,23 @@ TEST(Diagram, BuckledRods) {
   EXPECT_LT(start_of(found.of(1).front()).v[0] * start_of(found.of(2).front()).v[0], 0);
 }
 
+/// A load across the rod, without a symmetry: branches pass near each other where they crossed, and none
+/// meet.
+TEST(Diagram, RodsUnderASmallLoadDoNotBranch) {
+  for (const double load : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    const auto problem = [load](double lambda) {
+      const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
+        return v[0] * v[0] / 2 + lambda * cos(q[0]) + load * cos(t) * q[0];
+      });
+      return fixed_ends(lagrangian, {0}, {0}, 1);
+    };
+    const Followed found = follow_branches(varied(problem, 5, 50), 1e-8, 200);
+    EXPECT_TRUE(found.values(PointKind::branch).empty()) << load;
+    ASSERT_EQ(found.branches.size(), 1u) << load;
+    EXPECT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  }
+}
+
 /// The lowest characteristic values of q'' + (a − 2θ cos 2t) q = 0 by Fourier series: even or odd ones of the
 /// period π, or those that change sign over it (DLMF 28.4).
 Values characteristic(bool changing, bool odd, double theta = 1) {

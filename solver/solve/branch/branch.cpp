@@ -155,6 +155,7 @@ void Branch::note_action() {
   const DiscreteAction& action = w_.iteration.action();
   action_ = action.action();
   energy_ = -action.slope_duration();
+  residual_ = action.residual() > 0 ? action.residual() / action.momentum_scale() : 0;
   momenta_.assign(action.start_gradient().begin(), action.start_gradient().end());
   for (double& p : momenta_) p = -p;
   momenta_.insert(momenta_.end(), action.end_gradient().begin(), action.end_gradient().end());

@@ -75,6 +75,8 @@ class Branch : public ExtremalCurve {
   /// Of the path that was linearised.
   double action() const { return action_; }
   double energy() const { return energy_; }
+  /// The largest force left there, relative to the largest momentum.
+  double residual() const { return residual_; }
   /// −∂S/∂q(0), then ∂S/∂q(T).
   std::span<const double> momenta() const { return momenta_; }
   /// The number that varies.
@@ -132,7 +134,7 @@ class Branch : public ExtremalCurve {
   Units units_;
   ClosingEquation closing_;     ///< where the duration or the energy varies
   double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction
-  double action_ = 0, energy_ = 0, energy_unit_ = 1, action_slope_ = 0;
+  double action_ = 0, energy_ = 0, residual_ = 0, energy_unit_ = 1, action_slope_ = 0;
   int closing_sign_ = 1;
   mutable std::optional<Inertia> inertia_;  ///< of the last linearisation, once asked for
   Path at_;

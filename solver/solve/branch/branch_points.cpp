@@ -83,9 +83,8 @@ FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, doub
   }
   FoundBranchPoint found;
   if (reached) {
-    const DiscreteAction& action = tracker.workspace().iteration.action();
     const double allowed = std::max(momentum_tolerances * tracker.tolerance(), least_momentum);
-    found.balanced = action.residual() <= allowed * action.momentum_scale();
+    found.balanced = tracker.branch().residual() <= allowed;
     found.point = read_point(tracker, PointKind::branch);
   }
   tracker.hold({});

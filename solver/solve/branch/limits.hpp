@@ -31,9 +31,10 @@ inline constexpr double aside_near = 0.03, aside_far = 0.3;
 inline constexpr double offsets[] = {1e-3, 1e-2, 3e-2, 0.1};
 /// Where they are not: how far before it one is.
 inline constexpr double beside[] = {0, 1e-7, 1e-5, 1e-4};
-/// Forces that are left at a branch point, in tolerances of the largest momentum, or relative to it: along
-/// the singular directions a branch point is as good as its predictor, 1e-5 or better.
-inline constexpr double momentum_tolerances = 10, least_momentum = 1e-4;
+/// Forces that are left at a branch point, in tolerances of the largest momentum, or relative to it. Along
+/// the singular directions a branch point is as good as its predictor, 1e-4 or better; at a saddle of the
+/// forces they are of second order in that.
+inline constexpr double momentum_tolerances = 10, least_momentum = 1e-8;
 /// A second direction is singular if its response is so many times the one far from the branch point.
 inline constexpr double grown = 10;
 
