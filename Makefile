@@ -3,10 +3,11 @@ SCENE = problems/scenes/cr3bp.toml
 # Where `make install` installs; the program looks for system files there.
 PREFIX = /usr/local
 
-.PHONY: configure build demo test bench debug asan ubsan sanitize fuzz gallery reference format install package packages clean
+.PHONY: configure build demo test python test-python bench debug asan ubsan sanitize fuzz gallery reference format install \
+	package packages clean
 
 configure: packages
-	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) >build/configure.log 2>&1 || { \
+	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) -DEXTREMAL_PYTHON=ON >build/configure.log 2>&1 || { \
 	  cat build/configure.log; exit 1; }
 
 build: configure
@@ -20,6 +21,24 @@ demo: configure
 
 test: build
 	@ctest --preset release
+
+# The module `extremal`, as built, for build/python/bin/python and, by a file in the folder of the user's own modules,
+# for the interpreter of the system. Neither needs to be activated.
+PYTHON = /usr/bin/python3
+python: configure
+	@cmake --build --preset release --target extremal_python
+	@$(PYTHON) -m venv --without-pip --system-site-packages build/python
+	@for folder in "$$(build/python/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')" \
+	    "$$($(PYTHON) -m site --user-site)"; do \
+	  mkdir -p "$$folder" && echo "$(abspath build/release/python)" >"$$folder/extremal.pth" || exit 1; done
+	@build/python/bin/python -c 'import extremal; print("import extremal:", extremal.__file__)'
+
+# Tests of the module, its types, and the scripts of problems/python.
+test-python: python
+	@.ci/packages .ci/checks.txt
+	@build/python/bin/python -m pytest -q -p no:cacheprovider tests/python
+	@build/python/bin/python -m mypy --strict --cache-dir build/mypy build/release/python/extremal
+	@build/python/bin/python -m mypy.stubtest --allowlist tests/python/stubs.txt --ignore-unused-allowlist extremal._core
 
 # Each is a build of its own with all tests.
 debug asan ubsan sanitize: packages
@@ -63,7 +82,7 @@ install: build
 # build/extremal_VERSION_ARCHITECTURE.deb
 package: PREFIX = /usr
 package: configure
-	@cmake --build --preset release --target extremal_pages extremal_solve extremal_rivals extremal_study extremal_report
+	@cmake --build --preset release --target extremal_pages extremal_python extremal_solve extremal_rivals extremal_study extremal_report
 	@cd build/release && cpack -B .. >cpack.log || { cat cpack.log; exit 1; }
 	@ls build/*.deb
 

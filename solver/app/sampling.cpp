@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "app/commands.hpp"
-#include "study/phase.hpp"
 
 namespace extremal::app {
 
@@ -30,29 +28,6 @@ std::vector<double> parse_times(const std::string& text) {
 void check_times(const std::vector<double>& times, double duration) {
   for (const double t : times)
     if (t > duration) throw OptionError(fmt::format("--at: {} is beyond the duration {}", t, duration));
-}
-
-std::vector<double> equal_times(int count, double duration) {
-  std::vector<double> times(count);
-  for (int k = 0; k < count; ++k) times[k] = k + 1 == count ? duration : duration * k / (count - 1);
-  return times;
-}
-
-Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times) {
-  const std::size_t n = problem.coordinates();
-  const std::vector<Column> columns(n, Column(times.size()));
-  Samples samples{times, columns, columns, columns};
-  std::vector<double> q(n), v(n), p(n);
-  Scratch scratch;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    phase_point(problem, trajectory, times[k], q, v, p, scratch);
-    for (std::size_t a = 0; a < n; ++a) {
-      samples.q[a][k] = q[a];
-      samples.v[a][k] = v[a];
-      samples.p[a][k] = p[a];
-    }
-  }
-  return samples;
 }
 
 }  // namespace extremal::app

@@ -3,10 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "report/result.hpp"
-#include "study/study.hpp"
-
-/// \file The times that samples are wanted at, and the samples.
+/// \file The times that samples are wanted at.
 
 namespace extremal::app {
 
@@ -15,10 +12,5 @@ std::vector<double> parse_times(const std::string& text);
 
 /// Throws OptionError for a time beyond the duration.
 void check_times(const std::vector<double>& times, double duration);
-
-/// `count` equal steps' ends, from 0 to the duration.
-std::vector<double> equal_times(int count, double duration);
-
-Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times);
 
 }  // namespace extremal::app

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "app/commands.hpp"
@@ -10,6 +9,7 @@
 #include "report/csv.hpp"
 #include "report/json.hpp"
 #include "report/plot.hpp"
+#include "report/sampling.hpp"
 #include "report/text.hpp"
 #include "study/annotation.hpp"
 #include "study/study.hpp"
@@ -18,9 +18,6 @@ namespace extremal::app {
 namespace {
 
 constexpr int csv_samples = 201;
-/// A picture has so many equal steps, and so many in each element, which is short where the motion is fast;
-/// of elements that are many, fewer.
-constexpr int plot_steps = 800, element_steps = 8, most_element_steps = 20'000;
 
 std::string progress_text(const Iteration& i) {
   return fmt::format("{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements, i.degree,
@@ -72,31 +69,6 @@ std::string csv_of(const Study& study, const Result& result) {
   });
 }
 
-Samples drawn(const Study& study, const Solution& solution) {
-  const Trajectory& trajectory = solution.trajectory;
-  std::vector<double> times = equal_times(plot_steps + 1, solution.duration());
-  const int steps = std::min(element_steps, most_element_steps / trajectory.elements());
-  for (int k = 0; k < trajectory.elements(); ++k)
-    for (int i = 0; i < steps; ++i)
-      times.push_back(trajectory.times[k] + (trajectory.times[k + 1] - trajectory.times[k]) * i / steps);
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return sample(study.problem, trajectory, times);
-}
-
-Picture picture_of(const Study& study, const Result& result, const Annotation& annotation) {
-  Picture picture{.title = result.title,
-                  .names = result.names,
-                  .samples = drawn(study, result.solution),
-                  .annotation = annotation};
-  if (!result.solutions || result.solutions->size() < 2) return picture;
-  for (const Result& each : *result.solutions) {
-    picture.actions.push_back(each.solution.action);
-    if (picture.actions.size() > 1) picture.others.push_back(drawn(study, each.solution));
-  }
-  return picture;
-}
-
 void write_outputs(const SolveArguments& a, const Study& study, const Result& result,
                    const Annotation& annotation) {
   std::vector<FileContent> files;
@@ -105,7 +77,7 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
   const bool converged = result.solution.converged();
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
   if (converged && !a.plot.empty())
-    files.push_back({a.plot, plot_image(a.plot, picture_of(study, result, annotation))});
+    files.push_back({a.plot, plot_image(a.plot, picture_of(study.problem, result, annotation))});
   Outputs::write(std::move(files));
 }
 

@@ -31,7 +31,7 @@ Deadline::Deadline(double seconds) : budget_(seconds) {
   if (seconds < longest) end_ = now() + std::max(1LL, std::llround(seconds * nanoseconds));
 }
 
-bool Deadline::passed() const { return end_ != never && now() >= end_; }
+bool Deadline::passed() const { return (end_ != never && now() >= end_) || (stop_ && stop_(context_)); }
 
 double Deadline::seconds_left() const {
   if (end_ == never) return std::numeric_limits<double>::infinity();
@@ -45,7 +45,16 @@ Deadline Deadline::share(double part) const {
 }
 
 Deadline Deadline::or_earlier(const Deadline& other) const {
-  return end_ == never || (other.end_ != never && other.end_ < end_) ? other : *this;
+  Deadline result = end_ == never || (other.end_ != never && other.end_ < end_) ? other : *this;
+  const Deadline& stopped = stop_ ? *this : other;
+  return result.or_stopped(stopped.stop_, stopped.context_);
+}
+
+Deadline Deadline::or_stopped(bool (*stop)(void*), void* context) const {
+  Deadline result = *this;
+  result.stop_ = stop;
+  result.context_ = context;
+  return result;
 }
 
 std::string Deadline::budget_text() const {

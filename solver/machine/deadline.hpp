@@ -18,8 +18,11 @@ class Deadline {
   double seconds_left() const;  ///< infinite, or at least 0
   /// After this part of what is left, for one of several that share it.
   Deadline share(double part) const;
-  /// The earlier of the two.
+  /// The earlier of the two, and what stops one of them.
   Deadline or_earlier(const Deadline& other) const;
+  /// The same, passed also once stop(context) is true. That is asked as often as the time, in one thread; it
+  /// must not throw, and from its first true on it must stay true.
+  Deadline or_stopped(bool (*stop)(void* context), void* context) const;
   /// "the budget of 60 s": that of the deadline that was shared.
   std::string budget_text() const;
 
@@ -27,6 +30,8 @@ class Deadline {
   static constexpr long long never = 0;
   long long end_ = never;  ///< in nanoseconds of the clock
   double budget_ = 0;      ///< s
+  bool (*stop_)(void*) = nullptr;
+  void* context_ = nullptr;
 };
 
 }  // namespace extremal

@@ -148,14 +148,20 @@ std::shared_ptr<const Source> read_text(const std::string& path) {
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& sets) {
-  Document document = parse_document(read_text(path));
+  Scene scene = read_scene(read_text(path), sets);
+  scene.files.insert(scene.files.begin(), path);
+  return scene;
+}
+
+Scene read_scene(const std::shared_ptr<const Source>& text, const std::vector<std::string>& sets) {
+  const std::string& path = text->name;
+  Document document = parse_document(text);
   for (const std::string& argument : sets) set_value(document, argument);
   check_keys(document, document.root, "");
   check_relations(document);
 
   Scene scene;
   scene.path = path;
-  scene.files = {path};
   scene.title = document.root["title"].value_or(std::string());
   scene.system = read_system_table(document, *table(document, "system", true));
   if (scene.system.use) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -117,5 +118,8 @@ struct Scene {
 
 /// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).
 Scene read_scene(const std::string& path, const std::vector<std::string>& sets = {});
+
+/// The same of a text. Files that it names are looked up beside its name, as if that were its path.
+Scene read_scene(const std::shared_ptr<const Source>& text, const std::vector<std::string>& sets = {});
 
 }  // namespace extremal

@@ -182,6 +182,17 @@ std::shared_ptr<const Source> read_source(const std::string& path) {
   return source;
 }
 
+std::shared_ptr<const Source> text_source(const std::string& name, const std::string& text) {
+  auto source = std::make_shared<Source>(Source{name, text});
+  const Location whole{source, 0, 0};
+  if (text.size() > largest_file)
+    throw SceneError(whole,
+                     fmt::format("has {} bytes; at most {} (16 MiB) are read", text.size(), largest_file));
+  if (text.empty()) throw SceneError(whole, "the text is empty");
+  check_characters(source);
+  return source;
+}
+
 void check_key_depth(const std::shared_ptr<const Source>& source) {
   Cursor cursor{source->text};
   int dots = 0;        // joining the parts of one key

@@ -64,6 +64,9 @@ inline constexpr std::size_t largest_file = std::size_t{16} << 20;  ///< bytes
 /// text.
 std::shared_ptr<const Source> read_source(const std::string& path);
 
+/// A text that is no file, under the name that errors show. Throws SceneError as read_source() does.
+std::shared_ptr<const Source> text_source(const std::string& name, const std::string& text);
+
 /// Throws SceneError if a dotted key has more than 64 parts: the parser recurses over them.
 void check_key_depth(const std::shared_ptr<const Source>& source);
 

@@ -153,13 +153,23 @@ Study make_study(const Scene& scene, Purpose purpose) {
   return study;
 }
 
-Study load_checked(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
-  const Scene scene = read_scene(path, sets);
+/// Of a path or a text.
+template <class Where>
+Study load_checked(const Where& where, const std::vector<std::string>& sets, Purpose purpose) {
+  const Scene scene = read_scene(where, sets);
   try {
     return make_study(scene, purpose);
   } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
     throw at_its_place(scene.system, e);
   }
+}
+
+template <class Where>
+Study load_timed(const Where& where, const std::vector<std::string>& sets, Purpose purpose) {
+  const auto begin = Clock::now();
+  Study study = with_suggestion([&] { return load_checked(where, sets, purpose); });
+  study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
+  return study;
 }
 
 /// What solve() returns the last time, with the medians of the times it took.
@@ -203,10 +213,11 @@ double median(std::vector<double> values) {
 Deadline deadline_of(const Study& study) { return Deadline(study.budget).or_earlier(study.options.deadline); }
 
 Study load(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
-  const auto begin = Clock::now();
-  Study study = with_suggestion([&] { return load_checked(path, sets, purpose); });
-  study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
-  return study;
+  return load_timed(path, sets, purpose);
+}
+
+Study load(const std::shared_ptr<const Source>& text, const std::vector<std::string>& sets, Purpose purpose) {
+  return load_timed(text, sets, purpose);
 }
 
 Solution run(const Study& study, int repeat) {

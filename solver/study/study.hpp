@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,10 @@ Deadline deadline_of(const Study& study);
 /// Reads a scene and the changes "key=value" to it. Throws SceneError with file, line and column, also where
 /// the least that a solve needs exceeds the memory there is.
 Study load(const std::string& path, const std::vector<std::string>& sets = {},
+           Purpose purpose = Purpose::family);
+
+/// The same of a text. Files that it names are looked up beside its name.
+Study load(const std::shared_ptr<const Source>& text, const std::vector<std::string>& sets = {},
            Purpose purpose = Purpose::family);
 
 /// Solves `repeat` times from the same guess with one Solver, each time within the budget; where that is

@@ -1,0 +1,409 @@
+"""Solutions: whole trajectories with what is known of them."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+if TYPE_CHECKING:
+    from ._problem import Problem
+
+Array = npt.NDArray[np.float64]
+
+
+class Named(Mapping[str, float]):
+    """Numbers by the names of the coordinates; numpy.asarray gives them as an array of n that cannot be written."""
+
+    __slots__ = ("_names", "_values")
+
+    def __init__(self, names: list[str], values: Array) -> None:
+        self._names = names
+        self._values = values
+
+    def __getitem__(self, name: str) -> float:
+        try:
+            return float(self._values[self._names.index(name)])
+        except ValueError:
+            raise KeyError(name) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __array__(self, dtype: npt.DTypeLike = None) -> Array:
+        return self._values if dtype is None else self._values.astype(dtype)
+
+    def __repr__(self) -> str:
+        return repr(dict(self))
+
+
+class Picture:
+    """A drawing, shown by notebooks; `svg` is its text."""
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return f"<Picture, {len(self.svg)} bytes of SVG>"
+
+
+def drawn(draw: Any, path: str | os.PathLike[str] | None) -> Picture | None:
+    """What draw(path) draws: as a picture, or into a file."""
+    if path is None:
+        return Picture(draw("picture.svg").decode())
+    _core.write(os.fspath(path), draw(os.fspath(path)))
+    return None
+
+
+class Solution:
+    """A trajectory q(t) on [0, T], n coordinates, in the units of the problem. Immutable.
+
+    Where `converged` is false, `status` and `message` say why, and there is no trajectory. Arrays cannot be written;
+    they are views of the solution's own memory and keep it alive.
+
+    >>> s(1.3)                      # q(1.3), (n,)
+    >>> s(np.linspace(0, s.duration, 100))  # (100, n)
+    >>> s.x, s["x'"], s["p_x"]      # at the times s.t of all nodes
+    """
+
+    __slots__ = ("_problem", "_solved", "_all", "_t", "__weakref__")
+    _problem: Problem
+    _solved: _core.Solved
+    _all: tuple[Solution, ...]
+    _t: Array | None
+
+    def __init__(self) -> None:
+        raise TypeError("solutions come from Problem.solve()")
+
+    @classmethod
+    def _made(cls, problem: Problem, solved: _core.Solved, found: tuple[Solution, ...] = ()) -> Solution:
+        solution = cls.__new__(cls)
+        put = object.__setattr__
+        put(solution, "_problem", problem)
+        put(solution, "_solved", solved)
+        put(solution, "_all", found)
+        put(solution, "_t", None)
+        return solution
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError("a solution does not change")
+
+    __delattr__ = __setattr__  # type: ignore[assignment]
+
+    @property
+    def problem(self) -> Problem:
+        """What it solves."""
+        return self._problem
+
+    @property
+    def solutions(self) -> tuple[Solution, ...]:
+        """All that a search found, by their actions; else this one alone."""
+        return self._all or (self,)
+
+    @property
+    def status(self) -> str:
+        """"converged", or why not: "collision", "no-solution-near", …"""
+        return self._solved.status
+
+    @property
+    def message(self) -> str:
+        """Where, why and what to try, in words."""
+        return self._solved.message
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerance is met."""
+        return self._solved.converged
+
+    @property
+    def strategy(self) -> str:
+        """What led to it."""
+        return self._solved.strategy
+
+    @property
+    def action(self) -> float:
+        """∫ L dt."""
+        return self._solved.action
+
+    @property
+    def duration(self) -> float:
+        """T."""
+        return self._solved.duration
+
+    @property
+    def energy(self) -> float | None:
+        """p·q' − L at t = 0; None where L depends on t."""
+        return self._solved.energy
+
+    @property
+    def energy_drift(self) -> float | None:
+        """Largest change of the energy along the path."""
+        return self._solved.energy_drift
+
+    @property
+    def work(self) -> float | None:
+        """∫ F·q' dt of the forces; None without forces."""
+        return self._solved.work
+
+    @property
+    def error_estimate(self) -> float:
+        """Largest error of q(t), in units of q."""
+        return self._solved.error_estimate
+
+    @property
+    def residual(self) -> float:
+        """Largest component of the discrete equations, divided by the largest momentum."""
+        return self._solved.residual
+
+    @property
+    def index(self) -> int | None:
+        """Morse index of the second variation; None where there is none."""
+        return self._solved.morse_index
+
+    morse_index = index
+
+    @property
+    def nullity(self) -> int | None:
+        """Null directions of the second variation, symmetries included."""
+        return self._solved.nullity
+
+    @property
+    def minimizing(self) -> bool | None:
+        """Whether the action has a local minimum, but for symmetries; None without an index."""
+        return self._solved.minimizing if self.index is not None else None
+
+    @property
+    def certificate(self) -> str:
+        """What is known of the windows: "none", "sampled" or "global"."""
+        return self._solved.certificate
+
+    @property
+    def windows(self) -> Array | None:
+        """(k, 2): times between which the path minimises with its ends fixed; None where there are none."""
+        return self._solved.windows
+
+    @property
+    def conjugate_times(self) -> Array | None:
+        """Times conjugate to 0, in (0, T), repeated by multiplicity; None where they are not known."""
+        return self._solved.conjugate_times
+
+    @property
+    def momentum_start(self) -> Named:
+        """Canonical momenta at t = 0 by name."""
+        return Named(self._solved.names, self._solved.momentum_start)
+
+    @property
+    def momentum_end(self) -> Named:
+        """Canonical momenta at t = T by name."""
+        return Named(self._solved.names, self._solved.momentum_end)
+
+    @property
+    def multipliers(self) -> npt.NDArray[np.complex128] | None:
+        """Floquet multipliers of a periodic orbit, (2n,), largest modulus first; else None."""
+        return self._solved.multipliers
+
+    @property
+    def krein(self) -> npt.NDArray[np.intc] | None:
+        """Krein signs beside the multipliers."""
+        return self._solved.krein
+
+    @property
+    def minimal_period(self) -> float | None:
+        """Of a path that closes: T, or a part of it."""
+        return self._solved.minimal_period
+
+    @property
+    def elements(self) -> int:
+        """Number N of elements."""
+        return self._solved.elements
+
+    @property
+    def degree(self) -> int:
+        """Degree of the elements that were solved for."""
+        return self._solved.degree
+
+    @property
+    def unknowns(self) -> int:
+        """Numbers that were solved for."""
+        return self._solved.unknowns
+
+    @property
+    def iterations(self) -> int:
+        """Steps of Newton's method."""
+        return self._solved.iterations
+
+    @property
+    def history(self) -> list[_core.Iteration]:
+        """The steps: elements, degree, residual, step and damping of each."""
+        return self._solved.history
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time taken by `solve` and `analyse`, s."""
+        return {"solve": self._solved.seconds_solve, "analyse": self._solved.seconds_analyse}
+
+    @property
+    def mesh(self) -> Array:
+        """Times of the ends of the elements, (N + 1,)."""
+        return self._solved.times
+
+    @property
+    def nodes(self) -> Array | None:
+        """Values at the Lobatto nodes of each element, (N, s + 1, n); None if there is no trajectory."""
+        return self._solved.nodes if self.converged else None
+
+    @property
+    def t(self) -> Array:
+        """Times of all nodes, from 0 to T, (m,)."""
+        if self._t is None:
+            self._require()
+            nodes = self._solved.nodes
+            assert nodes is not None
+            degree = nodes.shape[1] - 1
+            coefficients = np.eye(degree + 1)[degree]
+            inner = np.polynomial.legendre.legroots(np.polynomial.legendre.legder(coefficients))
+            tau = (1 + np.sort(np.concatenate([[-1.0], inner]))) / 2
+            mesh = self.mesh
+            times = (mesh[:-1, None] + np.diff(mesh)[:, None] * tau).ravel()
+            times = np.append(times, mesh[-1])
+            times.setflags(write=False)
+            object.__setattr__(self, "_t", times)
+        assert self._t is not None
+        return self._t
+
+    def _require(self) -> None:
+        if not self.converged:
+            raise ValueError(f"there is no trajectory: {self.status}: {self.message}")
+
+    def _at(self, t: npt.ArrayLike, evaluate: Any) -> Array:
+        self._require()
+        times = np.asarray(t, dtype=float)
+        values: Array = evaluate(times.ravel())
+        return values.reshape(times.shape + values.shape[1:])
+
+    def __call__(self, t: npt.ArrayLike) -> Array:
+        """q(t): (n,) at one time, (m, n) at m. Raises ValueError outside of [0, T]."""
+        return self._at(t, self._solved.q)
+
+    def q(self, t: npt.ArrayLike) -> Array:
+        """Positions q(t): (n,) at one time, (m, n) at m."""
+        return self._at(t, self._solved.q)
+
+    def v(self, t: npt.ArrayLike) -> Array:
+        """Velocities q'(t), likewise."""
+        return self._at(t, self._solved.v)
+
+    def p(self, t: npt.ArrayLike) -> Array:
+        """Canonical momenta ∂L/∂q'(t), likewise."""
+        return self._at(t, self._solved.p)
+
+    def __getitem__(self, name: str) -> Array:
+        """Values of "x", "x'" or "p_x" at the times `t`: (m,), of an array of k coordinates (m, k)."""
+        evaluate, wanted = self._solved.q, name
+        if name.endswith("'"):
+            evaluate, wanted = self._solved.v, name[:-1]
+        elif name.startswith("p_") and self._columns(name) is None:
+            evaluate, wanted = self._solved.p, name[2:]
+        columns = self._columns(wanted)
+        if columns is None:
+            raise KeyError(f"there is no coordinate '{wanted}'; the problem has {', '.join(self._solved.names[:20])}")
+        values = self._at(self.t, evaluate)[:, columns]
+        values.setflags(write=False)
+        return values
+
+    def _columns(self, name: str) -> int | slice | None:
+        for coordinate, first, count, array in self._problem._study.coordinates:
+            if name == coordinate:
+                return slice(first, first + count) if array else first
+        names = self._solved.names
+        return names.index(name) if name in names else None
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_") or self._columns(name) is None:
+            raise AttributeError(f"a solution has no '{name}'", name=name, obj=self)
+        return self[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(name for name, *_ in self._problem._study.coordinates)]
+
+    def to_dict(self, samples: int | npt.ArrayLike | None = None) -> dict[str, Any]:
+        """The result as `--output` writes it, with so many equal samples, or samples at these times."""
+        result: dict[str, Any] = json.loads(self._solved.json(self._times(samples)))
+        if self._all:
+            result["solutions"] = [json.loads(s._solved.json(s._times(samples))) for s in self._all]
+        return result
+
+    def _times(self, samples: int | npt.ArrayLike | None) -> Array | None:
+        if samples is None or not self.converged:
+            return None
+        if isinstance(samples, (int, np.integer)):
+            if samples < 2:
+                raise ValueError(f"samples = {samples}; need at least 2")
+            return np.linspace(0, self.duration, samples)
+        return np.asarray(samples, dtype=float)
+
+    def save(self, path: str | os.PathLike[str], samples: int | npt.ArrayLike | None = 201) -> None:
+        """Writes the result with samples as .json, or the samples alone as .csv or .npz, by the ending of the path.
+        A file is written whole or not at all."""
+        name = os.fspath(path)
+        if name.endswith(".json"):
+            content = (json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode()
+        elif name.endswith((".csv", ".npz")):
+            self._require()
+            times = self.t if samples is None else self._times(samples)
+            assert times is not None
+            content = self._solved.csv(times).encode() if name.endswith(".csv") else self._npz(times)
+        else:
+            raise ValueError(f"'{name}' ends neither in .json nor in .csv nor in .npz")
+        _core.write(name, content)
+
+    def _npz(self, times: Array) -> bytes:
+        columns: dict[str, Array] = {"t": times}
+        for prefix, suffix, values in (("", "", self.q(times)), ("", "'", self.v(times)), ("p_", "", self.p(times))):
+            for k, name in enumerate(self._solved.names):
+                columns[prefix + name + suffix] = values[:, k]
+        buffer = io.BytesIO()
+        np.savez(buffer, **columns)
+        return buffer.getvalue()
+
+    def plot(self, path: str | os.PathLike[str] | None = None) -> Picture | None:
+        """Draws the trajectory, of a search all of them, by gnuplot: into a file .svg, .png or .pdf, or as a picture
+        for a notebook."""
+        solved = [solution._solved for solution in self.solutions]
+        return drawn(lambda name: _core.plot(name, solved), path)
+
+    def _repr_svg_(self) -> str | None:
+        try:
+            picture = self.plot() if self.converged else None
+        except RuntimeError:  # there is no gnuplot
+            return None
+        return picture.svg if picture else None
+
+    def __repr__(self) -> str:
+        return self._solved.summary().rstrip("\n")
+
+    def __copy__(self) -> Solution:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Solution:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._problem, self._solved.state(), self._all)
+
+
+def _restored(problem: Problem, state: tuple[Any, ...], found: tuple[Solution, ...]) -> Solution:
+    return Solution._made(problem, _core.restored(problem._study, state), found)

@@ -1,0 +1,124 @@
+#include "python/pickle.hpp"
+
+#include <pybind11/complex.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace extremal::python {
+namespace py = pybind11;
+namespace {
+
+/// All members of a type as references. A member that is added to one of them does not compile here until it
+/// is named: no pickle loses one.
+auto members(Trajectory& s) {
+  auto& [coordinates, degree, times, nodes, slopes, lengths] = s;
+  return std::tie(coordinates, degree, times, nodes, slopes, lengths);
+}
+
+auto members(Iteration& s) {
+  auto& [elements, degree, residual, step, damping] = s;
+  return std::tie(elements, degree, residual, step, damping);
+}
+
+auto members(Floquet& s) {
+  auto& [paired, multipliers, krein, vectors, defect, trivial, circle, real, quadruples] = s;
+  return std::tie(paired, multipliers, krein, vectors, defect, trivial, circle, real, quadruples);
+}
+
+auto members(Solution& s) {
+  auto& [status, message, strategy, trajectory, action, energy, drift, work, error, residual, index, nullity,
+         minimizing, windows, conjugate, conjugate_known, certificate, floquet, period, momentum_start,
+         momentum_end, pinned, energies, degree, unknowns, iterations, history, seconds_solve,
+         seconds_analyse] = s;
+  return std::tie(status, message, strategy, trajectory, action, energy, drift, work, error, residual, index,
+                  nullity, minimizing, windows, conjugate, conjugate_known, certificate, floquet, period,
+                  momentum_start, momentum_end, pinned, energies, degree, unknowns, iterations, history,
+                  seconds_solve, seconds_analyse);
+}
+
+template <class T>
+concept HasMembers = requires(T& value) {
+  members(value);
+};
+
+template <class T>
+py::object pack(T& value);
+template <class T>
+void unpack(const py::handle& packed, T& value);
+
+/// Long lists of numbers are bytes.
+py::object pack(std::vector<double>& numbers) {
+  return py::bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+}
+void unpack(const py::handle& packed, std::vector<double>& numbers) {
+  const std::string bytes = packed.cast<py::bytes>();
+  numbers.resize(bytes.size() / sizeof(double));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
+}
+
+template <HasMembers T>
+py::object pack(std::optional<T>& value) {
+  return value ? pack(*value) : py::none();
+}
+template <HasMembers T>
+void unpack(const py::handle& packed, std::optional<T>& value) {
+  if (!packed.is_none()) unpack(packed, value.emplace());
+}
+
+template <HasMembers T>
+py::object pack(std::vector<T>& values) {
+  py::list list;
+  for (T& value : values) list.append(pack(value));
+  return list;
+}
+template <HasMembers T>
+void unpack(const py::handle& packed, std::vector<T>& values) {
+  for (const py::handle& value : packed.cast<py::list>()) unpack(value, values.emplace_back());
+}
+
+template <class T>
+py::object pack(T& value) {
+  if constexpr (HasMembers<T>)
+    return std::apply([](auto&... member) -> py::object { return py::make_tuple(pack(member)...); },
+                      members(value));
+  else if constexpr (std::is_enum_v<T>)
+    return py::int_(static_cast<int>(value));
+  else
+    return py::cast(value);
+}
+
+template <class T>
+void unpack(const py::handle& packed, T& value) {
+  if constexpr (HasMembers<T>) {
+    const auto state = packed.cast<py::tuple>();
+    std::size_t k = 0;
+    std::apply(
+        [&](auto&... member) {
+          if (state.size() != sizeof...(member)) throw std::invalid_argument("pickled by another version");
+          (unpack(state[k++], member), ...);
+        },
+        members(value));
+  } else if constexpr (std::is_enum_v<T>) {
+    value = static_cast<T>(packed.cast<int>());
+  } else {
+    value = packed.cast<T>();
+  }
+}
+
+}  // namespace
+
+py::tuple packed(const Solution& solution) {
+  Solution copy = solution;
+  return pack(copy);
+}
+
+Solution unpacked(const py::tuple& state) {
+  Solution solution;
+  unpack(state, solution);
+  return solution;
+}
+
+}  // namespace extremal::python

@@ -1,0 +1,187 @@
+#include "python/solution.hpp"
+
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "python/arrays.hpp"
+#include "python/pickle.hpp"
+#include "python/study.hpp"
+#include "report/csv.hpp"
+#include "report/json.hpp"
+#include "report/plot.hpp"
+#include "report/sampling.hpp"
+#include "report/text.hpp"
+#include "study/annotation.hpp"
+#include "study/phase.hpp"
+
+namespace extremal::python {
+namespace {
+
+using Times = std::optional<Doubles>;
+
+std::vector<double> list(const Doubles& array) { return {array.data(), array.data() + array.size()}; }
+
+Result result_of(const Solved& s) {
+  Result result{s.study->title, s.study->problem.names, s.solution, s.study->seconds_read, std::nullopt};
+  result.natural_conditions = natural_conditions(s.study->problem);
+  return result;
+}
+
+/// As --output writes it, with samples at `times`.
+std::string json(const Solved& s, const Times& times) {
+  Result result = result_of(s);
+  if (s.solution.converged()) {
+    if (times) result.samples = sample(s.study->problem, s.solution.trajectory, list(*times));
+    if (s.study->spectrum) result.spectrum = spectrum_of(*s.study, *s.study->spectrum, s.solution);
+  }
+  return text_of([&](std::ostream& out) { write_json(out, result); });
+}
+
+std::string csv(const Solved& s, const Doubles& times) {
+  return text_of([&](std::ostream& out) {
+    write_csv(out, sample(s.study->problem, s.solution.trajectory, list(times)), s.study->problem.names);
+  });
+}
+
+/// The bytes of a picture in the format that the path ends with; of several solutions of one study all.
+py::bytes plot(const std::string& path, const std::vector<std::shared_ptr<Solved>>& solutions) {
+  if (solutions.empty()) throw std::invalid_argument("there is no solution to plot");
+  for (const auto& s : solutions)
+    if (!s->solution.converged())
+      throw std::invalid_argument("a solution that has not converged has no picture: " + s->solution.message);
+  const Study& study = *solutions.front()->study;
+  Result result = result_of(*solutions.front());
+  if (solutions.size() > 1) {
+    result.solutions.emplace();
+    for (const auto& s : solutions) result.solutions->push_back(result_of(*s));
+  }
+  std::string image;
+  {
+    const py::gil_scoped_release unlocked;
+    image = plot_image(path, picture_of(study.problem, result, annotation(study)));
+  }
+  return image;
+}
+
+enum class Quantity { position, velocity, momentum };
+
+/// (m, n) at m times.
+py::array_t<double> at(const Solved& s, const Doubles& times, Quantity quantity) {
+  const std::size_t n = s.study->problem.coordinates(), m = times.size();
+  py::array_t<double> values({m, n});
+  double* const out = values.mutable_data();
+  const double* const t = times.data();
+  const py::gil_scoped_release unlocked;
+  std::vector<double> other(n), third(n);
+  Scratch scratch;
+  for (std::size_t k = 0; k < m; ++k) {
+    const std::span<double> wanted(out + k * n, n);
+    if (quantity == Quantity::position)
+      s.solution.trajectory.at(t[k], wanted, other);
+    else if (quantity == Quantity::velocity)
+      s.solution.trajectory.at(t[k], other, wanted);
+    else
+      phase_point(s.study->problem, s.solution.trajectory, t[k], other, third, wanted, scratch);
+  }
+  return values;
+}
+
+/// A view of a member of the solution, which the Python object owns.
+template <class Number>
+auto view_of(std::vector<Number> Solution::*member) {
+  return [member](const py::object& self) { return view(self.cast<const Solved&>().solution.*member, self); };
+}
+
+const Trajectory& trajectory(const py::object& self) {
+  return self.cast<const Solved&>().solution.trajectory;
+}
+
+py::object nodes(const py::object& self, const std::vector<double> Trajectory::*member) {
+  const Trajectory& path = trajectory(self);
+  if ((path.*member).empty()) return py::none();
+  return view((path.*member).data(), {path.elements(), path.degree + 1, path.coordinates}, self);
+}
+
+py::object windows(const py::object& self) {
+  const Solution& s = self.cast<const Solved&>().solution;
+  if (s.certificate == Certificate::none) return py::none();
+  const double* const first = s.windows.empty() ? nullptr : s.windows.front().data();
+  return view(first, {static_cast<py::ssize_t>(s.windows.size()), 2}, self);
+}
+
+py::object conjugate_times(const py::object& self) {
+  const Solution& s = self.cast<const Solved&>().solution;
+  if (s.certificate == Certificate::none || !s.conjugate_times_known) return py::none();
+  return view(s.conjugate_times, self);
+}
+
+py::object multipliers(const py::object& self) {
+  const Solution& s = self.cast<const Solved&>().solution;
+  return s.floquet ? py::object(view(s.floquet->multipliers, self)) : py::none();
+}
+
+py::object krein(const py::object& self) {
+  const Solution& s = self.cast<const Solved&>().solution;
+  return s.floquet && s.floquet->paired ? py::object(view(s.floquet->krein, self)) : py::none();
+}
+
+}  // namespace
+
+void bind_solution(py::module_& module) {
+  using Pointer = std::shared_ptr<Solved>;
+  py::class_<Solved, Pointer> solved(module, "Solved");
+  const auto value = [&](const char* name, auto member) {
+    solved.def_property_readonly(name, [member](const Solved& s) { return s.solution.*member; });
+  };
+  solved.def_property_readonly("status", [](const Solved& s) { return name(s.solution.status); })
+      .def_property_readonly("certificate", [](const Solved& s) { return name(s.solution.certificate); })
+      .def_property_readonly("converged", [](const Solved& s) { return s.solution.converged(); })
+      .def_property_readonly("duration", [](const Solved& s) { return s.solution.duration(); })
+      .def_property_readonly("elements", [](const Solved& s) { return s.solution.trajectory.elements(); })
+      .def_property_readonly("names", [](const Solved& s) { return s.study->problem.names; });
+  value("message", &Solution::message);
+  value("strategy", &Solution::strategy);
+  value("action", &Solution::action);
+  value("energy", &Solution::energy);
+  value("energy_drift", &Solution::energy_drift);
+  value("work", &Solution::work);
+  value("error_estimate", &Solution::error_estimate);
+  value("residual", &Solution::residual);
+  value("morse_index", &Solution::morse_index);
+  value("nullity", &Solution::nullity);
+  value("minimizing", &Solution::minimizing);
+  value("minimal_period", &Solution::minimal_period);
+  value("degree", &Solution::degree);
+  value("unknowns", &Solution::unknowns);
+  value("iterations", &Solution::iterations);
+  value("history", &Solution::history);
+  value("seconds_solve", &Solution::seconds_solve);
+  value("seconds_analyse", &Solution::seconds_analyse);
+  solved.def_property_readonly("momentum_start", view_of(&Solution::momentum_start))
+      .def_property_readonly("momentum_end", view_of(&Solution::momentum_end))
+      .def_property_readonly("windows", windows)
+      .def_property_readonly("conjugate_times", conjugate_times)
+      .def_property_readonly("multipliers", multipliers)
+      .def_property_readonly("krein", krein)
+      .def_property_readonly("times",
+                             [](const py::object& self) { return view(trajectory(self).times, self); })
+      .def_property_readonly("nodes", [](const py::object& self) { return nodes(self, &Trajectory::nodes); })
+      .def_property_readonly("slopes",
+                             [](const py::object& self) { return nodes(self, &Trajectory::slopes); })
+      .def("q", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::position); })
+      .def("v", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::velocity); })
+      .def("p", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::momentum); })
+      .def("json", json, py::arg("times") = py::none())
+      .def("csv", csv)
+      .def("summary", [](const Solved& s) { return summary(result_of(s)); })
+      .def("state", [](const Solved& s) { return packed(s.solution); });
+  module.def("restored", [](const PyStudy& study, const py::tuple& state) {
+    return std::make_shared<Solved>(Solved{study.shared(), unpacked(state)});
+  });
+  module.def("plot", plot, py::arg("path"), py::arg("solutions"));
+}
+
+}  // namespace extremal::python

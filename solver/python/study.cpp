@@ -1,0 +1,108 @@
+#include "python/study.hpp"
+
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+
+#include <utility>
+
+#include "python/run.hpp"
+#include "study/continued.hpp"
+
+namespace extremal::python {
+
+Solver Solvers::take() {
+  const std::lock_guard lock(mutex_);
+  if (waiting_.empty()) return Solver();
+  Solver solver = std::move(waiting_.back());
+  waiting_.pop_back();
+  return solver;
+}
+
+void Solvers::give_back(Solver solver) {
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back(std::move(solver));
+}
+
+PyStudy::PyStudy(const std::string& text, const std::string& name, bool family)
+    : solvers_(std::make_shared<Solvers>()) {
+  const py::gil_scoped_release unlocked;
+  study_ = std::make_shared<const Study>(
+      load(text_source(name, text), {}, family ? Purpose::family : Purpose::solution));
+}
+
+std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py::object& progress) const {
+  Interruptible work;
+  SolveOptions options = study_->options;
+  options.deadline = work.deadline(study_->budget);
+  options.progress = work.callback<Iteration>(progress);
+  if (tolerance) options.tolerance = *tolerance;
+  return work.run([&] {
+    Solver solver = solvers_->take();
+    auto solved = std::make_shared<Solved>(Solved{study_, solver.solve(study_->problem, options)});
+    solvers_->give_back(std::move(solver));
+    return solved;
+  });
+}
+
+std::vector<std::shared_ptr<Solved>> PyStudy::search(int most, std::optional<double> tolerance,
+                                                     const py::object& progress) const {
+  Interruptible work;
+  SolveOptions options = study_->options;
+  options.deadline = work.deadline(study_->budget);
+  options.progress = work.callback<Iteration>(progress);
+  if (tolerance) options.tolerance = *tolerance;
+  return work.run([&] {
+    Solver solver = solvers_->take();
+    std::vector<std::shared_ptr<Solved>> found;
+    for (Solution& solution : solver.solve_all(study_->problem, options, most))
+      found.push_back(std::make_shared<Solved>(Solved{study_, std::move(solution)}));
+    solvers_->give_back(std::move(solver));
+    return found;
+  });
+}
+
+std::shared_ptr<FollowedBranch> PyStudy::follow(const py::object& progress) const {
+  Interruptible work;
+  Study study = *study_;
+  study.options.deadline = work.deadline(study.budget);
+  const auto callback = work.callback<BranchPoint>(progress);
+  return work.run([&] { return std::make_shared<FollowedBranch>(extremal::follow(study, callback)); });
+}
+
+void bind_study(py::module_& module) {
+  py::list statuses;
+  for (int k = 0; k <= static_cast<int>(Status::iteration_limit); ++k) statuses.append(name(Status{k}));
+  module.attr("STATUSES") = statuses;
+
+  py::class_<Iteration>(module, "Iteration")
+      .def_readonly("elements", &Iteration::elements)
+      .def_readonly("degree", &Iteration::degree)
+      .def_readonly("residual", &Iteration::residual)
+      .def_readonly("step", &Iteration::step)
+      .def_readonly("damping", &Iteration::damping);
+
+  py::class_<PyStudy>(module, "Study")
+      .def(py::init<const std::string&, const std::string&, bool>(), py::arg("text"), py::arg("name"),
+           py::arg("family") = false)
+      .def_property_readonly("title", [](const PyStudy& s) { return s.study().title; })
+      .def_property_readonly("names", [](const PyStudy& s) { return s.study().problem.names; })
+      .def_property_readonly("coordinates",
+                             [](const PyStudy& s) {
+                               py::list list;
+                               for (const Coordinate& c : s.study().system.coordinates)
+                                 list.append(py::make_tuple(c.name, c.first, c.count, c.array));
+                               return list;
+                             })
+      .def_property_readonly("solutions", [](const PyStudy& s) { return s.study().solutions; })
+      .def_property_readonly("adaptive", [](const PyStudy& s) { return s.study().options.elements == 0; })
+      .def_property_readonly("initial",
+                             [](const PyStudy& s) { return s.study().problem.initial.has_value(); })
+      .def("solve", &PyStudy::solve, py::arg("tolerance") = py::none(), py::arg("progress") = py::none())
+      .def("search", &PyStudy::search, py::arg("most"), py::arg("tolerance") = py::none(),
+           py::arg("progress") = py::none())
+      .def("follow", &PyStudy::follow, py::arg("progress") = py::none())
+      .def("solve_many", &PyStudy::solve_many, py::arg("start"), py::arg("end"), py::arg("duration"),
+           py::arg("tolerance"), py::arg("threads"));
+}
+
+}  // namespace extremal::python

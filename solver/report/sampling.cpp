@@ -1,0 +1,62 @@
+#include "report/sampling.hpp"
+
+#include <algorithm>
+
+#include "study/phase.hpp"
+
+namespace extremal {
+namespace {
+
+/// A picture has so many equal steps, and so many in each element; of elements that are many, fewer.
+constexpr int plot_steps = 800, element_steps = 8, most_element_steps = 20'000;
+
+Samples drawn(const Problem& problem, const Trajectory& trajectory) {
+  std::vector<double> times = equal_times(plot_steps + 1, trajectory.duration());
+  const int steps = std::min(element_steps, most_element_steps / trajectory.elements());
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (int i = 0; i < steps; ++i)
+      times.push_back(trajectory.times[k] + (trajectory.times[k + 1] - trajectory.times[k]) * i / steps);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return sample(problem, trajectory, times);
+}
+
+}  // namespace
+
+std::vector<double> equal_times(int count, double duration) {
+  std::vector<double> times(count);
+  for (int k = 0; k < count; ++k) times[k] = k + 1 == count ? duration : duration * k / (count - 1);
+  return times;
+}
+
+Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times) {
+  const std::size_t n = problem.coordinates();
+  const std::vector<Column> columns(n, Column(times.size()));
+  Samples samples{times, columns, columns, columns};
+  std::vector<double> q(n), v(n), p(n);
+  Scratch scratch;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    phase_point(problem, trajectory, times[k], q, v, p, scratch);
+    for (std::size_t a = 0; a < n; ++a) {
+      samples.q[a][k] = q[a];
+      samples.v[a][k] = v[a];
+      samples.p[a][k] = p[a];
+    }
+  }
+  return samples;
+}
+
+Picture picture_of(const Problem& problem, const Result& result, const Annotation& annotation) {
+  Picture picture{.title = result.title,
+                  .names = result.names,
+                  .samples = drawn(problem, result.solution.trajectory),
+                  .annotation = annotation};
+  if (!result.solutions || result.solutions->size() < 2) return picture;
+  for (const Result& each : *result.solutions) {
+    picture.actions.push_back(each.solution.action);
+    if (picture.actions.size() > 1) picture.others.push_back(drawn(problem, each.solution.trajectory));
+  }
+  return picture;
+}
+
+}  // namespace extremal
