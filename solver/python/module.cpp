@@ -5,8 +5,9 @@
 #include "python/study.hpp"
 #include "report/file.hpp"
 #include "report/interrupts.hpp"
+#include "scene/scene.hpp"
 #include "scene/schema.hpp"
-#include "scene/source.hpp"
+#include "study/suggestion.hpp"
 
 /// \file The module extremal._core: what the package in extremal/ is written on.
 
@@ -53,8 +54,9 @@ py::list keys() {
   return list;
 }
 
-/// The text of a file, as scenes are read.
-std::string read_text(const std::string& path) { return read_source(path)->text; }
+std::string read_text(const std::string& path) {
+  return with_suggestion([&] { return scene_source(path)->text; });
+}
 
 void write_text(const std::string& path, const py::bytes& content) { write_files({{path, content}}); }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "action/rule.hpp"
 #include "python/arrays.hpp"
 #include "python/pickle.hpp"
 #include "python/study.hpp"
@@ -105,6 +106,19 @@ py::object nodes(const py::object& self, const std::vector<double> Trajectory::*
   return view((path.*member).data(), {path.elements(), path.degree + 1, path.coordinates}, self);
 }
 
+/// Of all Lobatto nodes of all elements, from 0 to T.
+py::array_t<double> node_times(const Solved& s) {
+  const Trajectory& path = s.solution.trajectory;
+  const std::vector<double>& tau = lobatto_barycentric(path.degree).nodes;
+  std::vector<double> times;
+  for (int k = 0; k < path.elements(); ++k) {
+    const double start = path.times[k], h = path.times[k + 1] - start;
+    for (int j = 0; j < path.degree; ++j) times.push_back(start + h * tau[j]);
+  }
+  times.push_back(path.duration());
+  return read_only(py::array_t<double>(static_cast<py::ssize_t>(times.size()), times.data()));
+}
+
 py::object windows(const py::object& self) {
   const Solution& s = self.cast<const Solved&>().solution;
   if (s.certificate == Certificate::none) return py::none();
@@ -168,6 +182,7 @@ void bind_solution(py::module_& module) {
       .def_property_readonly("krein", krein)
       .def_property_readonly("times",
                              [](const py::object& self) { return view(trajectory(self).times, self); })
+      .def_property_readonly("node_times", node_times)
       .def_property_readonly("nodes", [](const py::object& self) { return nodes(self, &Trajectory::nodes); })
       .def_property_readonly("slopes",
                              [](const py::object& self) { return nodes(self, &Trajectory::slopes); })

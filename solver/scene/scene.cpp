@@ -134,8 +134,9 @@ const toml::table* table(const Document& document, std::string_view name, bool n
   return found;
 }
 
-/// The text of a scene. Where the file is missing, a scene of that name in the library is named.
-std::shared_ptr<const Source> read_text(const std::string& path) {
+}  // namespace
+
+std::shared_ptr<const Source> scene_source(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
   const bool here = fs::exists(path, error) || fs::exists(path + ".toml", error);
@@ -145,10 +146,8 @@ std::shared_ptr<const Source> read_text(const std::string& path) {
   throw SceneError({source, 0, 0}, fmt::format("no such file; did you mean '{}'?", other));
 }
 
-}  // namespace
-
 Scene read_scene(const std::string& path, const std::vector<std::string>& sets) {
-  Scene scene = read_scene(read_text(path), sets);
+  Scene scene = read_scene(scene_source(path), sets);
   scene.files.insert(scene.files.begin(), path);
   return scene;
 }

@@ -116,6 +116,10 @@ struct Scene {
   std::optional<SpectrumTable> spectrum;
 };
 
+/// The text of a scene file. Throws as read_source() does; where the file is missing, a scene of that name in
+/// the library is named.
+std::shared_ptr<const Source> scene_source(const std::string& path);
+
 /// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).
 Scene read_scene(const std::string& path, const std::vector<std::string>& sets = {});
 

@@ -207,7 +207,8 @@ class Problem:
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError("a problem does not change; replace() makes another one")
 
-    __delattr__ = __setattr__  # type: ignore[assignment]
+    def __delattr__(self, name: str) -> None:
+        self.__setattr__(name, None)
 
     @classmethod
     def from_toml(cls, text: str, name: str = "scene") -> Problem:

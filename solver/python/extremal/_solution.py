@@ -101,7 +101,8 @@ class Solution:
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError("a solution does not change")
 
-    __delattr__ = __setattr__  # type: ignore[assignment]
+    def __delattr__(self, name: str) -> None:
+        self.__setattr__(name, None)
 
     @property
     def problem(self) -> Problem:
@@ -270,17 +271,7 @@ class Solution:
         """Times of all nodes, from 0 to T, (m,)."""
         if self._t is None:
             self._require()
-            nodes = self._solved.nodes
-            assert nodes is not None
-            degree = nodes.shape[1] - 1
-            coefficients = np.eye(degree + 1)[degree]
-            inner = np.polynomial.legendre.legroots(np.polynomial.legendre.legder(coefficients))
-            tau = (1 + np.sort(np.concatenate([[-1.0], inner]))) / 2
-            mesh = self.mesh
-            times = (mesh[:-1, None] + np.diff(mesh)[:, None] * tau).ravel()
-            times = np.append(times, mesh[-1])
-            times.setflags(write=False)
-            object.__setattr__(self, "_t", times)
+            object.__setattr__(self, "_t", self._solved.node_times)
         assert self._t is not None
         return self._t
 
