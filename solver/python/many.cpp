@@ -79,11 +79,19 @@ struct Kept {
   }
 };
 
+/// What a thread keeps from row to row.
+struct Worker {
+  Problem problem;
+  SolveOptions options;
+  Solver solver = {};
+};
+
 /// Threads that take rows until none is left or one of them has thrown.
 class Rows {
  public:
-  Rows(std::size_t count, std::function<void(std::size_t begin, std::size_t end, Solver&)> solve)
-      : count_(count), solve_(std::move(solve)) {}
+  Rows(std::size_t count, const Problem& problem, const SolveOptions& options,
+       std::function<void(std::size_t row, Worker&)> solve)
+      : count_(count), problem_(problem), options_(options), solve_(std::move(solve)) {}
 
   /// Without the lock of Python. Looks for Ctrl-C meanwhile.
   void run(int threads, Interruptible& work) {
@@ -107,9 +115,10 @@ class Rows {
   void serve() {
     std::exception_ptr error;
     try {
-      Solver solver;
-      for (std::size_t row; !stop_ && (row = next_.fetch_add(together)) < count_;)
-        solve_(row, std::min(row + together, count_), solver);
+      Worker worker{problem_, options_};
+      for (std::size_t first; !stop_ && (first = next_.fetch_add(together)) < count_;)
+        for (std::size_t row = first; row < std::min(first + together, count_) && !stop_; ++row)
+          solve_(row, worker);
     } catch (...) {
       error = std::current_exception();
       stop_ = true;
@@ -121,7 +130,9 @@ class Rows {
   }
 
   std::size_t count_;
-  std::function<void(std::size_t, std::size_t, Solver&)> solve_;
+  const Problem& problem_;
+  const SolveOptions& options_;
+  std::function<void(std::size_t, Worker&)> solve_;
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> stop_ = false;
   std::mutex mutex_;
@@ -199,22 +210,20 @@ py::dict PyStudy::solve_many(const std::optional<Doubles>& start, const std::opt
                   status.mutable_data(),       index.mutable_data(),
                   iterations.mutable_data()};
 
+  SolveOptions options = study_->options;
+  if (tolerance) options.tolerance = *tolerance;
   Interruptible work;
   {
     const py::gil_scoped_release unlocked;
     Rows* all = nullptr;
-    Rows rows(m, [&](std::size_t first, std::size_t last, Solver& solver) {
-      Problem problem = scene;
-      SolveOptions options = study_->options;
-      if (tolerance) options.tolerance = *tolerance;
-      for (std::size_t row = first; row < last && !Rows::stopped(all); ++row) {
-        replace(from, row, problem);
-        replace(to, row, problem);
-        if (durations) problem.duration.value = durations[row];
-        if (problem.copies) problem = make_problem(std::move(problem));
-        options.deadline = Deadline(study_->budget).or_stopped(Rows::stopped, all);
-        kept.keep(row, solver.solve(problem, options));
-      }
+    Rows rows(m, scene, options, [&](std::size_t row, Worker& worker) {
+      auto& [problem, each, solver] = worker;
+      replace(from, row, problem);
+      replace(to, row, problem);
+      if (durations) problem.duration.value = durations[row];
+      if (problem.copies) problem = make_problem(std::move(problem));
+      each.deadline = Deadline(study_->budget).or_stopped(Rows::stopped, all);
+      kept.keep(row, solver.solve(problem, each));
     });
     all = &rows;
     rows.run(static_cast<int>(std::min<py::ssize_t>(threads, std::max<py::ssize_t>(m, 1))), work);
