@@ -7,8 +7,8 @@
 # %% [markdown]
 # # Bodies that follow each other on one curve
 #
-# After a part T of the period each of n equal masses has the place of the next one. A `map` says so; the search begins
-# with random loops of that symmetry.
+# After a part T of the period each of n equal masses has the place of the next one. A `map` says so; the
+# search begins with random loops of that symmetry.
 
 # %%
 import numpy as np
@@ -42,8 +42,8 @@ for solution in found:
     print(f"action {solution.action:.10f}  energy {solution.energy:.10f}  index {solution.index}")
 
 # %% [markdown]
-# The first is Lagrange's triangle on a circle, the second the figure-eight of Chenciner and Montgomery, whose action
-# over a period is 24.3719 for this period.
+# The first is Lagrange's triangle on a circle, the second the figure-eight of Chenciner and Montgomery,
+# whose action over a period is 24.3719 for this period.
 
 # %%
 circle, eight = found

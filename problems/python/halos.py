@@ -7,9 +7,9 @@
 # %% [markdown]
 # # From planar orbits to near-rectilinear halo orbits
 #
-# About the libration point L2 of the Earth and the Moon planar orbits exist. Where their period falls to 3.4155 halo
-# orbits branch off, north and south, and become near-rectilinear. Unit of length is the distance of the Moon, of time
-# its period divided by 2π.
+# About the libration point L2 of the Earth and the Moon planar orbits exist. Where their period falls to
+# 3.4155 halo orbits branch off, north and south, and become near-rectilinear. Unit of length is the
+# distance of the Moon, of time its period divided by 2π.
 
 # %%
 import os
@@ -23,8 +23,8 @@ print(family.message)
 family.plot("out/halo-family.svg", quantity="z(0)")
 
 # %% [markdown]
-# Halo orbits are those out of the plane. Their stability index is half the sum of the largest multiplier and its
-# inverse; orbits with an index of at most one in absolute value are stable.
+# Halo orbits are those out of the plane. Their stability index is half the sum of the largest multiplier and
+# its inverse; orbits with an index of at most one in absolute value are stable.
 
 # %%
 north = np.flatnonzero((family.branch > 0) & (np.abs(family.q[:, 2]) > 1e-3))
@@ -35,8 +35,8 @@ for k, nu in zip(north[::6], index[::6]):
 assert index.min() < 2 < 100 < index.max()
 
 # %% [markdown]
-# One of them in full: the orbit whose period is two ninths of the time between two full moons, as planned for a
-# station there.
+# One of them in full: the orbit whose period is two ninths of the time between two full moons, as planned
+# for a station there.
 
 # %%
 period = 2 / 9 * 29.530589 / 27.321661 * 2 * np.pi

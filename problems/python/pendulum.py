@@ -7,8 +7,8 @@
 # %% [markdown]
 # # Every motion of a pendulum between two angles
 #
-# From the angle 0 to the angle 1 in a given time a pendulum can swing over, to and fro, or turn. Each motion is a
-# stationary point of the action; the number of its conjugate times is its Morse index.
+# From the angle 0 to the angle 1 in a given time a pendulum can swing over, to and fro, or turn. Each motion
+# is a stationary point of the action; the number of its conjugate times is its Morse index.
 
 # %%
 import extremal as ex
@@ -29,7 +29,9 @@ for motion in motions:
 # Longer times have more of them.
 
 # %%
-counts = [len(pendulum.replace(duration=duration).solve(solutions=20)) for duration in (2.0, 5.0, 10.0, 15.0, 20.0)]
+counts = [
+    len(pendulum.replace(duration=duration).solve(solutions=20)) for duration in (2.0, 5.0, 10.0, 15.0, 20.0)
+]
 print(counts)
 assert counts == sorted(counts) and counts[-1] == len(motions) == 11
 

@@ -7,9 +7,9 @@
 # %% [markdown]
 # # How weak noise crosses a barrier
 #
-# A particle at rest in a valley of the potential V, x' = −∇V + noise, crosses to another valley once in a long while.
-# When it does, its way is the minimiser of the action of Freidlin and Wentzell, ∫ |x' + ∇V|²/2 dt, whose least value
-# over all times is twice the height of the barrier.
+# A particle at rest in a valley of the potential V, x' = −∇V + noise, crosses to another valley once in a
+# long while. When it does, its way is the minimiser of the action of Freidlin and Wentzell, ∫ |x' + ∇V|²/2
+# dt, whose least value over all times is twice the height of the barrier.
 
 # %%
 import numpy as np
@@ -42,7 +42,8 @@ print(path)
 path.plot("out/crossing.svg")
 
 # %% [markdown]
-# It leads over the saddle, upwards and downwards along the same curve. The action falls to 2 · 1/4 as the time grows.
+# It leads over the saddle, upwards and downwards along the same curve. The action falls to 2 · 1/4 as the
+# time grows.
 
 # %%
 family = crossing.follow("duration", to=20.0)

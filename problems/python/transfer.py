@@ -7,8 +7,8 @@
 # %% [markdown]
 # # A transfer to Mars, and ten thousand of them
 #
-# Both planets move on circles about the Sun; lengths are in astronomical units, times in years. In polar coordinates
-# the straight line between two points is a spiral about the Sun, a good first guess.
+# Both planets move on circles about the Sun; lengths are in astronomical units, times in years. In polar
+# coordinates the straight line between two points is a spiral about the Sun, a good first guess.
 
 # %%
 import matplotlib
@@ -46,8 +46,8 @@ print(arc)
 arc.plot("out/transfer.svg")
 
 # %% [markdown]
-# Now every departure within 0.7 years, with every time of flight from 0.4 to 1 years: one compiled Lagrangian, all
-# processors. At t = 0 Mars is 44 degrees ahead, as it must be for the cheapest transfer.
+# Now every departure within 0.7 years, with every time of flight from 0.4 to 1 years: one compiled
+# Lagrangian, all processors. At t = 0 Mars is 44 degrees ahead, as it must be for the cheapest transfer.
 
 # %%
 departures, flights = np.meshgrid(np.linspace(-0.35, 0.35, 100), np.linspace(0.4, 1.0, 100))
@@ -72,7 +72,9 @@ assert hohmann <= speed.min() < 1.02 * hohmann
 
 # %%
 figure, axes = plt.subplots(figsize=(7, 5))
-contours = axes.contour(departures, flights, np.reshape(speed, departures.shape), levels=np.arange(5.5, 16, 1))
+contours = axes.contour(
+    departures, flights, np.reshape(speed, departures.shape), levels=np.arange(5.5, 16, 1)
+)
 axes.clabel(contours)
 axes.set(xlabel="departure, years", ylabel="time of flight, years", title="Speed to be gained, km/s")
 figure.savefig("out/porkchop.svg")

@@ -38,6 +38,7 @@ class CommandLine {
   void add_spectrum();
   void add_check();
   void add_list();
+  void add_init();
   void add_help();
   void add_pages();
 
@@ -54,6 +55,7 @@ class CommandLine {
   CompareArguments compare_;
   CompareArguments spectrum_;
   CheckArguments check_;
+  InitArguments init_;
   std::string system_, command_, shell_;
 };
 
@@ -107,6 +109,7 @@ CommandLine::CommandLine() {
   add_spectrum();
   add_check();
   add_list();
+  add_init();
   add_help();
   add_pages();
   app_.footer(fmt::format("{}solve {}\nHelp of a command: extremal help solve", example_before,
@@ -197,6 +200,16 @@ void CommandLine::add_list() {
                           [this] { return list(system_); });
   command.add_option("SYSTEM", system_, "a name of the list: its coordinates, parameters, units and scenes")
       ->type_name("");
+}
+
+void CommandLine::add_init() {
+  InitArguments& a = init_;
+  CLI::App& command = add("init", "write a commented scene of a system, to begin with", "init kepler",
+                          [&a] { return init(a); });
+  command.add_option("SYSTEM", a.system, "a name of `extremal list`")->required()->type_name("");
+  command.add_option("--output", a.output, "the file, SYSTEM.toml without it; - is standard output")
+      ->type_name("FILE.toml")
+      ->check(output_refusal);
 }
 
 void CommandLine::add_help() {

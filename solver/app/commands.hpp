@@ -60,6 +60,13 @@ struct CheckArguments {
 };
 int check(const CheckArguments& arguments);
 
+struct InitArguments {
+  std::string system;
+  std::string output;  ///< empty: the system's name with ".toml", in the working folder
+};
+/// Writes a commented scene of a system; a file that is there already is refused.
+int init(const InitArguments& arguments);
+
 /// All systems, schemes and methods, or one system where it is named.
 int list(const std::string& system);
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "problem/problem.hpp"
 #include "report/plot.hpp"
 #include "report/result.hpp"
+#include "study/study.hpp"
 
 /// \file Trajectories at the times that reports need.
 

@@ -11,8 +11,8 @@ KEPLER = "(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)"
 
 @pytest.fixture
 def arc() -> ex.Problem:
-    """Lambert's problem in the plane. Its velocity at the start, 0.0986855516302332 and 0.9978231699793557, is known
-    from shooting with 113 bits."""
+    """Lambert's problem in the plane. Its velocity at the start, 0.0986855516302332 and 0.9978231699793557,
+    is known from shooting with 113 bits."""
     return ex.Problem(KEPLER, start={"x": 1, "y": 0}, end={"x": -0.6, "y": 0.9}, duration=2.5)
 
 

@@ -24,7 +24,9 @@ def test_each_row_is_a_solve(arc, threads):
     for k in (0, 17, 39):
         one = arc.replace(end=dict(zip("xy", end[k])), duration=duration[k]).solve(tolerance=1e-8)
         assert many.action[k] == one.action and many.energy[k] == one.energy
-        np.testing.assert_array_equal(many.momenta[k], [list(one.momentum_start.values()), list(one.momentum_end.values())])
+        np.testing.assert_array_equal(
+            many.momenta[k], [list(one.momentum_start.values()), list(one.momentum_end.values())]
+        )
         assert many.index[k] == one.index and many.error_estimate[k] == one.error_estimate
     assert pickle.loads(pickle.dumps(many)).action.tolist() == many.action.tolist()
 
@@ -48,7 +50,9 @@ def test_failures_are_masked():
 
 
 def test_forces_and_times_and_initial_data():
-    driven = ex.Problem("x'^2/2 - x^2/2 + cos(t)*x", force={"x": "-0.1*x'"}, start={"x": 0}, end={"x": 1}, duration=1)
+    driven = ex.Problem(
+        "x'^2/2 - x^2/2 + cos(t)*x", force={"x": "-0.1*x'"}, start={"x": 0}, end={"x": 1}, duration=1
+    )
     many = driven.solve_many(end=[[1.0], [2.0]])
     assert many.converged.all() and np.ma.getmaskarray(many.index).all()
     one = driven.replace(end={"x": 2.0}).solve()

@@ -123,9 +123,18 @@ class TestFunctions:
             (lambda q, v, t: np.sum(v**2) / 2 + 1 / np.hypot(*q), KEPLER),
             (lambda q, v, t: np.dot(v, v) / 2 - np.cos(q).sum(), "(x'^2 + y'^2)/2 - cos(x) - cos(y)"),
             (lambda q, v, t: sum(v**2) / 2 + 0.1 * np.sin(t) * q[0], "(x'^2 + y'^2)/2 + 0.1*sin(t)*x"),
-            (lambda q, v, t: v @ v / 2 - np.exp(-(q[0] ** 2)) * 2 ** (q[1] / 9), "(x'^2+y'^2)/2 - exp(-x^2)*2^(y/9)"),
-            (lambda q, v, t: v @ v / 2 - -q[0] ** 2 / (9 - (q[1] - q[0])), "(x'^2+y'^2)/2 + x^2/(9 - (y - x))"),
-            (lambda q, v, t: v @ v / 2 - abs(q[0]) ** 3 - np.arctan2(q[1], 2), "(x'^2+y'^2)/2 - abs(x)^3 - atan2(y, 2)"),
+            (
+                lambda q, v, t: v @ v / 2 - np.exp(-(q[0] ** 2)) * 2 ** (q[1] / 9),
+                "(x'^2+y'^2)/2 - exp(-x^2)*2^(y/9)",
+            ),
+            (
+                lambda q, v, t: v @ v / 2 - -q[0] ** 2 / (9 - (q[1] - q[0])),
+                "(x'^2+y'^2)/2 + x^2/(9 - (y - x))",
+            ),
+            (
+                lambda q, v, t: v @ v / 2 - abs(q[0]) ** 3 - np.arctan2(q[1], 2),
+                "(x'^2+y'^2)/2 - abs(x)^3 - atan2(y, 2)",
+            ),
         ],
     )
     def test_same_as_the_formula(self, function, formula):
@@ -149,9 +158,7 @@ class TestFunctions:
             return v @ v / 2 + p.m[0] * p.m[1] / np.sqrt(q @ q) + p.mu * q[0]
 
         problem = ex.Problem(law, coordinates=["x", "y"], parameters={"m": [1.0, 2.0], "mu": 0.1}, **ENDS)
-        formula = ex.Problem(
-            "(x'^2 + y'^2)/2 + 2/sqrt(x^2 + y^2) + 0.1*x", coordinates=["x", "y"], **ENDS
-        )
+        formula = ex.Problem("(x'^2 + y'^2)/2 + 2/sqrt(x^2 + y^2) + 0.1*x", coordinates=["x", "y"], **ENDS)
         assert problem.solve().action == pytest.approx(formula.solve().action, rel=1e-9)
         assert len(problem.follow("mu", to=0.2, points=5)) >= 2
 

@@ -96,7 +96,9 @@ def test_a_pickle_has_every_number():
 def test_the_result_is_that_of_the_command(arc, tmp_path, command):
     scene = tmp_path / "scene.toml"
     scene.write_text(arc.to_toml())
-    subprocess.run([command, "solve", scene, "--output", tmp_path / "r.json", "--samples", "11", "--quiet"], check=True)
+    subprocess.run(
+        [command, "solve", scene, "--output", tmp_path / "r.json", "--samples", "11", "--quiet"], check=True
+    )
     written = json.loads((tmp_path / "r.json").read_text())
     arc.solve().save(tmp_path / "deep" / "s.json", samples=11)
     saved = json.loads((tmp_path / "deep" / "s.json").read_text())

@@ -59,7 +59,9 @@ def test_threads_solve_one_problem_at_once(arc):
     results = {}
 
     def work(name):
-        results[name] = [arc.solve(tolerance=10.0**-k).action for k in range(4, 12) for _ in range(20)][::20]
+        results[name] = [arc.solve(tolerance=10.0**-k).action for k in range(4, 12) for _ in range(20)][
+            ::20
+        ]
 
     workers = [threading.Thread(target=work, args=(name,)) for name in range(4)]
     for worker in workers:
@@ -90,8 +92,13 @@ def test_other_threads_run_meanwhile(arc):
 def test_ctrl_c_in_a_script(tmp_path, long_solve):
     """A script ends by the signal as any script of Python does."""
     (tmp_path / "scene.toml").write_text(long_solve.to_toml())
-    script = f"import extremal as ex; p = ex.load({str(tmp_path / 'scene.toml')!r}); print('ready', flush=True); p.solve()"
-    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    script = (
+        f"import extremal as ex; p = ex.load({str(tmp_path / 'scene.toml')!r}); "
+        "print('ready', flush=True); p.solve()"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
@@ -100,8 +107,8 @@ def test_ctrl_c_in_a_script(tmp_path, long_solve):
 
 
 def test_overhead_of_a_solve(arc):
-    """What a call costs beside the solver. The least of several is far above what is documented, for machines that
-    are at work."""
+    """What a call costs beside the solver. The least of several is far above what is documented, for
+    machines that are at work."""
     arc.solve()
     overheads = []
     for _ in range(300):

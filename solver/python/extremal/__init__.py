@@ -1,7 +1,8 @@
 """Trajectories of mechanical systems as stationary points of the discrete action.
 
 >>> import extremal as ex
->>> p = ex.Problem("(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)", start=dict(x=1, y=0), end=dict(x=-0.6, y=0.9), duration=2.5)
+>>> law = "(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)"
+>>> p = ex.Problem(law, start=dict(x=1, y=0), end=dict(x=-0.6, y=0.9), duration=2.5)
 >>> s = p.solve(tolerance=1e-12)
 >>> s(1.3)
 """

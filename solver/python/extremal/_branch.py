@@ -23,8 +23,8 @@ Array = npt.NDArray[Any]
 class Branch:
     """A family of m solutions, and the branches that bifurcate from it where they were asked for. Immutable.
 
-    `branch[k]` is the solution of a point. Attributes are arrays with an entry for each point; numbers that are not
-    known of some points are masked.
+    `branch[k]` is the solution of a point. Attributes are arrays with an entry for each point; numbers that
+    are not known of some points are masked.
     """
 
     __slots__ = ("_problem", "_study", "_followed", "_table")
@@ -106,7 +106,7 @@ class Branch:
 
     @property
     def kind(self) -> Array:
-        """"regular", "fold", "branch" or "period-doubling", (m,)."""
+        """Of each point: "regular", "fold", "branch" or "period-doubling", (m,)."""
         return self._column("kind", str)
 
     @property
@@ -140,7 +140,9 @@ class Branch:
             raise IndexError(f"the branch has {count} points")
         k %= count
         value = self._table["points"][k]["parameter"]
-        changes = {self.name: value} if self.name in ("duration", "energy") else {"parameters": {self.name: value}}
+        changes = (
+            {self.name: value} if self.name in ("duration", "energy") else {"parameters": {self.name: value}}
+        )
         problem = self._problem.replace(continuation=None, **changes)
         return Solution._made(problem, self._followed.solved(k, problem._study))
 
@@ -161,8 +163,8 @@ class Branch:
         _core.write(name, text.encode())
 
     def plot(self, path: str | os.PathLike[str] | None = None, *, quantity: str = "") -> Picture | None:
-        """Draws the diagram by gnuplot: into a file .svg, .png or .pdf, or as a picture for a notebook. `quantity` is a
-        formula of what is drawn upwards, as "x(0)"."""
+        """Draws the diagram by gnuplot: into a file .svg, .png or .pdf, or as a picture for a notebook.
+        `quantity` is a formula of what is drawn upwards, as "x(0)"."""
         return drawn(lambda name: self._followed.plot(self._study, name, quantity), path)
 
     def _repr_svg_(self) -> str | None:

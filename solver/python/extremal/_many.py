@@ -24,8 +24,8 @@ def known(values: Array, mask: Array) -> Array:
 
 
 class Solutions:
-    """m solutions as arrays, a row for each. Rows that did not converge are masked: where there are such, arrays are
-    numpy.ma.MaskedArray.
+    """m solutions as arrays, a row for each. Rows that did not converge are masked: where there are such,
+    arrays are numpy.ma.MaskedArray.
 
     Attributes:
         status: why each row has no solution, or "converged", (m,).

@@ -59,8 +59,8 @@ def _insert(tables: dict[str, Any], keys: Mapping[str, Any]) -> None:
 
 
 def _inferred(law: Law, ends: Sequence[Any], definitions: Mapping[str, Any]) -> list[str]:
-    """Names of the coordinates, where they are not given: those with velocities in the formula, then those with
-    values at the ends."""
+    """Names of the coordinates, where they are not given: those with velocities in the formula, then those
+    with values at the ends."""
     names: dict[str, None] = {}
     if isinstance(law, str):
         for name, index in VELOCITY.findall(law):
@@ -82,7 +82,9 @@ def _length(text: str, parameters: Mapping[str, Any]) -> int:
         return int(text)
     value = _toml.plain(parameters.get(text))
     if not isinstance(value, (int, float)):
-        raise TypeError(f"the length '{text}' of an array must be a number, or a parameter that is one, for a function")
+        raise TypeError(
+            f"the length '{text}' of an array must be a number, or a parameter that is one, for a function"
+        )
     return int(value)
 
 
@@ -103,7 +105,9 @@ class _Parameters:
         for name, value in parameters.items():
             value = _toml.plain(value)
             if isinstance(value, (list, tuple)):
-                array = np.array([_trace.name_symbol(f"{name}[{i + 1}]") for i in range(len(value))], dtype=object)
+                array = np.array(
+                    [_trace.name_symbol(f"{name}[{i + 1}]") for i in range(len(value))], dtype=object
+                )
                 setattr(self, name, array)
             else:
                 setattr(self, name, _trace.name_symbol(name))
@@ -153,18 +157,19 @@ class Problem:
     """A mechanical problem: a law of motion, conditions at the ends, a duration. Immutable.
 
     Args:
-        lagrangian: formula of L in coordinates `x`, velocities `x'` and `t`; or a function L(q, v, t) of arrays with n
-            symbols, which is called once. A function of four arguments gets the parameters as attributes of the last
-            one, and may then be continued in them.
-        coordinates: names, `"x"` or `"q[32]"` for an array. Left out, those whose velocities the formula has, or those
-            with values at the ends.
+        lagrangian: formula of L in coordinates `x`, velocities `x'` and `t`; or a function L(q, v, t) of
+            arrays with n symbols, which is called once. A function of four arguments gets the parameters as
+            attributes of the last one, and may then be continued in them.
+        coordinates: names, `"x"` or `"q[32]"` for an array. Left out, those whose velocities the formula
+            has, or those with values at the ends.
         use: instead of both: name of a system file.
-        start, end: values q(0) and q(T) by name; what is left out gets its natural condition. `p_x` gives a momentum.
+        start, end: values q(0) and q(T) by name; what is left out gets its natural condition. `p_x` gives a
+            momentum.
         duration: T, or `"free"` with `energy` or `where`.
-        keys: all other keys of a scene, in units of the user's own: `parameters`, `definitions`, `hamiltonian` (also a
-            function of q, p, t), `force` (also a function of q, v, t), `periodic`, `map`, `conditions`, `where`,
-            `energy`, `tolerance`, `scheme`, `elements`, `method`, `budget`, `title`; and whole tables as dicts, `guess`
-            and `continuation` among them.
+        keys: all other keys of a scene, in units of the user's own: `parameters`, `definitions`,
+            `hamiltonian` (also a function of q, p, t), `force` (also a function of q, v, t), `periodic`,
+            `map`, `conditions`, `where`, `energy`, `tolerance`, `scheme`, `elements`, `method`, `budget`,
+            `title`; and whole tables as dicts, `guess` and `continuation` among them.
 
     Raises:
         SceneError: for what a scene would be refused for, with message, place and mend.
@@ -212,7 +217,8 @@ class Problem:
 
     @classmethod
     def from_toml(cls, text: str, name: str = "scene") -> Problem:
-        """The problem of a scene's text. Files that it names are looked up beside `name`, as if that were its path."""
+        """The problem of a scene's text. Files that it names are looked up beside `name`, as if that were
+        its path."""
         problem = cls.__new__(cls)
         problem._read(text, os.fspath(name))
         return problem
@@ -231,7 +237,9 @@ class Problem:
         system = tables.get("system", {})
         keys = dict(changes)
         if any(callable(value) for value in keys.values()):
-            declared = [f"{name}[{count}]" if array else name for name, _, count, array in self._study.coordinates]
+            declared = [
+                f"{name}[{count}]" if array else name for name, _, count, array in self._study.coordinates
+            ]
             known = {name: system.get(name, {}) | dict(keys.get(name) or {}) for name in ADDED}
             keys = _traced({"coordinates": declared} | keys | known)
             if "coordinates" not in changes:
@@ -262,7 +270,8 @@ class Problem:
         raise_on_failure: bool = False,
         progress: Progress | None = None,
         **changes: Any,
-    ) -> Solution: ...
+    ) -> Solution:
+        ...
 
     @overload
     def solve(
@@ -273,7 +282,8 @@ class Problem:
         raise_on_failure: bool = False,
         progress: Progress | None = None,
         **changes: Any,
-    ) -> list[Solution]: ...
+    ) -> list[Solution]:
+        ...
 
     def solve(
         self,
@@ -287,15 +297,16 @@ class Problem:
         """Finds the extremal that the guess leads to.
 
         Args:
-            tolerance: largest error of q(t), relative to the largest range of a coordinate; 1e-9 where neither this
-                nor the problem says.
+            tolerance: largest error of q(t), relative to the largest range of a coordinate; 1e-9 where
+                neither this nor the problem says.
             solutions: look for up to so many extremals; they come as a list, by their actions.
             raise_on_failure: raise NotConverged instead of returning a solution that says why there is none.
             progress: called with each step of the iteration; an exception that it raises ends the solve.
             changes: as for replace().
 
         Returns:
-            A Solution. Of a problem with a table [search] that with the least action, the others in `solutions`.
+            A Solution. Of a problem with a table [search] that with the least action, the others in
+            `solutions`.
         """
         if tolerance is not None:
             if self._study.adaptive and 0 < tolerance < 1:
@@ -311,7 +322,9 @@ class Problem:
             if raise_on_failure and not solution.converged:
                 raise NotConverged(solution)
             return solution
-        found = [Solution._made(problem, solved) for solved in study.search(study.solutions, tolerance, progress)]
+        found = [
+            Solution._made(problem, solved) for solved in study.search(study.solutions, tolerance, progress)
+        ]
         if raise_on_failure and not found[0].converged:
             raise NotConverged(found[0])
         return found if solutions is not None else Solution._made(problem, found[0]._solved, tuple(found))
@@ -329,7 +342,8 @@ class Problem:
         """Follows a family of extremals from this one, past folds.
 
         Args:
-            parameter: "duration", "energy" or the name of a parameter. Left out, the table [continuation] says all.
+            parameter: "duration", "energy" or the name of a parameter. Left out, the table [continuation]
+                says all.
             to: its last value; the first is that of the problem.
             points: largest number of points of a branch; 50 if not given.
             switch: follow also the branches that bifurcate.
@@ -357,10 +371,12 @@ class Problem:
         tolerance: float | None = None,
         threads: int | None = None,
     ) -> Solutions:
-        """Solves m problems that differ in their ends and durations, with one compiled Lagrangian, in several threads.
+        """Solves m problems that differ in their ends and durations, with one compiled Lagrangian, in
+        several threads.
 
         Args:
-            start, end: positions, (m, n) or (n,) for all alike, in the order of `coordinates`; left out: the problem's.
+            start, end: positions, (m, n) or (n,) for all alike, in the order of `coordinates`; left out: the
+                problem's.
             duration: (m,) or a number, likewise.
             tolerance: as for solve().
             threads: so many at once; as many as there are processors for this process if not given.
@@ -373,18 +389,24 @@ class Problem:
         for name, value, width in (("start", start, n), ("end", end, n), ("duration", duration, 0)):
             if value is not None:
                 array = np.asarray(value, dtype=float)
-                if array.ndim not in (1, 2) and not (array.ndim == 0 and not width) or (width and array.shape[-1] != n):
-                    raise ValueError(f"{name} has the shape {array.shape}; need {f'(m, {n})' if width else '(m,)'}")
+                if (
+                    array.ndim not in (1, 2)
+                    and not (array.ndim == 0 and not width)
+                    or (width and array.shape[-1] != n)
+                ):
+                    raise ValueError(
+                        f"{name} has the shape {array.shape}; need {f'(m, {n})' if width else '(m,)'}"
+                    )
                 given[name] = array
         counts = {len(a) for name, a in given.items() if a.ndim == (1 if name == "duration" else 2)}
         if not counts:
             raise ValueError("give start, end or duration as an array with a row for each problem")
         if len(counts) > 1:
-            raise ValueError(f"start, end and duration have {sorted(counts)} rows; they must have one number of rows")
+            raise ValueError(
+                f"start, end and duration have {sorted(counts)} rows; they must have one number of rows"
+            )
         m = counts.pop()
-        rows = {
-            name: np.broadcast_to(a, (m,) if name == "duration" else (m, n)) for name, a in given.items()
-        }
+        rows = {name: np.broadcast_to(a, (m,) if name == "duration" else (m, n)) for name, a in given.items()}
         problem = self._with_first(rows) if m else self
         threads = threads if threads is not None else len(os.sched_getaffinity(0))
         if tolerance is not None and not (self._study.adaptive and 0 < tolerance < 1):

@@ -20,7 +20,8 @@ Array = npt.NDArray[np.float64]
 
 
 class Named(Mapping[str, float]):
-    """Numbers by the names of the coordinates; numpy.asarray gives them as an array of n that cannot be written."""
+    """Numbers by the names of the coordinates; numpy.asarray gives them as an array of n that cannot be
+    written."""
 
     __slots__ = ("_names", "_values")
 
@@ -71,8 +72,8 @@ def drawn(draw: Any, path: str | os.PathLike[str] | None) -> Picture | None:
 class Solution:
     """A trajectory q(t) on [0, T], n coordinates, in the units of the problem. Immutable.
 
-    Where `converged` is false, `status` and `message` say why, and there is no trajectory. Arrays cannot be written;
-    they are views of the solution's own memory and keep it alive.
+    Where `converged` is false, `status` and `message` say why, and there is no trajectory. Arrays cannot be
+    written; they are views of the solution's own memory and keep it alive.
 
     >>> s(1.3)                      # q(1.3), (n,)
     >>> s(np.linspace(0, s.duration, 100))  # (100, n)
@@ -116,7 +117,7 @@ class Solution:
 
     @property
     def status(self) -> str:
-        """"converged", or why not: "collision", "no-solution-near", …"""
+        """Either "converged", or why not: "collision", "no-solution-near", …"""
         return self._solved.status
 
     @property
@@ -310,7 +311,9 @@ class Solution:
             evaluate, wanted = self._solved.p, name[2:]
         columns = self._columns(wanted)
         if columns is None:
-            raise KeyError(f"there is no coordinate '{wanted}'; the problem has {', '.join(self._solved.names[:20])}")
+            raise KeyError(
+                f"there is no coordinate '{wanted}'; the problem has {', '.join(self._solved.names[:20])}"
+            )
         values = self._at(self.t, evaluate)[:, columns]
         values.setflags(write=False)
         return values
@@ -347,11 +350,13 @@ class Solution:
         return np.asarray(samples, dtype=float)
 
     def save(self, path: str | os.PathLike[str], samples: int | npt.ArrayLike | None = 201) -> None:
-        """Writes the result with samples as .json, or the samples alone as .csv or .npz, by the ending of the path.
-        A file is written whole or not at all."""
+        """Writes the result with samples as .json, or the samples alone as .csv or .npz, by the ending of
+        the path. A file is written whole or not at all."""
         name = os.fspath(path)
         if name.endswith(".json"):
-            content = (json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode()
+            content = (
+                json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
+            ).encode()
         elif name.endswith((".csv", ".npz")):
             self._require()
             times = self.t if samples is None else self._times(samples)
@@ -363,7 +368,11 @@ class Solution:
 
     def _npz(self, times: Array) -> bytes:
         columns: dict[str, Array] = {"t": times}
-        for prefix, suffix, values in (("", "", self.q(times)), ("", "'", self.v(times)), ("p_", "", self.p(times))):
+        for prefix, suffix, values in (
+            ("", "", self.q(times)),
+            ("", "'", self.v(times)),
+            ("p_", "", self.p(times)),
+        ):
             for k, name in enumerate(self._solved.names):
                 columns[prefix + name + suffix] = values[:, k]
         buffer = io.BytesIO()
@@ -371,8 +380,8 @@ class Solution:
         return buffer.getvalue()
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Picture | None:
-        """Draws the trajectory, of a search all of them, by gnuplot: into a file .svg, .png or .pdf, or as a picture
-        for a notebook."""
+        """Draws the trajectory, of a search all of them, by gnuplot: into a file .svg, .png or .pdf, or as a
+        picture for a notebook."""
         solved = [solution._solved for solution in self.solutions]
         return drawn(lambda name: _core.plot(name, solved), path)
 

@@ -16,9 +16,9 @@ Number = (int, float, np.integer, np.floating)
 class Symbol:
     """A number that is not known yet: a coordinate, a velocity, the time, or what was computed from them.
 
-    Arithmetic and functions of numpy give further symbols. Comparing symbols, and asking whether one is true, is
-    refused: a formula has one form for all numbers. `np.minimum`, `np.maximum`, `abs` and `np.heaviside(u, 1)` are
-    formulas.
+    Arithmetic and functions of numpy give further symbols. Comparing symbols, and asking whether one is
+    true, is refused: a formula has one form for all numbers. `np.minimum`, `np.maximum`, `abs` and
+    `np.heaviside(u, 1)` are formulas.
     """
 
     __slots__ = ("op", "args")
@@ -184,7 +184,9 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "rad2deg": lambda a: binary("*", a, 180 / np.pi),
     "degrees": lambda a: binary("*", a, 180 / np.pi),
 }
-FUNCTIONS.update((name, call(name)) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt"))
+FUNCTIONS.update(
+    (name, call(name)) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log", "sqrt")
+)
 
 
 def name_symbol(name: str) -> Symbol:
