@@ -131,6 +131,9 @@ void CommandLine::add_solve() {
   add_scene(command, a.scene, a.sets);
   add_output(command, a.output, "write the result; - is standard output");
   add_csv(command, a.csv, "write samples (201 without --samples and --at); - is standard output");
+  command.add_option("--oem", a.oem, "write an ephemeris of CCSDS, in [units]; - is standard output")
+      ->type_name("FILE.oem")
+      ->check(output_refusal);
   add_plot(command, a.plot, "draw the trajectory");
   CLI::Option* samples =
       command.add_option("--samples", a.samples, "N equally spaced samples, both ends included")

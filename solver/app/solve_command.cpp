@@ -8,6 +8,7 @@
 #include "app/terminal.hpp"
 #include "report/csv.hpp"
 #include "report/json.hpp"
+#include "report/oem.hpp"
 #include "report/plot.hpp"
 #include "report/sampling.hpp"
 #include "report/text.hpp"
@@ -17,7 +18,7 @@
 namespace extremal::app {
 namespace {
 
-constexpr int csv_samples = 201;
+constexpr int csv_samples = 201;  ///< of a CSV and an ephemeris
 
 std::string progress_text(const Iteration& i) {
   return fmt::format("{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements, i.degree,
@@ -69,6 +70,23 @@ std::string csv_of(const Study& study, const Result& result) {
   });
 }
 
+/// Before anything is computed.
+void check_ephemeris(const Study& study) {
+  if (!study.units)
+    throw OptionError(fmt::format(
+        "--oem: {} has no [units]; give length in km, time in s, frame, centre and epoch", study.scene));
+  try {
+    check_oem(study.problem.names);
+  } catch (const std::invalid_argument& e) {
+    throw OptionError(fmt::format("--oem: {}", e.what()));
+  }
+}
+
+std::string ephemeris_of(const Study& study, const Result& result) {
+  const Samples samples = result.samples ? *result.samples : sampled(study, result, csv_samples);
+  return oem_text(*study.units, result.title, result.names, samples);
+}
+
 void write_outputs(const SolveArguments& a, const Study& study, const Result& result,
                    const Annotation& annotation) {
   std::vector<FileContent> files;
@@ -76,6 +94,7 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
     files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
   const bool converged = result.solution.converged();
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
+  if (converged && !a.oem.empty()) files.push_back({a.oem, ephemeris_of(study, result)});
   if (converged && !a.plot.empty())
     files.push_back({a.plot, plot_image(a.plot, picture_of(study.problem, result, annotation))});
   Outputs::write(std::move(files));
@@ -84,11 +103,12 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
 }  // namespace
 
 int solve(const SolveArguments& a) {
-  const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--plot", a.plot}});
+  const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--oem", a.oem}, {"--plot", a.plot}});
   const bool table = !outputs.on_standard_output() && !a.quiet;
   const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
   Study study = load(a.scene, a.sets, Purpose::solution);
   outputs.keep(study.files);
+  if (!a.oem.empty()) check_ephemeris(study);
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
   const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
 

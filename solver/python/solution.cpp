@@ -12,6 +12,7 @@
 #include "python/study.hpp"
 #include "report/csv.hpp"
 #include "report/json.hpp"
+#include "report/oem.hpp"
 #include "report/plot.hpp"
 #include "report/sampling.hpp"
 #include "report/text.hpp"
@@ -45,6 +46,14 @@ std::string csv(const Solved& s, const Doubles& times) {
   return text_of([&](std::ostream& out) {
     write_csv(out, sample(s.study->problem, s.solution.trajectory, list(times)), s.study->problem.names);
   });
+}
+
+std::string oem(const Solved& s, const Doubles& times) {
+  const Study& study = *s.study;
+  if (!study.units)
+    throw std::invalid_argument("the problem has no units; give length, time, frame, centre and epoch");
+  return oem_text(*study.units, study.title, study.problem.names,
+                  sample(study.problem, s.solution.trajectory, list(times)));
 }
 
 /// The bytes of a picture in the format that the path ends with; of several solutions of one study all.
@@ -191,6 +200,7 @@ void bind_solution(py::module_& module) {
       .def("p", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::momentum); })
       .def("json", json, py::arg("times") = py::none())
       .def("csv", csv)
+      .def("oem", oem)
       .def("summary", [](const Solved& s) { return summary(result_of(s)); })
       .def("state", [](const Solved& s) { return packed(s.solution); });
   module.def("restored", [](const PyStudy& study, const py::tuple& state) {

@@ -136,6 +136,15 @@ SpectrumTable read_spectrum_table(const Document& document, const toml::table& t
   return {number(document, table, "lines"), text(document, table, "against")};
 }
 
+UnitsTable read_units_table(const Document& document, const toml::table& table) {
+  return {document.at(table),
+          number(document, table, "length"),
+          number(document, table, "time"),
+          text(document, table, "frame"),
+          text(document, table, "centre"),
+          text(document, table, "epoch")};
+}
+
 ContinuationTable read_continuation_table(const Document& document, const toml::table& table) {
   const auto parameter = text(document, table, "parameter");
   const auto to = number(document, table, "to");

@@ -94,6 +94,13 @@ struct SpectrumTable {
   std::optional<Text> against;  ///< a result that has a spectrum
 };
 
+/// What lengths and times are in space.
+struct UnitsTable {
+  Location at;
+  std::optional<Number> length, time;  ///< km, s
+  std::optional<Text> frame, centre, epoch;
+};
+
 /// A family of problems: "duration", "energy" or a parameter of the system varies.
 struct ContinuationTable {
   Location at;
@@ -114,6 +121,7 @@ struct Scene {
   std::optional<SearchTable> search;
   std::optional<ContinuationTable> continuation;
   std::optional<SpectrumTable> spectrum;
+  std::optional<UnitsTable> units;
 };
 
 /// The text of a scene file. Throws as read_source() does; where the file is missing, a scene of that name in

@@ -20,6 +20,8 @@ constexpr KeyRecord keys[] = {
      R"(continuation = { parameter = "mu", to = 0.1 })"},
     {"", "spectrum", Kind::table, "none", "Frequencies and amplitudes of each coordinate.",
      "spectrum.lines = 6"},
+    {"", "units", Kind::table, "none", "Lengths and times in space, for an ephemeris (`--oem`).",
+     "units.length = 384400.0"},
     {"", "path", Kind::table, "", "", "", false, false},
     {"", "fit", Kind::table, "", "", "", false, false},
 
@@ -134,6 +136,13 @@ constexpr KeyRecord keys[] = {
     {"spectrum", "against", Kind::text, "none",
      "Result that has a spectrum. `flat_norm` is the distance from it, in the flat norm.",
      R"(against = "other.json")"},
+
+    {"units", "length", Kind::number, "required", "Unit of length in km.", "length = 384400.0"},
+    {"units", "time", Kind::number, "required", "Unit of time in s.", "time = 375190.26"},
+    {"units", "frame", Kind::text, "required", "Name of the frame of reference.", R"(frame = "ICRF")"},
+    {"units", "centre", Kind::text, "required", "Name of the origin.", R"(centre = "EARTH")"},
+    {"units", "epoch", Kind::text, "required", "Date of t = 0 in TDB, from 1700 to 2200.",
+     R"(epoch = "2025-01-31T12:00:00")"},
 
     {"system file", "about", Kind::note, "none",
      "Texts about the system. The first is shown by `extremal list`; pictures use `axes` and `centres`.",

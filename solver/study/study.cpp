@@ -147,6 +147,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.problem = read_problem(scene, study.system, Deadline(study.budget), purpose);
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
+  if (scene.units) study.units = read_units(*scene.units);
   if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);

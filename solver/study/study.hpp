@@ -12,6 +12,7 @@
 #include "solve/solve.hpp"
 #include "study/continued.hpp"
 #include "study/spectra.hpp"
+#include "study/units.hpp"
 #include "system/formula.hpp"
 
 /// \file From a scene to a solution.
@@ -32,6 +33,7 @@ struct Study {
   std::vector<Assignment> forces;   ///< as written; none: the problem has none
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
+  std::optional<Units> units;
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 

@@ -31,6 +31,7 @@ const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
                                          {"solve", "### solve"},
                                          {"search", "### search"},
                                          {"spectrum", "### spectrum"},
+                                         {"units", "### units"},
                                          {"continuation", "### continuation"},
                                          {"system file", "### System files"}};
 

@@ -124,6 +124,11 @@ def test_files(arc, tmp_path):
     np.testing.assert_array_equal(arrays["x"], s([0, 1, 2.5])[:, 0])
     again = arc.replace(guess={"file": str(tmp_path / "s.csv")}).solve()
     assert again.action == pytest.approx(s.action, rel=1e-9)
+    with pytest.raises(ValueError, match="units"):
+        s.save(tmp_path / "s.oem")
+    space = {"length": 1e3, "time": 1e4, "frame": "ICRF", "centre": "SUN", "epoch": "2025-01-31T12:00:00"}
+    arc.replace(units=space).solve().save(tmp_path / "s.oem", samples=3)
+    assert "2025-01-31T12:00:00.000000000 1000 0 0 " in (tmp_path / "s.oem").read_text()
     for bad in ("s.txt", "s"):
         with pytest.raises(ValueError, match="ends neither"):
             s.save(tmp_path / bad)

@@ -350,20 +350,23 @@ class Solution:
         return np.asarray(samples, dtype=float)
 
     def save(self, path: str | os.PathLike[str], samples: int | npt.ArrayLike | None = 201) -> None:
-        """Writes the result with samples as .json, or the samples alone as .csv or .npz, by the ending of
-        the path. A file is written whole or not at all."""
+        """Writes the result with samples as .json, or the samples alone as .csv, .npz or .oem (with the
+        table `units`), by the ending of the path. A file is written whole or not at all."""
         name = os.fspath(path)
         if name.endswith(".json"):
             content = (
                 json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
             ).encode()
-        elif name.endswith((".csv", ".npz")):
+        elif name.endswith((".csv", ".npz", ".oem")):
             self._require()
             times = self.t if samples is None else self._times(samples)
             assert times is not None
-            content = self._solved.csv(times).encode() if name.endswith(".csv") else self._npz(times)
+            if name.endswith(".npz"):
+                content = self._npz(times)
+            else:
+                content = (self._solved.csv if name.endswith(".csv") else self._solved.oem)(times).encode()
         else:
-            raise ValueError(f"'{name}' ends neither in .json nor in .csv nor in .npz")
+            raise ValueError(f"'{name}' ends neither in .json nor in .csv, .npz or .oem")
         _core.write(name, content)
 
     def _npz(self, times: Array) -> bytes:
