@@ -77,7 +77,8 @@ std::string written(const Assignment& assignment) {
     values.push_back(q.formula() ? std::get<std::string>(q.value)
                                  : fmt::format("{}", std::get<double>(q.value)));
   const std::string list = fmt::format("{}", fmt::join(values, ", "));
-  return fmt::format(assignment.list ? "{} = [{}]" : "{} = {}", assignment.name, list);
+  return assignment.list ? fmt::format("{} = [{}]", assignment.name, list)
+                         : fmt::format("{} = {}", assignment.name, list);
 }
 
 /// What the system is, and what a scene may change of it.
