@@ -35,7 +35,7 @@ python: configure
 
 # Tests of the module, its types, and the scripts of problems/python.
 test-python: python
-	@.ci/packages .ci/checks.txt
+	@.ci/packages .ci/python.txt
 	@build/python/bin/python -m pytest -q -p no:cacheprovider tests/python
 	@build/python/bin/python -m mypy --strict --cache-dir build/mypy build/release/python/extremal
 	@build/python/bin/python -m mypy.stubtest --allowlist tests/python/stubs.txt --ignore-unused-allowlist extremal._core

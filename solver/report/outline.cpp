@@ -85,7 +85,7 @@ std::string written(const Assignment& assignment) {
 std::string about(const SystemDescription& system) {
   std::string text;
   for (const AboutEntry& note : system.about)
-    if (note.name != "axes" && note.name != "centres")
+    if (note.name != "axes" && note.name != "centres" && !note.texts.empty())
       text += comment(fmt::format("{}: {}", note.name, fmt::join(note.texts, "; ")));
   std::vector<std::string> coordinates, parameters;
   for (const Text& c : system.system.coordinates) coordinates.push_back(c.value);

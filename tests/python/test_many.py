@@ -118,6 +118,18 @@ def test_a_family_in_a_parameter_has_its_momenta():
     np.testing.assert_allclose(branch.action, branch.parameter * w / np.tan(w) / 2, rtol=1e-8)
 
 
+def test_a_family_in_the_energy_frees_the_duration(arc):
+    branch = arc.follow("energy", to=-1.4, points=20)
+    assert len(branch) == 20 and branch.name == "energy"
+    assert branch.energy[0] == pytest.approx(arc.solve().energy, rel=1e-9)
+    assert branch.duration[0] == pytest.approx(2.5, rel=1e-7)
+    # No ellipse between these ends has a lower energy: -2/(r1 + r2 + chord).
+    chord = np.hypot(1.6, 0.9)
+    assert branch.energy.min() == pytest.approx(-2 / (1 + np.hypot(0.6, 0.9) + chord), rel=1e-8)
+    assert "fold" in branch.kind
+    assert branch[3].energy == branch.energy[3]
+
+
 def test_a_family_that_is_none(arc):
     with pytest.raises(ValueError, match="continuation"):
         arc.follow()

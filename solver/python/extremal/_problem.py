@@ -343,7 +343,8 @@ class Problem:
 
         Args:
             parameter: "duration", "energy" or the name of a parameter. Left out, the table [continuation]
-                says all.
+                says all. Where the energy is to vary and the duration is fixed, it becomes free: the
+                family begins with the energy of this problem's solution.
             to: its last value; the first is that of the problem.
             points: largest number of points of a branch; 50 if not given.
             switch: follow also the branches that bifurcate.
@@ -352,15 +353,33 @@ class Problem:
 
         Returns:
             A Branch. If it has no points, its status and message say why.
+
+        Raises:
+            NotConverged: where that solution is not found.
         """
         if parameter is not None:
             given = {"parameter": parameter, "to": to, "points": points, "switch": switch}
             changes["continuation"] = {name: value for name, value in given.items() if value is not None}
+            if parameter == "energy":
+                changes = self._with_free_duration(changes)
         elif not (to is None and points is None and switch is None):
             raise TypeError("to, points and switch need the name of a parameter")
         text, name = (self._changed(changes), self._beside()) if changes else (self._text, self._name)
         study = _core.Study(text, name, True)
         return Branch._made(self.from_toml(text, name), study, study.follow(progress))
+
+    def _with_free_duration(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Changes after which the energy closes a free duration, if the duration was fixed."""
+        others = {name: value for name, value in changes.items() if name != "continuation"}
+        problem = self.replace(continuation=None, search=None, **others)
+        tables = tomllib.loads(problem._text)
+        if tables["boundary"]["duration"] == "free" or problem._study.initial:
+            return changes
+        solution = problem.solve(raise_on_failure=True)
+        if solution.energy is None:
+            return changes
+        guess = tables.get("guess", {}) | {"duration": solution.duration}
+        return changes | {"duration": "free", "energy": solution.energy, "guess": guess, "search": None}
 
     def solve_many(
         self,
