@@ -32,6 +32,19 @@ TEST(Deadline, IsSharedAndNamed) {
   EXPECT_NEAR(whole.or_earlier(Deadline()).seconds_left(), 100, 0.1);
 }
 
+TEST(Deadline, PassesWhereItIsStopped) {
+  bool stopped = false;
+  const auto stop = [](void* context) { return *static_cast<bool*>(context); };
+  const Deadline never = Deadline().or_stopped(stop, &stopped),
+                 later = Deadline(100).or_stopped(stop, &stopped);
+  const Deadline both = later.or_earlier(Deadline(50)), other = Deadline(50).or_earlier(later);
+  for (const Deadline& each : {never, later, both, other, later.share(0.5)}) EXPECT_FALSE(each.passed());
+  EXPECT_NEAR(both.seconds_left(), 50, 0.1);
+  EXPECT_NEAR(other.seconds_left(), 50, 0.1);
+  stopped = true;
+  for (const Deadline& each : {never, later, both, other, later.share(0.5)}) EXPECT_TRUE(each.passed());
+}
+
 TEST(Deadline, IsAskedInNanoseconds) {
   const Deadline whole(100);
   const auto begin = std::chrono::steady_clock::now();

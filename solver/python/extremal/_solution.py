@@ -354,9 +354,10 @@ class Solution:
         table `units`), by the ending of the path. A file is written whole or not at all."""
         name = os.fspath(path)
         if name.endswith(".json"):
-            content = (
-                json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
-            ).encode()
+            text = self._solved.json(self._times(samples))
+            if self._all:
+                text = json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
+            content = text.encode()
         elif name.endswith((".csv", ".npz", ".oem")):
             self._require()
             times = self.t if samples is None else self._times(samples)
