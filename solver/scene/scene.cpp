@@ -172,6 +172,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& sets) 
     scene.spectrum = read_spectrum_table(document, *spectrum);
   if (const auto* continuation = table(document, "continuation", false))
     scene.continuation = read_continuation_table(document, *continuation);
+  if (const auto* fit = table(document, "fit", false)) scene.fit = read_fit_table(document, *fit);
   check_system(scene.system);
   check_duration(scene);
   check_guess(scene);

@@ -102,6 +102,15 @@ struct ContinuationTable {
   bool switching = false;        ///< also follow the branches that bifurcate
 };
 
+/// What observations are to determine.
+struct FitTable {
+  Location at;
+  Text data;
+  std::vector<Definition> observe;
+  std::vector<Text> parameters;
+  std::optional<Text> loss;  ///< "squared", "huber", "cauchy"
+};
+
 struct Scene {
   std::string path;
   std::vector<std::string> files;  ///< that were read: the scene, and the system file that it uses
@@ -113,6 +122,7 @@ struct Scene {
   std::optional<SearchTable> search;
   std::optional<ContinuationTable> continuation;
   std::optional<SpectrumTable> spectrum;
+  std::optional<FitTable> fit;
 };
 
 /// Reads a scene with the changes "key=value" to it. Throws SceneError (UnknownName for a misspelt name).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@
 
 namespace extremal {
 
+struct FitRequest;
+
 /// A scene made ready: tape, boundary relation and sampled guess stand.
 struct Study {
   std::string scene;               ///< its path, as given
@@ -31,6 +34,7 @@ struct Study {
   std::vector<Assignment> forces;   ///< as written; none: the problem has none
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
+  std::shared_ptr<const FitRequest> fit;  ///< null: the scene asks for none. run() and follow() leave it aside
   double seconds_read = 0;  ///< from opening the file until this was ready
 };
 
