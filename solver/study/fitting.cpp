@@ -98,6 +98,7 @@ FitUnknown unknown_of(const OpenEnd& open, const Problem& problem, const Guess& 
     unknown.size = std::abs(unknown.start);
   }
   if (unknown.size == 0) unknown.size = 1;
+  if (open.e >= static_cast<int>(n)) unknown.last = open.e - static_cast<int>(n);
   return unknown;
 }
 

@@ -100,22 +100,29 @@ class Fit {
       if (progress_) progress_({iteration, path_.path().elements(), path_.path().degree(), 2 * cost});
       return !options_.deadline.passed();
     };
-    std::vector<double> x;
-    for (std::size_t j = 0; j < result_.values.size(); ++j)
-      x.push_back(result_.values[j] / task_.unknowns[j].size);
+    if (!path_.settle()) {
+      fail("Newton's method does not converge on the elements of the first trajectory");
+      return false;
+    }
+    std::vector<double> x = path_.coordinates();
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] /= task_.unknowns[j].size;
     const CurveFitReport report = minimise(fit, x, options_.deadline);
-    result_.values = unscaled(x);
-    if (!report.converged)
+    // The path of a step that was not taken is left for that of the minimum.
+    std::vector<double> residuals(fit.residuals);
+    const bool there = path_.evaluate(unscaled(x), residuals, {});
+    if (there) result_.values = path_.values();
+    if (!report.converged || !there)
       fail(fmt::format("the fit stopped at {}: {}; give better values in [system] parameters or [guess]",
-                       values_text(), report.failure));
-    return report.converged;
+                       values_text(),
+                       there ? report.failure : "there is no extremal"));
+    return report.converged && there;
   }
 
   /// Residuals, χ² and covariance at the minimum. False where some unknown is not determined.
   bool determined() {
     const int rows = task_.data.count(), count = static_cast<int>(task_.unknowns.size());
     std::vector<double> residuals(rows), entries(static_cast<std::size_t>(rows) * count);
-    if (!path_.evaluate(result_.values, residuals, entries)) {
+    if (!path_.evaluate_by_values(residuals, entries)) {
       fail(fmt::format("at {} the second variation is singular", values_text()));
       return false;
     }

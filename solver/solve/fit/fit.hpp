@@ -20,6 +20,7 @@ struct FitUnknown {
   std::string name;
   double start = 0;
   double size = 1;  ///< its order of magnitude
+  int last = -1;    ///< of an end at t = T its coordinate
 };
 
 /// What values of the unknowns make of the problem.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solve/fit/limits.hpp"
+#include "solve/mesh/resolution.hpp"
 #include "solve/newton/converge.hpp"
 #include "solve/newton/ends.hpp"
 
@@ -33,6 +34,7 @@ void FittedPath::take(const Solution& solution, std::span<const double> values) 
                             : std::make_unique<SchemeTables>(lobatto(degree));
   steps_.clear();
   converged_ = false;
+  ends_.clear();
   path_ = {};
   if (!bind(values)) return;
   const std::size_t n = trajectory.coordinates, width = at_->problem.coordinates();
@@ -53,13 +55,76 @@ void FittedPath::take(const Solution& solution, std::span<const double> values) 
   values_.assign(values.begin(), values.end());
 }
 
-/// To the path that derivatives predict for the values, with its ends on the boundary relation.
-bool FittedPath::move_to(std::span<const double> values) {
+std::vector<double> FittedPath::coordinates() const {
+  std::vector<double> result = values_;
+  for (const std::size_t j : ends_) result[j] = path_.node(node_)[task_.unknowns[j].last];
+  return result;
+}
+
+std::vector<double> FittedPath::values() const {
+  std::vector<double> result = values_;
+  for (const std::size_t j : ends_) result[j] = path_.node(path_.elements())[task_.unknowns[j].last];
+  return result;
+}
+
+bool FittedPath::settle() {
+  if (!scheme_ || path_.elements() == 0) return false;
+  node_ = path_.elements();
+  meet_ends(at_->problem, path_);
+  if (!converge_here(values_)) return false;
+  converged_ = true;
+  choose_node();
+  asked_ = coordinates();
+  return true;
+}
+
+/// ∂q/∂q(T) of the ends that are unknowns, at a node.
+Eigen::MatrixXd FittedPath::fields_at(int node) const {
+  const auto count = static_cast<Eigen::Index>(ends_.size());
+  const std::size_t first = static_cast<std::size_t>(node) * path_.coordinates();
+  Eigen::MatrixXd fields(count, count);
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b)
+      fields(a, b) = fields_[b].nodes[first + task_.unknowns[ends_[a]].last];
+  return fields;
+}
+
+/// The first node behind which the fields, normalised at the first node, fall.
+void FittedPath::choose_node() {
+  node_ = path_.elements();
+  ends_.clear();
+  for (std::size_t j = 0; j < task_.unknowns.size(); ++j)
+    if (task_.unknowns[j].last >= 0) ends_.push_back(j);
+  if (ends_.empty() || path_.elements() < 3) return;
+  std::vector<ProblemChange> changes;
+  for (const std::size_t j : ends_) changes.push_back(at_->changes[j]);
+  if (!response_.factor(newton_, at_->problem, path_, tables_, changes)) return;
+  fields_.resize(ends_.size());
+  for (std::size_t k = 0; k < ends_.size(); ++k) response_.to(changes[k], fields_[k]);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> unit(fields_at(1));
+  double largest = 0;
+  int best = path_.elements();
+  for (int node = 1; node <= path_.elements(); ++node) {
+    const Eigen::MatrixXd field = fields_at(node) * unit.inverse();
+    const double size = field.jacobiSvd().singularValues().minCoeff();
+    if (!std::isfinite(size)) return;
+    if (size > largest) {
+      largest = size;
+      best = node;
+    } else if (size < fallen * largest) {
+      node_ = best;
+      return;
+    }
+  }
+}
+
+/// To the path that derivatives predict, with its ends on the boundary relation.
+bool FittedPath::move_to(std::span<const double> coordinates) {
   if (!steps_.empty()) {
     path_ = base_;
     double duration = path_.duration();
     for (std::size_t j = 0; j < steps_.size(); ++j) {
-      const double by = values[j] - base_values_[j];
+      const double by = coordinates[j] - base_values_[j];
       path_.add(steps_[j].nodes, steps_[j].inner, by);
       duration += by * steps_[j].duration;
     }
@@ -68,49 +133,124 @@ bool FittedPath::move_to(std::span<const double> values) {
     path_.load_ends();
   }
   if (!at_->problem.duration.free) path_.set_duration(at_->problem.duration.value);
-  meet_ends(at_->problem, path_);
   return true;
 }
 
-bool FittedPath::converge_here() {
+bool FittedPath::converge_here(std::span<const double> coordinates) {
   newton_.reset(at_->problem, tables_, path_.elements());
   newton_.forget();
+  if (node_ < path_.elements()) return converge_held(coordinates);
+  meet_ends(at_->problem, path_);
   const NewtonReport report =
       converge(newton_, path_, tables_, {.steps = most_newton_steps}, [&] { return !options_.deadline.passed(); });
   iterations_ += report.steps;
   return report.reached;
 }
 
-bool FittedPath::evaluate(std::span<const double> values, std::span<double> residuals,
+/// Newton's method with q given at the node, not at T: to a step between fixed ends comes the combination of
+/// fields that keeps q there.
+bool FittedPath::converge_held(std::span<const double> coordinates) {
+  std::vector<ProblemChange> changes;
+  for (const std::size_t j : ends_) changes.push_back(at_->changes[j]);
+  const std::size_t n = path_.coordinates(), held = node_ * n;
+  const double size = scales(path_, tables_).q;
+  double before = INFINITY;
+  Step step;
+  for (int k = 0; k < most_newton_steps && !options_.deadline.passed(); ++k, ++iterations_) {
+    if (!response_.factor(newton_, at_->problem, path_, tables_, changes)) return false;
+    newton_.model().solve(newton_.action(), newton_.closing(path_), step);
+    for (std::size_t j = 0; j < ends_.size(); ++j) response_.to(changes[j], fields_[j]);
+    Eigen::VectorXd missing(ends_.size());
+    for (std::size_t j = 0; j < ends_.size(); ++j) {
+      const int a = task_.unknowns[ends_[j]].last;
+      missing[static_cast<Eigen::Index>(j)] =
+          coordinates[ends_[j]] - (path_.node(node_)[a] + path_.rest(node_)[a]) - step.nodes[held + a];
+    }
+    const Eigen::VectorXd parts = fields_at(node_).partialPivLu().solve(missing);
+    if (!parts.allFinite()) return false;
+    double duration = path_.duration() + step.duration, norm = 0;
+    for (std::size_t j = 0; j < ends_.size(); ++j) {
+      const double part = parts[static_cast<Eigen::Index>(j)];
+      for (std::size_t i = 0; i < step.nodes.size(); ++i) step.nodes[i] += part * fields_[j].nodes[i];
+      for (std::size_t i = 0; i < step.inner.size(); ++i) step.inner[i] += part * fields_[j].inner[i];
+      duration += part * fields_[j].duration;
+    }
+    for (const double x : step.nodes) norm = std::max(norm, std::abs(x));
+    norm /= size;
+    if (!std::isfinite(norm) || !(duration > 0)) return false;
+    path_.add(step.nodes, step.inner, 1);
+    if (at_->problem.duration.free) path_.set_duration(duration);
+    path_.load_ends();
+    if (norm < least_held_step || (norm < roundoff_of_held && norm > 0.3 * before)) return true;
+    before = norm;
+  }
+  return false;
+}
+
+bool FittedPath::evaluate(std::span<const double> coordinates, std::span<double> residuals,
                           std::span<double> jacobian) {
-  if (!scheme_ || path_.elements() == 0) return false;
-  if (!converged_ || !std::ranges::equal(values, values_)) {
+  if (!converged_ || !std::ranges::equal(coordinates, asked_)) {
     converged_ = false;
-    if (!bind(values) || !move_to(values) || !converge_here()) {
+    if (!bind(coordinates) || !move_to(coordinates) || !converge_here(coordinates)) {
       if (!steps_.empty()) path_ = base_;
       return false;
     }
-    values_.assign(values.begin(), values.end());
+    values_.assign(coordinates.begin(), coordinates.end());
+    asked_ = values_;
     converged_ = true;
   }
   if (!observer_.residuals(path_, at_->formulas, residuals)) return false;
-  return jacobian.empty() || differentiate(jacobian);
+  return jacobian.empty() || differentiate(false, jacobian);
 }
 
-bool FittedPath::differentiate(std::span<double> jacobian) {
+bool FittedPath::evaluate_by_values(std::span<double> residuals, std::span<double> jacobian) {
+  return converged_ && observer_.residuals(path_, at_->formulas, residuals) && differentiate(true, jacobian);
+}
+
+/// From derivatives with q(T) given to those with q at the node given.
+void FittedPath::combine_fields() {
+  const std::size_t n = path_.coordinates(), held = node_ * n;
+  for (std::size_t k = 0; k < ends_.size(); ++k) fields_[k] = steps_[ends_[k]];
+  const Eigen::MatrixXd inverse = fields_at(node_).inverse();
+  for (std::size_t j = 0; j < steps_.size(); ++j) {
+    const auto end = std::ranges::find(ends_, j);
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(ends_.size()));
+    if (end != ends_.end())
+      moved[end - ends_.begin()] = 1;
+    else
+      for (std::size_t k = 0; k < ends_.size(); ++k)
+        moved[static_cast<Eigen::Index>(k)] = -steps_[j].nodes[held + task_.unknowns[ends_[k]].last];
+    const Eigen::VectorXd parts = inverse * moved;
+    Step& step = steps_[j];
+    if (end != ends_.end()) {
+      std::ranges::fill(step.nodes, 0.0);
+      std::ranges::fill(step.inner, 0.0);
+      step.duration = 0;
+    }
+    for (std::size_t k = 0; k < ends_.size(); ++k) {
+      const double part = parts[static_cast<Eigen::Index>(k)];
+      for (std::size_t i = 0; i < step.nodes.size(); ++i) step.nodes[i] += part * fields_[k].nodes[i];
+      for (std::size_t i = 0; i < step.inner.size(); ++i) step.inner[i] += part * fields_[k].inner[i];
+      step.duration += part * fields_[k].duration;
+    }
+  }
+}
+
+bool FittedPath::differentiate(bool by_values, std::span<double> jacobian) {
   const std::size_t count = task_.unknowns.size();
   steps_.resize(count);
   if (!response_.factor(newton_, at_->problem, path_, tables_, at_->changes)) {
     steps_.clear();
     return false;
   }
-  for (std::size_t j = 0; j < count; ++j) {
-    response_.to(at_->changes[j], steps_[j]);
+  for (std::size_t j = 0; j < count; ++j) response_.to(at_->changes[j], steps_[j]);
+  if (!by_values && node_ < path_.elements()) combine_fields();
+  for (std::size_t j = 0; j < count; ++j)
     observer_.derivatives(path_, tables_, at_->formulas, steps_[j], at_->changes[j], jacobian.data() + j,
                           static_cast<std::ptrdiff_t>(count));
-  }
   base_ = path_;
-  base_values_ = values_;
+  base_values_ = coordinates();
+  if (by_values) steps_.clear();
   return std::ranges::all_of(jacobian, [](double x) { return std::isfinite(x); });
 }
 

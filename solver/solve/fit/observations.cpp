@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solution/element_point.hpp"
-#include "solution/solution.hpp"
+#include "action/rule.hpp"
 
 namespace extremal {
 
@@ -47,8 +46,11 @@ Observer::Observer(const Observations& data, int coordinates)
 
 /// Where each time lies on the mesh, and the polynomials there.
 void Observer::place(const Path& path) {
-  degree_ = path.degree();
   const std::span<const double> mesh = path.mesh();
+  if (degree_ == path.degree() && duration_ == path.duration() && std::ranges::equal(mesh_, mesh)) return;
+  degree_ = path.degree();
+  duration_ = path.duration();
+  mesh_.assign(mesh.begin(), mesh.end());
   const std::size_t functions = degree_ + 1;
   basis_.resize(2 * functions * rows_);
   for (int i = 0; i < rows_; ++i) {
@@ -68,10 +70,20 @@ void Observer::sample(const Trajectory& trajectory, AlignedDoubles& q, AlignedDo
   width_ = trajectory.coordinates;
   q.resize(static_cast<std::size_t>(width_) * stride_);
   v.resize(q.size());
-  const std::size_t functions = degree_ + 1;
+  const std::size_t functions = degree_ + 1, n = width_;
   for (int i = 0; i < rows_; ++i) {
     const double* const value = basis_.data() + 2 * functions * i;
-    element_point(trajectory, element_[i], {value, value + functions}, q.data() + i, v.data() + i, stride_);
+    const std::size_t first = element_[i] * functions * n;
+    const double *const nodes = trajectory.nodes.data() + first, *const slopes = trajectory.slopes.data() + first;
+    for (std::size_t a = 0; a < n; ++a) {
+      double position = 0, velocity = 0;
+      for (std::size_t j = 0; j < functions; ++j) {
+        position += value[j] * nodes[j * n + a];
+        velocity += value[j] * slopes[j * n + a];
+      }
+      q[a * stride_ + i] = position;
+      v[a * stride_ + i] = velocity;
+    }
   }
   for (int a = 0; a < width_; ++a)
     for (AlignedDoubles* x : {&q, &v})
