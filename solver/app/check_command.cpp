@@ -67,8 +67,8 @@ void print_fit(const Study& study) {
   for (const FitUnknown& unknown : task.unknowns)
     unknowns.push_back(fmt::format("{} (from {:.6g})", unknown.name, unknown.start));
   for (const ObservedColumn& column : task.data.columns)
-    columns.push_back(fmt::format("{}: {}{}", column.name, column.values.size(),
-                                  column.turn > 0 ? " of an angle" : ""));
+    columns.push_back(
+        fmt::format("{}: {}{}", column.name, column.values.size(), column.turn > 0 ? " of an angle" : ""));
   line("fit", fmt::format("to be found: {}", fmt::join(unknowns, ", ")));
   line("", fmt::format("values observed of {}; loss: {}", fmt::join(columns, ", "), name(task.loss)));
 }

@@ -18,7 +18,7 @@
 namespace extremal::app {
 namespace {
 
-constexpr int csv_samples = 201;
+constexpr int csv_samples = 201, fit_samples = 241;
 /// A picture has so many equal steps, and so many in each element, which is short where the motion is fast;
 /// of elements that are many, fewer.
 constexpr int plot_steps = 800, element_steps = 8, most_element_steps = 20'000;
@@ -58,8 +58,8 @@ Result search_result(Result result, const std::vector<Solution>& solutions, cons
 }
 
 std::string fit_progress_text(const FitStep& step) {
-  return fmt::format("fit, {} elements of degree {}: iteration {}, chi squared {:.6g}", step.elements, step.degree,
-                     step.iteration, step.chi_squared);
+  return fmt::format("fit, {} elements of degree {}: iteration {}, chi squared {:.6g}", step.elements,
+                     step.degree, step.iteration, step.chi_squared);
 }
 
 /// What a fit found, for its result.
@@ -140,8 +140,9 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
   const bool converged = result.solution.converged();
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
   if (converged && !a.plot.empty())
-    files.push_back({a.plot, result.fit ? fit_image(a.plot, result, annotation)
-                                        : plot_image(a.plot, picture_of(study, result, annotation))});
+    files.push_back({a.plot, result.fit
+                                 ? fit_image(a.plot, result, sampled(study, result, fit_samples), annotation)
+                                 : plot_image(a.plot, picture_of(study, result, annotation))});
   Outputs::write(std::move(files));
 }
 

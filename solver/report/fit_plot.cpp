@@ -47,14 +47,25 @@ Panel panel_of(const AxisName& name, const std::vector<const Column*>& columns, 
   Panel panel;
   Extent range = extent(columns, 0.08);
   if (!(range.low < range.high)) range = {range.low - 1, range.high + 1};
-  panel.y = make_axis(name, range.low, range.high, height / 36);
+  panel.y = make_axis(name, range.low, range.high, height / 30);
   panel.box.height = height;
   return panel;
 }
 
+/// The curve of a column: of a coordinate or velocity that of the samples, else through the times of the
+/// data.
+Curve computed_curve(const Shown& all, const std::string& name, const std::vector<std::string>& names,
+                     const Samples& samples) {
+  for (std::size_t a = 0; a < names.size(); ++a) {
+    if (name == names[a]) return {samples.t, samples.q[a], first_colour};
+    if (name == velocity_key(names[a])) return {samples.t, samples.v[a], first_colour};
+  }
+  return {all.t, all.computed, first_colour};
+}
+
 }  // namespace
 
-Figure fit_layout(const Result& result, const Annotation& annotation) {
+Figure fit_layout(const Result& result, const Samples& samples, const Annotation& annotation) {
   if (!result.fit) throw std::invalid_argument("cannot plot a fit of a result that has none");
   const Fitted& fit = *result.fit;
   std::vector<const Fitted::Column*> columns;
@@ -67,16 +78,17 @@ Figure fit_layout(const Result& result, const Annotation& annotation) {
     remarks.push_back(fmt::format("{} = {:.6g} ± {:.2g}", fit.parameters[k], fit.values[k],
                                   std::sqrt(fit.covariance[k][k])));
   Figure figure = headed_figure(
-      result.title, {{"computed", first_colour, Shape::line}, {"observed", second_colour, Shape::dot}}, remarks);
+      result.title, {{"computed", first_colour, Shape::line}, {"observed", second_colour, Shape::dot}},
+      remarks);
   double top = top_of_panels(figure);
   figure.width = std::max(figure.width, 860.0);
   const double latest = std::max(result.solution.duration(), *std::ranges::max_element(fit.t));
   std::vector<Panel> panels;
   for (const Fitted::Column* column : columns) {
     const Shown all = shown(fit, *column);
-    Panel above =
-        panel_of(axis_name(annotation, column->name), {&all.observed, &all.computed}, data_height);
-    above.curves.push_back({all.t, all.computed, first_colour});
+    Curve curve = computed_curve(all, column->name, result.names, samples);
+    Panel above = panel_of(axis_name(annotation, column->name), {&all.observed, &curve.y}, data_height);
+    above.curves.push_back(std::move(curve));
     mark(above, all.t, all.observed);
     const bool scaled = std::ranges::any_of(column->sigma, [](const auto& x) { return x.has_value(); });
     const Column zero(2, 0);
@@ -103,8 +115,9 @@ Figure fit_layout(const Result& result, const Annotation& annotation) {
   return figure;
 }
 
-std::string fit_image(const std::string& path, const Result& result, const Annotation& annotation) {
-  return plot_image(path, fit_layout(result, annotation));
+std::string fit_image(const std::string& path, const Result& result, const Samples& samples,
+                      const Annotation& annotation) {
+  return plot_image(path, fit_layout(result, samples, annotation));
 }
 
 }  // namespace extremal

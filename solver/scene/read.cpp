@@ -141,7 +141,8 @@ FitTable read_fit_table(const Document& document, const toml::table& table) {
   fit.at = document.at(table);
   const auto data = text(document, table, "data");
   if (!data)
-    throw SceneError(fit.at, "[fit] has no 'data'; name a CSV file with a column t and columns of observations");
+    throw SceneError(fit.at,
+                     "[fit] has no 'data'; name a CSV file with a column t and columns of observations");
   fit.data = *data;
   if (const toml::table* observe = table["observe"].as_table())
     for (const auto& [key, value] : document.entries(*observe))

@@ -137,16 +137,20 @@ constexpr KeyRecord keys[] = {
      R"(against = "other.json")"},
 
     {"fit", "data", Kind::text, "required",
-     "CSV with a column `t`, times from 0 to the duration, and columns of observations: named like coordinates, "
-     "velocities (`x'`) or formulas of `observe`. A column `sigma x` has the standard deviations of column `x`; "
+     "CSV with a column `t`, times from 0 to the duration, and columns of observations: named like "
+     "coordinates, "
+     "velocities (`x'`) or formulas of `observe`. A column `sigma x` has the standard deviations of column "
+     "`x`; "
      "without it they are 1. An empty cell was not observed.",
      R"(data = "observed.csv")"},
     {"fit", "observe", Kind::text, "none",
-     "Observations as formulas of coordinates, velocities, `t`, parameters and definitions. One that is `atan2`, "
+     "Observations as formulas of coordinates, velocities, `t`, parameters and definitions. One that is "
+     "`atan2`, "
      "or a number times it, is an angle: whole turns do not count.",
      "observe = { angle = \"atan2(y, x)\" }", true},
     {"fit", "parameters", Kind::texts, "none",
-     "Parameters to be found, beside the end coordinates that `[boundary]` leaves open. Their values in the scene "
+     "Parameters to be found, beside the end coordinates that `[boundary]` leaves open. Their values in the "
+     "scene "
      "are the first guess.",
      R"(parameters = ["l", "g"])"},
     {"fit", "loss", Kind::text, R"("squared")",

@@ -22,7 +22,7 @@ constexpr double slack = 1e-12;
 struct Columns {
   std::size_t time = 0;
   std::vector<ObservedColumn> observed;
-  std::vector<std::size_t> values;                ///< column of each
+  std::vector<std::size_t> values;                 ///< column of each
   std::vector<std::optional<std::size_t>> sigmas;  ///< likewise
 };
 
@@ -41,12 +41,19 @@ ObservedColumn column_of(const std::string& name, const CsvCell& cell, const Fit
                          const System& system) {
   for (std::size_t k = 0; k < table.observe.size(); ++k)
     if (table.observe[k].name == name)
-      return {name, Observable::formula, static_cast<int>(k), turn_of(table.observe[k].formula.value, system), {}};
+      return {name,
+              Observable::formula,
+              static_cast<int>(k),
+              turn_of(table.observe[k].formula.value, system),
+              {}};
   const bool velocity = name.ends_with('\'');
   const auto found = std::ranges::find(system.names, velocity ? name.substr(0, name.size() - 1) : name);
   if (found != system.names.end())
-    return {name, velocity ? Observable::velocity : Observable::coordinate,
-            static_cast<int>(found - system.names.begin()), 0, {}};
+    return {name,
+            velocity ? Observable::velocity : Observable::coordinate,
+            static_cast<int>(found - system.names.begin()),
+            0,
+            {}};
   throw UnknownName(cell.at,
                     fmt::format("unknown column '{}': it is no coordinate, no velocity and no name in "
                                 "fit.observe",
@@ -79,8 +86,8 @@ Columns read_header(const CsvFile& file, const FitTable& table, const System& sy
     const std::string of = name.substr(sigma.size());
     const auto found = std::ranges::find(columns.observed, of, &ObservedColumn::name);
     if (found == columns.observed.end())
-      throw SceneError(file.header[c].at, fmt::format("'{}' belongs to a column '{}', which the file does not have",
-                                                      name, of));
+      throw SceneError(file.header[c].at,
+                       fmt::format("'{}' belongs to a column '{}', which the file does not have", name, of));
     columns.sigmas[found - columns.observed.begin()] = c;
   }
   return columns;
@@ -97,7 +104,8 @@ double read_sigma(const CsvCell& cell, const std::string& name) {
   if (cell.text.empty())
     throw SceneError(cell.at, fmt::format("'{0}' was observed here, and 'sigma {0}' is empty", name));
   const double value = number_in(cell);
-  if (!(value > 0)) throw SceneError(cell.at, fmt::format("sigma = {}; a standard deviation is positive", value));
+  if (!(value > 0))
+    throw SceneError(cell.at, fmt::format("sigma = {}; a standard deviation is positive", value));
   return value;
 }
 
@@ -145,9 +153,10 @@ Observations read_observations(const FitTable& table, const std::string& scene, 
   for (const Definition& observation : table.observe) {
     const std::vector<std::string>& names = system.names;
     if (std::ranges::find(names, observation.name) != names.end() || observation.name == "t")
-      throw SceneError(observation.name_at,
-                       fmt::format("'{}' is a name of the system already; choose another one for the observation",
-                                   observation.name));
+      throw SceneError(
+          observation.name_at,
+          fmt::format("'{}' is a name of the system already; choose another one for the observation",
+                      observation.name));
   }
   const auto source = read_source(beside(scene, table.data.value));
   const Location whole{source, 0, 0};
@@ -155,7 +164,8 @@ Observations read_observations(const FitTable& table, const std::string& scene, 
   if (file.header.empty()) throw SceneError(whole, "the file has no columns; write a column t and others");
   Columns columns = read_header(file, table, system);
   for (const Definition& observation : table.observe)
-    if (std::ranges::find(columns.observed, observation.name, &ObservedColumn::name) == columns.observed.end())
+    if (std::ranges::find(columns.observed, observation.name, &ObservedColumn::name) ==
+        columns.observed.end())
       throw SceneError(observation.name_at, fmt::format("the data have no column '{}'", observation.name));
   Observations data;
   for (std::size_t k = 0; k < file.rows.size(); ++k) {

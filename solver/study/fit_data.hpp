@@ -11,9 +11,9 @@
 
 namespace extremal {
 
-/// The file that [fit] names: columns of coordinates, velocities and formulas of `observe`, which are numbered
-/// as there. Times must be in [0, duration], unless that is infinite. Throws SceneError, in the file with line
-/// and column.
+/// The file that [fit] names: columns of coordinates, velocities and formulas of `observe`, which are
+/// numbered as there. Times must be in [0, duration], unless that is infinite. Throws SceneError, in the file
+/// with line and column.
 Observations read_observations(const FitTable& table, const std::string& scene, const System& system,
                                double duration);
 

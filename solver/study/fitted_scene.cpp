@@ -23,7 +23,8 @@ constexpr std::array<double, 4> weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 /
 double size_of(double value) { return value == 0 ? 1 : std::abs(value); }
 
 bool names_any(const std::string& formula, const std::set<std::string>& names) {
-  return std::ranges::any_of(names_in(formula), [&](const std::string& name) { return names.contains(name); });
+  return std::ranges::any_of(names_in(formula),
+                             [&](const std::string& name) { return names.contains(name); });
 }
 
 bool names_any(const Quantity& quantity, const std::set<std::string>& names) {
@@ -38,8 +39,9 @@ bool names_any(const std::vector<Assignment>& assignments, const std::set<std::s
 }
 
 bool depends(const BoundaryTable& boundary, const std::set<std::string>& names) {
-  return names_any(boundary.start, names) || names_any(boundary.end, names) || names_any(boundary.map, names) ||
-         names_any(boundary.duration, names) || (boundary.energy && names_any(*boundary.energy, names)) ||
+  return names_any(boundary.start, names) || names_any(boundary.end, names) ||
+         names_any(boundary.map, names) || names_any(boundary.duration, names) ||
+         (boundary.energy && names_any(*boundary.energy, names)) ||
          (boundary.where && names_any(boundary.where->value, names)) ||
          std::ranges::any_of(boundary.conditions, [&](const Text& t) { return names_any(t.value, names); });
 }
@@ -53,17 +55,15 @@ bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
 }  // namespace
 
 FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem)
-    : fit_(*scene.fit),
-      table_(scene.system),
-      boundary_(scene.boundary),
-      system_(system),
-      problem_(problem) {
+    : fit_(*scene.fit), table_(scene.system), boundary_(scene.boundary), system_(system), problem_(problem) {
   if (problem.initial)
-    throw SceneError(fit_.at,
-                     "a fit needs conditions at both ends, and 'start' gives initial data; leave what is to be "
-                     "found out of 'start', the fit finds it at both ends");
+    throw SceneError(
+        fit_.at,
+        "a fit needs conditions at both ends, and 'start' gives initial data; leave what is to be "
+        "found out of 'start', the fit finds it at both ends");
   if (problem.motion().kinks())
-    throw SceneError(fit_.at, "a fit needs a smooth Lagrangian, and this one has abs, min, max or step of the motion");
+    throw SceneError(fit_.at,
+                     "a fit needs a smooth Lagrangian, and this one has abs, min, max or step of the motion");
   problem_.guess = {};
   problem_.reduction = nullptr;
   read_parameters(scene, system);
@@ -82,7 +82,8 @@ void FittedScene::read_parameters(const Scene& scene, const System& system) {
       throw UnknownName(position(text, 0), fmt::format("unknown parameter '{}'", name), name, names);
     }
     if (known->second.list)
-      throw SceneError(position(text, 0), fmt::format("'{}' is a list; a fitted parameter must be one number", name));
+      throw SceneError(position(text, 0),
+                       fmt::format("'{}' is a list; a fitted parameter must be one number", name));
     if (std::ranges::find(parameters_, name) != parameters_.end())
       throw SceneError(position(text, 0), fmt::format("'{}' is named twice", name));
     const auto given = std::ranges::find(scene.system.parameters, name, &Assignment::name);
@@ -136,16 +137,18 @@ void FittedScene::check_dependence() const {
     double step = 0;
     for (const Numbers& there : around(values, j, step)) {
       if (!same_matrix(here.relation.matrix, there.relation.matrix))
-        throw SceneError(fit_.at,
-                         fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides "
-                                     "may",
-                                     parameters_[j]));
+        throw SceneError(
+            fit_.at,
+            fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides "
+                        "may",
+                        parameters_[j]));
       if (!boundary_.free && there.duration.value != here.duration.value &&
           !problem_.motion().structure().autonomous)
-        throw SceneError(boundary_.duration.at,
-                         fmt::format("the duration depends on '{}', and L depends on t; give the duration as a "
-                                     "number",
-                                     parameters_[j]));
+        throw SceneError(
+            boundary_.duration.at,
+            fmt::format("the duration depends on '{}', and L depends on t; give the duration as a "
+                        "number",
+                        parameters_[j]));
     }
   }
 }
@@ -247,7 +250,8 @@ Problem FittedScene::problem(std::span<const double> values, const Guess& guess,
   return make_problem(std::move(problem));
 }
 
-void FittedScene::put_relation_change(const Problem& inner, BoundaryRelation by, ProblemChange& change) const {
+void FittedScene::put_relation_change(const Problem& inner, BoundaryRelation by,
+                                      ProblemChange& change) const {
   if (!inner.copies) {
     change.ends = solve_relation(by).offset;
     change.momenta = std::move(by.momenta);

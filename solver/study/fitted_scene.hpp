@@ -37,7 +37,7 @@ class FittedScene {
  private:
   /// What formulas of the scene make of the parameters.
   struct Numbers {
-    BoundaryRelation relation;   ///< with a row for each open end
+    BoundaryRelation relation;  ///< with a row for each open end
     Duration duration;
     std::vector<double> active;  ///< values of the active parameters
     std::vector<double> list() const;

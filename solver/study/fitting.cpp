@@ -40,7 +40,8 @@ Track track_of(const ObservedColumn& column, const std::vector<double>& times) {
   for (std::size_t k = 0; k < values.size();) {
     double t = 0, q = 0, count = 0;
     // Values of one time belong together.
-    for (; k < values.size() && (count < group || times[values[k].row] == times[values[k - 1].row]); ++k, ++count) {
+    for (; k < values.size() && (count < group || times[values[k].row] == times[values[k - 1].row]);
+         ++k, ++count) {
       t += times[values[k].row];
       q += values[k].value;
     }
@@ -65,11 +66,12 @@ Guess guess_of(const Observations& data, const Problem& problem) {
   if (tau.size() == 2) return guess;
   std::ranges::sort(tau);
   for (const double each : tau)
-    if (each >= 0 && each <= 1 && (guess.tau.empty() || each > guess.tau.back() + 1e-9)) guess.tau.push_back(each);
+    if (each >= 0 && each <= 1 && (guess.tau.empty() || each > guess.tau.back() + 1e-9))
+      guess.tau.push_back(each);
   guess.tau.back() = 1;
   const auto end = [&](int a, bool at_end) {
     const int here = at_end ? n + a : a, there = at_end ? a : n + a;
-    return problem.ends.fixed[here] ? problem.ends.offset[here]
+    return problem.ends.fixed[here]    ? problem.ends.offset[here]
            : problem.ends.fixed[there] ? problem.ends.offset[there]
                                        : 0.0;
   };
@@ -125,7 +127,8 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
                         table.loss->value, {"squared", "huber", "cauchy"});
     task.loss = *loss;
   }
-  const double latest = problem.duration.free ? std::numeric_limits<double>::infinity() : problem.duration.value;
+  const double latest =
+      problem.duration.free ? std::numeric_limits<double>::infinity() : problem.duration.value;
   task.data = read_observations(table, scene.path, study.system, latest);
   task.guess = problem.guess.given() ? problem.guess : guess_of(task.data, problem);
   task.duration = problem.duration.value;
@@ -139,8 +142,9 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
     task.unknowns.push_back(unknown_of(open, problem, task.guess));
   }
   if (task.unknowns.empty())
-    throw SceneError(table.at,
-                     "there is nothing to be found; name parameters, or leave end coordinates out of [boundary]");
+    throw SceneError(
+        table.at,
+        "there is nothing to be found; name parameters, or leave end coordinates out of [boundary]");
   const int count = task.data.count();
   if (count < static_cast<int>(task.unknowns.size()))
     throw SceneError(position(table.data, 0),

@@ -16,7 +16,7 @@ struct Study;
 
 /// What a scene asks for.
 struct FitRequest {
-  FitTask task;  ///< but for the solver
+  FitTask task;                                    ///< but for the solver
   std::vector<std::string> parameters, open_ends;  ///< names of the unknowns, in their order
 };
 
@@ -25,6 +25,7 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
 
 /// Fits `repeat` times from the same guess, as run() solves. Throws std::invalid_argument if repeat < 1, or
 /// without a [fit].
-FitResult run_fit(const Study& study, int repeat = 1, const std::function<void(const FitStep&)>& progress = {});
+FitResult run_fit(const Study& study, int repeat = 1,
+                  const std::function<void(const FitStep&)>& progress = {});
 
 }  // namespace extremal

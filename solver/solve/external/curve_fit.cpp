@@ -65,7 +65,8 @@ class Counter final : public ceres::IterationCallback {
  public:
   explicit Counter(const CurveFit& fit) : fit_(fit) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
-    return !fit_.count || fit_.count(step.iteration, step.cost) ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+    return !fit_.count || fit_.count(step.iteration, step.cost) ? ceres::SOLVER_CONTINUE
+                                                                : ceres::SOLVER_ABORT;
   }
 
  private:

@@ -113,8 +113,7 @@ class Fit {
     if (there) result_.values = path_.values();
     if (!report.converged || !there)
       fail(fmt::format("the fit stopped at {}: {}; give better values in [system] parameters or [guess]",
-                       values_text(),
-                       there ? report.failure : "there is no extremal"));
+                       values_text(), there ? report.failure : "there is no extremal"));
     return report.converged && there;
   }
 
@@ -168,8 +167,8 @@ class Fit {
     for (Eigen::Index j = 0; j < count; ++j)
       if (parts[j] > named * parts.maxCoeff()) names.push_back(task_.unknowns[j].name);
     if (!names.empty()) return undetermined_names(names);
-    const Eigen::MatrixXd half = lengths.cwiseInverse().asDiagonal() * svd.matrixV() *
-                                 s.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd half =
+        lengths.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
     result_.covariance = half * half.transpose();
     const Eigen::Index freedom = jacobian.rows() - count;
     result_.scaled = !task_.data.sigmas && freedom > 0;
@@ -179,13 +178,15 @@ class Fit {
 
   bool undetermined_names(const std::vector<std::string>& names) {
     if (names.size() == 1)
-      fail(fmt::format("the data do not determine '{0}': it changes nothing that was observed; leave '{0}' out of "
-                       "the fit, or observe what depends on it",
-                       names.front()));
+      fail(fmt::format(
+          "the data do not determine '{0}': it changes nothing that was observed; leave '{0}' out of "
+          "the fit, or observe what depends on it",
+          names.front()));
     else
-      fail(fmt::format("the data do not determine '{}': along some change of all of them nothing that was "
-                       "observed changes; give one of them, or observe what depends on it alone",
-                       fmt::join(names, "', '")));
+      fail(
+          fmt::format("the data do not determine '{}': along some change of all of them nothing that was "
+                      "observed changes; give one of them, or observe what depends on it alone",
+                      fmt::join(names, "', '")));
     return false;
   }
 
@@ -204,8 +205,8 @@ class Fit {
     return trajectory;
   }
 
-  /// Whether the trajectory of the fit is the solution to the tolerance, at its nodes and between. A scheme that
-  /// was asked for with its elements has no other.
+  /// Whether the trajectory of the fit is the solution to the tolerance, at its nodes and between. A scheme
+  /// that was asked for with its elements has no other.
   bool agrees(const Trajectory& fitted) const {
     if (options_.elements > 0) return true;
     const Trajectory& other = result_.solution.trajectory;

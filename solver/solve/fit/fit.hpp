@@ -65,9 +65,9 @@ struct FitResult {
   std::vector<std::vector<double>> residuals;  ///< observed − computed, of each column
 };
 
-/// Fits by Ceres around extremals on elements that are kept while it iterates. They are then chosen anew for the
-/// extremal that was found, until they meet the tolerance along it. Where observations do not determine an
-/// unknown the solution has not converged, and its message names it.
+/// Fits by Ceres around extremals on elements that are kept while it iterates. They are then chosen anew for
+/// the extremal that was found, until they meet the tolerance along it. Where observations do not determine
+/// an unknown the solution has not converged, and its message names it.
 FitResult fit(const FitTask& task, const SolveOptions& options,
               const std::function<void(const FitStep&)>& progress = {});
 

@@ -12,6 +12,17 @@ namespace extremal {
 
 using namespace limits::fit;
 
+namespace {
+
+/// Adds a multiple of one step to another.
+void add(Step& to, const Step& step, double factor) {
+  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes[i] += factor * step.nodes[i];
+  for (std::size_t i = 0; i < to.inner.size(); ++i) to.inner[i] += factor * step.inner[i];
+  to.duration += factor * step.duration;
+}
+
+}  // namespace
+
 FittedPath::FittedPath(const FitTask& task, const SolveOptions& options)
     : task_(task), options_(options), observer_(task.data, task.coordinates) {}
 
@@ -25,8 +36,8 @@ bool FittedPath::bind(std::span<const double> values) {
   return true;
 }
 
-/// Elements of the scheme that was asked for, or of the degree of the trajectory, whose velocities are right to
-/// the tolerance. With forces both copies move alike.
+/// Elements of the scheme that was asked for, or of the degree of the trajectory, whose velocities are right
+/// to the tolerance. With forces both copies move alike.
 void FittedPath::take(const Solution& solution, std::span<const double> values) {
   const Trajectory& trajectory = solution.trajectory;
   const int degree = options_.scheme ? options_.scheme->degree : trajectory.degree;
@@ -139,52 +150,58 @@ bool FittedPath::move_to(std::span<const double> coordinates) {
 bool FittedPath::converge_here(std::span<const double> coordinates) {
   newton_.reset(at_->problem, tables_, path_.elements());
   newton_.forget();
-  if (node_ < path_.elements()) return converge_held(coordinates);
+  if (node_ < path_.elements()) return correct(coordinates);
   meet_ends(at_->problem, path_);
-  const NewtonReport report =
-      converge(newton_, path_, tables_, {.steps = most_newton_steps}, [&] { return !options_.deadline.passed(); });
+  const NewtonReport report = converge(newton_, path_, tables_, {.steps = most_newton_steps},
+                                       [&] { return !options_.deadline.passed(); });
   iterations_ += report.steps;
+  // A free duration is known to fewer digits than the path then.
+  if (report.reached && at_->problem.duration.free) correct(coordinates);
   return report.reached;
 }
 
-/// Newton's method with q given at the node, not at T: to a step between fixed ends comes the combination of
-/// fields that keeps q there.
-bool FittedPath::converge_held(std::span<const double> coordinates) {
+/// Newton's method without damping. Where q is given at a node and not at T, the combination of fields that
+/// keeps q there comes to a step between fixed ends.
+bool FittedPath::correct(std::span<const double> coordinates) {
+  const bool held = node_ < path_.elements();
   std::vector<ProblemChange> changes;
-  for (const std::size_t j : ends_) changes.push_back(at_->changes[j]);
-  const std::size_t n = path_.coordinates(), held = node_ * n;
+  for (const std::size_t j : ends_)
+    if (held) changes.push_back(at_->changes[j]);
   const double size = scales(path_, tables_).q;
   double before = INFINITY;
   Step step;
   for (int k = 0; k < most_newton_steps && !options_.deadline.passed(); ++k, ++iterations_) {
     if (!response_.factor(newton_, at_->problem, path_, tables_, changes)) return false;
     newton_.model().solve(newton_.action(), newton_.closing(path_), step);
-    for (std::size_t j = 0; j < ends_.size(); ++j) response_.to(changes[j], fields_[j]);
-    Eigen::VectorXd missing(ends_.size());
-    for (std::size_t j = 0; j < ends_.size(); ++j) {
-      const int a = task_.unknowns[ends_[j]].last;
-      missing[static_cast<Eigen::Index>(j)] =
-          coordinates[ends_[j]] - (path_.node(node_)[a] + path_.rest(node_)[a]) - step.nodes[held + a];
-    }
-    const Eigen::VectorXd parts = fields_at(node_).partialPivLu().solve(missing);
-    if (!parts.allFinite()) return false;
-    double duration = path_.duration() + step.duration, norm = 0;
-    for (std::size_t j = 0; j < ends_.size(); ++j) {
-      const double part = parts[static_cast<Eigen::Index>(j)];
-      for (std::size_t i = 0; i < step.nodes.size(); ++i) step.nodes[i] += part * fields_[j].nodes[i];
-      for (std::size_t i = 0; i < step.inner.size(); ++i) step.inner[i] += part * fields_[j].inner[i];
-      duration += part * fields_[j].duration;
-    }
-    for (const double x : step.nodes) norm = std::max(norm, std::abs(x));
-    norm /= size;
+    if (held && !hold_node(coordinates, changes, step)) return false;
+    double norm = std::abs(step.duration) / path_.duration();
+    for (const double x : step.nodes) norm = std::max(norm, std::abs(x) / size);
+    const double duration = path_.duration() + step.duration;
     if (!std::isfinite(norm) || !(duration > 0)) return false;
     path_.add(step.nodes, step.inner, 1);
     if (at_->problem.duration.free) path_.set_duration(duration);
     path_.load_ends();
-    if (norm < least_held_step || (norm < roundoff_of_held && norm > 0.3 * before)) return true;
+    if (norm < least_step || (norm < roundoff_of_step && norm > 0.3 * before)) return true;
     before = norm;
   }
   return false;
+}
+
+/// Adds to a step the fields that bring q at the node to its coordinates.
+bool FittedPath::hold_node(std::span<const double> coordinates, std::span<const ProblemChange> changes,
+                           Step& step) {
+  const std::size_t first = static_cast<std::size_t>(node_) * path_.coordinates();
+  Eigen::VectorXd missing(static_cast<Eigen::Index>(ends_.size()));
+  for (std::size_t j = 0; j < ends_.size(); ++j) {
+    response_.to(changes[j], fields_[j]);
+    const int a = task_.unknowns[ends_[j]].last;
+    missing[static_cast<Eigen::Index>(j)] =
+        coordinates[ends_[j]] - (path_.node(node_)[a] + path_.rest(node_)[a]) - step.nodes[first + a];
+  }
+  const Eigen::VectorXd parts = fields_at(node_).partialPivLu().solve(missing);
+  if (!parts.allFinite()) return false;
+  for (std::size_t j = 0; j < ends_.size(); ++j) add(step, fields_[j], parts[static_cast<Eigen::Index>(j)]);
+  return true;
 }
 
 bool FittedPath::evaluate(std::span<const double> coordinates, std::span<double> residuals,
@@ -221,18 +238,9 @@ void FittedPath::combine_fields() {
       for (std::size_t k = 0; k < ends_.size(); ++k)
         moved[static_cast<Eigen::Index>(k)] = -steps_[j].nodes[held + task_.unknowns[ends_[k]].last];
     const Eigen::VectorXd parts = inverse * moved;
-    Step& step = steps_[j];
-    if (end != ends_.end()) {
-      std::ranges::fill(step.nodes, 0.0);
-      std::ranges::fill(step.inner, 0.0);
-      step.duration = 0;
-    }
-    for (std::size_t k = 0; k < ends_.size(); ++k) {
-      const double part = parts[static_cast<Eigen::Index>(k)];
-      for (std::size_t i = 0; i < step.nodes.size(); ++i) step.nodes[i] += part * fields_[k].nodes[i];
-      for (std::size_t i = 0; i < step.inner.size(); ++i) step.inner[i] += part * fields_[k].inner[i];
-      step.duration += part * fields_[k].duration;
-    }
+    if (end != ends_.end()) add(steps_[j], fields_[end - ends_.begin()], -1);
+    for (std::size_t k = 0; k < ends_.size(); ++k)
+      add(steps_[j], fields_[k], parts[static_cast<Eigen::Index>(k)]);
   }
 }
 

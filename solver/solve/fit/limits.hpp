@@ -16,12 +16,12 @@ inline constexpr double undetermined = 1e-9;
 inline constexpr double without_effect = 1e-12;
 /// Unknowns with at least this part of the largest in a direction that is not determined are named.
 inline constexpr double named = 0.05;
-/// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part of
-/// their size there.
+/// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part
+/// of their size there.
 inline constexpr double fallen = 0.5;
-/// Steps with a node held end below the first, relative to the path, or below the second where they shrink no
+/// Steps without damping end below the first, relative to the path, or below the second where they shrink no
 /// more.
-inline constexpr double least_held_step = 1e-14, roundoff_of_held = 1e-10;
+inline constexpr double least_step = 1e-14, roundoff_of_step = 1e-10;
 /// Of the points of the quadrature that counts as exact.
 inline constexpr int exact_points = 20;
 

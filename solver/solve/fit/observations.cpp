@@ -17,7 +17,8 @@ int whole_batches(int rows) { return (rows + batch - 1) / batch * batch; }
 void add_quadratic(const Structure& s, const double* q, const double* v, int stride, double* value) {
   for (const Triplet& m : s.mass)
     for (int i = 0; i < stride; ++i)
-      value[i] += 0.5 * m.value * v[m.row * std::ptrdiff_t(stride) + i] * v[m.column * std::ptrdiff_t(stride) + i];
+      value[i] +=
+          0.5 * m.value * v[m.row * std::ptrdiff_t(stride) + i] * v[m.column * std::ptrdiff_t(stride) + i];
   for (const Triplet& c : s.gyroscopic)
     for (int i = 0; i < stride; ++i)
       value[i] += c.value * v[c.row * std::ptrdiff_t(stride) + i] * q[c.column * std::ptrdiff_t(stride) + i];
@@ -74,7 +75,8 @@ void Observer::sample(const Trajectory& trajectory, AlignedDoubles& q, AlignedDo
   for (int i = 0; i < rows_; ++i) {
     const double* const value = basis_.data() + 2 * functions * i;
     const std::size_t first = element_[i] * functions * n;
-    const double *const nodes = trajectory.nodes.data() + first, *const slopes = trajectory.slopes.data() + first;
+    const double *const nodes = trajectory.nodes.data() + first, *const slopes =
+                                                                     trajectory.slopes.data() + first;
     for (std::size_t a = 0; a < n; ++a) {
       double position = 0, velocity = 0;
       for (std::size_t j = 0; j < functions; ++j) {
@@ -163,8 +165,7 @@ void Observer::gradients(const ObservedFormulas& formulas) {
 
 /// A time t lies at t/T of the path, so that with T its place there changes.
 void Observer::derivatives(const Path& path, const ElementTables& tables, const ObservedFormulas& formulas,
-                           const Step& step, const ProblemChange& change, double* to,
-                           std::ptrdiff_t stride) {
+                           const Step& step, const ProblemChange& change, double* to, std::ptrdiff_t stride) {
   Path moved;
   moved.reset(tables, path.mesh(), path.duration(), path.lengths());
   moved.add(step.nodes, step.inner, 1);

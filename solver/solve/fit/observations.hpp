@@ -68,7 +68,7 @@ class Observer {
 
   const Observations& data_;
   int n_, rows_, stride_, count_;
-  std::vector<double> mesh_;        ///< on which places are known, and the duration
+  std::vector<double> mesh_;  ///< on which places are known, and the duration
   double duration_ = 0;
   std::vector<int> element_;        ///< in which each time lies
   std::vector<double> basis_;       ///< at each time: values, then derivatives

@@ -76,8 +76,7 @@ void ExtremalResponse::add_ends(const ProblemChange& change) {
   const auto move = [&](int k, int local, double by, const std::vector<double>& matrix) {
     if (by == 0) return;
     double* const to = element(k);
-    for (int u = 0; u < m; ++u)
-      to[u * lanes_] += by * matrix[static_cast<std::size_t>(u) * m + local];
+    for (int u = 0; u < m; ++u) to[u * lanes_] += by * matrix[static_cast<std::size_t>(u) * m + local];
     on_duration_ += by * by_duration_[(k / lanes_) * batch + local * lanes_ + k % lanes_];
   };
   if (columns_)
@@ -99,8 +98,7 @@ void ExtremalResponse::add_ends(const ProblemChange& change) {
 double ExtremalResponse::closing_value(const ProblemChange& change, const ClosingEquation& closing) const {
   if (closing.row.empty()) return change.energy;
   const std::size_t n = n_;
-  double value =
-      change.where ? change.where({path_->node(0), n}, {path_->node(path_->elements()), n}) : 0;
+  double value = change.where ? change.where({path_->node(0), n}, {path_->node(path_->elements()), n}) : 0;
   for (std::size_t e = 0; e < 2 * n; ++e) value += closing.row[e] * change.ends[e];
   return value;
 }

@@ -48,9 +48,9 @@ class ExtremalResponse {
   const Path* path_ = nullptr;
   const ElementTables* tables_ = nullptr;
   int n_ = 0, lanes_ = simd_lanes();
-  std::vector<Mixed> mixed_;  ///< of each active parameter
-  bool columns_ = false;      ///< some change moves the ends or a fixed duration
-  DiscreteAction plain_;      ///< T is an unknown
+  std::vector<Mixed> mixed_;          ///< of each active parameter
+  bool columns_ = false;              ///< some change moves the ends or a fixed duration
+  DiscreteAction plain_;              ///< T is an unknown
   std::vector<double> first_, last_;  ///< Hessian of the first and the last element, m × m
   AlignedDoubles by_duration_;        ///< ∂²S/∂x∂T, laid out as a load
   double corner_ = 0;                 ///< ∂²S/∂T²
