@@ -122,8 +122,8 @@ class DiscreteAction {
   /// The same, and ∂²S_h/∂T∂p.
   double parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed, double& by_duration);
 
-  /// In place of the gradient, a load over the local unknowns of the elements, laid out as `mixed`, and one on
-  /// T: condensed into `nodes` with the factors there are. Momenta that are given do not add to it. The
+  /// In place of the gradient, a load over the local unknowns of the elements, laid out as `mixed`, and one
+  /// on T: condensed into `nodes` with the factors there are. Momenta that are given do not add to it. The
   /// gradient is to be evaluated anew after it.
   void put_load(const Path& path, const AlignedDoubles& load, double on_duration);
 

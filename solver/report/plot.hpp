@@ -43,7 +43,7 @@ std::string plot_image(const std::string& path, const Picture& picture);
 /// The lines of a result that has a spectrum; throws in the same way, and std::invalid_argument without any.
 std::string spectrum_image(const std::string& path, const Result& result);
 
-/// Observations and residuals of a result that has a fit, with curves by samples of it; throws in the same way.
+/// Observations and residuals of a result that has a fit, with curves by samples of it; throws likewise.
 std::string fit_image(const std::string& path, const Result& result, const Samples& samples,
                       const Annotation& annotation);
 

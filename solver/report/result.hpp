@@ -34,7 +34,7 @@ struct Fitted {
   bool scaled = false;                             ///< by chi squared, as no sigma is given
   double chi_squared = 0;
   int freedom = 0;  ///< values observed less unknowns
-  /// Column by column: what was observed, with what is left; one row a time, nothing where it was not observed.
+  /// Column by column, one value a time: what was observed and what is left; nothing where it was not.
   std::vector<double> t;
   struct Column {
     std::string name;

@@ -154,7 +154,7 @@ constexpr KeyRecord keys[] = {
      "are the first guess.",
      R"(parameters = ["l", "g"])"},
     {"fit", "loss", Kind::text, R"("squared")",
-     R"(ρ of the sum Σ ρ((observed − computed)²/σ²) that is least: `"squared"`, or `"huber"` or `"cauchy"`, which )"
+     R"(ρ of the least sum Σ ρ((observed − computed)²/σ²): `"squared"`; `"huber"` or `"cauchy"`, which )"
      "count outliers less.",
      R"(loss = "huber")"},
 

@@ -34,8 +34,8 @@ struct Study {
   std::vector<Assignment> forces;   ///< as written; none: the problem has none
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
-  std::shared_ptr<const FitRequest> fit;  ///< null: the scene asks for none. run() and follow() leave it aside
-  double seconds_read = 0;  ///< from opening the file until this was ready
+  std::shared_ptr<const FitRequest> fit;  ///< or null. run() and follow() leave it aside
+  double seconds_read = 0;                ///< from opening the file until this was ready
 };
 
 /// What a scene is read for: [continuation] is left aside where one solution is wanted.

@@ -51,6 +51,11 @@ const std::string forced_oscillator =
 
 class Fits : public Scenes {
  protected:
+  void SetUp() override {
+    Scenes::SetUp();
+    if (!can_fit()) GTEST_SKIP() << "this build has no Ceres";
+  }
+
   /// q and q' of the motion of a scene at equal times, row by row: t, q, v.
   std::vector<std::vector<double>> samples(const std::string& scene, int count) {
     const Study made = study(scene);
@@ -240,7 +245,7 @@ TEST_F(Fits, FindDampingFromAForcedResponse) {
 }
 
 TEST_F(Fits, DerivativesAreThoseOfTheExtremals) {
-  write("data.csv", "t,x,x',far\n0.3,0.1,1,0\n0.9,0.5,0.2,1\n1.7,0.4,,2\n2,0.2,-0.1,\n");
+  write("data.csv", "t,x,x',far\n0.3,0.1,1,0\n0.9,0.5,0.2,1\n1.2,0.4,,2\n1.5,0.2,-0.1,\n");
   const std::string fit = "[fit]\ndata = \"data.csv\"\nobserve = { far = \"b*x^2 + w*x'*t\" }\n";
   const std::string system =
       "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { a = 0.7, b = 1.2, w = \"2*a^2\" }\n"

@@ -52,7 +52,7 @@ class Fit {
       const Trajectory fitted = observed_part();
       result_.solution = solve(guess_of(fitted), fitted.duration());
       if (!result_.solution.converged()) return std::move(result_);
-      if (agrees(fitted)) return finished(before);
+      if (agrees(fitted)) return covers_data() ? finished(before) : std::move(result_);
     }
     fail(fmt::format("the elements still move the fit by more than the tolerance after {} choices of them",
                      most_rounds));
@@ -229,6 +229,17 @@ class Fit {
         }
       }
     return apart <= options_.tolerance * (range > 0 ? range : most) + result_.solution.error_estimate;
+  }
+
+  /// A free duration may have become shorter than the data.
+  bool covers_data() {
+    const double latest = *std::ranges::max_element(task_.data.t), end = result_.solution.duration();
+    if (latest <= (1 + roundoff_of_times) * end) return true;
+    fail(
+        fmt::format("the trajectory that fits ends at t = {:.9g}, before the last observation at t = {:.9g}; "
+                    "leave later observations out, or give a longer duration in [guess]",
+                    end, latest));
+    return false;
   }
 
   FitResult finished(int before) {

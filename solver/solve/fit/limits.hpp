@@ -22,6 +22,8 @@ inline constexpr double fallen = 0.5;
 /// Steps without damping end below the first, relative to the path, or below the second where they shrink no
 /// more.
 inline constexpr double least_step = 1e-14, roundoff_of_step = 1e-10;
+/// Of times of observations, as they are written, relative to the duration.
+inline constexpr double roundoff_of_times = 1e-9;
 /// Of the points of the quadrature that counts as exact.
 inline constexpr int exact_points = 20;
 
