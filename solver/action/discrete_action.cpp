@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "machine/simd.hpp"
 #include "machine/workers.hpp"
@@ -291,23 +292,49 @@ void DiscreteAction::element_hessian(const Path& path, int k, std::span<double> 
 }
 
 /// M, C and a do not depend on active parameters: what does is a Lagrangian of its own, ∂R/∂p.
-double DiscreteAction::parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed) {
+double DiscreteAction::parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed,
+                                       double& by_duration) {
   ElementShape shape = tables_->shape();
   shape.mass_count = shape.gyroscopic_count = shape.linear_count = 0;
   mixed.resize(batches_ * sizes_.vector);
   const int count = static_cast<int>(sizes_.points);
   Buffers& buffers = buffers_.front();
   double sum = 0;
+  by_duration = 0;
   for (int b = 0; b < batches_; ++b) {
     const ElementBatch elements = batch(path, b, buffers);
     assembly_->expand(shape, elements);
     lagrangian_->sensitivity({count, count, elements.q, elements.v, elements.t}, parameter,
                              buffers.rows.data(), buffers.scratch);
-    double* const action = sums(b, of_action);
-    assembly_->gradient(shape, elements, action, mixed.data() + b * sizes_.vector, nullptr);
-    for (int lane = 0; lane < std::min(lanes_, elements_ - b * lanes_); ++lane) sum += action[lane];
+    double *const action = sums(b, of_action), *const slope = sums(b, of_slope);
+    assembly_->gradient(shape, elements, action, mixed.data() + b * sizes_.vector, slope);
+    for (int lane = 0; lane < std::min(lanes_, elements_ - b * lanes_); ++lane) {
+      sum += action[lane];
+      by_duration += slope[lane] * path.lengths()[b * lanes_ + lane];
+    }
   }
   return sum;
+}
+
+void DiscreteAction::put_load(const Path& path, const AlignedDoubles& load, double on_duration) {
+  clear_sums();
+  const Fronts& fronts = condensation_->fronts;
+  const auto take = [&](Buffers& buffers, int b) {
+    std::copy_n(load.data() + b * sizes_.vector, sizes_.vector, reduced(b));
+    std::fill_n(sums(b, of_action), lanes_, 0.0);
+    std::fill_n(sums(b, of_slope), lanes_, 0.0);
+    keep_gradient(b, reduced(b));
+    elimination_->reduce(fronts.data(), fronts.count(), matrix(b), inverses_.data() + b * sizes_.vector,
+                         reduced(b), buffers.work.data());
+  };
+  for_batches(take, [&](int b) {
+    gather(path, b);
+    gather_gradient(b);
+  });
+  slope_duration_ = on_duration;
+  const std::span<const double> given = std::exchange(momenta_, {});
+  finish_sums();
+  momenta_ = given;
 }
 
 }  // namespace extremal

@@ -115,7 +115,17 @@ class DiscreteAction {
 
   /// ∂S_h/∂p of an active parameter, returned, and ∂²S_h/∂x∂p, laid out as Path::x: the m local unknowns of
   /// each element, its share of the nodes at q_a and q_b.
-  double parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed);
+  double parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed) {
+    double by_duration = 0;
+    return parameter_slope(path, parameter, mixed, by_duration);
+  }
+  /// The same, and ∂²S_h/∂T∂p.
+  double parameter_slope(const Path& path, int parameter, AlignedDoubles& mixed, double& by_duration);
+
+  /// In place of the gradient, a load over the local unknowns of the elements, laid out as `mixed`, and one
+  /// on T: condensed into `nodes` with the factors there are. Momenta that are given do not add to it. The
+  /// gradient is to be evaluated anew after it.
+  void put_load(const Path& path, const AlignedDoubles& load, double on_duration);
 
   /// Entry (i, j), i >= j, of the Hessian of element k in (q_a, q_b), 2n × 2n, as evaluate() condensed it.
   double condensed(int k, int i, int j) const {

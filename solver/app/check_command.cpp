@@ -5,6 +5,7 @@
 #include "app/lines.hpp"
 #include "app/terminal.hpp"
 #include "study/annotation.hpp"
+#include "study/fitting.hpp"
 #include "study/inspection.hpp"
 
 namespace extremal::app {
@@ -57,6 +58,19 @@ void print_ends(const Problem& problem) {
   if (problem.periodic || problem.initial || problem.ends.free == 0) return;
   line("not fixed",
        fmt::format("at the start {}; at the end {}", open_text(problem, false), open_text(problem, true)));
+}
+
+void print_fit(const Study& study) {
+  if (!study.fit) return;
+  const FitTask& task = study.fit->task;
+  std::vector<std::string> unknowns, columns;
+  for (const FitUnknown& unknown : task.unknowns)
+    unknowns.push_back(fmt::format("{} (from {:.6g})", unknown.name, unknown.start));
+  for (const ObservedColumn& column : task.data.columns)
+    columns.push_back(
+        fmt::format("{}: {}{}", column.name, column.values.size(), column.turn > 0 ? " of an angle" : ""));
+  line("fit", fmt::format("to be found: {}", fmt::join(unknowns, ", ")));
+  line("", fmt::format("values observed of {}; loss: {}", fmt::join(columns, ", "), name(task.loss)));
 }
 
 std::string duration_text(const Duration& duration) {
@@ -133,6 +147,7 @@ int check(const CheckArguments& arguments) {
   lines("forces", force_texts(study));
   print_ends(study.problem);
   line("duration", duration_text(study.problem.duration));
+  print_fit(study);
   print_structure(found);
   line("derivatives", fmt::format("against differences of sixth order at {} points, by {} of {} variables",
                                   derivatives.points, derivatives.columns, 2 * study.problem.coordinates()));

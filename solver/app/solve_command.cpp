@@ -13,12 +13,14 @@
 #include "report/sampling.hpp"
 #include "report/text.hpp"
 #include "study/annotation.hpp"
+#include "study/fitting.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
 namespace {
 
 constexpr int csv_samples = 201;  ///< of a CSV and an ephemeris
+constexpr int fit_samples = 241;
 
 std::string progress_text(const Iteration& i) {
   return fmt::format("{} elements of degree {}: residual {:.1e}, step {:.1e}", i.elements, i.degree,
@@ -52,6 +54,40 @@ Result search_result(Result result, const std::vector<Solution>& solutions, cons
   result.samples = result.solutions->front().samples;
   result.spectrum = result.solutions->front().spectrum;
   return result;
+}
+
+std::string fit_progress_text(const FitStep& step) {
+  return fmt::format("fit, {} elements of degree {}: iteration {}, chi squared {:.6g}", step.elements,
+                     step.degree, step.iteration, step.chi_squared);
+}
+
+/// What a fit found, for its result.
+Fitted fitted_of(const FitRequest& request, const FitResult& fit) {
+  const Observations& data = request.task.data;
+  Fitted fitted{.parameters = request.parameters,
+                .open_ends = request.open_ends,
+                .values = fit.values,
+                .covariance = {},
+                .scaled = fit.scaled,
+                .chi_squared = fit.chi_squared,
+                .freedom = data.count() - static_cast<int>(fit.values.size()),
+                .t = data.t,
+                .columns = {}};
+  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i)
+    fitted.covariance.emplace_back(fit.covariance.row(i).begin(), fit.covariance.row(i).end());
+  for (std::size_t c = 0; c < data.columns.size(); ++c) {
+    const ObservedColumn& column = data.columns[c];
+    Fitted::Column& to = fitted.columns.emplace_back();
+    to.name = column.name;
+    for (auto* part : {&to.observed, &to.residual, &to.sigma}) part->resize(data.t.size());
+    for (std::size_t k = 0; k < column.values.size(); ++k) {
+      const ObservedValue& value = column.values[k];
+      to.observed[value.row] = value.value;
+      to.residual[value.row] = fit.residuals[c][k];
+      if (data.sigmas) to.sigma[value.row] = value.sigma;
+    }
+  }
+  return fitted;
 }
 
 Samples sampled(const Study& study, const Result& result, int count) {
@@ -96,7 +132,9 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
   if (converged && !a.oem.empty()) files.push_back({a.oem, ephemeris_of(study, result)});
   if (converged && !a.plot.empty())
-    files.push_back({a.plot, plot_image(a.plot, picture_of(study.problem, result, annotation))});
+    files.push_back({a.plot, result.fit
+                                 ? fit_image(a.plot, result, sampled(study, result, fit_samples), annotation)
+                                 : plot_image(a.plot, picture_of(study.problem, result, annotation))});
   Outputs::write(std::move(files));
 }
 
@@ -117,7 +155,11 @@ int solve(const SolveArguments& a) {
   {
     const ProgressLine progress(!a.quiet && a.repeat == 1);
     study.options.progress = progress.callback<Iteration>(progress_text);
-    if (study.solutions == 0)
+    if (study.fit) {
+      FitResult fit = run_fit(study, a.repeat, progress.callback<FitStep>(fit_progress_text));
+      result.solution = std::move(fit.solution);
+      if (result.solution.converged()) result.fit = fitted_of(*study.fit, fit);
+    } else if (study.solutions == 0)
       result.solution = run(study, a.repeat);
     else
       result = search_result(std::move(result), run_all(study, a.repeat), a, at, study);

@@ -8,6 +8,7 @@
 #include "report/json.hpp"
 #include "report/plot.hpp"
 #include "report/text.hpp"
+#include "study/fitting.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
@@ -18,7 +19,7 @@ int spectrum(const CompareArguments& a) {
   outputs.keep(study.files);
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
   result.natural_conditions = natural_conditions(study.problem);
-  result.solution = run(study);
+  result.solution = study.fit ? run_fit(study).solution : run(study);
   const bool converged = result.solution.converged();
   if (converged)
     result.spectrum = spectrum_of(study, study.spectrum.value_or(SpectrumRequest{}), result.solution);

@@ -41,6 +41,7 @@ class Fields {
     append(object_, "momentum_end", momentum("momentum_end", result.solution.momentum_end));
     multipliers();
     if (converged_ && result.spectrum) spectrum(*result.spectrum);
+    if (converged_ && result.fit) fit(*result.fit);
     counts();
   }
 
@@ -129,6 +130,36 @@ class Fields {
     append(object_, "spectrum_residual", by_name("spectrum_residual", left));
     append(object_, "drift", by_name("drift", spectrum.motion.drift));
     if (!spectrum.flat_norm.empty()) append(object_, "flat_norm", by_name("flat_norm", spectrum.flat_norm));
+  }
+
+  void fit(const Fitted& fit) {
+    const auto values = [&](const std::vector<std::string>& names, std::size_t first) {
+      Json object = Json::object();
+      for (std::size_t k = 0; k < names.size(); ++k)
+        append(object, names[k], number("parameters." + names[k], fit.values.at(first + k)));
+      return object;
+    };
+    append(object_, "parameters", values(fit.parameters, 0));
+    append(object_, "open_ends", values(fit.open_ends, fit.parameters.size()));
+    Json rows = Json::array();
+    for (const std::vector<double>& row : fit.covariance) {
+      Json entries = Json::array();
+      for (const double x : row) entries.push_back(number("covariance", x));
+      rows.push_back(std::move(entries));
+    }
+    append(object_, "covariance", std::move(rows));
+    append(object_, "covariance_scaled", fit.scaled);
+    append(object_, "chi_squared", number("chi_squared", fit.chi_squared));
+    append(object_, "degrees_of_freedom", fit.freedom);
+    Json residuals = Json::object();
+    append(residuals, "t", Json(fit.t));
+    for (const Fitted::Column& column : fit.columns) {
+      Json left = Json::array();
+      for (const std::optional<double>& x : column.residual)
+        left.push_back(x ? number("residuals." + column.name, *x) : Json(nullptr));
+      append(residuals, column.name, std::move(left));
+    }
+    append(object_, "residuals", std::move(residuals));
   }
 
   /// The ends of elements of a scheme that was asked for.

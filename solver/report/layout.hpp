@@ -52,6 +52,10 @@ Figure layout(const BranchPicture& picture);
 /// std::invalid_argument without any line.
 Figure spectrum_layout(const Result& result);
 
+/// Of each kind of observation, the first ones: what was observed and computed, and below what is left, in σ
+/// where it is given. Throws std::invalid_argument without a fit.
+Figure fit_layout(const Result& result, const Samples& samples, const Annotation& annotation);
+
 /// Pixels left of a box that its numbers need.
 double number_width(const Axis& axis);
 

@@ -43,6 +43,10 @@ std::string plot_image(const std::string& path, const Picture& picture);
 /// The lines of a result that has a spectrum; throws in the same way, and std::invalid_argument without any.
 std::string spectrum_image(const std::string& path, const Result& result);
 
+/// Observations and residuals of a result that has a fit, with curves by samples of it; throws likewise.
+std::string fit_image(const std::string& path, const Result& result, const Samples& samples,
+                      const Annotation& annotation);
+
 struct Figure;
 /// The bytes of a figure's file; throws in the same way.
 std::string plot_image(const std::string& path, const Figure& figure);

@@ -26,6 +26,23 @@ struct Samples {
   std::size_t coordinates() const { return q.size(); }
 };
 
+/// What a fit found beside its trajectory.
+struct Fitted {
+  std::vector<std::string> parameters, open_ends;  ///< names
+  std::vector<double> values;                      ///< of both, parameters first
+  std::vector<std::vector<double>> covariance;     ///< rows, in the same order
+  bool scaled = false;                             ///< by chi squared, as no sigma is given
+  double chi_squared = 0;
+  int freedom = 0;  ///< values observed less unknowns
+  /// Column by column, one value a time: what was observed and what is left; nothing where it was not.
+  std::vector<double> t;
+  struct Column {
+    std::string name;
+    std::vector<std::optional<double>> observed, residual, sigma;
+  };
+  std::vector<Column> columns;
+};
+
 struct Result {
   std::string title;               ///< may be empty
   std::vector<std::string> names;  ///< of the coordinates: "x", "x[1]"
@@ -35,6 +52,7 @@ struct Result {
   /// Those of a search, by action; `solution` is the first of them, or tells why there is none.
   std::optional<std::vector<Result>> solutions = {};
   std::optional<SolutionSpectrum> spectrum = {};  ///< where it was asked for
+  std::optional<Fitted> fit = {};                 ///< likewise
   int natural_conditions = 0;  ///< at the ends, of a problem that is not periodic
 };
 

@@ -167,6 +167,21 @@ std::string spectrum_text(const Result& result) {
   return fmt::format("\n{}{}", plain_text(table), rest.text());
 }
 
+/// A row for each unknown.
+std::string fit_text(const Fitted& fit) {
+  using Align = Table::Align;
+  Table table{{{"fitted", Align::left}, {"value"}, {"standard deviation"}}, {}};
+  std::vector<std::string> names = fit.parameters;
+  names.insert(names.end(), fit.open_ends.begin(), fit.open_ends.end());
+  for (std::size_t k = 0; k < names.size(); ++k)
+    table.rows.push_back({names[k], fmt::format("{:.12g}", fit.values[k]),
+                          fmt::format("{:.3g}", std::sqrt(fit.covariance[k][k]))});
+  Lines rest;
+  rest.add("chi squared", fmt::format("{:.9g}, degrees of freedom: {}{}", fit.chi_squared, fit.freedom,
+                                      fit.scaled ? "; deviations by the scatter of the data" : ""));
+  return fmt::format("\n{}{}", plain_text(table), rest.text());
+}
+
 }  // namespace
 
 std::string summary(const Result& result) {
@@ -199,6 +214,7 @@ std::string summary(const Result& result) {
                         duration_text(solution.seconds_solve), duration_text(solution.seconds_analyse)));
   std::string text = lines.text();
   if (result.solutions && result.solutions->size() > 1) text += solutions_text(result);
+  if (result.fit && solution.converged()) text += fit_text(*result.fit);
   if (result.spectrum && solution.converged()) text += spectrum_text(result);
   return text;
 }

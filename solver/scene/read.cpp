@@ -145,6 +145,22 @@ UnitsTable read_units_table(const Document& document, const toml::table& table) 
           text(document, table, "epoch")};
 }
 
+FitTable read_fit_table(const Document& document, const toml::table& table) {
+  FitTable fit;
+  fit.at = document.at(table);
+  const auto data = text(document, table, "data");
+  if (!data)
+    throw SceneError(fit.at,
+                     "[fit] has no 'data'; name a CSV file with a column t and columns of observations");
+  fit.data = *data;
+  if (const toml::table* observe = table["observe"].as_table())
+    for (const auto& [key, value] : document.entries(*observe))
+      fit.observe.push_back({std::string(key->str()), document.at(key->source()), text(document, *value)});
+  fit.parameters = texts(document, table, "parameters");
+  fit.loss = text(document, table, "loss");
+  return fit;
+}
+
 ContinuationTable read_continuation_table(const Document& document, const toml::table& table) {
   const auto parameter = text(document, table, "parameter");
   const auto to = number(document, table, "to");

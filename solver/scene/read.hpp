@@ -14,6 +14,7 @@ GuessTable read_guess_table(const Document& document, const toml::table& table);
 SolveTable read_solve_table(const Document& document, const toml::table& table);
 SearchTable read_search_table(const Document& document, const toml::table& table);
 UnitsTable read_units_table(const Document& document, const toml::table& table);
+FitTable read_fit_table(const Document& document, const toml::table& table);
 SpectrumTable read_spectrum_table(const Document& document, const toml::table& table);
 ContinuationTable read_continuation_table(const Document& document, const toml::table& table);
 

@@ -178,6 +178,7 @@ Scene read_scene(const std::shared_ptr<const Source>& text, const std::vector<st
   if (const auto* continuation = table(document, "continuation", false))
     scene.continuation = read_continuation_table(document, *continuation);
   if (const auto* units = table(document, "units", false)) scene.units = read_units_table(document, *units);
+  if (const auto* fit = table(document, "fit", false)) scene.fit = read_fit_table(document, *fit);
   check_system(scene.system);
   check_duration(scene);
   check_guess(scene);

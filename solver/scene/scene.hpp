@@ -110,6 +110,15 @@ struct ContinuationTable {
   bool switching = false;        ///< also follow the branches that bifurcate
 };
 
+/// What observations are to determine.
+struct FitTable {
+  Location at;
+  Text data;
+  std::vector<Definition> observe;
+  std::vector<Text> parameters;
+  std::optional<Text> loss;  ///< "squared", "huber", "cauchy"
+};
+
 struct Scene {
   std::string path;
   std::vector<std::string> files;  ///< that were read: the scene, and the system file that it uses
@@ -122,6 +131,7 @@ struct Scene {
   std::optional<ContinuationTable> continuation;
   std::optional<SpectrumTable> spectrum;
   std::optional<UnitsTable> units;
+  std::optional<FitTable> fit;
 };
 
 /// The text of a scene file. Throws as read_source() does; where the file is missing, a scene of that name in

@@ -22,8 +22,9 @@ constexpr KeyRecord keys[] = {
      "spectrum.lines = 6"},
     {"", "units", Kind::table, "none", "Lengths and times in space, for an ephemeris (`--oem`).",
      "units.length = 384400.0"},
+    {"", "fit", Kind::table, "none", "Parameters and open ends by observations, for `extremal solve`.",
+     R"(fit = { data = "observed.csv", parameters = ["mu"] })"},
     {"", "path", Kind::table, "", "", "", false, false},
-    {"", "fit", Kind::table, "", "", "", false, false},
 
     {"system", "use", Kind::text, "none",
      "Name of a system file. The parameters and definitions of the scene add to those of the file or replace "
@@ -143,6 +144,27 @@ constexpr KeyRecord keys[] = {
     {"units", "centre", Kind::text, "required", "Name of the origin.", R"(centre = "EARTH")"},
     {"units", "epoch", Kind::text, "required", "Date of t = 0 in TDB, from 1700 to 2200.",
      R"(epoch = "2025-01-31T12:00:00")"},
+    {"fit", "data", Kind::text, "required",
+     "CSV with a column `t`, times from 0 to the duration, and columns of observations: named like "
+     "coordinates, "
+     "velocities (`x'`) or formulas of `observe`. A column `sigma x` has the standard deviations of column "
+     "`x`; "
+     "without it they are 1. An empty cell was not observed.",
+     R"(data = "observed.csv")"},
+    {"fit", "observe", Kind::text, "none",
+     "Observations as formulas of coordinates, velocities, `t`, parameters and definitions. One that is "
+     "`atan2`, "
+     "or a number times it, is an angle: whole turns do not count.",
+     "observe = { angle = \"atan2(y, x)\" }", true},
+    {"fit", "parameters", Kind::texts, "none",
+     "Parameters to be found, beside the end coordinates that `[boundary]` leaves open. Their values in the "
+     "scene "
+     "are the first guess.",
+     R"(parameters = ["l", "g"])"},
+    {"fit", "loss", Kind::text, R"("squared")",
+     R"(ρ of the least sum Σ ρ((observed − computed)²/σ²): `"squared"`; `"huber"` or `"cauchy"`, which )"
+     "count outliers less.",
+     R"(loss = "huber")"},
 
     {"system file", "about", Kind::note, "none",
      "Texts about the system. The first is shown by `extremal list`; pictures use `axes` and `centres`.",
@@ -163,6 +185,8 @@ constexpr Exclusion pairs[] = {
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration"},
     {"system.force", "system.curvature", "with forces there are no windows to certify"},
     {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
+    {"fit.data", "search.solutions", "a fit follows one extremal"},
+    {"fit.data", "solve.steps", "a fit keeps the times of the nodes"},
     {"guess.file", "guess.state", "a guess has one source"},
     {"guess.file", "guess.*", "a guess has one source"},
     {"guess.state", "guess.*", "a guess has one source"},

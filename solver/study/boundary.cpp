@@ -93,8 +93,10 @@ void fix_end(const EndEntries& entries, bool at_end, const System& system, Place
       placed.relation.fix(coordinate, at_end, evaluate(*entry.value, system, entry.index));
       placed.rows.push_back(entry.value->at);
     }
-    if (entry.momentum)
-      placed.relation.give_momentum(coordinate, at_end, evaluate(*entry.momentum, system, entry.index));
+    if (!entry.momentum) continue;
+    placed.relation.give_momentum(coordinate, at_end, evaluate(*entry.momentum, system, entry.index));
+    placed.momentum_given.resize(2 * entries.size());
+    placed.momentum_given[at_end ? entries.size() + k : k] = true;
   }
 }
 

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
+#include "study/csv_file.hpp"
 #include "study/guess.hpp"
 
 namespace extremal {
@@ -14,44 +13,13 @@ namespace {
 using Json = nlohmann::json;
 using SourcePointer = std::shared_ptr<const Source>;
 
-std::string_view trimmed(std::string_view s) {
-  const auto begin = s.find_first_not_of(" \t\r\"");
-  if (begin == std::string_view::npos) return {};
-  return s.substr(begin, s.find_last_not_of(" \t\r\"") - begin + 1);
-}
-
-/// A cell of a CSV and where it stands.
-struct Cell {
-  std::string_view text;
-  Location at;
-};
-
-std::vector<Cell> cells_of(std::string_view line, const SourcePointer& source, int number) {
-  std::vector<Cell> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    cells.push_back(
-        {trimmed(line.substr(begin, end - begin)), {source, number, static_cast<int>(begin) + 1}});
-    begin = end + 1;
-  }
-  return cells;
-}
-
-double number_in(const Cell& cell) {
-  double value = 0;
-  const char* end = cell.text.data() + cell.text.size();
-  const auto [stop, error] = std::from_chars(cell.text.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value))
-    throw SceneError(cell.at, fmt::format("'{}' is not a finite number", cell.text));
-  return value;
-}
-
 /// Of each name the column that has it.
-std::vector<std::size_t> columns_of(const std::vector<Cell>& header, const std::vector<std::string>& names) {
+std::vector<std::size_t> columns_of(const std::vector<CsvCell>& header,
+                                    const std::vector<std::string>& names) {
   std::vector<std::size_t> columns;
   for (const std::string& name : names) {
     const auto found =
-        std::find_if(header.begin(), header.end(), [&](const Cell& c) { return c.text == name; });
+        std::find_if(header.begin(), header.end(), [&](const CsvCell& c) { return c.text == name; });
     if (found == header.end())
       throw SceneError(header.front().at, fmt::format("the file has no column '{}'", name));
     columns.push_back(found - header.begin());
@@ -60,26 +28,13 @@ std::vector<std::size_t> columns_of(const std::vector<Cell>& header, const std::
 }
 
 SampledFile read_csv(const SourcePointer& source, const std::vector<std::string>& names) {
+  const CsvFile file = read_csv(source);
   SampledFile samples;
-  std::vector<std::size_t> columns;
-  std::size_t width = 0;
-  std::string_view rest = source->text;
-  for (int number = 1; !rest.empty(); ++number) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
-    const std::vector<Cell> cells = cells_of(line, source, number);
-    if (columns.empty()) {
-      columns = columns_of(cells, names);
-      width = cells.size();
-      continue;
-    }
-    if (cells.size() != width)
-      throw SceneError({source, number, 1},
-                       fmt::format("found {} values for {} columns", cells.size(), width));
-    samples.t.push_back(number_in(cells[columns[0]]));
-    for (std::size_t a = 1; a < columns.size(); ++a) samples.q.push_back(number_in(cells[columns[a]]));
+  if (file.header.empty()) return samples;
+  const std::vector<std::size_t> columns = columns_of(file.header, names);
+  for (const std::vector<CsvCell>& row : file.rows) {
+    samples.t.push_back(number_in(row[columns[0]]));
+    for (std::size_t a = 1; a < columns.size(); ++a) samples.q.push_back(number_in(row[columns[a]]));
   }
   return samples;
 }

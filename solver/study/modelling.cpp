@@ -31,22 +31,6 @@ std::map<std::string, Text> places_of(const SystemTable& table) {
   return places;
 }
 
-SystemText text_of(const SystemTable& table) {
-  SystemText text;
-  for (const Text& c : table.coordinates) text.coordinates.push_back(c.value);
-  for (const Definition& d : table.definitions) text.definitions[d.name] = d.formula.value;
-  std::map<std::string, ParameterEntry> entries;
-  for (const Assignment& p : table.parameters) {
-    ParameterEntry& entry = entries[p.name];
-    entry.list = p.list;
-    for (const Quantity& q : p.values) entry.values.push_back(q.value);
-  }
-  text.parameters = evaluate_parameters(entries, text.definitions);
-  if (table.lagrangian) text.lagrangian = table.lagrangian->value;
-  if (table.hamiltonian) text.hamiltonian = table.hamiltonian->value;
-  return text;
-}
-
 std::string formula_of(const Quantity& quantity) {
   return quantity.formula() ? std::get<std::string>(quantity.value)
                             : fmt::format("{}", std::get<double>(quantity.value));
@@ -78,15 +62,32 @@ std::vector<ForceText> forces_of(const SystemTable& table, const System& system)
 
 }  // namespace
 
+SystemText system_text(const SystemTable& table) {
+  SystemText text;
+  for (const Text& c : table.coordinates) text.coordinates.push_back(c.value);
+  for (const Definition& d : table.definitions) text.definitions[d.name] = d.formula.value;
+  std::map<std::string, ParameterEntry> entries;
+  for (const Assignment& p : table.parameters) {
+    ParameterEntry& entry = entries[p.name];
+    entry.list = p.list;
+    for (const Quantity& q : p.values) entry.values.push_back(q.value);
+  }
+  text.parameters = evaluate_parameters(entries, text.definitions);
+  if (table.lagrangian) text.lagrangian = table.lagrangian->value;
+  if (table.hamiltonian) text.hamiltonian = table.hamiltonian->value;
+  return text;
+}
+
 SceneError at_its_place(const SystemTable& table, const FormulaError& e) {
   const std::map<std::string, Text> places = places_of(table);
   const auto place = places.find(e.where);
   return {place == places.end() ? table.at : position(place->second, e.offset), e.what()};
 }
 
-System make_system(const SystemTable& table) {
+System make_system(const SystemTable& table, const std::vector<std::string>& active) {
   try {
-    const SystemText text = text_of(table);
+    SystemText text = system_text(table);
+    text.active = active;
     System system = compile(text);
     if (!table.force.empty()) system.copies = compile_forces(text, forces_of(table, system));
     return system;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "scene/scene.hpp"
 #include "system/formula.hpp"
 
@@ -7,8 +10,12 @@
 
 namespace extremal {
 
-/// Throws SceneError at the place in the scene or system file where a formula is wrong.
-System make_system(const SystemTable& table);
+/// The texts of a system, with the values of its parameters. Throws FormulaError.
+SystemText system_text(const SystemTable& table);
+
+/// Throws SceneError at the place in the scene or system file where a formula is wrong. `active`: parameters
+/// that derivatives are asked for.
+System make_system(const SystemTable& table, const std::vector<std::string>& active = {});
 
 /// An error of a formula of the system, at its place.
 SceneError at_its_place(const SystemTable& table, const FormulaError& error);

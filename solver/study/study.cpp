@@ -10,6 +10,7 @@
 #include "scene/scene.hpp"
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
+#include "study/fitting.hpp"
 #include "study/guess.hpp"
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
@@ -134,6 +135,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.guess.file) study.files.push_back(beside(scene.path, scene.guess.file->value));
   if (scene.spectrum && scene.spectrum->against)
     study.files.push_back(beside(scene.path, scene.spectrum->against->value));
+  if (scene.fit) study.files.push_back(beside(scene.path, scene.fit->data.value));
   study.title = scene.title;
   study.system = make_system(scene.system);
   check_parameters_used(scene);
@@ -149,6 +151,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   check_memory(scene, study);
   if (scene.units) study.units = read_units(*scene.units);
   if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
+  if (scene.fit) study.fit = read_fit(scene, study);
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;

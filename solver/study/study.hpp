@@ -19,6 +19,8 @@
 
 namespace extremal {
 
+struct FitRequest;
+
 /// A scene made ready: tape, boundary relation and sampled guess stand.
 struct Study {
   std::string scene;               ///< its path, as given
@@ -34,7 +36,8 @@ struct Study {
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
   std::optional<Units> units;
-  double seconds_read = 0;  ///< from opening the file until this was ready
+  std::shared_ptr<const FitRequest> fit;  ///< or null. run() and follow() leave it aside
+  double seconds_read = 0;                ///< from opening the file until this was ready
 };
 
 /// What a scene is read for: [continuation] is left aside where one solution is wanted.

@@ -17,6 +17,7 @@ class NamesUsed {
     add(scene.system);
     add(scene.boundary);
     add(scene.guess);
+    if (scene.fit) add(scene.fit->observe);
     if (scene.continuation) names_.insert(scene.continuation->parameter.value);
   }
   bool contains(const std::string& name) const { return names_.contains(name); }

@@ -74,7 +74,7 @@ std::vector<Case> cases() {
       {"Brackets", "x = " + std::string(1'000'000, '['), "scene.toml:1:"},
       {"HugeArray", with("\"q\"", "\"q[1000000000000]\""), "scene.toml:3:"},
       {"HugeSum", with("cos(q)", "sum(i, 1, 1000000000000, q*i)"), "scene.toml:4:"},
-      {"FeatureOfTheFuture", pendulum + "[fit]\nto = 5\n", "scene.toml:9:2: [fit] is not available yet\n"},
+      {"FeatureOfTheFuture", pendulum + "[path]\nto = 5\n", "scene.toml:9:2: [path] is not available yet\n"},
       {"NoSolutionsWanted", pendulum + "[search]\nsolutions = 0\n",
        "scene.toml:10:13: solutions = 0; need 1 to 1000\n"},
   };

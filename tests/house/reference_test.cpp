@@ -7,6 +7,7 @@
 #include "house/pages.hpp"
 #include "scene/document.hpp"
 #include "scene/schema.hpp"
+#include "solve/external/curve_fit.hpp"
 #include "solve/solve.hpp"
 #include "study/continued.hpp"
 #include "system/formula_names.hpp"
@@ -32,6 +33,7 @@ const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
                                          {"search", "### search"},
                                          {"spectrum", "### spectrum"},
                                          {"units", "### units"},
+                                         {"fit", "### fit"},
                                          {"continuation", "### continuation"},
                                          {"system file", "### System files"}};
 
@@ -213,12 +215,18 @@ TEST_F(Written, RequiredKeysAreRequired) {
   ASSERT_EQ(extremal({"check", "scene.toml"}).exit, 0);
   for (const extremal::KeyRecord& record : extremal::key_records()) {
     if (!record.fallback.starts_with("required") || record.table == "system file") continue;
+    if (record.table == "fit") {  // nothing else that this scene asks for goes with it
+      write("scene.toml", without("", "search") + "fit.parameters = []\n");
+      EXPECT_EQ(extremal({"check", "scene.toml"}).exit, 2) << record.key;
+      continue;
+    }
     write("scene.toml", without(std::string(record.table), std::string(record.key)));
     EXPECT_EQ(extremal({"check", "scene.toml"}).exit, 2) << record.table << "." << record.key;
   }
 }
 
 TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
+  if (!extremal::can_fit()) GTEST_SKIP() << "this build has no Ceres, which fits need";
   std::set<std::string> fields;
   const std::string orbit = without("", "search");
   add_fields("solve", orbit, fields);
@@ -234,6 +242,17 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
              "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2\", force = { x = \"-x'\" } }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
              fields);
+  write("data.csv", "t,x\n0,1\n1,0.5\n1.5,0.1\n2,-0.4\n");
+  add_fields(
+      "solve",
+      "system = { coordinates = [\"x\"], parameters = { k = 1.0 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
+      "boundary = { start = { x = 1 }, duration = 2 }\n"
+      "fit = { data = \"data.csv\", parameters = [\"k\"] }\n",
+      fields);
+  // Fields by names of the problem stand for those of others.
+  for (const auto& [from, to] :
+       {std::pair{"open_ends.x(T)", "open_ends.x(0)"}, {"parameters.k", "parameters.k"}})
+    if (fields.erase(from)) fields.insert(to);
   EXPECT_EQ(fields, names_in("## Fields of a result"));
 }
 

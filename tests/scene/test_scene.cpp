@@ -207,8 +207,6 @@ TEST_F(SceneFiles, ContinuationIsRead) {
 }
 
 TEST_F(SceneFiles, WhatIsNotAvailableYet) {
-  for (const std::string table : {"path", "fit"})
-    EXPECT_EQ(message(pendulum + "[" + table + "]\nx = 1\n"),
-              "scene.toml:8:2: [" + table + "] is not available yet");
+  EXPECT_EQ(message(pendulum + "[path]\nx = 1\n"), "scene.toml:8:2: [path] is not available yet");
   EXPECT_EQ(message(pendulum + "[solve]\nmethod = \"newtom\"\n"), "scene.toml:9:11: unknown method 'newtom'");
 }

@@ -1,10 +1,10 @@
 #include <ceres/ceres.h>
-#include <glog/logging.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "solve/external/external_solver.hpp"
+#include "solve/external/silence.hpp"
 
 namespace extremal {
 
@@ -59,16 +59,6 @@ class Counter final : public ceres::IterationCallback {
 
  private:
   const std::function<bool()>& count_;
-};
-
-/// Nothing of Ceres' log may reach stderr.
-class Silence {
- public:
-  Silence() { FLAGS_minloglevel = google::FATAL; }
-  ~Silence() { FLAGS_minloglevel = before_; }
-
- private:
-  int before_ = FLAGS_minloglevel;
 };
 
 }  // namespace

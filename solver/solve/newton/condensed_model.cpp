@@ -44,6 +44,11 @@ class CondensedModel final : public SecondVariationModel {
     for (std::size_t k = 0; k < step.inner.size(); ++k) step.inner[k] -= left_out_[k];
   }
 
+  void put_load(DiscreteAction& action, const Path& path, const AlignedDoubles& load,
+                double on_duration) override {
+    action.put_load(path, load, on_duration);
+  }
+
   void set_null_below(double threshold) override { system_.set_null_below(threshold); }
 
   int left_out() const override { return system_.left_out(); }

@@ -67,6 +67,11 @@ class SecondVariationModel : public QuadraticModel {
   /// gradient is evaluated anew after it.
   virtual void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                        Step& step) = 0;
+  /// In place of the gradient, a load over the local unknowns of the elements, as DiscreteAction::put_load
+  /// takes it, and one on T: solve() then gives the step with K·step = −load. The gradient is to be evaluated
+  /// anew after it.
+  virtual void put_load(DiscreteAction& action, const Path& path, const AlignedDoubles& load,
+                        double on_duration) = 0;
 };
 
 /// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.

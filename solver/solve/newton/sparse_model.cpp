@@ -64,4 +64,12 @@ void SparseModel::respond(DiscreteAction& action, const ClosingEquation* closing
   solve(action, closing ? &homogeneous : nullptr, step);
 }
 
+void SparseModel::put_load(DiscreteAction&, const Path& path, const AlignedDoubles& load,
+                           double on_duration) {
+  const std::size_t batch = load.size() / path.batches();
+  equations_.clear_gradient();
+  for (int b = 0; b < path.batches(); ++b) equations_.add_gradient(b, load.data() + b * batch);
+  equations_.set_slope_duration(on_duration);
+}
+
 }  // namespace extremal

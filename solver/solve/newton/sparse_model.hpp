@@ -18,6 +18,8 @@ class SparseModel final : public SecondVariationModel {
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
   void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                Step& step) override;
+  void put_load(DiscreteAction& action, const Path& path, const AlignedDoubles& load,
+                double on_duration) override;
   Inertia inertia(double) override { return border_.inertia(matrix_); }
 
   Equations& equations() { return equations_; }

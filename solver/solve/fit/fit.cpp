@@ -1,0 +1,268 @@
+#include "solve/fit/fit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/fit/fitted_path.hpp"
+#include "solve/fit/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::fit;
+
+namespace {
+
+/// Samples of a trajectory as a guess.
+Guess guess_of(const Trajectory& trajectory) {
+  Guess guess;
+  std::vector<double> q(trajectory.coordinates), v(q.size());
+  const std::vector<double>& places = lobatto_barycentric(trajectory.degree).nodes;
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (int j = k == 0 ? 0 : 1; j <= trajectory.degree; ++j) {
+      trajectory.in_element(k, places[j], q, v);
+      const double t = trajectory.times[k] + places[j] * (trajectory.times[k + 1] - trajectory.times[k]);
+      guess.tau.push_back(t / trajectory.duration());
+      guess.q.insert(guess.q.end(), q.begin(), q.end());
+    }
+  guess.tau.back() = 1;
+  return guess;
+}
+
+/// Works with unknowns by their sizes, x = θ/size.
+class Fit {
+ public:
+  Fit(const FitTask& task, const SolveOptions& options, const std::function<void(const FitStep&)>& progress)
+      : task_(task), options_(options), progress_(progress), path_(task, options) {
+    for (const FitUnknown& unknown : task.unknowns) result_.values.push_back(unknown.start);
+  }
+
+  FitResult run() {
+    result_.solution = solve(task_.guess, task_.duration);
+    if (!result_.solution.converged()) {
+      result_.solution.message = "no trajectory to begin the fit with: " + result_.solution.message;
+      return std::move(result_);
+    }
+    const int before = result_.solution.iterations;
+    for (int round = 0; round < most_rounds; ++round) {
+      path_.take(result_.solution, result_.values);
+      if (!minimise_on_elements() || !determined()) return std::move(result_);
+      const Trajectory fitted = observed_part();
+      result_.solution = solve(guess_of(fitted), fitted.duration());
+      if (!result_.solution.converged()) return std::move(result_);
+      if (agrees(fitted)) return covers_data() ? finished(before) : std::move(result_);
+    }
+    fail(fmt::format("the elements still move the fit by more than the tolerance after {} choices of them",
+                     most_rounds));
+    return std::move(result_);
+  }
+
+ private:
+  Solution solve(const Guess& guess, double duration) {
+    const std::optional<Problem> problem = task_.problem(result_.values, guess, duration);
+    if (problem) return task_.solve(*problem, options_);
+    Solution none;
+    none.message = fmt::format("there is no such problem at {}", values_text());
+    return none;
+  }
+
+  std::string values_text() const {
+    std::vector<std::string> texts;
+    for (std::size_t j = 0; j < result_.values.size(); ++j)
+      texts.push_back(fmt::format("{} = {:.12g}", task_.unknowns[j].name, result_.values[j]));
+    return fmt::format("{}", fmt::join(texts, ", "));
+  }
+
+  void fail(std::string why) {
+    result_.solution.status = Status::not_converged;
+    result_.solution.message = std::move(why);
+  }
+
+  std::vector<double> unscaled(std::span<const double> x) const {
+    std::vector<double> values(x.begin(), x.end());
+    for (std::size_t j = 0; j < values.size(); ++j) values[j] *= task_.unknowns[j].size;
+    return values;
+  }
+
+  bool evaluate(std::span<const double> x, std::span<double> residuals, std::span<double> jacobian) {
+    if (!path_.evaluate(unscaled(x), residuals, jacobian)) return false;
+    const std::size_t count = x.size();
+    for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= task_.unknowns[i % count].size;
+    return true;
+  }
+
+  bool minimise_on_elements() {
+    CurveFit fit{.residuals = task_.data.count(), .loss = task_.loss, .evaluate = {}, .count = {}};
+    fit.evaluate = [this](auto x, auto r, auto j) { return evaluate(x, r, j); };
+    fit.count = [this](int iteration, double cost) {
+      if (progress_) progress_({iteration, path_.path().elements(), path_.path().degree(), 2 * cost});
+      return !options_.deadline.passed();
+    };
+    if (!path_.settle()) {
+      fail("Newton's method does not converge on the elements of the first trajectory");
+      return false;
+    }
+    std::vector<double> x = path_.coordinates();
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] /= task_.unknowns[j].size;
+    const CurveFitReport report = minimise(fit, x, options_.deadline);
+    // The path of a step that was not taken is left for that of the minimum.
+    std::vector<double> residuals(fit.residuals);
+    const bool there = path_.evaluate(unscaled(x), residuals, {});
+    if (there) result_.values = path_.values();
+    if (!report.converged || !there)
+      fail(fmt::format("the fit stopped at {}: {}; give better values in [system] parameters or [guess]",
+                       values_text(), there ? report.failure : "there is no extremal"));
+    return report.converged && there;
+  }
+
+  /// Residuals, χ² and covariance at the minimum. False where some unknown is not determined.
+  bool determined() {
+    const int rows = task_.data.count(), count = static_cast<int>(task_.unknowns.size());
+    std::vector<double> residuals(rows), entries(static_cast<std::size_t>(rows) * count);
+    if (!path_.evaluate_by_values(residuals, entries)) {
+      fail(fmt::format("at {} the second variation is singular", values_text()));
+      return false;
+    }
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::MatrixXd jacobian = Eigen::Map<const RowMajor>(entries.data(), rows, count);
+    result_.chi_squared = 0;
+    for (int i = 0; i < rows; ++i) {
+      const LossValue loss = extremal::evaluate(task_.loss, residuals[i] * residuals[i]);
+      result_.chi_squared += loss.value;
+      jacobian.row(i) *= std::sqrt(loss.slope);
+    }
+    keep_residuals(residuals);
+    return invert(std::move(jacobian));
+  }
+
+  void keep_residuals(const std::vector<double>& residuals) {
+    result_.residuals.clear();
+    std::size_t next = 0;
+    for (const ObservedColumn& column : task_.data.columns) {
+      result_.residuals.emplace_back();
+      for (const ObservedValue& value : column.values)
+        result_.residuals.back().push_back(residuals[next++] * value.sigma);
+    }
+  }
+
+  bool invert(Eigen::MatrixXd jacobian) {
+    const Eigen::Index count = jacobian.cols();
+    Eigen::VectorXd effects(count), lengths(count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      lengths[j] = jacobian.col(j).norm();
+      effects[j] = lengths[j] * task_.unknowns[j].size;
+    }
+    std::vector<std::string> names;
+    for (Eigen::Index j = 0; j < count; ++j)
+      if (!(effects[j] > without_effect * effects.maxCoeff())) names.push_back(task_.unknowns[j].name);
+    if (!names.empty()) return undetermined_names(names);
+    for (Eigen::Index j = 0; j < count; ++j) jacobian.col(j) /= lengths[j];
+    const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);
+    const Eigen::VectorXd& s = svd.singularValues();
+    Eigen::VectorXd parts = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index k = 0; k < s.size(); ++k)
+      if (!(s[k] > undetermined * s[0])) parts = parts.cwiseMax(svd.matrixV().col(k).cwiseAbs());
+    for (Eigen::Index j = 0; j < count; ++j)
+      if (parts[j] > named * parts.maxCoeff()) names.push_back(task_.unknowns[j].name);
+    if (!names.empty()) return undetermined_names(names);
+    const Eigen::MatrixXd half =
+        lengths.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
+    result_.covariance = half * half.transpose();
+    const Eigen::Index freedom = jacobian.rows() - count;
+    result_.scaled = !task_.data.sigmas && freedom > 0;
+    if (result_.scaled) result_.covariance *= result_.chi_squared / static_cast<double>(freedom);
+    return true;
+  }
+
+  bool undetermined_names(const std::vector<std::string>& names) {
+    if (names.size() == 1)
+      fail(fmt::format(
+          "the data do not determine '{0}': it changes nothing that was observed; leave '{0}' out of "
+          "the fit, or observe what depends on it",
+          names.front()));
+    else
+      fail(
+          fmt::format("the data do not determine '{}': along some change of all of them nothing that was "
+                      "observed changes; give one of them, or observe what depends on it alone",
+                      fmt::join(names, "', '")));
+    return false;
+  }
+
+  /// The trajectory of the fit; with forces that of one copy.
+  Trajectory observed_part() const {
+    Trajectory trajectory = trajectory_of(path_.path());
+    const std::size_t n = task_.coordinates, width = trajectory.coordinates;
+    if (n == width) return trajectory;
+    for (std::vector<double>* rows : {&trajectory.nodes, &trajectory.slopes}) {
+      std::vector<double> kept;
+      for (std::size_t i = 0; i < rows->size(); i += width)
+        kept.insert(kept.end(), rows->begin() + i, rows->begin() + i + n);
+      *rows = std::move(kept);
+    }
+    trajectory.coordinates = task_.coordinates;
+    return trajectory;
+  }
+
+  /// Whether the trajectory of the fit is the solution to the tolerance, at its nodes and between. A scheme
+  /// that was asked for with its elements has no other.
+  bool agrees(const Trajectory& fitted) const {
+    if (options_.elements > 0) return true;
+    const Trajectory& other = result_.solution.trajectory;
+    std::vector<double> low(task_.coordinates, INFINITY), high(task_.coordinates, -INFINITY),
+        q(task_.coordinates), v(q), p(q);
+    double apart = 0, range = 0, most = 0;
+    const int points = 2 * fitted.degree;
+    for (int k = 0; k < fitted.elements(); ++k)
+      for (int i = 0; i <= points; ++i) {
+        const double tau = static_cast<double>(i) / points;
+        fitted.in_element(k, tau, q, v);
+        const double t = fitted.times[k] + tau * (fitted.times[k + 1] - fitted.times[k]);
+        other.at(std::min(t, other.duration()), p, v);
+        for (int a = 0; a < task_.coordinates; ++a) {
+          apart = std::max(apart, std::abs(q[a] - p[a]));
+          low[a] = std::min(low[a], p[a]);
+          high[a] = std::max(high[a], p[a]);
+          range = std::max(range, high[a] - low[a]);
+          most = std::max(most, std::abs(p[a]));
+        }
+      }
+    return apart <= options_.tolerance * (range > 0 ? range : most) + result_.solution.error_estimate;
+  }
+
+  /// A free duration may have become shorter than the data.
+  bool covers_data() {
+    const double latest = *std::ranges::max_element(task_.data.t), end = result_.solution.duration();
+    if (latest <= (1 + roundoff_of_times) * end) return true;
+    fail(
+        fmt::format("the trajectory that fits ends at t = {:.9g}, before the last observation at t = {:.9g}; "
+                    "leave later observations out, or give a longer duration in [guess]",
+                    end, latest));
+    return false;
+  }
+
+  FitResult finished(int before) {
+    Solution& solution = result_.solution;
+    solution.iterations += before + path_.iterations();
+    solution.message = fmt::format("{}, fitted to {} values: chi squared {:.6g}", solution.message,
+                                   task_.data.count(), result_.chi_squared);
+    solution.strategy = "least squares around " + solution.strategy;
+    return std::move(result_);
+  }
+
+  const FitTask& task_;
+  const SolveOptions& options_;
+  const std::function<void(const FitStep&)>& progress_;
+  FittedPath path_;
+  FitResult result_;
+};
+
+}  // namespace
+
+FitResult fit(const FitTask& task, const SolveOptions& options,
+              const std::function<void(const FitStep&)>& progress) {
+  return Fit(task, options, progress).run();
+}
+
+}  // namespace extremal

@@ -1,0 +1,265 @@
+#include "solve/fit/fitted_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/fit/limits.hpp"
+#include "solve/mesh/resolution.hpp"
+#include "solve/newton/converge.hpp"
+#include "solve/newton/ends.hpp"
+
+namespace extremal {
+
+using namespace limits::fit;
+
+namespace {
+
+/// Adds a multiple of one step to another.
+void add(Step& to, const Step& step, double factor) {
+  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes[i] += factor * step.nodes[i];
+  for (std::size_t i = 0; i < to.inner.size(); ++i) to.inner[i] += factor * step.inner[i];
+  to.duration += factor * step.duration;
+}
+
+}  // namespace
+
+FittedPath::FittedPath(const FitTask& task, const SolveOptions& options)
+    : task_(task), options_(options), observer_(task.data, task.coordinates) {}
+
+/// The problem at these values, and tables bound to it; the path stays.
+bool FittedPath::bind(std::span<const double> values) {
+  std::optional<FittedProblem> next = task_.at(values);
+  if (!next) return false;
+  at_ = std::move(next);
+  tables_.bind(*scheme_, *at_->problem.lagrangian);
+  tables_.end_at(at_->problem.lagrangian->kinks());
+  return true;
+}
+
+/// Elements of the scheme that was asked for, or of the degree of the trajectory, whose velocities are right
+/// to the tolerance. With forces both copies move alike.
+void FittedPath::take(const Solution& solution, std::span<const double> values) {
+  const Trajectory& trajectory = solution.trajectory;
+  const int degree = options_.scheme ? options_.scheme->degree : trajectory.degree;
+  scheme_ = options_.scheme ? std::make_unique<SchemeTables>(*options_.scheme, exact_points)
+                            : std::make_unique<SchemeTables>(lobatto(degree));
+  steps_.clear();
+  converged_ = false;
+  ends_.clear();
+  path_ = {};
+  if (!bind(values)) return;
+  const std::size_t n = trajectory.coordinates, width = at_->problem.coordinates();
+  std::vector<double> mesh;
+  for (const double t : trajectory.times) mesh.push_back(t / trajectory.duration());
+  mesh.back() = 1;
+  path_.reset(tables_, mesh, trajectory.duration());
+  std::vector<double> nodes((degree + 1) * width), q(n), v(n);
+  const std::vector<double>& places = lobatto_barycentric(degree).nodes;
+  for (int k = 0; k < path_.elements(); ++k) {
+    for (int j = 0; j <= degree; ++j) {
+      trajectory.in_element(k, places[j], q, v);
+      for (std::size_t a = 0; a < width; ++a) nodes[j * width + a] = q[a % n];
+    }
+    path_.set_element(k, nodes.data());
+  }
+  path_.load_ends();
+  values_.assign(values.begin(), values.end());
+}
+
+std::vector<double> FittedPath::coordinates() const {
+  std::vector<double> result = values_;
+  for (const std::size_t j : ends_) result[j] = path_.node(node_)[task_.unknowns[j].last];
+  return result;
+}
+
+std::vector<double> FittedPath::values() const {
+  std::vector<double> result = values_;
+  for (const std::size_t j : ends_) result[j] = path_.node(path_.elements())[task_.unknowns[j].last];
+  return result;
+}
+
+bool FittedPath::settle() {
+  if (!scheme_ || path_.elements() == 0) return false;
+  node_ = path_.elements();
+  meet_ends(at_->problem, path_);
+  if (!converge_here(values_)) return false;
+  converged_ = true;
+  choose_node();
+  asked_ = coordinates();
+  return true;
+}
+
+/// ∂q/∂q(T) of the ends that are unknowns, at a node.
+Eigen::MatrixXd FittedPath::fields_at(int node) const {
+  const auto count = static_cast<Eigen::Index>(ends_.size());
+  const std::size_t first = static_cast<std::size_t>(node) * path_.coordinates();
+  Eigen::MatrixXd fields(count, count);
+  for (Eigen::Index a = 0; a < count; ++a)
+    for (Eigen::Index b = 0; b < count; ++b)
+      fields(a, b) = fields_[b].nodes[first + task_.unknowns[ends_[a]].last];
+  return fields;
+}
+
+/// The first node behind which the fields, normalised at the first node, fall.
+void FittedPath::choose_node() {
+  node_ = path_.elements();
+  ends_.clear();
+  for (std::size_t j = 0; j < task_.unknowns.size(); ++j)
+    if (task_.unknowns[j].last >= 0) ends_.push_back(j);
+  if (ends_.empty() || path_.elements() < 3) return;
+  std::vector<ProblemChange> changes;
+  for (const std::size_t j : ends_) changes.push_back(at_->changes[j]);
+  if (!response_.factor(newton_, at_->problem, path_, tables_, changes)) return;
+  fields_.resize(ends_.size());
+  for (std::size_t k = 0; k < ends_.size(); ++k) response_.to(changes[k], fields_[k]);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> unit(fields_at(1));
+  double largest = 0;
+  int best = path_.elements();
+  for (int node = 1; node <= path_.elements(); ++node) {
+    const Eigen::MatrixXd field = fields_at(node) * unit.inverse();
+    const double size = field.jacobiSvd().singularValues().minCoeff();
+    if (!std::isfinite(size)) return;
+    if (size > largest) {
+      largest = size;
+      best = node;
+    } else if (size < fallen * largest) {
+      node_ = best;
+      return;
+    }
+  }
+}
+
+/// To the path that derivatives predict, with its ends on the boundary relation.
+bool FittedPath::move_to(std::span<const double> coordinates) {
+  if (!steps_.empty()) {
+    path_ = base_;
+    double duration = path_.duration();
+    for (std::size_t j = 0; j < steps_.size(); ++j) {
+      const double by = coordinates[j] - base_values_[j];
+      path_.add(steps_[j].nodes, steps_[j].inner, by);
+      duration += by * steps_[j].duration;
+    }
+    if (!(duration > 0)) return false;
+    path_.set_duration(duration);
+    path_.load_ends();
+  }
+  if (!at_->problem.duration.free) path_.set_duration(at_->problem.duration.value);
+  return true;
+}
+
+bool FittedPath::converge_here(std::span<const double> coordinates) {
+  newton_.reset(at_->problem, tables_, path_.elements());
+  newton_.forget();
+  if (node_ < path_.elements()) return correct(coordinates);
+  meet_ends(at_->problem, path_);
+  const NewtonReport report = converge(newton_, path_, tables_, {.steps = most_newton_steps},
+                                       [&] { return !options_.deadline.passed(); });
+  iterations_ += report.steps;
+  // A free duration is known to fewer digits than the path then.
+  if (report.reached && at_->problem.duration.free) correct(coordinates);
+  return report.reached;
+}
+
+/// Newton's method without damping. Where q is given at a node and not at T, the combination of fields that
+/// keeps q there comes to a step between fixed ends.
+bool FittedPath::correct(std::span<const double> coordinates) {
+  const bool held = node_ < path_.elements();
+  std::vector<ProblemChange> changes;
+  for (const std::size_t j : ends_)
+    if (held) changes.push_back(at_->changes[j]);
+  const double size = scales(path_, tables_).q;
+  double before = INFINITY;
+  Step step;
+  for (int k = 0; k < most_newton_steps && !options_.deadline.passed(); ++k, ++iterations_) {
+    if (!response_.factor(newton_, at_->problem, path_, tables_, changes)) return false;
+    newton_.model().solve(newton_.action(), newton_.closing(path_), step);
+    if (held && !hold_node(coordinates, changes, step)) return false;
+    double norm = std::abs(step.duration) / path_.duration();
+    for (const double x : step.nodes) norm = std::max(norm, std::abs(x) / size);
+    const double duration = path_.duration() + step.duration;
+    if (!std::isfinite(norm) || !(duration > 0)) return false;
+    path_.add(step.nodes, step.inner, 1);
+    if (at_->problem.duration.free) path_.set_duration(duration);
+    path_.load_ends();
+    if (norm < least_step || (norm < roundoff_of_step && norm > 0.3 * before)) return true;
+    before = norm;
+  }
+  return false;
+}
+
+/// Adds to a step the fields that bring q at the node to its coordinates.
+bool FittedPath::hold_node(std::span<const double> coordinates, std::span<const ProblemChange> changes,
+                           Step& step) {
+  const std::size_t first = static_cast<std::size_t>(node_) * path_.coordinates();
+  Eigen::VectorXd missing(static_cast<Eigen::Index>(ends_.size()));
+  for (std::size_t j = 0; j < ends_.size(); ++j) {
+    response_.to(changes[j], fields_[j]);
+    const int a = task_.unknowns[ends_[j]].last;
+    missing[static_cast<Eigen::Index>(j)] =
+        coordinates[ends_[j]] - (path_.node(node_)[a] + path_.rest(node_)[a]) - step.nodes[first + a];
+  }
+  const Eigen::VectorXd parts = fields_at(node_).partialPivLu().solve(missing);
+  if (!parts.allFinite()) return false;
+  for (std::size_t j = 0; j < ends_.size(); ++j) add(step, fields_[j], parts[static_cast<Eigen::Index>(j)]);
+  return true;
+}
+
+bool FittedPath::evaluate(std::span<const double> coordinates, std::span<double> residuals,
+                          std::span<double> jacobian) {
+  if (!converged_ || !std::ranges::equal(coordinates, asked_)) {
+    converged_ = false;
+    if (!bind(coordinates) || !move_to(coordinates) || !converge_here(coordinates)) {
+      if (!steps_.empty()) path_ = base_;
+      return false;
+    }
+    values_.assign(coordinates.begin(), coordinates.end());
+    asked_ = values_;
+    converged_ = true;
+  }
+  if (!observer_.residuals(path_, at_->formulas, residuals)) return false;
+  return jacobian.empty() || differentiate(false, jacobian);
+}
+
+bool FittedPath::evaluate_by_values(std::span<double> residuals, std::span<double> jacobian) {
+  return converged_ && observer_.residuals(path_, at_->formulas, residuals) && differentiate(true, jacobian);
+}
+
+/// From derivatives with q(T) given to those with q at the node given.
+void FittedPath::combine_fields() {
+  const std::size_t n = path_.coordinates(), held = node_ * n;
+  for (std::size_t k = 0; k < ends_.size(); ++k) fields_[k] = steps_[ends_[k]];
+  const Eigen::MatrixXd inverse = fields_at(node_).inverse();
+  for (std::size_t j = 0; j < steps_.size(); ++j) {
+    const auto end = std::ranges::find(ends_, j);
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(ends_.size()));
+    if (end != ends_.end())
+      moved[end - ends_.begin()] = 1;
+    else
+      for (std::size_t k = 0; k < ends_.size(); ++k)
+        moved[static_cast<Eigen::Index>(k)] = -steps_[j].nodes[held + task_.unknowns[ends_[k]].last];
+    const Eigen::VectorXd parts = inverse * moved;
+    if (end != ends_.end()) add(steps_[j], fields_[end - ends_.begin()], -1);
+    for (std::size_t k = 0; k < ends_.size(); ++k)
+      add(steps_[j], fields_[k], parts[static_cast<Eigen::Index>(k)]);
+  }
+}
+
+bool FittedPath::differentiate(bool by_values, std::span<double> jacobian) {
+  const std::size_t count = task_.unknowns.size();
+  steps_.resize(count);
+  if (!response_.factor(newton_, at_->problem, path_, tables_, at_->changes)) {
+    steps_.clear();
+    return false;
+  }
+  for (std::size_t j = 0; j < count; ++j) response_.to(at_->changes[j], steps_[j]);
+  if (!by_values && node_ < path_.elements()) combine_fields();
+  for (std::size_t j = 0; j < count; ++j)
+    observer_.derivatives(path_, tables_, at_->formulas, steps_[j], at_->changes[j], jacobian.data() + j,
+                          static_cast<std::ptrdiff_t>(count));
+  base_ = path_;
+  base_values_ = coordinates();
+  if (by_values) steps_.clear();
+  return std::ranges::all_of(jacobian, [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace extremal

@@ -1,0 +1,30 @@
+#pragma once
+
+/// \file The numbers by which a fit ends.
+
+namespace extremal::limits::fit {
+
+/// Elements are chosen anew at most so often.
+inline constexpr int most_rounds = 5;
+/// Of Newton's method from the extremal before, predicted by its derivatives.
+inline constexpr int most_newton_steps = 12;
+/// Singular values of the derivatives, each column of length one, that are smaller relative to the largest
+/// belong to what observations do not determine: ten digits of the derivatives are known at least.
+inline constexpr double undetermined = 1e-9;
+/// An unknown that changes the residuals by less than this, in σ, when it changes by its size, is alone not
+/// determined, relative to the largest such change.
+inline constexpr double without_effect = 1e-12;
+/// Unknowns with at least this part of the largest in a direction that is not determined are named.
+inline constexpr double named = 0.05;
+/// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part
+/// of their size there.
+inline constexpr double fallen = 0.5;
+/// Steps without damping end below the first, relative to the path, or below the second where they shrink no
+/// more.
+inline constexpr double least_step = 1e-14, roundoff_of_step = 1e-10;
+/// Of times of observations, as they are written, relative to the duration.
+inline constexpr double roundoff_of_times = 1e-9;
+/// Of the points of the quadrature that counts as exact.
+inline constexpr int exact_points = 20;
+
+}  // namespace extremal::limits::fit

@@ -1,0 +1,63 @@
+#include "study/csv_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace extremal {
+namespace {
+
+using SourcePointer = std::shared_ptr<const Source>;
+
+std::string_view trimmed(std::string_view s) {
+  const auto begin = s.find_first_not_of(" \t\r\"");
+  if (begin == std::string_view::npos) return {};
+  return s.substr(begin, s.find_last_not_of(" \t\r\"") - begin + 1);
+}
+
+std::vector<CsvCell> cells_of(std::string_view line, const SourcePointer& source, int number) {
+  std::vector<CsvCell> cells;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    cells.push_back(
+        {trimmed(line.substr(begin, end - begin)), {source, number, static_cast<int>(begin) + 1}});
+    begin = end + 1;
+  }
+  return cells;
+}
+
+}  // namespace
+
+double number_in(const CsvCell& cell) {
+  double value = 0;
+  const char* end = cell.text.data() + cell.text.size();
+  const auto [stop, error] = std::from_chars(cell.text.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value))
+    throw SceneError(cell.at, fmt::format("'{}' is not a finite number", cell.text));
+  return value;
+}
+
+CsvFile read_csv(const SourcePointer& source) {
+  CsvFile file;
+  std::string_view rest = source->text;
+  for (int number = 1; !rest.empty(); ++number) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (trimmed(line).empty() || trimmed(line).front() == '#') continue;
+    std::vector<CsvCell> cells = cells_of(line, source, number);
+    if (file.header.empty()) {
+      file.header = std::move(cells);
+      continue;
+    }
+    if (cells.size() != file.header.size())
+      throw SceneError({source, number, 1},
+                       fmt::format("found {} values for {} columns", cells.size(), file.header.size()));
+    file.rows.push_back(std::move(cells));
+  }
+  return file;
+}
+
+}  // namespace extremal

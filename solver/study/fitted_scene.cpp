@@ -1,0 +1,315 @@
+#include "study/fitted_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "problem/copies.hpp"
+#include "study/boundary.hpp"
+#include "study/modelling.hpp"
+#include "study/naming.hpp"
+
+namespace extremal {
+namespace {
+
+/// Formulas of numbers are differentiated by central differences of fourth order over steps of this part of a
+/// parameter: their errors and roundoff are near 1e-12.
+constexpr double part = 1e-3;
+constexpr std::array<double, 4> places = {-2, -1, 1, 2};
+constexpr std::array<double, 4> weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+
+double size_of(double value) { return value == 0 ? 1 : std::abs(value); }
+
+bool names_any(const std::string& formula, const std::set<std::string>& names) {
+  return std::ranges::any_of(names_in(formula),
+                             [&](const std::string& name) { return names.contains(name); });
+}
+
+bool names_any(const Quantity& quantity, const std::set<std::string>& names) {
+  const auto* formula = std::get_if<std::string>(&quantity.value);
+  return formula && names_any(*formula, names);
+}
+
+bool names_any(const std::vector<Assignment>& assignments, const std::set<std::string>& names) {
+  return std::ranges::any_of(assignments, [&](const Assignment& a) {
+    return std::ranges::any_of(a.values, [&](const Quantity& q) { return names_any(q, names); });
+  });
+}
+
+bool depends(const BoundaryTable& boundary, const std::set<std::string>& names) {
+  return names_any(boundary.start, names) || names_any(boundary.end, names) ||
+         names_any(boundary.map, names) || names_any(boundary.duration, names) ||
+         (boundary.energy && names_any(*boundary.energy, names)) ||
+         (boundary.where && names_any(boundary.where->value, names)) ||
+         std::ranges::any_of(boundary.conditions, [&](const Text& t) { return names_any(t.value, names); });
+}
+
+bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
+  return std::ranges::equal(a, b, [](const Triplet& x, const Triplet& y) {
+    return x.row == y.row && x.column == y.column && x.value == y.value;
+  });
+}
+
+}  // namespace
+
+FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem)
+    : fit_(*scene.fit), table_(scene.system), boundary_(scene.boundary), system_(system), problem_(problem) {
+  if (problem.initial)
+    throw SceneError(
+        fit_.at,
+        "a fit needs conditions at both ends, and 'start' gives initial data; leave what is to be "
+        "found out of 'start', the fit finds it at both ends");
+  if (problem.motion().kinks())
+    throw SceneError(fit_.at,
+                     "a fit needs a smooth Lagrangian, and this one has abs, min, max or step of the motion");
+  problem_.guess = {};
+  problem_.reduction = nullptr;
+  read_parameters(scene, system);
+  find_dependent(scene);
+  find_open(system);
+  check_dependence();
+}
+
+void FittedScene::read_parameters(const Scene& scene, const System& system) {
+  for (const Text& text : fit_.parameters) {
+    const std::string& name = text.value;
+    const auto known = system.parameters.find(name);
+    if (known == system.parameters.end()) {
+      std::vector<std::string> names;
+      for (const auto& [other, value] : system.parameters) names.push_back(other);
+      throw UnknownName(position(text, 0), fmt::format("unknown parameter '{}'", name), name, names);
+    }
+    if (known->second.list)
+      throw SceneError(position(text, 0),
+                       fmt::format("'{}' is a list; a fitted parameter must be one number", name));
+    if (std::ranges::find(parameters_, name) != parameters_.end())
+      throw SceneError(position(text, 0), fmt::format("'{}' is named twice", name));
+    const auto given = std::ranges::find(scene.system.parameters, name, &Assignment::name);
+    if (given->values.front().formula())
+      throw SceneError(position(text, 0),
+                       fmt::format("'{}' is computed by a formula; fit the parameters in it", name));
+    parameters_.push_back(name);
+  }
+}
+
+/// What depends on the parameters through formulas; numbers among it are active parameters as well.
+void FittedScene::find_dependent(const Scene& scene) {
+  dependent_.insert(parameters_.begin(), parameters_.end());
+  active_ = parameters_;
+  for (bool more = true; more;) {
+    more = false;
+    for (const Definition& definition : table_.definitions)
+      if (!dependent_.contains(definition.name) && names_any(definition.formula.value, dependent_))
+        more = dependent_.insert(definition.name).second;
+    for (const Assignment& parameter : table_.parameters) {
+      if (dependent_.contains(parameter.name) || !names_any({parameter}, dependent_)) continue;
+      if (parameter.list)
+        throw SceneError(fit_.at, fmt::format("the list '{}' is computed from a fitted parameter; write its "
+                                              "elements as parameters or definitions of their own",
+                                              parameter.name));
+      more = dependent_.insert(parameter.name).second;
+      active_.push_back(parameter.name);
+    }
+  }
+  boundary_depends_ = depends(scene.boundary, dependent_);
+}
+
+/// End coordinates that neither the relation nor a momentum determines. Closed orbits have none.
+void FittedScene::find_open(const System& system) {
+  if (problem_.periodic) return;
+  const PlacedRelation placed = read_relation(boundary_, system);
+  const int n = problem_.coordinates();
+  std::vector<int> homes = problem_.ends.home;
+  std::ranges::sort(homes);
+  for (const int e : homes)
+    if (placed.momentum_given.empty() || !placed.momentum_given[e])
+      open_.push_back({e, fmt::format("{}({})", system.names[e % n], e < n ? "0" : "T")});
+}
+
+void FittedScene::check_dependence() const {
+  if (!boundary_depends_) return;
+  std::vector<double> values = start();
+  values.resize(values.size() + open_.size());
+  const Numbers here = numbers(values);
+  for (std::size_t j = 0; j < parameters_.size(); ++j) {
+    double step = 0;
+    for (const Numbers& there : around(values, j, step)) {
+      if (!same_matrix(here.relation.matrix, there.relation.matrix))
+        throw SceneError(
+            fit_.at,
+            fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides "
+                        "may",
+                        parameters_[j]));
+      if (!boundary_.free && there.duration.value != here.duration.value &&
+          !problem_.motion().structure().autonomous)
+        throw SceneError(
+            boundary_.duration.at,
+            fmt::format("the duration depends on '{}', and L depends on t; give the duration as a "
+                        "number",
+                        parameters_[j]));
+    }
+  }
+}
+
+std::vector<double> FittedScene::start() const {
+  std::vector<double> values;
+  for (const std::string& name : parameters_) values.push_back(system_.parameters.at(name).value.front());
+  return values;
+}
+
+SystemTable FittedScene::table_at(std::span<const double> values) const {
+  SystemTable table = table_;
+  for (std::size_t j = 0; j < parameters_.size(); ++j)
+    std::ranges::find(table.parameters, parameters_[j], &Assignment::name)->values.front().value = values[j];
+  return table;
+}
+
+FittedScene::Numbers FittedScene::numbers(std::span<const double> values) const {
+  System system = system_;
+  system.parameters = system_text(table_at(values)).parameters;
+  Numbers numbers;
+  numbers.relation = read_relation(boundary_, system).relation;
+  for (std::size_t k = 0; k < open_.size(); ++k) {
+    const int row = numbers.relation.add_row(values[parameters_.size() + k]);
+    numbers.relation.add(row, open_[k].e, 1);
+  }
+  numbers.duration = read_duration(boundary_, system);
+  for (const std::string& name : active_) numbers.active.push_back(system.parameters.at(name).value.front());
+  return numbers;
+}
+
+/// Everything that may depend on a parameter, but for what closes a duration by a function.
+std::vector<double> FittedScene::Numbers::list() const {
+  std::vector<double> list = active;
+  list.insert(list.end(), relation.value.begin(), relation.value.end());
+  list.insert(list.end(), relation.momenta.begin(), relation.momenta.end());
+  list.push_back(duration.value);
+  list.push_back(duration.energy.value_or(0));
+  return list;
+}
+
+std::vector<FittedScene::Numbers> FittedScene::around(std::span<const double> values, std::size_t parameter,
+                                                      double& step) const {
+  step = part * size_of(values[parameter]);
+  std::vector<Numbers> result;
+  std::vector<double> moved(values.begin(), values.end());
+  for (const double place : places) {
+    moved[parameter] = values[parameter] + place * step;
+    result.push_back(numbers(moved));
+  }
+  return result;
+}
+
+ObservedFormulas FittedScene::formulas(const SystemTable& table) const {
+  ObservedFormulas formulas;
+  SystemText text = system_text(table);
+  text.hamiltonian.reset();
+  text.active = active_;
+  for (const Definition& observation : fit_.observe)
+    formulas.push_back(placed(observation.formula, [&](const std::string& formula) {
+      text.lagrangian = formula;
+      return compile(text).lagrangian;
+    }));
+  return formulas;
+}
+
+Problem FittedScene::inner_problem(const Numbers& numbers, const System& system) const {
+  Problem inner = problem_;
+  inner.lagrangian = system.lagrangian;
+  inner.copies = system.copies;
+  inner.pair = nullptr;
+  inner.boundary = numbers.relation;
+  inner.ends = solve_relation(inner.boundary);
+  const double value = inner.duration.value;
+  inner.duration = numbers.duration;
+  if (inner.duration.free) inner.duration.value = value;
+  return inner;
+}
+
+FittedProblem FittedScene::at(std::span<const double> values) const {
+  const SystemTable table = table_at(values);
+  const Numbers numbers = this->numbers(values);
+  const Problem inner = inner_problem(numbers, make_system(table, active_));
+  FittedProblem result;
+  for (std::size_t j = 0; j < values.size(); ++j) result.changes.push_back(change(values, inner, j));
+  result.problem = inner;
+  if (inner.copies) {
+    result.problem = pair_of(inner);
+    result.problem.symmetries = problem_.pair->symmetries;
+  }
+  result.formulas = formulas(table);
+  return result;
+}
+
+Problem FittedScene::problem(std::span<const double> values, const Guess& guess, double duration) const {
+  Problem problem = inner_problem(numbers(values), make_system(table_at(values)));
+  problem.guess = guess;
+  if (problem.duration.free) problem.duration.value = duration;
+  return make_problem(std::move(problem));
+}
+
+void FittedScene::put_relation_change(const Problem& inner, BoundaryRelation by,
+                                      ProblemChange& change) const {
+  if (!inner.copies) {
+    change.ends = solve_relation(by).offset;
+    change.momenta = std::move(by.momenta);
+    return;
+  }
+  Problem moved = inner;
+  moved.boundary = std::move(by);
+  const Problem pair = pair_of(moved);
+  change.ends = pair.ends.offset;
+  change.momenta = pair.boundary.momenta;
+}
+
+ProblemChange FittedScene::change(std::span<const double> values, const Problem& inner,
+                                  std::size_t unknown) const {
+  ProblemChange result;
+  result.parameters.assign(active_.size(), 0);
+  BoundaryRelation by = inner.boundary;
+  std::ranges::fill(by.value, 0.0);
+  std::ranges::fill(by.momenta, 0.0);
+  if (unknown >= parameters_.size()) {
+    by.value[by.rows - open_.size() + unknown - parameters_.size()] = 1;
+    put_relation_change(inner, std::move(by), result);
+    return result;
+  }
+  result.parameters[unknown] = 1;
+  if (boundary_depends_ || active_.size() > parameters_.size()) {
+    double step = 0;
+    const std::vector<Numbers> numbers = around(values, unknown, step);
+    std::vector<double> slopes(numbers.front().list().size(), 0);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const std::vector<double> list = numbers[k].list();
+      for (std::size_t i = 0; i < list.size(); ++i) slopes[i] += weights[k] * list[i] / step;
+    }
+    auto next = slopes.begin();
+    const auto take = [&](std::vector<double>& to) {
+      for (double& x : to) x = *next++;
+    };
+    take(result.parameters);
+    std::fill_n(result.parameters.begin(), parameters_.size(), 0.0);
+    result.parameters[unknown] = 1;
+    take(by.value);
+    take(by.momenta);
+    if (!inner.duration.free) result.duration = *next;
+    ++next;
+    result.energy = *next;
+    if (inner.duration.where && boundary_depends_) {
+      const std::size_t n = inner.coordinates();
+      result.where = [numbers, step, n](std::span<const double> start, std::span<const double> end) {
+        std::vector<double> gradient(2 * n);
+        double slope = 0;
+        for (std::size_t k = 0; k < places.size(); ++k)
+          slope += weights[k] * numbers[k].duration.where(start.first(n), end.first(n), gradient) / step;
+        return slope;
+      };
+    }
+  }
+  put_relation_change(inner, std::move(by), result);
+  return result;
+}
+
+}  // namespace extremal

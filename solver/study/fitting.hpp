@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+#include "solve/fit/fit.hpp"
+
+/// \file [fit]: what observations determine of a scene.
+
+namespace extremal {
+
+struct Study;
+
+/// What a scene asks for.
+struct FitRequest {
+  FitTask task;                                    ///< but for the solver
+  std::vector<std::string> parameters, open_ends;  ///< names of the unknowns, in their order
+};
+
+/// Reads [fit] of a scene, of which the rest of the study stands. Throws SceneError.
+std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study);
+
+/// Fits `repeat` times from the same guess, as run() solves. Throws std::invalid_argument if repeat < 1, or
+/// without a [fit].
+FitResult run_fit(const Study& study, int repeat = 1,
+                  const std::function<void(const FitStep&)>& progress = {});
+
+}  // namespace extremal

@@ -1,0 +1,405 @@
+#include "study/fitting.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "solve/fit/fitted_path.hpp"
+#include "study/fit_data.hpp"
+#include "study/scenes.hpp"
+
+/// \file Fits beside the values that data were made with, the scatter of repeated fits, and published orbits.
+
+using namespace extremal;
+using namespace extremal::test;
+
+namespace {
+
+using std::numbers::pi;
+
+/// Normal numbers, the same at every call.
+class Noise {
+ public:
+  explicit Noise(unsigned seed) : random_(seed) {}
+  double next() {
+    const double u = (double(random_() >> 11) + 1) / double(1ull << 53),
+                 w = double(random_() >> 11) / double(1ull << 53);
+    return std::sqrt(-2 * std::log(u)) * std::cos(2 * pi * w);
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+const std::string rod =
+    "[system]\n"
+    "coordinates = [\"theta\"]\n"
+    "parameters = { m = 1.0, l = 1.3, g = 9.7 }\n"
+    "lagrangian = \"m*l^2*theta'^2/2 + m*g*l*cos(theta)\"\n";
+
+/// The motion of the pendulum from (1, 0.5), whose data the tests have.
+const std::string swing = rod + "[boundary]\nstart = { theta = 1.0, p_theta = 0.845 }\nduration = 3.0\n";
+
+const std::string forced_oscillator =
+    "[system]\n"
+    "coordinates = [\"x\"]\n"
+    "parameters = { c = 0.3, k = 4.0 }\n"
+    "lagrangian = \"x'^2/2 - k*x^2/2 + 1.5*x*cos(1.7*t)\"\n"
+    "force = { x = \"-c*x'\" }\n";
+
+class Fits : public Scenes {
+ protected:
+  void SetUp() override {
+    Scenes::SetUp();
+    if (!can_fit()) GTEST_SKIP() << "this build has no Ceres";
+  }
+
+  /// q and q' of the motion of a scene at equal times, row by row: t, q, v.
+  std::vector<std::vector<double>> samples(const std::string& scene, int count) {
+    const Study made = study(scene);
+    const Solution solution = run(made);
+    EXPECT_TRUE(solution.converged()) << solution.message;
+    const std::size_t n = made.problem.names.size();
+    std::vector<std::vector<double>> rows;
+    for (int k = 0; k < count; ++k) {
+      const double t = solution.duration() * k / (count - 1);
+      std::vector<double> q(n), v(n), row{t};
+      solution.trajectory.at(t, q, v);
+      row.insert(row.end(), q.begin(), q.end());
+      row.insert(row.end(), v.begin(), v.end());
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
+
+  /// Angle and pull on the rod of the swing, with σ of each; 0: without noise, σ as given.
+  void write_swing(double noise, unsigned seed, bool pull = true) {
+    Noise random(seed);
+    std::string text = pull ? "t,theta,sigma theta,pull,sigma pull\n" : "t,theta,sigma theta\n";
+    for (const auto& row : swing_) {
+      const double load = 9.7 * std::cos(row[1]) + 1.3 * row[2] * row[2];
+      text += fmt::format("{},{:.17g},0.005", row[0], row[1] + noise * 0.005 * random.next());
+      if (pull) text += fmt::format(",{:.17g},0.02", load + noise * 0.02 * random.next());
+      text += "\n";
+    }
+    write("data.csv", text);
+  }
+
+  FitResult fitted(const std::string& scene, const std::vector<std::string>& sets = {}) {
+    const FitResult result = run_fit(study(scene, sets));
+    EXPECT_TRUE(result.solution.converged()) << result.solution.message;
+    return result;
+  }
+
+  /// Derivatives of the residuals against differences, for a scene with a fit, at its start.
+  void expect_derivatives(const std::string& scene) {
+    const Study read = study(scene);
+    Solver solver;
+    const FitTask& task = read.fit->task;
+    std::vector<double> values;
+    for (const FitUnknown& unknown : task.unknowns) values.push_back(unknown.start);
+    const auto problem = task.problem(values, task.guess, task.duration);
+    ASSERT_TRUE(problem.has_value());
+    const Solution solution = solver.solve(*problem, read.options);
+    ASSERT_TRUE(solution.converged()) << solution.message;
+    FittedPath path(task, read.options);
+    path.take(solution, values);
+    ASSERT_TRUE(path.settle());
+    const std::vector<double> at = path.coordinates();
+    const std::size_t rows = task.data.count(), count = values.size();
+    std::vector<double> residuals(rows), jacobian(rows * count);
+    ASSERT_TRUE(path.evaluate(at, residuals, jacobian));
+    for (std::size_t j = 0; j < count; ++j) {
+      const double step = 1e-4 * task.unknowns[j].size;
+      std::vector<std::vector<double>> beside;
+      for (const double place : {-2.0, -1.0, 1.0, 2.0}) {
+        std::vector<double> moved = at;
+        moved[j] += place * step;
+        beside.emplace_back(rows);
+        ASSERT_TRUE(path.evaluate(moved, beside.back(), {}));
+      }
+      double largest = 0, worst = 0;
+      for (std::size_t i = 0; i < rows; ++i) {
+        const double slope =
+            (8 * (beside[2][i] - beside[1][i]) - (beside[3][i] - beside[0][i])) / (12 * step);
+        largest = std::max(largest, std::abs(slope));
+        worst = std::max(worst, std::abs(slope - jacobian[i * count + j]));
+      }
+      EXPECT_LE(worst, 1e-7 * largest) << task.unknowns[j].name;
+      EXPECT_GT(largest, 0) << task.unknowns[j].name;
+    }
+  }
+
+  std::vector<std::vector<double>> swing_;
+  const std::string pull_ = "observe = { pull = \"m*g*cos(theta) + m*l*theta'^2\" }\n";
+  const std::string both_ = rod + "[boundary]\nduration = 3.0\n[fit]\ndata = \"data.csv\"\n" +
+                            "parameters = [\"l\", \"g\"]\n" + pull_;
+};
+
+TEST_F(Fits, FindLengthAndGravityOfAPendulumWithoutNoise) {
+  swing_ = samples(swing, 41);
+  write_swing(0, 1);
+  const FitResult result = fitted(both_, {"system.parameters.l=1.0", "system.parameters.g=9.2"});
+  EXPECT_NEAR(result.values[0], 1.3, 1e-8);
+  EXPECT_NEAR(result.values[1], 9.7, 1e-7);
+  EXPECT_NEAR(result.values[2], 1.0, 1e-8);
+  EXPECT_LT(result.chi_squared, 1e-8);
+  EXPECT_NEAR(result.values[3], swing_.back()[1], 1e-8);
+}
+
+/// 80 fits scatter as the covariance of one tells: their variances to four standard deviations of a variance.
+TEST_F(Fits, CovarianceIsThatOfRepeatedFits) {
+  swing_ = samples(swing, 41);
+  constexpr int times = 80;
+  std::vector<FitResult> all;
+  for (int k = 0; k < times; ++k) {
+    write_swing(1, 100 + k);
+    all.push_back(fitted(both_));
+  }
+  const std::vector<double> truth{1.3, 9.7, 1.0, swing_.back()[1]};
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b <= a; ++b) {
+      double sum = 0;
+      for (const FitResult& each : all) sum += (each.values[a] - truth[a]) * (each.values[b] - truth[b]);
+      const Eigen::MatrixXd& told = all.front().covariance;
+      EXPECT_NEAR(sum / times, told(a, b), 4 * std::sqrt(2.0 / times) * std::sqrt(told(a, a) * told(b, b)));
+    }
+  double chi = 0;
+  for (const FitResult& each : all) chi += each.chi_squared / times;
+  EXPECT_NEAR(chi, 2 * 41 - 4, 4 * std::sqrt(2.0 * 78 / times));
+}
+
+TEST_F(Fits, ScatterScalesTheCovarianceWhereNoSigmaIsGiven) {
+  swing_ = samples(swing, 41);
+  Noise random(3);
+  std::string text = "t,theta\n", with = "t,theta,sigma theta\n";
+  for (const auto& row : swing_) {
+    const std::string line = fmt::format("{},{:.17g}", row[0], row[1] + 0.005 * random.next());
+    text += line + "\n";
+    with += line + ",0.005\n";
+  }
+  const std::string scene =
+      rod + "[boundary]\nduration = 3.0\n[fit]\ndata = \"data.csv\"\nparameters = [\"l\"]\n";
+  write("data.csv", text);
+  const FitResult scaled = fitted(scene);
+  write("data.csv", with);
+  const FitResult given = fitted(scene);
+  EXPECT_TRUE(scaled.scaled);
+  EXPECT_FALSE(given.scaled);
+  EXPECT_NEAR(scaled.values[0], given.values[0], 1e-9);
+  EXPECT_NEAR(scaled.covariance(0, 0), given.covariance(0, 0) * given.chi_squared / 38,
+              1e-6 * given.covariance(0, 0));
+}
+
+TEST_F(Fits, NameWhatDataDoNotDetermine) {
+  swing_ = samples(swing, 41);
+  write_swing(1, 7, false);
+  const std::string scene = rod + "[boundary]\nduration = 3.0\n[fit]\ndata = \"data.csv\"\n";
+  const FitResult two = run_fit(study(scene + "parameters = [\"l\", \"g\"]\n"));
+  EXPECT_EQ(two.solution.status, Status::not_converged);
+  EXPECT_NE(two.solution.message.find("do not determine 'l', 'g'"), std::string::npos)
+      << two.solution.message;
+  const FitResult mass = run_fit(study(scene + "parameters = [\"l\", \"m\"]\n"));
+  EXPECT_EQ(mass.solution.status, Status::not_converged);
+  EXPECT_NE(mass.solution.message.find("do not determine 'm'"), std::string::npos) << mass.solution.message;
+  EXPECT_TRUE(fitted(scene + "parameters = [\"l\"]\n").solution.converged());
+}
+
+TEST_F(Fits, RobustLossesCountOutliersLess) {
+  swing_ = samples(swing, 41);
+  Noise random(11);
+  std::string text = "t,theta,sigma theta\n";
+  for (std::size_t k = 0; k < swing_.size(); ++k)
+    text += fmt::format("{},{:.17g},0.005\n", swing_[k][0],
+                        swing_[k][1] + 0.005 * random.next() + (k % 10 == 4 ? 0.3 : 0));
+  write("data.csv", text);
+  const std::string scene =
+      rod + "[boundary]\nduration = 3.0\n[fit]\ndata = \"data.csv\"\nparameters = [\"l\"]\n";
+  const double squared = std::abs(fitted(scene).values[0] - 1.3);
+  for (const std::string loss : {"huber", "cauchy"}) {
+    const double error = std::abs(fitted(scene + "loss = \"" + loss + "\"\n").values[0] - 1.3);
+    EXPECT_LT(error, squared / 2) << loss;
+    EXPECT_LT(error, 0.01) << loss;
+  }
+}
+
+/// From a first stiffness on the other side of one at which the duration is conjugate to the start.
+TEST_F(Fits, FindDampingFromAForcedResponse) {
+  const auto rows =
+      samples(forced_oscillator + "[boundary]\nstart = { x = 0.5, p_x = -1.0 }\nduration = 8.0\n", 81);
+  Noise random(5);
+  std::string text = "t,x,sigma x\n";
+  for (const auto& row : rows)
+    text += fmt::format("{},{:.17g},0.01\n", row[0], row[1] + 0.01 * random.next());
+  write("data.csv", text);
+  const FitResult result =
+      fitted(forced_oscillator +
+                 "[boundary]\nduration = 8.0\n[fit]\ndata = \"data.csv\"\nparameters = [\"c\", \"k\"]\n",
+             {"system.parameters.c=0.1", "system.parameters.k=3.5"});
+  for (const auto& [k, truth] : {std::pair{0, 0.3}, {1, 4.0}, {2, 0.5}, {3, rows.back()[1]}})
+    EXPECT_NEAR(result.values[k], truth, 4 * std::sqrt(result.covariance(k, k))) << k;
+  EXPECT_LT(std::sqrt(result.covariance(0, 0)), 0.01);
+  EXPECT_LT(result.chi_squared, 130);
+}
+
+TEST_F(Fits, DerivativesAreThoseOfTheExtremals) {
+  write("data.csv", "t,x,x',far\n0.3,0.1,1,0\n0.9,0.5,0.2,1\n1.2,0.4,,2\n1.5,0.2,-0.1,\n");
+  const std::string fit = "[fit]\ndata = \"data.csv\"\nobserve = { far = \"b*x^2 + w*x'*t\" }\n";
+  const std::string system =
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { a = 0.7, b = 1.2, w = \"2*a^2\" }\n"
+      "lagrangian = \"x'^2/2 + (1 + x^2)*y'^2/2 - w*x^2/2 - b*x^4/4 - a*x*y\"\n";
+  expect_derivatives(
+      system + "[boundary]\nstart = { x = \"a/2\", p_y = \"b\" }\nend = { y = \"a*b\" }\nduration = 2.0\n" +
+      fit + "parameters = [\"a\", \"b\"]\n");
+  expect_derivatives(system +
+                     "[boundary]\nstart = { x = 0.1 }\nend = { y = 0.2 }\nduration = \"2 + b - 1.2\"\n" +
+                     fit + "parameters = [\"b\"]\n");
+  expect_derivatives(system +
+                     "[boundary]\nstart = { x = 0.1, y = 0.0 }\nend = { x = \"a\" }\nduration = \"free\"\n"
+                     "energy = \"b\"\n[guess]\nduration = 2.0\n" +
+                     fit + "parameters = [\"a\", \"b\"]\n");
+  expect_derivatives(
+      system +
+      "[boundary]\nstart = { x = 0.1, y = 0.0 }\nend = { x = 0.5, p_y = 0.0 }\n"
+      "duration = \"free\"\nwhere = \"y(T) = a\"\n[guess]\nduration = 2.0\ny = \"0.35*t\"\nx = "
+      "\"0.1 + 0.2*t\"\n" +
+      fit + "parameters = [\"a\", \"b\"]\n");
+  expect_derivatives(system +
+                     "force = { x = \"-b*x'\", y = \"-a*y'\" }\n[boundary]\nstart = { x = 0.1, y = \"a\" }\n"
+                     "end = { y = 0.0 }\nduration = 2.0\n" +
+                     fit + "parameters = [\"a\", \"b\"]\n");
+}
+
+/// Curtis, Orbital Mechanics for Engineering Students, example 5.11.
+TEST_F(Fits, FindAnOrbitFromThreeDirections) {
+  write("data.csv",
+        "t,alpha,delta\n0,43.5365,-8.78334\n118.104,54.4196,-12.0739\n237.577,64.3178,-15.1054\n");
+  const FitResult result = fitted(
+      "[system]\nuse = \"kepler-space\"\n"
+      "parameters = { mu = 398600.0, radius = 6378.0, flat = 0.003353, height = 1.0, lat = \"40*pi/180\" }\n"
+      "[system.definitions]\n"
+      "bulge = \"sqrt(1 - (2*flat - flat^2)*sin(lat)^2)\"\n"
+      "theta = \"pi/180*(44.5065 + (45.4992 - 44.5065)*t/237.577)\"\n"
+      "across = \"(radius/bulge + height)*cos(lat)\"\n"
+      "rx = \"x - across*cos(theta)\"\nry = \"y - across*sin(theta)\"\n"
+      "rz = \"z - (radius*(1 - flat)^2/bulge + height)*sin(lat)\"\n"
+      "[boundary]\nduration = 237.577\n"
+      "[guess]\nx = \"6000 - 3*t\"\ny = \"6000 + 5*t\"\nz = \"3000 - 2*t\"\n"
+      "[fit]\ndata = \"data.csv\"\n"
+      "observe = { alpha = \"180/pi*atan2(ry, rx)\", delta = \"180/pi*atan2(rz, sqrt(rx^2 + ry^2))\" }\n");
+  std::vector<double> q(3), v(3);
+  result.solution.trajectory.at(118.104, q, v);
+  const double r[] = {5662.04, 6537.95, 3269.05}, w[] = {-3.88542, 5.12141, -2.2434};
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(q[a], r[a], 0.05);  // of angles to six digits
+    EXPECT_NEAR(v[a], w[a], 1e-4);
+  }
+}
+
+/// Vallado, Fundamentals of Astrodynamics and Applications, example 7-2: places of the site to a metre.
+TEST_F(Fits, FindAnOrbitFromDirectionsOfAMovingSite) {
+  write("data.csv",
+        "t,alpha,delta\n0,0.939913,18.667717\n480,45.025748,35.664741\n720,67.886655,36.996583\n");
+  const FitResult result = fitted(
+      "[system]\nuse = \"kepler-space\"\n[system.definitions]\n"
+      "a1 = \"(t - 480)*(t - 720)/(480*720)\"\na2 = \"-t*(t - 720)/(480*240)\"\n"
+      "a3 = \"t*(t - 480)/(720*240)\"\n"
+      "rx = \"x - (4054.881*a1 + 3956.224*a2 + 3905.073*a3)\"\n"
+      "ry = \"y - (2748.195*a1 + 2888.232*a2 + 2956.935*a3)\"\n"
+      "rz = \"z - (4074.237*a1 + 4074.364*a2 + 4074.430*a3)\"\n"
+      "[boundary]\nduration = 720.0\n"
+      "[guess]\nx = \"8000 - 5*(t - 240)\"\ny = \"4000 + 5*(t - 240)\"\nz = \"5500 + 2*(t - 240)\"\n"
+      "[fit]\ndata = \"data.csv\"\n"
+      "observe = { alpha = \"180/pi*atan2(ry, rx)\", delta = \"180/pi*atan2(rz, sqrt(rx^2 + ry^2))\" }\n");
+  std::vector<double> q(3), v(3);
+  result.solution.trajectory.at(480, q, v);
+  const double r[] = {6356.48603405, 5290.53225676, 6511.39697857},
+               w[] = {-4.17294816, 4.77654968, 1.72027091};
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(q[a], r[a], 0.2);
+    EXPECT_NEAR(v[a], w[a], 2e-4);
+  }
+}
+
+TEST_F(Fits, FindTheMassRatioFromAHaloOrbit) {
+  const std::string head = "[system]\nuse = \"cr3bp\"\nparameters = { mu = 0.04 }\n";
+  const std::string orbit =
+      "[boundary]\nperiodic = true\nduration = 2.202198\n[guess]\nx = \"0.87 - 0.093*cos(2*pi*t/T)\"\n"
+      "y = \"0.165*sin(2*pi*t/T)\"\nz = \"0.107 + 0.178*cos(2*pi*t/T)\"\n";
+  const auto rows = samples(head + orbit, 60);
+  Noise random(9);
+  std::string text = "t,x,sigma x,y,sigma y,z,sigma z\n";
+  for (const auto& row : rows) {
+    text += fmt::format("{:.17g}", row[0]);
+    for (int a = 1; a <= 3; ++a) text += fmt::format(",{:.17g},0.001", row[a] + 0.001 * random.next());
+    text += "\n";
+  }
+  write("data.csv", text);
+  const FitResult result = fitted(head + orbit + "[fit]\ndata = \"data.csv\"\nparameters = [\"mu\"]\n",
+                                  {"system.parameters.mu=0.038"});
+  EXPECT_NEAR(result.values[0], 0.04, 4 * std::sqrt(result.covariance(0, 0)));
+  EXPECT_LT(std::sqrt(result.covariance(0, 0)), 1e-3);
+  EXPECT_EQ(result.values.size(), 1u);
+}
+
+TEST_F(Fits, KeepTheElementsOfAScheme) {
+  swing_ = samples(swing, 41);
+  write_swing(0, 1);
+  const FitResult result = fitted(both_ + "[solve]\nscheme = \"midpoint\"\nelements = 200\n");
+  EXPECT_EQ(result.solution.trajectory.elements(), 200);
+  EXPECT_NEAR(result.values[0], 1.3, 0.01);
+  EXPECT_GT(std::abs(result.values[0] - 1.3), 1e-6);
+}
+
+TEST_F(Fits, RefuseBadInput) {
+  const std::string start = rod + "[boundary]\nduration = 3.0\n[fit]\n",
+                    fit = start + "data = \"data.csv\"\n";
+  const std::string all = fit + "parameters = [\"l\"]\n";
+  const auto with = [&](const std::string& data, const std::string& scene) {
+    write("data.csv", data);
+    return message(scene);
+  };
+  const std::string good = "t,theta\n0,1\n1,0.5\n2,0.2\n3,0.1\n";
+  EXPECT_NE(message(start + "data = \"none.csv\"\n").find("none.csv: no such file"), std::string::npos);
+  EXPECT_EQ(with("t,phi\n0,1\n", all).substr(0, 34), "data.csv:1:3: unknown column 'phi'");
+  EXPECT_EQ(with("s,theta\n0,1\n", all).substr(0, 13), "data.csv:1:1:");
+  EXPECT_EQ(with("x,t,theta\n", fit).substr(0, 13), "data.csv:1:1:");
+  EXPECT_EQ(with("t,theta\n", all), "data.csv: the file has no observations");
+  EXPECT_EQ(with("t,theta\n0,1\n3.5,1\n", all), "data.csv:3:1: t = 3.5 is not between 0 and the duration, 3");
+  EXPECT_EQ(with("t,theta\n0,1\n1,one\n", all), "data.csv:3:3: 'one' is not a finite number");
+  EXPECT_EQ(with("t,theta\n0,1\n1,2,3\n", all), "data.csv:3:1: found 3 values for 2 columns");
+  EXPECT_EQ(with("t,theta,sigma theta\n0,1,0\n", all),
+            "data.csv:2:5: sigma = 0; a standard deviation is positive");
+  EXPECT_NE(with("t,theta,sigma phi\n0,1,1\n", all).find("data.csv:1:9: 'sigma phi' belongs"),
+            std::string::npos);
+  EXPECT_EQ(with("t,theta\n0,1\n1,0.5\n", all),
+            "scene.toml:8:9: the data have 2 values for 3 unknowns: l, theta(0), theta(T)");
+  EXPECT_NE(with(good, fit + "parameters = [\"q\"]\n").find("scene.toml:9:16: unknown parameter 'q'"),
+            std::string::npos);
+  EXPECT_NE(with(good, all + "loss = \"absolute\"\n").find("scene.toml:10:9: unknown loss 'absolute'"),
+            std::string::npos);
+  EXPECT_NE(with(good, all + "observe = { a = \"theta*u\" }\n").find("scene.toml:10:"), std::string::npos);
+  EXPECT_NE(with(good, all + "[search]\nsolutions = 2\n").find("exclude each other"), std::string::npos);
+  write("data.csv", good);
+  EXPECT_NE(message(rod + "[boundary]\nstart = { theta = 0 }\nend = { theta = 1 }\nduration = 3.0\n"
+                          "[fit]\ndata = \"data.csv\"\n")
+                .find("nothing to be found"),
+            std::string::npos);
+  EXPECT_NE(message(swing + "[fit]\ndata = \"data.csv\"\nparameters = [\"l\"]\n").find("initial data"),
+            std::string::npos);
+}
+
+TEST_F(Fits, AnglesAreTakenWithoutWholeTurns) {
+  const Vocabulary known({{"k", {{2.0}, false}}});
+  EXPECT_DOUBLE_EQ(turn_of("atan2(y, x)", known), 2 * pi);
+  EXPECT_DOUBLE_EQ(turn_of("180/pi*atan2(y, (x + 1)*2)", known), 360);
+  EXPECT_DOUBLE_EQ(turn_of("-atan2(y, x)*k", known), 4 * pi);
+  EXPECT_EQ(turn_of("atan2(y, x) + 1", known), 0);
+  EXPECT_EQ(turn_of("1 + atan2(y, x)", known), 0);
+  EXPECT_EQ(turn_of("x*atan2(y, x)", known), 0);
+  EXPECT_EQ(turn_of("sin(atan2(y, x))", known), 0);
+}
+
+}  // namespace
