@@ -8,6 +8,17 @@
 
 namespace extremal::limits {
 
+namespace balance {
+
+/// Speeds by the largest: of a rest at an end, at most; and where its tail is measured, which must be small
+/// for the linear equations and large against errors.
+inline constexpr double rest_speed = 1e-5, tail_speed = 1e-4;
+inline constexpr int halvings = 60;
+/// An element of a rest becomes no shorter than this part of itself.
+inline constexpr double shortest_element = 0.02;
+
+}  // namespace balance
+
 namespace deflation {
 
 inline constexpr int most_steps = 40;
@@ -60,6 +71,42 @@ inline constexpr double energy_error = 1e-9;
 
 }  // namespace from_motions
 
+namespace gradient_flow {
+
+/// Linear elements on which the action is minimised; of many coordinates, so that elements times coordinates
+/// squared are no more than the second.
+inline constexpr int elements = 384, least_elements = 64;
+/// Steps, and those between two meshes.
+inline constexpr int most_steps = 600, steps_a_mesh = 4;
+/// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
+inline constexpr int smoothings = 4;
+inline constexpr double floor = 0.5;
+/// 1/τ by the negative curvature of L in q: the flow keeps the order of paths from 1 on.
+inline constexpr double faithful = 2;
+/// A step shorter than this, relative to the range, is near enough to a stationary path that τ may grow as
+/// steps shrink; by this factor at most after each step.
+inline constexpr double short_step = 0.02, growth = 4;
+/// 1/τ grows by the first where the second variation is indefinite or the action does not fall; by the
+/// largest curvature of L in q it is then at least the second, at most the third; and near a minimiser below
+/// the last.
+inline constexpr double cut = 4, least_shift = 1e-3, most_shift = 1e6, final_shift = 0.1;
+/// Relative to the range: the longest change of a step, and one below which the path is nearly minimal.
+inline constexpr double longest_step = 0.3, close = 1e-3;
+/// The action must fall by this part of the decrease that its slope predicts, but for its roundoff.
+inline constexpr double sufficient = 1e-4, roundoff = 1e-14;
+/// Of the range, along the direction of most negative curvature.
+inline constexpr double kick = 0.1, least_kick = 1e-3;
+/// An eigenvalue below this, by the largest curvature of L in q, is negative: that of a shift of an interface
+/// through the elements has either sign.
+inline constexpr double negative = 0.02;
+inline constexpr int inverse_iterations = 12;
+/// A path this much larger than at first has run away.
+inline constexpr double runaway = 1e3;
+/// Nodes of one element of higher degree.
+inline constexpr int nodes_an_element = 4;
+
+}  // namespace gradient_flow
+
 namespace guess_mesh {
 
 /// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.
@@ -111,6 +158,8 @@ namespace several {
 
 /// Elements of a family keep the accuracy that is needed to land.
 inline constexpr int family_degree = 6, elements_a_turn = 8;
+/// Saddles that are left downhill at a time.
+inline constexpr int most_saddles = 24;
 /// Guesses tried before families are traced, and each time between.
 inline constexpr unsigned guesses = 8;
 /// Of the effort that one solve may take, for each extremal that is new.

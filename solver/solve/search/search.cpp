@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solve/external/external_solver.hpp"
 #include "solve/homotopy/duration_homotopy.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/periodic/equilibrium.hpp"
+#include "solve/search/balance.hpp"
 #include "solve/search/descent.hpp"
+#include "solve/search/gradient_flow.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -95,6 +98,91 @@ bool Search::by_descent(const std::vector<double>& mesh) {
   return descent.run(refinement_.tables()) && found("minimisation in windows");
 }
 
+/// Downhill along the gradient flow of the action.
+bool Search::by_gradient_flow() {
+  if (refinement_.exhausted() || !GradientFlow::suits(problem_)) return false;
+  const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
+  if (linear.unknowns() > most_dense_unknowns) return false;
+  const std::vector<double> mesh = uniform_mesh(limits::gradient_flow::elements);
+  refinement_.open(mesh, 1);
+  path_.reset(linear, mesh, problem_.duration.value);
+  start_path(*guess_, ends_, linear, path_);
+  bend_path(problem_, bend_, linear, path_);
+  return flow_from(0);
+}
+
+bool Search::descend_from(const Trajectory& saddle, double side) {
+  if (refinement_.exhausted() || !GradientFlow::suits(problem_)) return false;
+  const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
+  if (linear.unknowns() > most_dense_unknowns) return false;
+  const double T = saddle.duration();
+  const int parts = std::max(1, limits::gradient_flow::elements / saddle.elements());
+  std::vector<double> mesh;
+  for (int k = 0; k < saddle.elements(); ++k)
+    for (int j = 0; j < parts; ++j)
+      mesh.push_back((saddle.times[k] + (saddle.times[k + 1] - saddle.times[k]) * j / parts) / T);
+  mesh.push_back(1);
+  const std::size_t n = saddle.coordinates;
+  std::vector<double> ends(2 * n), v(n);
+  saddle.at(0, {ends.data(), n}, v);
+  saddle.at(T, {ends.data() + n, n}, v);
+  refinement_.open(mesh, 1);
+  path_.reset(linear, mesh, T);
+  fill_path(ends, linear, path_, [&](double tau, double* q) { saddle.at(std::min(tau * T, T), {q, n}, v); });
+  const bool result = flow_from(side);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
+/// From the path, which is on linear elements, to a minimiser, and by Newton's method on elements made of
+/// several of those to the tolerance.
+bool Search::flow_from(double side) {
+  using namespace limits::gradient_flow;
+  constexpr const char* strategy = "minimisation by the gradient flow";
+  GradientFlow flow(problem_, path_, w_, [&] { return refinement_.count_step(); });
+  if (!flow.run(side * kick)) return false;
+  MonotoneCubic curve;
+  curve.fit(path_);
+  const std::span<const double> nodes = curve.mesh();
+  std::vector<double> mesh;
+  for (std::size_t k = 0; k + 1 < nodes.size(); k += nodes_an_element) mesh.push_back(nodes[k]);
+  mesh.push_back(1);
+  const auto reopen = [&] {
+    refinement_.open(mesh, Refinement::first_degree);
+    curve.fill(refinement_.tables(), path_);
+  };
+  reopen();
+  if (found(strategy)) return true;
+  reopen();
+  return held_in_time(strategy);
+}
+
+/// A path between equilibria that roundoff does not hold in time: converged across its shifts first, then
+/// shifted to where energies at the ends agree, and tried without and with its shifts held.
+bool Search::held_in_time(const char* strategy) {
+  Acceptance* const acceptance = std::exchange(acceptance_, nullptr);
+  const auto hold = [&](bool on) {
+    refinement_.take(refinement_.tables());
+    outcome_.shifts_held = on;
+    refinement_.rebind();
+  };
+  hold(true);
+  const bool converged = found(strategy) && w_.iteration.held_shifts() > 0;
+  acceptance_ = acceptance;
+  if (!converged) return false;
+  if (const std::optional<double> shift = shift_to_balance(problem_, path_);
+      shift && shift_in_time(problem_, *shift, path_)) {
+    const Path balanced = path_;
+    const ElementTables& tables = refinement_.tables();
+    hold(false);
+    if (found(strategy)) return true;
+    path_ = balanced;
+    refinement_.take(tables);
+  }
+  hold(true);
+  return found(strategy);
+}
+
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.
 bool Search::through_other_durations() {
   if (refinement_.exhausted() || problem_.duration.free || problem_.paired ||
@@ -178,7 +266,7 @@ bool Search::from_other_guesses(GuessKind guess) {
   if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
       found("newton from the guess on finer elements"))
     return true;
-  if (by_descent(mesh_) || from_finer_elements()) return true;
+  if (by_gradient_flow() || by_descent(mesh_) || from_finer_elements()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;
   begin();

@@ -147,6 +147,20 @@ void Several::guess() {
   }
 }
 
+/// Saddles are left both ways along their direction of most negative curvature: a symmetric one for a pair of
+/// extremals of less action.
+void Several::descend() {
+  for (int saddles = 0; descended_ < found_.size() && saddles < most_saddles && !search_.exhausted() &&
+                        !options_.deadline.passed();
+       ++descended_) {
+    if (found_[descended_].morse_index.value_or(0) == 0) continue;
+    ++saddles;
+    const Trajectory saddle = found_[descended_].trajectory;
+    for (double side : {-1.0, 1.0})
+      if (search_.descend_from(saddle, side)) keep();
+  }
+}
+
 void Several::bend() {
   const Bend bend = bend_of(seed_);
   const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
@@ -366,10 +380,12 @@ std::vector<Solution> Several::run(int most) {
   if (!begun) failed = repeating_ ? std::move(*repeating_) : std::move(solution);
   if (!begun && !loops_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
+  if (begun) descend();
   if (begun) deflate();
   guess();
   while (wanted())
     if (!trace_families()) guess();
+  descend();
   if (found_.empty()) {
     if (failed->converged())
       failed->message += fmt::format(
