@@ -35,8 +35,8 @@ inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
 
 namespace soft_shifts {
 
-/// Speeds below this, relative to the largest, are rest: squares of them are roundoff of the action.
-inline constexpr double slowest = 1e-5;
+/// Speeds below this, relative to the largest, are rest.
+inline constexpr double slowest = 3e-3;
 
 }  // namespace soft_shifts
 

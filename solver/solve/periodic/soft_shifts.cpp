@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "solve/periodic/limits.hpp"
@@ -23,23 +24,21 @@ void add_soft_shifts(const Problem& problem, const Path& path, const SchemeTable
   }
   const double slow = slowest * *std::max_element(speed.begin(), speed.end());
   if (!std::isfinite(slow)) return;
-  // From one slowest node of a rest to that of the next.
-  for (std::size_t from = 0; from < last && speed[0] <= slow;) {
-    std::size_t to = from;
-    while (to < last && speed[to] <= slow) ++to;
-    while (to < last && speed[to] > slow) ++to;
-    if (speed[to] > slow) return;
-    for (std::size_t k = to; k <= last && speed[k] <= slow; ++k)
-      if (speed[k] < speed[to]) to = k;
-    if (*std::max_element(speed.begin() + static_cast<std::ptrdiff_t>(from),
-                          speed.begin() + static_cast<std::ptrdiff_t>(to)) <= slow)
-      return;
-    direction.assign(shift.size(), 0);
-    std::copy(shift.begin() + static_cast<std::ptrdiff_t>(from * n),
-              shift.begin() + static_cast<std::ptrdiff_t>((to + 1) * n),
-              direction.begin() + static_cast<std::ptrdiff_t>(from * n));
-    phases.add(direction);
-    from = to;
+  // From the slowest node of a rest to that of the next.
+  std::optional<std::size_t> from;
+  for (std::size_t k = 0; k <= last; ++k) {
+    if (speed[k] > slow) continue;
+    std::size_t slowest = k;
+    for (; k <= last && speed[k] <= slow; ++k)
+      if (speed[k] < speed[slowest]) slowest = k;
+    if (from) {
+      direction.assign(shift.size(), 0);
+      std::copy(shift.begin() + static_cast<std::ptrdiff_t>(*from * n),
+                shift.begin() + static_cast<std::ptrdiff_t>((slowest + 1) * n),
+                direction.begin() + static_cast<std::ptrdiff_t>(*from * n));
+      phases.add(direction);
+    }
+    from = slowest;
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "solution/solution.hpp"
 #include "solve/search/limits.hpp"
@@ -13,94 +12,162 @@ using namespace limits::balance;
 
 namespace {
 
-/// ½q'ᵀL_q'q'q', L_q'q' taken at the equilibrium.
-struct Tail {
-  double time = 0;   ///< where the speed is slow
-  double speed = 0;  ///< there, in the norm of L_q'q'
-  double rate = 0;
-};
-
-double form(std::span<const double> matrix, std::span<const double> x) {
+double form(std::span<const double> x, std::span<const double> matrix, std::span<const double> y) {
   double sum = 0;
   for (std::size_t a = 0; a < x.size(); ++a)
-    for (std::size_t b = 0; b < x.size(); ++b) sum += x[a] * matrix[a * x.size() + b] * x[b];
+    for (std::size_t b = 0; b < y.size(); ++b) sum += x[a] * matrix[a * x.size() + b] * y[b];
   return sum;
 }
 
-class Tails {
- public:
-  Tails(const Problem& problem, const Path& path)
-      : problem_(problem), path_(trajectory_of(path)), q_(path.coordinates()), v_(path.coordinates()) {
-    for (std::size_t k = 0; k + 1 < path_.times.size(); ++k) {
-      const double at[] = {path_.times[k], 0.5 * (path_.times[k] + path_.times[k + 1])};
-      for (double t : at) fastest_ = std::max(fastest_, speed(t));
-    }
-  }
-
-  /// At t = 0, or at T. Nothing if the path does not rest there.
-  std::optional<Tail> at(bool end) {
-    const double T = path_.duration(), limit = tail_speed * fastest_;
-    const double far = end ? T : 0;
-    if (!(speed(far) < rest_speed * fastest_)) return std::nullopt;
-    const std::vector<double> equilibrium = q_, none(q_.size(), 0);
-    // The first time from that end at which it is no longer slow, by elements, then by halving.
-    const std::size_t count = path_.times.size();
-    std::size_t k = 1;
-    const auto time = [&](std::size_t j) { return path_.times[end ? count - 1 - j : j]; };
-    while (k < count && speed(time(k)) < limit) ++k;
-    if (k == count) return std::nullopt;
-    double slower = time(k - 1), faster = time(k);
-    for (int step = 0; step < halvings; ++step) {
-      const double middle = 0.5 * (slower + faster);
-      (speed(middle) < limit ? slower : faster) = middle;
-    }
-    speed(slower);
-    const PointValues values =
-        evaluate_at(*problem_.lagrangian, equilibrium, none, far, Order::hessian, scratch_);
-    std::vector<double> away(q_.size());
-    for (std::size_t a = 0; a < away.size(); ++a) away[a] = q_[a] - equilibrium[a];
-    const double squared = form(values.qq, away) / form(values.vv, away), kinetic = form(values.vv, v_);
-    if (!(squared > 0) || !(kinetic > 0)) return std::nullopt;
-    return Tail{std::abs(slower - far), std::sqrt(kinetic), std::sqrt(squared)};
-  }
-
- private:
-  double speed(double t) {
-    path_.at(t, q_, v_);
-    double sum = 0;
-    for (double v : v_) sum += v * v;
-    return std::sqrt(sum);
-  }
-
-  const Problem& problem_;
-  const Trajectory path_;
-  std::vector<double> q_, v_;
-  Scratch scratch_;
-  double fastest_ = 0;
-};
+double length(std::span<const double> x) {
+  double sum = 0;
+  for (double a : x) sum += a * a;
+  return std::sqrt(sum);
+}
 
 }  // namespace
 
-std::optional<double> shift_to_balance(const Problem& problem, const Path& path) {
-  if (problem.ends.free > 0 || !problem.lagrangian->structure().autonomous) return std::nullopt;
-  Tails tails(problem, path);
-  const std::optional<Tail> start = tails.at(false), end = tails.at(true);
-  if (!start || !end) return std::nullopt;
-  const double at_start = std::log(start->speed) - start->rate * start->time,
-               at_end = std::log(end->speed) - end->rate * end->time;
-  const double shift = (at_start - at_end) / (start->rate + end->rate);
-  if (!(shift > -start->time) || !(shift < end->time)) return std::nullopt;
-  return shift;
+/// Speeds along a trajectory, at times that its elements give.
+class Balance::Speeds {
+ public:
+  explicit Speeds(const Path& path) : path_(trajectory_of(path)), q_(path.coordinates()), v_(q_) {
+    for (int k = 0; k < path_.elements(); ++k)
+      for (int j = 0; j < speed_samples; ++j)
+        times.push_back(path_.times[k] + (path_.times[k + 1] - path_.times[k]) * j / speed_samples);
+    times.push_back(path_.duration());
+    for (double t : times) {
+      values.push_back(at(t));
+      fastest = std::max(fastest, values.back());
+    }
+  }
+
+  double at(double t) {
+    path_.at(t, q_, v_);
+    return length(v_);
+  }
+  /// q and q' where at() was called last.
+  const std::vector<double>& q() const { return q_; }
+  const std::vector<double>& v() const { return v_; }
+
+  /// Between the sample i, where the speed is less than `speed`, and a neighbour, where it is not.
+  double crossing(std::size_t i, std::size_t neighbour, double speed) {
+    double slower = times[i], faster = times[neighbour];
+    for (int step = 0; step < halvings; ++step) {
+      const double middle = 0.5 * (slower + faster);
+      (at(middle) < speed ? slower : faster) = middle;
+    }
+    at(slower);
+    return slower;
+  }
+
+  std::vector<double> times, values;
+  double fastest = 0;
+
+ private:
+  const Trajectory path_;
+  std::vector<double> q_, v_;
+};
+
+Balance::Balance(const Problem& problem, const Path& path) {
+  if (problem.ends.free > 0 || !problem.lagrangian->structure().autonomous) return;
+  Speeds speeds(path);
+  const double slow = resting * speeds.fastest;
+  const std::size_t count = speeds.times.size();
+  bool all = true;
+  for (std::size_t i = 0; i < count && all; ++i) {
+    if (!(speeds.values[i] < slow)) continue;
+    std::size_t slowest = i;
+    for (; i < count && speeds.values[i] < slow; ++i)
+      if (speeds.values[i] < speeds.values[slowest]) slowest = i;
+    const std::optional<Rest> rest = measure(*problem.lagrangian, speeds, slowest);
+    all = rest.has_value();
+    if (all) rests_.push_back(*rest);
+    rest_speed_ = std::max(rest_speed_, speeds.values[slowest] / speeds.fastest);
+  }
+  if (all) balance();
 }
 
-bool shift_in_time(const Problem& problem, double shift, Path& path) {
-  Tails tails(problem, path);
-  const std::optional<Tail> start = tails.at(false), end = tails.at(true);
-  if (!start || !end) return false;
-  const double T = path.duration(), from = start->time / T, to = 1 - end->time / T;
+/// The rest about the sample of least speed; nothing if its tails are not those of an equilibrium.
+std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Speeds& speeds,
+                                              std::size_t slowest) {
+  const std::size_t last = speeds.times.size() - 1;
+  const double least = speeds.values[slowest],
+               tail = std::max(tail_speed * speeds.fastest, tail_growth * least);
+  std::size_t before = slowest, after = slowest;
+  while (before > 0 && speeds.values[before] < tail) --before;
+  while (after < last && speeds.values[after] < tail) ++after;
+  const bool begins = speeds.values[before] < tail, ends = speeds.values[after] < tail;
+  if (begins && ends) return std::nullopt;
+  Rest rest{0, speeds.times[last], 0, 0, true};
+  std::vector<double> in, out;
+  if (!begins) {
+    rest.from = speeds.crossing(before + 1, before, tail);
+    in = speeds.v();
+  }
+  if (!ends) {
+    rest.to = speeds.crossing(after - 1, after, tail);
+    out = speeds.v();
+  }
+  if (begins) in = out;
+  if (ends) out = in;
+  speeds.at(speeds.times[begins ? 0 : ends ? last : slowest]);
+  const std::vector<double> none(in.size(), 0);
+  Scratch scratch;
+  const PointValues values = evaluate_at(lagrangian, speeds.q(), none, 0, Order::hessian, scratch);
+  const auto rate = [&](const std::vector<double>& v) {
+    return std::sqrt(form(v, values.qq, v) / form(v, values.vv, v));
+  };
+  const double kinetic = form(in, values.vv, in) * form(out, values.vv, out),
+               r = 0.5 * (rate(in) + rate(out));
+  if (!(r > 0) || !(kinetic > 0)) return std::nullopt;
+  // An end beside the equilibrium has a part A of its own.
+  double force = 0;
+  for (std::size_t a = 0; a < in.size(); ++a) force += values.dq[a] * in[a];
+  const double acceleration = std::abs(force) / form(in, values.vv, in) * length(in);
+  const bool at_end = begins || ends;
+  if (at_end && acceleration > off_equilibrium * r * std::max(least, speed_roundoff * speeds.fastest))
+    return std::nullopt;
+  rest.stiffness = at_end ? 2 * r : r;
+  rest.log_energy = 0.5 * std::log(kinetic) - rest.stiffness * (rest.to - rest.from);
+  rest.positive = form(in, values.vv, out) > 0;
+  return rest;
+}
+
+/// The energies are e^C for log_energy − stiffness·(shift after − shift before) = C; before the first rest
+/// and after the last nothing is shifted.
+void Balance::balance() {
+  if (rests_.size() < 2) return;
+  double sum = 0, weights = 0, shift = 0;
+  for (const Rest& rest : rests_) {
+    if (rest.positive != rests_.front().positive) return;
+    sum += rest.log_energy / rest.stiffness;
+    weights += 1 / rest.stiffness;
+  }
+  exists_ = true;
+  for (const Rest& rest : rests_) {
+    const double longer = (rest.log_energy - sum / weights) / rest.stiffness;
+    shift += longer;
+    shifts_.push_back(shift);
+    largest_shift_ = std::max(largest_shift_, std::abs(longer) * rest.stiffness);
+    exists_ = exists_ && rest.to - rest.from + longer > 0;
+  }
+  shifts_.back() = 0;
+}
+
+bool Balance::apply(Path& path) const {
+  if (!exists_) return false;
+  const double T = path.duration();
   std::vector<double> times(path.mesh().begin(), path.mesh().end());
-  for (double& tau : times)
-    tau = shift / T * (tau < from ? tau / from : tau > to ? (1 - tau) / (1 - to) : 1.0);
+  for (double& tau : times) {
+    const double t = tau * T;
+    double shift = 0;
+    for (std::size_t j = 0; j < rests_.size() && t > rests_[j].from; ++j) {
+      const double part = std::min(1.0, (t - rests_[j].from) / (rests_[j].to - rests_[j].from));
+      const double before = j > 0 ? shifts_[j - 1] : 0;
+      shift = before + part * (shifts_[j] - before);
+    }
+    tau = shift / T;
+  }
   if (!path.move_mesh(times, 1, shortest_element)) return false;
   path.load_ends();
   return true;

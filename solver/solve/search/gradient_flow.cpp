@@ -45,27 +45,34 @@ bool GradientFlow::evaluate() {
   return action_.finite() && std::isfinite(value());
 }
 
-/// Masses are those of the linear elements: ∂²L_d/∂q_a∂q_b = −M/h but for terms of gyroscopic forces.
 bool GradientFlow::begin() {
   w_.iteration.reset(problem_, tables_, path_.elements());
   system_.reset(problem_.ends, path_.elements(), path_.coordinates(), false);
   saved_ = path_;
   if (path_.elements() < least_elements || !evaluate()) return false;
+  measure_mass();
+  return std::ranges::all_of(mass_, [](double m) { return m > 0 && std::isfinite(m); });
+}
+
+/// L_q'q' of each coordinate, the mean along the path.
+void GradientFlow::measure_mass() {
   const std::size_t n = path_.coordinates();
-  const std::span<const double> mesh = path_.mesh();
-  const Chain& chain = action_.nodes.chain;
+  const Lagrangian& lagrangian = *problem_.lagrangian;
   mass_.assign(n, 0);
-  double covered = 0;
-  for (int k = 0; k + 1 < chain.blocks(); ++k) {
-    const double h = (mesh[k + 2] - mesh[k + 1]) * path_.duration();
-    covered += h;
-    for (std::size_t a = 0; a < n; ++a) mass_[a] -= h * h * chain.lower(k)[a * n + a];
+  if (lagrangian.structure().quadratic) {
+    for (const Triplet& m : lagrangian.structure().mass)
+      if (m.row == m.column) mass_[m.row] += m.value;
+    return;
   }
-  for (double& m : mass_) {
-    m /= covered;
-    if (!(m > 0) || !std::isfinite(m)) return false;
+  std::vector<double> v(n);
+  for (int k = 0; k < mass_samples; ++k) {
+    const int i = k * path_.elements() / mass_samples;
+    const double h = (path_.mesh()[i + 1] - path_.mesh()[i]) * path_.duration();
+    for (std::size_t a = 0; a < n; ++a) v[a] = (path_.node(i + 1)[a] - path_.node(i)[a]) / h;
+    const PointValues values = evaluate_at(lagrangian, {path_.node(i), n}, v,
+                                           path_.mesh()[i] * path_.duration(), Order::hessian, w_.scratch);
+    for (std::size_t a = 0; a < n; ++a) mass_[a] += values.vv[a * n + a] / mass_samples;
   }
-  return true;
 }
 
 /// Of ∫ φ_k L_qq at the nodes, which a constant displacement leaves of the second variation, by Gershgorin.
@@ -158,8 +165,12 @@ GradientFlow::Result GradientFlow::step() {
       return Result::failed;
   }
   const double descent = slope();
+  if (getenv("GF"))
+    fprintf(stderr, "GF S %.12g size %.3g shift %.3g curv %.3g stiff %.3g slope %.3g range %.3g\n", before,
   range_ = scales(path_, tables_).q;
-  if (size <= close * range_ && wanted_ <= final_shift * stiffness_) return Result::minimal;
+  // Stationary, or nearly so along the directions that a shift leaves.
+  if (size * std::max(wanted_, final_shift * stiffness_) <= close * range_ * final_shift * stiffness_)
+    return Result::minimal;
   const double factor = std::min(1.0, range_ > 0 ? longest_step * range_ / size : 1.0);
   saved_.copy_values(path_);
   apply(factor);
@@ -186,9 +197,10 @@ bool GradientFlow::run(double away) {
   const double first = scales(path_, tables_).magnitude;
   for (int steps = 1; steps <= most_steps; ++steps) {
     const Result result = step();
+    if (getenv("GF") && result == Result::failed)
     if (result == Result::failed) return false;
     if (result == Result::minimal) {
-      if (leave_saddle(kick)) continue;
+      if (leave_saddle(side_ * kick)) continue;
       return true;
     }
     if (scales(path_, tables_).magnitude > runaway * std::max(first, range_)) return false;

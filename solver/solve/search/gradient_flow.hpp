@@ -33,12 +33,15 @@ class GradientFlow {
   /// The path is moved first by `away` of its range, of either sign, along the direction of most negative
   /// curvature; false if there is none, unless `away` is 0.
   bool run(double away = 0);
+  /// To which side saddles are left that the flow meets: 1 or −1.
+  void prefer(double side) { side_ = side; }
 
  private:
   enum class Result { minimal, moved, failed };
   bool begin();
   bool evaluate();
   double value() const;
+  void measure_mass();
   void measure_curvature();
   void shift_to(double reciprocal);
   bool factor();
@@ -66,7 +69,7 @@ class GradientFlow {
   double wanted_ = 0;     ///< 1/τ of the next step
   double curvature_ = 0;  ///< bound of the negative curvature of L in q, by the mass
   double stiffness_ = 0;  ///< of the curvature in q, by the mass: the largest
-  double range_ = 0;
+  double range_ = 0, side_ = 1;
 };
 
 }  // namespace extremal

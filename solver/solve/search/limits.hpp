@@ -10,12 +10,20 @@ namespace extremal::limits {
 
 namespace balance {
 
-/// Speeds by the largest: of a rest at an end, at most; and where its tail is measured, which must be small
-/// for the linear equations and large against errors.
-inline constexpr double rest_speed = 1e-5, tail_speed = 1e-4;
-inline constexpr int halvings = 60;
+inline constexpr int speed_samples = 4, halvings = 60;
+/// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
+/// equations, large against errors, and so many times the least that one exponential function is left.
+inline constexpr double resting = 3e-3, tail_speed = 1e-4, tail_growth = 10;
+/// Acceleration at an end by the rate and the speed: more shows that it is not at the equilibrium. The speed
+/// has roundoff.
+inline constexpr double off_equilibrium = 0.1, speed_roundoff = 1e-12;
 /// An element of a rest becomes no shorter than this part of itself.
 inline constexpr double shortest_element = 0.02;
+/// A shift by the rate, after which the tails need not be measured again; and passes at most.
+inline constexpr double balanced = 1e-5;
+inline constexpr int most_balances = 4;
+/// Rests slower than this, by the largest speed, hold what lies between them in time by forces of 1e-12.
+inline constexpr double loose = 1e-6;
 
 }  // namespace balance
 
@@ -78,6 +86,8 @@ namespace gradient_flow {
 inline constexpr int elements = 384, least_elements = 64;
 /// Steps, and those between two meshes.
 inline constexpr int most_steps = 600, steps_a_mesh = 4;
+/// Of the effort of one solve, where that is spent already.
+inline constexpr double share = 0.5;
 /// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
 inline constexpr int smoothings = 4;
 inline constexpr double floor = 0.5;
@@ -92,6 +102,7 @@ inline constexpr double short_step = 0.02, growth = 4;
 inline constexpr double cut = 4, least_shift = 1e-3, most_shift = 1e6, final_shift = 0.1;
 /// Relative to the range: the longest change of a step, and one below which the path is nearly minimal.
 inline constexpr double longest_step = 0.3, close = 1e-3;
+inline constexpr int mass_samples = 32;
 /// The action must fall by this part of the decrease that its slope predicts, but for its roundoff.
 inline constexpr double sufficient = 1e-4, roundoff = 1e-14;
 /// Of the range, along the direction of most negative curvature.
@@ -158,6 +169,8 @@ namespace several {
 
 /// Elements of a family keep the accuracy that is needed to land.
 inline constexpr int family_degree = 6, elements_a_turn = 8;
+/// Paths whose shifts are held are known to this, relative to their extent.
+inline constexpr double held_apart = 1e-3;
 /// Saddles that are left downhill at a time.
 inline constexpr int most_saddles = 24;
 /// Guesses tried before families are traced, and each time between.

@@ -99,8 +99,8 @@ bool Search::by_descent(const std::vector<double>& mesh) {
 }
 
 /// Downhill along the gradient flow of the action.
-bool Search::by_gradient_flow() {
-  if (refinement_.exhausted() || !GradientFlow::suits(problem_)) return false;
+bool Search::by_gradient_flow(double side) {
+  if (!GradientFlow::suits(problem_)) return false;
   const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
   if (linear.unknowns() > most_dense_unknowns) return false;
   const std::vector<double> mesh = uniform_mesh(limits::gradient_flow::elements);
@@ -108,11 +108,11 @@ bool Search::by_gradient_flow() {
   path_.reset(linear, mesh, problem_.duration.value);
   start_path(*guess_, ends_, linear, path_);
   bend_path(problem_, bend_, linear, path_);
-  return flow_from(0);
+  return flow_from(0, side);
 }
 
 bool Search::descend_from(const Trajectory& saddle, double side) {
-  if (refinement_.exhausted() || !GradientFlow::suits(problem_)) return false;
+  if (!GradientFlow::suits(problem_)) return false;
   const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
   if (linear.unknowns() > most_dense_unknowns) return false;
   const double T = saddle.duration();
@@ -129,18 +129,30 @@ bool Search::descend_from(const Trajectory& saddle, double side) {
   refinement_.open(mesh, 1);
   path_.reset(linear, mesh, T);
   fill_path(ends, linear, path_, [&](double tau, double* q) { saddle.at(std::min(tau * T, T), {q, n}, v); });
-  const bool result = flow_from(side);
+  const bool result = flow_from(side, side);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
+bool Search::descend_from_guess(double side) {
+  const bool result = by_gradient_flow(side);
   outcome_.status = result ? Status::converged : Status::not_converged;
   return result;
 }
 
 /// From the path, which is on linear elements, to a minimiser, and by Newton's method on elements made of
 /// several of those to the tolerance.
-bool Search::flow_from(double side) {
+bool Search::flow_from(double away, double side) {
   using namespace limits::gradient_flow;
   constexpr const char* strategy = "minimisation by the gradient flow";
-  GradientFlow flow(problem_, path_, w_, [&] { return refinement_.count_step(); });
-  if (!flow.run(side * kick)) return false;
+  GradientFlow flow(problem_, path_, w_, [&] {
+    outcome_.record(w_.iteration, options_);
+    return !options_.deadline.passed();
+  });
+  flow.prefer(side);
+  if (!flow.run(away * kick)) return false;
+  // Newton's method may have spent all on long intervals, where its equations are nearly singular.
+  if (refinement_.exhausted()) refinement_.allow(allowance_, share);
   MonotoneCubic curve;
   curve.fit(path_);
   const std::span<const double> nodes = curve.mesh();
@@ -157,30 +169,46 @@ bool Search::flow_from(double side) {
   return held_in_time(strategy);
 }
 
-/// A path between equilibria that roundoff does not hold in time: converged across its shifts first, then
-/// shifted to where energies at the ends agree, and tried without and with its shifts held.
+/// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
+/// shifted to where energies in all rests agree, and tried without and, where roundoff hides those, with its
+/// shifts held.
 bool Search::held_in_time(const char* strategy) {
+  using namespace limits::balance;
   Acceptance* const acceptance = std::exchange(acceptance_, nullptr);
-  const auto hold = [&](bool on) {
+  const auto again = [&](bool held) {
     refinement_.take(refinement_.tables());
-    outcome_.shifts_held = on;
+    outcome_.shifts_held = held;
     refinement_.rebind();
+    return found(strategy);
   };
-  hold(true);
-  const bool converged = found(strategy) && w_.iteration.held_shifts() > 0;
+  bool balance_found = false;
+  double speed = 1;
+  for (int pass = 0; pass < most_balances; ++pass) {
+    if (!again(true) || w_.iteration.held_shifts() == 0) break;
+    const Balance balance(problem_, path_);
+    speed = balance.rest_speed();
+    balance_found = balance.exists();
+    if (!balance_found || balance.largest_shift() < balanced || !balance.apply(path_)) break;
+  }
   acceptance_ = acceptance;
-  if (!converged) return false;
-  if (const std::optional<double> shift = shift_to_balance(problem_, path_);
-      shift && shift_in_time(problem_, *shift, path_)) {
-    const Path balanced = path_;
-    const ElementTables& tables = refinement_.tables();
-    hold(false);
+  if (!balance_found) {
+    outcome_.shifts_held = false;
+    return false;
+  }
+  const Path balanced_path = path_;
+  const ElementTables& tables = refinement_.tables();
+  if (again(false)) return true;
+  path_ = balanced_path;
+  refinement_.take(tables);
+  if (speed > loose) {
+    refinement_.keep_mesh();
     if (found(strategy)) return true;
-    path_ = balanced;
+    path_ = balanced_path;
     refinement_.take(tables);
   }
-  hold(true);
-  return found(strategy);
+  const bool result = speed < loose && again(true);
+  outcome_.shifts_held = result;
+  return result;
 }
 
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.

@@ -74,16 +74,19 @@ int Several::keep() {
   Solution candidate;
   candidate.trajectory = trajectory_of(path_);
   candidate.error_estimate = search_.outcome().error;
+  const bool held = search_.outcome().shifts_held;
+  if (held) candidate.error_estimate = held_apart * scales(path_, search_.tables()).q;
   const int number =
       find([&](const Solution& other) { return same_path(candidate, other, options_.tolerance, scale_); });
   if (number >= 0) return number;
   candidate = accept(problem_, options_, search_.outcome(), w_);
   analysing_ += candidate.seconds_analyse;
-  return candidate.converged() ? add(std::move(candidate)) : -1;
+  return candidate.converged() ? add(std::move(candidate), held) : -1;
 }
 
-/// The same for a solution that was accepted.
-int Several::add(Solution candidate) {
+/// The same for a solution that was accepted. Those whose shifts are `held` are members of a continuum each,
+/// but all of them were shifted to where energies agree.
+int Several::add(Solution candidate, bool held) {
   candidate.seconds_solve = std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
   if (repeats(candidate)) {
     if (!repeating_) repeating_ = std::move(candidate);
@@ -92,7 +95,7 @@ int Several::add(Solution candidate) {
   const bool closed = problem_.periodic && problem_.lagrangian->structure().autonomous;
   const int number = find([&](const Solution& other) {
     return closed ? same_orbit(candidate, other, options_.tolerance)
-                  : same_continuum(candidate, other, options_.tolerance);
+                  : !held && same_continuum(candidate, other, options_.tolerance);
   });
   if (number >= 0) return number;
   found_.push_back(std::move(candidate));
@@ -147,9 +150,12 @@ void Several::guess() {
   }
 }
 
-/// Saddles are left both ways along their direction of most negative curvature: a symmetric one for a pair of
-/// extremals of less action.
+/// Downhill from the guess. Saddles are left both ways along their direction of most negative curvature: a
+/// symmetric one for a pair of extremals of less action.
 void Several::descend() {
+  if (descended_ == 0)
+    for (double side : {1.0, -1.0})
+      if (search_.descend_from_guess(side)) keep();
   for (int saddles = 0; descended_ < found_.size() && saddles < most_saddles && !search_.exhausted() &&
                         !options_.deadline.passed();
        ++descended_) {

@@ -44,7 +44,7 @@ class Several {
   bool wanted() const;
   bool settled() const;
   int keep();
-  int add(Solution candidate);
+  int add(Solution candidate, bool held = false);
   int refine_and_keep(const ElementTables& tables, const char* strategy);
   double size_of_guess();
   void deflate();
