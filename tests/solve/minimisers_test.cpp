@@ -147,7 +147,7 @@ struct Flow {
   explicit Flow(const Problem& given) : problem(given) {
     w.levels.bind(problem.lagrangian);
     const ElementTables& tables = GradientFlow::linear_elements(w.levels);
-    path.reset(tables, uniform_mesh(128), problem.duration.value);
+    path.reset(tables, uniform_mesh(256), problem.duration.value);
     start_path(problem, starting_ends(problem), tables, path);
   }
   const Problem& problem;

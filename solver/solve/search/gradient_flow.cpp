@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/simd.hpp"
 #include "solve/guess/first_path.hpp"
 #include "solve/mesh/resolution.hpp"
 #include "solve/newton/ends.hpp"
@@ -25,8 +26,18 @@ const ElementTables& GradientFlow::linear_elements(Levels& levels) {
   return levels.finer(levels.at(1).scheme());
 }
 
-bool GradientFlow::suits(const Problem& problem) {
-  return !problem.periodic && !problem.paired && !problem.duration.free;
+namespace {
+
+int affordable_steps(int coordinates, int elements) {
+  return static_cast<int>(std::min<double>(most_steps, most_work / (elements * std::pow(coordinates, 3))));
+}
+
+}  // namespace
+
+int GradientFlow::elements_for(const Problem& problem) {
+  if (problem.periodic || problem.paired || problem.duration.free) return 0;
+  const int n = problem.coordinates(), count = std::clamp(most_nodal_values / n, least_elements, elements);
+  return affordable_steps(n, count) < least_steps ? 0 : count / most_lanes * most_lanes;
 }
 
 /// S_h with what momenta that are given add.
@@ -49,7 +60,7 @@ bool GradientFlow::begin() {
   w_.iteration.reset(problem_, tables_, path_.elements());
   system_.reset(problem_.ends, path_.elements(), path_.coordinates(), false);
   saved_ = path_;
-  if (path_.elements() < least_elements || !evaluate()) return false;
+  if (path_.elements() < 3 || !evaluate()) return false;
   measure_mass();
   return std::ranges::all_of(mass_, [](double m) { return m > 0 && std::isfinite(m); });
 }
@@ -176,12 +187,12 @@ GradientFlow::Result GradientFlow::step() {
   apply(factor);
   const double allowed = before + sufficient * factor * descent + roundoff * std::abs(before);
   if (!evaluate() || !(value() <= allowed)) {
-    path_.copy_values(saved_);
-    path_.load_ends();
-    if (!evaluate()) return Result::failed;
-    if (size <= close * range_) return Result::minimal;
-    wanted_ = std::max(cut * wanted_, least_shift * stiffness_);
-    return Result::moved;
+      path_.copy_values(saved_);
+      path_.load_ends();
+      if (!evaluate()) return Result::failed;
+      if (size <= close * range_) return Result::minimal;
+      wanted_ = std::max(cut * wanted_, least_shift * stiffness_);
+      return Result::moved;
   }
   // Steps that are short relative to the path may be longer in time than the curvature allows.
   const double followed = faithful * curvature_ * std::min(1.0, size / (short_step * range_));
@@ -195,10 +206,11 @@ bool GradientFlow::run(double away) {
   if (away != 0 && !leave_saddle(away)) return false;
   wanted_ = faithful * curvature_;
   const double first = scales(path_, tables_).magnitude;
-  for (int steps = 1; steps <= most_steps; ++steps) {
+  const int affordable = affordable_steps(path_.coordinates(), path_.elements());
+  for (int steps = 1; steps <= affordable; ++steps) {
     const Result result = step();
     if (getenv("GF") && result == Result::failed)
-    if (result == Result::failed) return false;
+      if (result == Result::failed) return false;
     if (result == Result::minimal) {
       if (leave_saddle(side_ * kick)) continue;
       return true;

@@ -26,8 +26,9 @@ class GradientFlow {
   /// Elements of degree 1 under a rule that integrates the forces between their ends as well: interfaces
   /// cannot hide inside long elements.
   static const ElementTables& linear_elements(Levels& levels);
-  /// Whether the boundary relation and L let the flow run: T is fixed, the path is not closed.
-  static bool suits(const Problem& problem);
+  /// Elements for a problem; 0 where its boundary relation does not let the flow run, which needs a fixed T
+  /// and a path that is not closed, or where it has too many coordinates.
+  static int elements_for(const Problem& problem);
 
   /// Takes the path near a minimiser; false if it does not arrive, or if L is not convex in q'.
   /// The path is moved first by `away` of its range, of either sign, along the direction of most negative

@@ -81,11 +81,13 @@ inline constexpr double energy_error = 1e-9;
 
 namespace gradient_flow {
 
-/// Linear elements on which the action is minimised; of many coordinates, so that elements times coordinates
-/// squared are no more than the second.
-inline constexpr int elements = 384, least_elements = 64;
-/// Steps, and those between two meshes.
-inline constexpr int most_steps = 600, steps_a_mesh = 4;
+/// Linear elements on which the action is minimised; times coordinates at most the second, but at least the
+/// third.
+inline constexpr int elements = 384, most_nodal_values = 3072, least_elements = 128;
+/// Steps, and those between two meshes. Operations of all, elements times the cube of the coordinates each:
+/// with fewer steps than the last the flow is not tried.
+inline constexpr int most_steps = 600, steps_a_mesh = 4, least_steps = 100;
+inline constexpr double most_work = 3e9;
 /// Of the effort of one solve, where that is spent already.
 inline constexpr double share = 0.5;
 /// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
