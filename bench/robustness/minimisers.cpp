@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "system/tape.hpp"
@@ -51,23 +52,26 @@ Problem layer(double mu) {
                     {1}, 1);
 }
 
-void add(std::vector<Row>& rows, const std::string& name, Problem (*make)(double), const char* parameter,
-         std::vector<double> values) {
+/// Of a path from rest to rest ∫ √(2(V − V₀)) + V₀T, V₀ at the rests.
+void add(std::vector<Row>& rows, const std::string& name, Problem (*make)(double), double (*action)(double),
+         const char* parameter, const std::vector<double>& values) {
   for (const double value : values)
-    rows.push_back({fmt::format("{}, {} = {:g}", name, parameter, value), "straight line", -1, 100, [=] {
-                      return std::vector<Case>{{make(value), {}}};
-                    }});
+    rows.push_back({fmt::format("{}, {} = {:g}", name, parameter, value), "straight line", -1, 100,
+                    [=] { return std::vector<Case>{{.problem = make(value), .action = action(value)}}; }});
 }
+
+double kink(double) { return 2 * std::numbers::sqrt2 / 3; }
 
 }  // namespace
 
 void add_minimisers(std::vector<Row>& rows) {
-  add(rows, "kink of a double well", double_well, "T", {20, 30, 100, 1000});
-  add(rows, "kink of sine-Gordon", sine_gordon, "T", {30, 60, 500});
-  add(rows, "against the drift", against_the_drift, "T", {12, 15, 18, 40, 100});
-  add(rows, "Maier-Stein", maier_stein, "T", {12, 30, 100});
-  add(rows, "chain of 8 double wells", chain_of_wells, "T", {30, 200});
-  add(rows, "layer of cosh", layer, "mu", {10, 50, 100});
+  add(rows, "kink of a double well", double_well, kink, "T", {20, 30, 100, 1000});
+  add(rows, "kink of sine-Gordon", sine_gordon, [](double T) { return 8 - T; }, "T", {30, 60, 500});
+  add(rows, "against the drift", against_the_drift, [](double) { return 0.5; }, "T", {15, 18, 40, 100});
+  add(rows, "Maier-Stein", maier_stein, [](double) { return 0.34004140333; }, "T", {30, 100});
+  add(rows, "chain of 8 double wells", chain_of_wells, [](double T) { return 8 * kink(T); }, "T", {30, 200});
+  add(rows, "layer of cosh", layer, [](double mu) { return 4 / mu * (std::cosh(mu / 2) - 1) + 1; }, "mu",
+      {30, 50, 100});
 }
 
 }  // namespace bench

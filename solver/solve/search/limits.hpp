@@ -86,8 +86,8 @@ namespace gradient_flow {
 inline constexpr int elements = 384, most_nodal_values = 3072, least_elements = 128;
 /// Steps, and those between two meshes. Operations of all, elements times the cube of the coordinates each:
 /// with fewer steps than the last the flow is not tried.
-inline constexpr int most_steps = 600, steps_a_mesh = 4, least_steps = 100;
-inline constexpr double most_work = 3e9;
+inline constexpr int most_steps = 250, steps_a_mesh = 4, least_steps = 100;
+inline constexpr double most_work = 1.5e9;
 /// Of the effort of one solve, where that is spent already.
 inline constexpr double share = 0.5;
 /// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.

@@ -153,17 +153,22 @@ void Several::guess() {
 /// Downhill from the guess. Saddles are left both ways along their direction of most negative curvature: a
 /// symmetric one for a pair of extremals of less action.
 void Several::descend() {
+  int arrived = 0;
+  const auto take = [&](bool minimum) {
+    if (minimum) keep();
+    arrived += minimum;
+  };
   if (descended_ == 0)
-    for (double side : {1.0, -1.0})
-      if (search_.descend_from_guess(side)) keep();
+    for (double side : {1.0, -1.0}) take(search_.descend_from_guess(side));
   for (int saddles = 0; descended_ < found_.size() && saddles < most_saddles && !search_.exhausted() &&
                         !options_.deadline.passed();
        ++descended_) {
     if (found_[descended_].morse_index.value_or(0) == 0) continue;
     ++saddles;
     const Trajectory saddle = found_[descended_].trajectory;
-    for (double side : {-1.0, 1.0})
-      if (search_.descend_from(saddle, side)) keep();
+    for (double side : {-1.0, 1.0}) take(search_.descend_from(saddle, side));
+    // The action has no minimum, it seems.
+    if (arrived == 0) return;
   }
 }
 
