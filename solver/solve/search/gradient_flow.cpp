@@ -176,8 +176,6 @@ GradientFlow::Result GradientFlow::step() {
       return Result::failed;
   }
   const double descent = slope();
-  if (getenv("GF"))
-    fprintf(stderr, "GF S %.12g size %.3g shift %.3g curv %.3g stiff %.3g slope %.3g range %.3g\n", before,
   range_ = scales(path_, tables_).q;
   // Stationary, or nearly so along the directions that a shift leaves.
   if (size * std::max(wanted_, final_shift * stiffness_) <= close * range_ * final_shift * stiffness_)
@@ -209,8 +207,7 @@ bool GradientFlow::run(double away) {
   const int affordable = affordable_steps(path_.coordinates(), path_.elements());
   for (int steps = 1; steps <= affordable; ++steps) {
     const Result result = step();
-    if (getenv("GF") && result == Result::failed)
-      if (result == Result::failed) return false;
+    if (result == Result::failed) return false;
     if (result == Result::minimal) {
       if (leave_saddle(side_ * kick)) continue;
       return true;
