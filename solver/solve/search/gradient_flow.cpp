@@ -177,6 +177,7 @@ GradientFlow::Result GradientFlow::step() {
   }
   const double descent = slope();
   range_ = scales(path_, tables_).q;
+  size_ = size;
   // Stationary, or nearly so along the directions that a shift leaves.
   if (size * std::max(wanted_, final_shift * stiffness_) <= close * range_ * final_shift * stiffness_)
     return Result::minimal;
@@ -185,12 +186,12 @@ GradientFlow::Result GradientFlow::step() {
   apply(factor);
   const double allowed = before + sufficient * factor * descent + roundoff * std::abs(before);
   if (!evaluate() || !(value() <= allowed)) {
-      path_.copy_values(saved_);
-      path_.load_ends();
-      if (!evaluate()) return Result::failed;
-      if (size <= close * range_) return Result::minimal;
-      wanted_ = std::max(cut * wanted_, least_shift * stiffness_);
-      return Result::moved;
+    path_.copy_values(saved_);
+    path_.load_ends();
+    if (!evaluate()) return Result::failed;
+    if (size <= close * range_) return Result::minimal;
+    wanted_ = std::max(cut * wanted_, least_shift * stiffness_);
+    return Result::moved;
   }
   // Steps that are short relative to the path may be longer in time than the curvature allows.
   const double followed = faithful * curvature_ * std::min(1.0, size / (short_step * range_));
@@ -213,6 +214,8 @@ bool GradientFlow::run(double away) {
       return true;
     }
     if (scales(path_, tables_).magnitude > runaway * std::max(first, range_)) return false;
+    // The action may have no minimum.
+    if (steps > patient_steps && curvature_ > 0 && size_ > short_step * range_) return false;
     if (steps % steps_a_mesh == 0 && !redistribute()) return false;
   }
   return false;

@@ -66,11 +66,12 @@ class GradientFlow {
   std::vector<double> mass_;  ///< n: of each coordinate, the mean along the path
   Step step_;
   Path saved_;
-  double shift_ = 0;      ///< 1/τ that the equations of the nodes have now
-  double wanted_ = 0;     ///< 1/τ of the next step
-  double curvature_ = 0;  ///< bound of the negative curvature of L in q, by the mass
-  double stiffness_ = 0;  ///< of the curvature in q, by the mass: the largest
-  double range_ = 0, side_ = 1;
+  double shift_ = 0;             ///< 1/τ that the equations of the nodes have now
+  double wanted_ = 0;            ///< 1/τ of the next step
+  double curvature_ = 0;         ///< bound of the negative curvature of L in q, by the mass
+  double stiffness_ = 0;         ///< of the curvature in q, by the mass: the largest
+  double range_ = 0, size_ = 0;  ///< of the path and of the last step
+  double side_ = 1;
 };
 
 }  // namespace extremal

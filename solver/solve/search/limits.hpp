@@ -90,6 +90,8 @@ inline constexpr int most_steps = 250, steps_a_mesh = 4, least_steps = 100;
 inline constexpr double most_work = 1.5e9;
 /// Of the effort of one solve, where that is spent already.
 inline constexpr double share = 0.5;
+/// Where L is not convex in q, steps are short after so many if there is a minimiser near.
+inline constexpr int patient_steps = 40;
 /// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
 inline constexpr int smoothings = 4;
 inline constexpr double floor = 0.5;
