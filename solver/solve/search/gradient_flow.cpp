@@ -206,16 +206,17 @@ bool GradientFlow::run(double away) {
   wanted_ = faithful * curvature_;
   const double first = scales(path_, tables_).magnitude;
   const int affordable = affordable_steps(path_.coordinates(), path_.elements());
-  for (int steps = 1; steps <= affordable; ++steps) {
+  for (int steps = 1, left = 0; steps <= affordable; ++steps) {
     const Result result = step();
     if (result == Result::failed) return false;
     if (result == Result::minimal) {
-      if (leave_saddle(side_ * kick)) continue;
-      return true;
+      if (!leave_saddle(side_ * kick)) return true;
+      left = steps;
+      continue;
     }
     if (scales(path_, tables_).magnitude > runaway * std::max(first, range_)) return false;
     // The action may have no minimum.
-    if (steps > patient_steps && curvature_ > 0 && size_ > short_step * range_) return false;
+    if (steps - left > patient_steps && curvature_ > 0 && size_ > short_step * range_) return false;
     if (steps % steps_a_mesh == 0 && !redistribute()) return false;
   }
   return false;
