@@ -53,7 +53,8 @@ void count(const Case& test, const Options& options, extremal::Solver& solver, T
       fmt::print("  {}: {} ({})\n", describe(test.problem), solution.message, solution.iterations);
     return;
   }
-  const std::string wrong = disproof(test.problem, solution, options.tolerance);
+  const std::string wrong = test.action ? disproof_by_action(solution, *test.action)
+                                        : disproof(test.problem, solution, options.tolerance);
   if (!wrong.empty()) {
     tally.wrong.push_back(fmt::format("{}: {}", describe(test.problem), wrong));
     return;

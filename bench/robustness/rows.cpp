@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "kepler.hpp"
+#include "minimisers.hpp"
 #include "random.hpp"
 #include "rivals/shooting.hpp"
 #include "systems.hpp"
@@ -153,6 +154,7 @@ std::vector<Row> all_rows() {
   add_further(rows, "pendulum that turns over", system("pendulum", {{"g", 1}}), draw_fast_pendulum, {20, 80});
   add_further(rows, "Müller-Brown", system("mueller-brown"), draw_mueller_brown, {0.1, 0.2, 0.3, 1});
   add_further(rows, "FPU chain of 8", system("fpu-chain", {{"n", 8}}), draw_chain, {5, 10});
+  add_minimisers(rows);
   return rows;
 }
 

@@ -58,6 +58,7 @@ void read_equations(const Problem& problem, const Path& path, const Outcome& out
 void read_path(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
                Solution& solution) {
   w.iteration.reset(problem, *outcome.tables, path.elements());
+  w.iteration.hold_shifts(outcome.shifts_held);
   const bool raised = outcome.recovered && recover(problem, path, w, w.raised);
   solution.trajectory = trajectory_of(raised ? w.raised : path);
   read_equations(problem, path, outcome, w.iteration, solution);
@@ -169,6 +170,15 @@ Examined examine_all(const Problem& problem, const SolveOptions& options, const 
   return found;
 }
 
+/// A shift in time is a symmetry of L.
+void tell_soft_shift(Solution& solution) {
+  solution.minimizing = solution.morse_index == 0;
+  solution.message +=
+      "; a shift in time between the rests of this path changes the action by less than roundoff: of the "
+      "paths "
+      "that differ by it this is the one whose energies at both ends agree";
+}
+
 /// A solution that is refused has no path.
 Solution without_path(const Solution& solution) {
   Solution refused;
@@ -191,7 +201,10 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
     if (problem.paired && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers)
       w.variation.assemble(problem.lagrangian, solution.trajectory, {}, nullptr, Definite::paired);
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
-    judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
+    if (found.shifts_held)
+      tell_soft_shift(solution);
+    else
+      judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
   solution.pinned = options.scheme.has_value();

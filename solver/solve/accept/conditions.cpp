@@ -114,7 +114,7 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
         // Orbits near rest: the smaller the next one is, the more roundoff hides of its residual.
         problem.periodic};
   // Far away, where forces vanish, equations that have no solution leave hardly a residual.
-  if (outcome.elsewhere && !problem.periodic && nullity > 0)
+  if (outcome.elsewhere && !outcome.shifts_held && !problem.periodic && nullity > 0)
     return Refusal{
         Status::conjugate_ends,
         "the path found is far from the guess, and its second variation is singular: the ends may be "

@@ -20,6 +20,8 @@ struct Outcome {
   bool elsewhere = false;
   /// Only polynomials of higher degree (recovery.hpp) have velocities within the tolerance.
   bool recovered = false;
+  /// Its parts between times of rest are held in time: roundoff hides what would hold them.
+  bool shifts_held = false;
   double error = 0;      ///< of q, absolute
   double tolerance = 0;  ///< absolute
   int iterations = 0;    ///< steps that were taken

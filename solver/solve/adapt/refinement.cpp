@@ -20,6 +20,7 @@ Refinement::Refinement(const Problem& problem, const SolveOptions& options, Work
 
 void Refinement::rebind() {
   w_.iteration.reset(problem_, *tables_, path_.elements(), &w_.levels.at(first_degree));
+  w_.iteration.hold_shifts(outcome_.shifts_held);
 }
 
 bool Refinement::count_step() {
@@ -37,6 +38,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
 void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
   mesh_kept_ = false;
+  outcome_.shifts_held = false;
   w_.iteration.forget();
   tables_ = &tables;
   rebind();
@@ -114,6 +116,7 @@ bool Refinement::holds_on_other_elements() {
   w_.other.resample_from(path_, *tables_, with_nodes(other, kink_times(*tables_, path_, problem_.periodic)));
   w_.before.assign(w_.other.nodes().begin(), w_.other.nodes().end());
   w_.iteration.reset(problem_, *tables_, w_.other.elements());
+  w_.iteration.hold_shifts(outcome_.shifts_held);
   w_.iteration.set_scale(scales_.q);
   const NewtonReport report =
       converge(w_.iteration, w_.other, *tables_,

@@ -8,6 +8,7 @@
 #include "solve/newton/ends.hpp"
 #include "solve/newton/krylov.hpp"
 #include "solve/newton/limits.hpp"
+#include "solve/periodic/soft_shifts.hpp"
 
 namespace extremal {
 
@@ -63,7 +64,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   norm_ = contraction_ = noise_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
-  phase_free_ = false;
+  phase_free_ = shifts_held_ = false;
   held_.clear();
   if (!sparse) {
     if (!condensed_) condensed_ = make_condensed_model();
@@ -152,6 +153,7 @@ void NewtonIteration::restore(Path& path) {
 
 bool NewtonIteration::factor_quickly(const Path& path) {
   measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
+  if (shifts_held_) add_soft_shifts(*problem_, path, tables_->scheme(), phases_);
   if (!held_.empty()) phases_.add(held_);
   model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
   return model_->evaluate(action_, path, closing(path)) && action_.finite();

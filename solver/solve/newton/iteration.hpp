@@ -74,6 +74,12 @@ class NewtonIteration {
   /// more than they err. Forgotten by reset().
   void free_phase(bool free) { phase_free_ = free; }
 
+  /// Whether steps may shift parts of a path between times of rest (by default they may), see
+  /// add_soft_shifts(). Forgotten by reset().
+  void hold_shifts(bool on) { shifts_held_ = on; }
+  /// How many shifts the factors hold.
+  int held_shifts() const { return shifts_held_ ? phases_.count : 0; }
+
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
   /// The length of that correction with the gradient of another quadrature on the same elements, and of
@@ -147,7 +153,7 @@ class NewtonIteration {
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
-  bool phase_free_ = false, extended_ = false, refined_ = false;
+  bool phase_free_ = false, shifts_held_ = false, extended_ = false, refined_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   ClosingMap closed_;  ///< of a periodic problem with kinks

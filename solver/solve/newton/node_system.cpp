@@ -268,7 +268,7 @@ void NodeSystem::solve_exactly() {
 
 Inertia NodeSystem::inertia(double threshold) const {
   if (elements_ < 2 && free_ == 0) return {};
-  if (free_ == 0 && chain_->deflated().empty()) return chain_->inertia();
+  if (free_ == 0 && held_ == 0 && chain_->deflated().empty()) return chain_->inertia();
   // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
   // those of the directions across, and as many positive ones.
   const PhaseConditions held = phases_ ? independent(*phases_) : PhaseConditions{};

@@ -33,4 +33,11 @@ inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
 
 }  // namespace equilibrium
 
+namespace soft_shifts {
+
+/// Speeds below this, relative to the largest, are rest.
+inline constexpr double slowest = 3e-3;
+
+}  // namespace soft_shifts
+
 }  // namespace extremal::limits

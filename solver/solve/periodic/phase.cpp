@@ -8,9 +8,6 @@
 
 namespace extremal {
 
-namespace {
-
-/// Half of q'·h of every element to each of its ends.
 void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* direction) {
   const int n = path.coordinates(), inner = path.degree() - 1, lanes = path.lanes();
   for (int b = 0; b < path.batches(); ++b)
@@ -28,6 +25,8 @@ void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* dir
       }
     }
 }
+
+namespace {
 
 void add_motion(const Path& path, const Generator& generator, double* direction) {
   const int n = path.coordinates(), elements = path.elements();

@@ -32,6 +32,10 @@ struct PhaseConditions {
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases);
 
+/// The shift of time alone, added to `direction`, (N + 1) × n: half of q'·h of every element to each of its
+/// ends.
+void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* direction);
+
 /// As many of them as are independent, orthonormal.
 PhaseConditions independent(const PhaseConditions& phases);
 

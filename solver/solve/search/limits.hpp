@@ -8,6 +8,25 @@
 
 namespace extremal::limits {
 
+namespace balance {
+
+inline constexpr int speed_samples = 4, halvings = 60;
+/// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
+/// equations, large against errors, and so many times the least that one exponential function is left.
+inline constexpr double resting = 3e-3, tail_speed = 1e-4, tail_growth = 10;
+/// Acceleration at an end by the rate and the speed: more shows that it is not at the equilibrium. The speed
+/// has roundoff.
+inline constexpr double off_equilibrium = 0.1, speed_roundoff = 1e-12;
+/// An element of a rest becomes no shorter than this part of itself.
+inline constexpr double shortest_element = 0.02;
+/// A shift by the rate, after which the tails need not be measured again; and passes at most.
+inline constexpr double balanced = 1e-5;
+inline constexpr int most_balances = 4;
+/// Rests slower than this, by the largest speed, hold what lies between them in time by forces of 1e-12.
+inline constexpr double loose = 1e-6;
+
+}  // namespace balance
+
 namespace deflation {
 
 inline constexpr int most_steps = 40;
@@ -60,6 +79,49 @@ inline constexpr double energy_error = 1e-9;
 
 }  // namespace from_motions
 
+namespace gradient_flow {
+
+/// Linear elements on which the action is minimised; times coordinates at most the second, but at least the
+/// third.
+inline constexpr int elements = 384, most_nodal_values = 3072, least_elements = 128;
+/// Steps, and those between two meshes. Operations of all, elements times the cube of the coordinates each:
+/// with fewer steps than the last the flow is not tried.
+inline constexpr int most_steps = 250, steps_a_mesh = 4, least_steps = 100;
+inline constexpr double most_work = 1.5e9;
+/// Of the effort of one solve, where that is spent already.
+inline constexpr double share = 0.5;
+/// Where L is not convex in q, steps are short after so many if there is a minimiser near.
+inline constexpr int patient_steps = 40;
+/// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
+inline constexpr int smoothings = 4;
+inline constexpr double floor = 0.5;
+/// 1/τ by the negative curvature of L in q: the flow keeps the order of paths from 1 on.
+inline constexpr double faithful = 2;
+/// A step shorter than this, relative to the range, is near enough to a stationary path that τ may grow as
+/// steps shrink; by this factor at most after each step.
+inline constexpr double short_step = 0.02, growth = 4;
+/// 1/τ grows by the first where the second variation is indefinite or the action does not fall; by the
+/// largest curvature of L in q it is then at least the second, at most the third; and near a minimiser below
+/// the last.
+inline constexpr double cut = 4, least_shift = 1e-3, most_shift = 1e6, final_shift = 0.1;
+/// Relative to the range: the longest change of a step, and one below which the path is nearly minimal.
+inline constexpr double longest_step = 0.3, close = 1e-3;
+inline constexpr int mass_samples = 32;
+/// The action must fall by this part of the decrease that its slope predicts, but for its roundoff.
+inline constexpr double sufficient = 1e-4, roundoff = 1e-14;
+/// Of the range, along the direction of most negative curvature.
+inline constexpr double kick = 0.1, least_kick = 1e-3;
+/// An eigenvalue below this, by the largest curvature of L in q, is negative: that of a shift of an interface
+/// through the elements has either sign.
+inline constexpr double negative = 0.02;
+inline constexpr int inverse_iterations = 12;
+/// A path this much larger than at first has run away.
+inline constexpr double runaway = 1e3;
+/// Nodes of one element of higher degree.
+inline constexpr int nodes_an_element = 4;
+
+}  // namespace gradient_flow
+
 namespace guess_mesh {
 
 /// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.
@@ -111,6 +173,10 @@ namespace several {
 
 /// Elements of a family keep the accuracy that is needed to land.
 inline constexpr int family_degree = 6, elements_a_turn = 8;
+/// Paths whose shifts are held are known to this, relative to their extent.
+inline constexpr double held_apart = 1e-3;
+/// Saddles that are left downhill at a time.
+inline constexpr int most_saddles = 24;
 /// Guesses tried before families are traced, and each time between.
 inline constexpr unsigned guesses = 8;
 /// Of the effort that one solve may take, for each extremal that is new.

@@ -178,7 +178,7 @@ bool Search::from_other_guesses(GuessKind guess) {
   if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
       found("newton from the guess on finer elements"))
     return true;
-  if (by_descent(mesh_) || from_finer_elements()) return true;
+  if (by_descent(mesh_) || by_gradient_flow() || from_finer_elements()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line()) return true;
   begin();

@@ -40,6 +40,11 @@ class Search {
   /// Leads a motion from the start, which misses the end, through extremals with other ends to those of the
   /// problem: path() is nearly one of it then. False if it does not come there. Only for ends that are fixed.
   bool connect(const Guess& motion, double duration);
+  /// Leaves a saddle along its direction of most negative curvature, to either `side` (−1, 1), for a
+  /// minimiser.
+  bool descend_from(const Trajectory& saddle, double side);
+  /// The same from the guess, saddles that the flow meets left to that side.
+  bool descend_from_guess(double side);
   const ElementTables& tables() const { return refinement_.tables(); }
   /// Elements of a random path whose frequency is measured.
   static constexpr int sketch_elements = 16;
@@ -82,6 +87,9 @@ class Search {
   bool found(const char* strategy);
   bool from_other_guesses(GuessKind guess);
   bool through_other_durations();
+  bool by_gradient_flow(double side = 1);
+  bool flow_from(double away, double side);
+  bool held_in_time(const char* strategy);
   bool by_descent(const std::vector<double>& mesh);
   bool from_finer_elements();
   bool from_line();

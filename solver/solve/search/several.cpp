@@ -74,16 +74,19 @@ int Several::keep() {
   Solution candidate;
   candidate.trajectory = trajectory_of(path_);
   candidate.error_estimate = search_.outcome().error;
+  const bool held = search_.outcome().shifts_held;
+  if (held) candidate.error_estimate = held_apart * scales(path_, search_.tables()).q;
   const int number =
       find([&](const Solution& other) { return same_path(candidate, other, options_.tolerance, scale_); });
   if (number >= 0) return number;
   candidate = accept(problem_, options_, search_.outcome(), w_);
   analysing_ += candidate.seconds_analyse;
-  return candidate.converged() ? add(std::move(candidate)) : -1;
+  return candidate.converged() ? add(std::move(candidate), held) : -1;
 }
 
-/// The same for a solution that was accepted.
-int Several::add(Solution candidate) {
+/// The same for a solution that was accepted. Those whose shifts are `held` are members of a continuum each,
+/// but all of them were shifted to where energies agree.
+int Several::add(Solution candidate, bool held) {
   candidate.seconds_solve = std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
   if (repeats(candidate)) {
     if (!repeating_) repeating_ = std::move(candidate);
@@ -92,7 +95,7 @@ int Several::add(Solution candidate) {
   const bool closed = problem_.periodic && problem_.lagrangian->structure().autonomous;
   const int number = find([&](const Solution& other) {
     return closed ? same_orbit(candidate, other, options_.tolerance)
-                  : same_continuum(candidate, other, options_.tolerance);
+                  : !held && same_continuum(candidate, other, options_.tolerance);
   });
   if (number >= 0) return number;
   found_.push_back(std::move(candidate));
@@ -144,6 +147,28 @@ void Several::guess() {
     }
     bend();
     if (problem_.coordinates() > 1 && wanted()) wind();
+  }
+}
+
+/// Downhill from the guess. Saddles are left both ways along their direction of most negative curvature: a
+/// symmetric one for a pair of extremals of less action.
+void Several::descend() {
+  int arrived = 0;
+  const auto take = [&](bool minimum) {
+    if (minimum) keep();
+    arrived += minimum;
+  };
+  if (descended_ == 0)
+    for (double side : {1.0, -1.0}) take(search_.descend_from_guess(side));
+  for (int saddles = 0; descended_ < found_.size() && saddles < most_saddles && !search_.exhausted() &&
+                        !options_.deadline.passed();
+       ++descended_) {
+    if (found_[descended_].morse_index.value_or(0) == 0) continue;
+    ++saddles;
+    const Trajectory saddle = found_[descended_].trajectory;
+    for (double side : {-1.0, 1.0}) take(search_.descend_from(saddle, side));
+    // The action has no minimum, it seems.
+    if (arrived == 0) return;
   }
 }
 
@@ -366,10 +391,12 @@ std::vector<Solution> Several::run(int most) {
   if (!begun) failed = repeating_ ? std::move(*repeating_) : std::move(solution);
   if (!begun && !loops_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
+  if (begun) descend();
   if (begun) deflate();
   guess();
   while (wanted())
     if (!trace_families()) guess();
+  descend();
   if (found_.empty()) {
     if (failed->converged())
       failed->message += fmt::format(

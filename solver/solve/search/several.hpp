@@ -44,12 +44,13 @@ class Several {
   bool wanted() const;
   bool settled() const;
   int keep();
-  int add(Solution candidate);
+  int add(Solution candidate, bool held = false);
   int refine_and_keep(const ElementTables& tables, const char* strategy);
   double size_of_guess();
   void deflate();
   void guess();
   void bend();
+  void descend();
   bool repeats(const Solution& candidate) const;
   void wind();
   double natural_duration(Arc arc, const ElementTables& tables);
@@ -80,6 +81,7 @@ class Several {
   int returns_ = 0;         ///< loops since the last find that led to known orbits
   int scanned_ = 0;         ///< motions
   int families_ = 0;
+  std::size_t descended_ = 0;              ///< extremals that were left downhill where they are saddles
   int traced_count_ = 0;                   ///< families
   std::vector<std::vector<char>> traced_;  ///< for each extremal, whether each family of it was
   std::chrono::steady_clock::time_point start_;

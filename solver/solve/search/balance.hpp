@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "action/path.hpp"
+#include "problem/problem.hpp"
+
+/// \file Where in time a path belongs that comes to rest near equilibria.
+
+namespace extremal {
+
+/// A path between fixed ends that rests near equilibria, at its ends or between. What lies between two rests
+/// is held in time by the energy, which is the same in all of them. In a rest the deviation from the
+/// equilibrium is A e^−rt + B e^rt, r² = vᵀL_qq v / vᵀL_q'q' v, with the energy −2r²AB in the norm of L_q'q';
+/// where the path ends at the equilibrium, A = −B. So the logarithms of the energies are linear in the shifts
+/// of the parts, also where the energies themselves are below roundoff.
+class Balance {
+ public:
+  Balance(const Problem& problem, const Path& path);
+
+  /// Whether there are shifts for which the energies agree.
+  bool exists() const { return exists_; }
+  /// Of the slowest speeds of the rests the largest, by the largest speed of the path.
+  double rest_speed() const { return rest_speed_; }
+  /// The largest shift, times the rate of a rest beside it.
+  double largest_shift() const { return largest_shift_; }
+  /// Shifts the parts of `path`, by stretching and compressing the elements of the rests. False, and nothing
+  /// is done, if those are too short.
+  bool apply(Path& path) const;
+
+ private:
+  struct Rest {
+    double from, to;    ///< times at which the speed falls and rises
+    double log_energy;  ///< but for a constant
+    double stiffness;   ///< −∂(log_energy)/∂(to − from): r, or 2r at an end of the path
+    bool positive;      ///< energy
+  };
+  class Speeds;
+  static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest);
+  void balance();
+
+  std::vector<Rest> rests_;
+  std::vector<double> shifts_;  ///< of the parts after the rests; the last is 0
+  double rest_speed_ = 0, largest_shift_ = 0;
+  bool exists_ = false;
+};
+
+}  // namespace extremal

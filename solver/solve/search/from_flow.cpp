@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "solve/search/balance.hpp"
+#include "solve/search/gradient_flow.hpp"
+#include "solve/search/limits.hpp"
+#include "solve/search/search.hpp"
+
+/// \file Paths that the gradient flow of the action leads to.
+
+namespace extremal {
+
+namespace flow_limits = limits::gradient_flow;
+namespace rest_limits = limits::balance;
+
+/// Downhill along the gradient flow of the action.
+bool Search::by_gradient_flow(double side) {
+  const int elements = GradientFlow::elements_for(problem_);
+  if (elements == 0) return false;
+  const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
+  const std::vector<double> mesh = uniform_mesh(elements);
+  refinement_.open(mesh, 1);
+  path_.reset(linear, mesh, problem_.duration.value);
+  start_path(*guess_, ends_, linear, path_);
+  bend_path(problem_, bend_, linear, path_);
+  return flow_from(0, side);
+}
+
+bool Search::descend_from(const Trajectory& saddle, double side) {
+  const int elements = GradientFlow::elements_for(problem_);
+  if (elements == 0) return false;
+  const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
+  const double T = saddle.duration();
+  const int parts = std::max(1, elements / saddle.elements());
+  std::vector<double> mesh;
+  for (int k = 0; k < saddle.elements(); ++k)
+    for (int j = 0; j < parts; ++j)
+      mesh.push_back((saddle.times[k] + (saddle.times[k + 1] - saddle.times[k]) * j / parts) / T);
+  mesh.push_back(1);
+  const std::size_t n = saddle.coordinates;
+  std::vector<double> ends(2 * n), v(n);
+  saddle.at(0, {ends.data(), n}, v);
+  saddle.at(T, {ends.data() + n, n}, v);
+  refinement_.open(mesh, 1);
+  path_.reset(linear, mesh, T);
+  fill_path(ends, linear, path_, [&](double tau, double* q) { saddle.at(std::min(tau * T, T), {q, n}, v); });
+  const bool result = flow_from(side, side);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
+bool Search::descend_from_guess(double side) {
+  const bool result = by_gradient_flow(side);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
+/// From the path, which is on linear elements, to a minimiser, and by Newton's method on elements made of
+/// several of those to the tolerance.
+bool Search::flow_from(double away, double side) {
+  constexpr const char* strategy = "minimisation by the gradient flow";
+  GradientFlow flow(problem_, path_, w_, [&] {
+    outcome_.record(w_.iteration, options_);
+    return !options_.deadline.passed();
+  });
+  flow.prefer(side);
+  if (!flow.run(away * flow_limits::kick)) return false;
+  // Newton's method may have spent all on long intervals, where its equations are nearly singular.
+  if (refinement_.exhausted()) refinement_.allow(allowance_, flow_limits::share);
+  MonotoneCubic curve;
+  curve.fit(path_);
+  const std::span<const double> nodes = curve.mesh();
+  std::vector<double> mesh;
+  for (std::size_t k = 0; k + 1 < nodes.size(); k += flow_limits::nodes_an_element) mesh.push_back(nodes[k]);
+  mesh.push_back(1);
+  const auto reopen = [&] {
+    refinement_.open(mesh, Refinement::first_degree);
+    curve.fill(refinement_.tables(), path_);
+  };
+  reopen();
+  if (found(strategy)) return true;
+  reopen();
+  return held_in_time(strategy);
+}
+
+/// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
+/// shifted to where energies in all rests agree, and tried without and, where roundoff hides those, with its
+/// shifts held.
+bool Search::held_in_time(const char* strategy) {
+  Acceptance* const acceptance = std::exchange(acceptance_, nullptr);
+  const auto again = [&](bool held) {
+    refinement_.take(refinement_.tables());
+    outcome_.shifts_held = held;
+    refinement_.rebind();
+    return found(strategy);
+  };
+  bool balance_found = false;
+  double speed = 1;
+  for (int pass = 0; pass < rest_limits::most_balances; ++pass) {
+    if (!again(true) || w_.iteration.held_shifts() == 0) break;
+    const Balance balance(problem_, path_);
+    speed = balance.rest_speed();
+    balance_found = balance.exists();
+    if (!balance_found || balance.largest_shift() < rest_limits::balanced || !balance.apply(path_)) break;
+  }
+  acceptance_ = acceptance;
+  if (!balance_found) {
+    outcome_.shifts_held = false;
+    return false;
+  }
+  const Path balanced_path = path_;
+  const ElementTables& tables = refinement_.tables();
+  if (again(false)) return true;
+  path_ = balanced_path;
+  refinement_.take(tables);
+  if (speed > rest_limits::loose) {
+    refinement_.keep_mesh();
+    if (found(strategy)) return true;
+    path_ = balanced_path;
+    refinement_.take(tables);
+  }
+  const bool result = speed < rest_limits::loose && again(true);
+  outcome_.shifts_held = result;
+  return result;
+}
+
+}  // namespace extremal

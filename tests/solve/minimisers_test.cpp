@@ -1,0 +1,197 @@
+#include <numbers>
+
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/laws.hpp"
+#include "solve/search/balance.hpp"
+#include "solve/search/gradient_flow.hpp"
+
+/// \file Minimisers in intervals of any length, from the straight line. Exact actions of paths from rest to
+/// rest are ∫ √(2V) along them; a fixed end at a rest costs e^−2rt more.
+
+namespace extremal::laws {
+namespace {
+
+using std::numbers::pi;
+
+/// (x² − 1)²/4: the kink x = tanh(t/√2) has the action 2√2/3.
+Problem double_well(double T) {
+  return fixed_ends(trace(1,
+                          [](auto q, auto v, auto) {
+                            const auto u = q[0] * q[0] - 1.0;
+                            return v[0] * v[0] / 2.0 + u * u / 4.0;
+                          }),
+                    {-1}, {1}, T);
+}
+
+Problem sine_gordon(double T) {
+  return fixed_ends(trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + cos(q[0]); }), {-pi}, {pi},
+                    T);
+}
+
+/// Freidlin and Wentzell's action of the drift u − u³.
+Problem against_the_drift(double T) {
+  return fixed_ends(trace(1,
+                          [](auto q, auto v, auto) {
+                            const auto off = v[0] - q[0] + q[0] * q[0] * q[0];
+                            return off * off / 2.0;
+                          }),
+                    {-1}, {0}, T);
+}
+
+/// Maier and Stein, β = 10.
+Problem maier_stein(double T) {
+  return fixed_ends(trace(2,
+                          [](auto q, auto v, auto) {
+                            const auto u = v[0] - q[0] + q[0] * q[0] * q[0] + 10.0 * q[0] * q[1] * q[1];
+                            const auto w = v[1] + (1.0 + q[0] * q[0]) * q[1];
+                            return (u * u + w * w) / 2.0;
+                          }),
+                    {-1, 0}, {0, 0}, T);
+}
+
+void expect_minimum(const Solution& s, double action, double error) {
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.action, action, error);
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_TRUE(s.minimizing);
+}
+
+TEST(Minimisers, KinksInLongIntervals) {
+  for (const double T : {24.0, 30.0, 100.0, 1000.0}) {
+    const Solution s = solve(double_well(T), within(1e-8));
+    expect_minimum(s, 2 * std::sqrt(2.0) / 3, 1e-9);
+    EXPECT_NEAR(at(s.trajectory, T / 2).q[0], 0, 1e-7) << T;
+    EXPECT_NEAR(at(s.trajectory, T / 2 + 1).q[0], std::tanh(1 / std::sqrt(2.0)), 1e-7) << T;
+    EXPECT_NE(s.message.find("a shift in time"), std::string::npos);
+  }
+}
+
+TEST(Minimisers, MonotonePathsStayMonotone) {
+  for (const double T : {60.0, 500.0, 1000.0}) {
+    const Solution s = solve(sine_gordon(T), within(1e-8));
+    expect_minimum(s, 8 - T, 1e-11 * T);
+  }
+}
+
+/// The tail of the kink is e^−2t on one side and e^−t on the other: energies at the ends agree where the kink
+/// is at T/3. In T = 18 the forces that hold it there are 1e-11, and elements and gradients must resolve
+/// them.
+TEST(Minimisers, UnequalTailsAreBalanced) {
+  for (const double T : {15.0, 18.0, 40.0, 100.0}) {
+    const Solution s = solve(against_the_drift(T), within(1e-8));
+    expect_minimum(s, 0.5, 1e-8);
+    EXPECT_NEAR(at(s.trajectory, T / 3).q[0], -1 / std::sqrt(2.0), 2e-3) << T;
+  }
+}
+
+TEST(Minimisers, RestsBetweenTheEnds) {
+  const Solution two = solve(fixed_ends(trace(1,
+                                              [](auto q, auto v, auto) {
+                                                const auto u = q[0] * (q[0] * q[0] - 1.0);
+                                                return (v[0] * v[0] + u * u) / 2.0;
+                                              }),
+                                        {-1}, {1}, 100),
+                             within(1e-8));
+  expect_minimum(two, 0.5, 1e-10);
+  EXPECT_EQ(two.nullity, 2);
+  EXPECT_NEAR(at(two.trajectory, 50).q[0], 0, 1e-6);
+  Problem between = double_well(60);
+  between = fixed_ends(between.lagrangian, {-2}, {1.5}, 60);
+  expect_minimum(solve(between, within(1e-8)), (8.0 / 3 + 7.0 / 24) / std::sqrt(2.0), 1e-9);
+}
+
+TEST(Minimisers, SaddlesAreLeftBothWays) {
+  const Problem paraboloid = fixed_ends(trace(2,
+                                              [](auto q, auto v, auto) {
+                                                const auto rise = 2.0 * (q[0] * v[0] + q[1] * v[1]);
+                                                return (v[0] * v[0] + v[1] * v[1] + rise * rise) / 2.0;
+                                              }),
+                                        {3, 0}, {-3, 0}, 1);
+  EXPECT_NEAR(solve(paraboloid, within(1e-9)).action, 190.0114785, 1e-6);
+  const std::vector<Solution> lowest = Solver().solve_all(paraboloid, within(1e-9), 2);
+  ASSERT_EQ(lowest.size(), 2u);
+  for (const Solution& s : lowest) expect_minimum(s, 43.40811328, 1e-7);
+  EXPECT_NEAR(at(lowest[0].trajectory, 0.5).q[1], -at(lowest[1].trajectory, 0.5).q[1], 1e-7);
+}
+
+TEST(Minimisers, MostProbablePaths) {
+  for (const double T : {12.0, 30.0, 100.0}) {
+    const std::vector<Solution> lowest = Solver().solve_all(maier_stein(T), within(1e-8), 2);
+    ASSERT_EQ(lowest.size(), 2u) << T;
+    for (const Solution& s : lowest) expect_minimum(s, 0.3400414, T > 20 ? 1e-7 : 1e-6);
+    EXPECT_GT(std::abs(at(lowest[0].trajectory, T / 2).q[1] - at(lowest[1].trajectory, T / 2).q[1]), 1e-9)
+        << T;
+  }
+}
+
+/// Slope at the end √(2 cosh μ − 2), by the energy at 0 where the path is at rest but for e^−μ.
+TEST(Minimisers, Layers) {
+  const Problem layer = fixed_ends(
+      trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + cosh(50.0 * q[0]); }), {0}, {1}, 1);
+  const Solution s = solve(layer, within(1e-8));
+  ASSERT_TRUE(s.converged()) << s.message;
+  const double slope = std::sqrt(2 * std::cosh(50.0) - 2);
+  EXPECT_NEAR(s.momentum_end[0], slope, 1e-7 * slope);
+  const Problem free =
+      with_ends(trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + cosh(q[0]); }), 5,
+                [](BoundaryRelation& b) { b.fix(0, false, -38.94); });
+  const Solution long_fall = solve(free, within(1e-8));
+  ASSERT_TRUE(long_fall.converged()) << long_fall.message;
+  const double fastest = 2 * std::sinh(19.47);
+  EXPECT_NEAR(long_fall.momentum_start[0], fastest, 1e-6 * fastest);
+}
+
+/// A path of linear elements at the guess.
+struct Flow {
+  explicit Flow(const Problem& given) : problem(given) {
+    w.levels.bind(problem.lagrangian);
+    const ElementTables& tables = GradientFlow::linear_elements(w.levels);
+    path.reset(tables, uniform_mesh(256), problem.duration.value);
+    start_path(problem, starting_ends(problem), tables, path);
+  }
+  const Problem& problem;
+  Workspace w;
+  Path path;
+};
+
+TEST(GradientFlow, ActionFallsAndOrderIsKept) {
+  const Problem problem = double_well(40);
+  Flow flow(problem);
+  std::vector<double> actions;
+  GradientFlow descent(problem, flow.path, flow.w, [&] {
+    actions.push_back(flow.w.iteration.action().action());
+    return true;
+  });
+  ASSERT_TRUE(descent.run());
+  EXPECT_LT(actions.back(), 0.5 * actions.front());
+  EXPECT_NEAR(actions.back(), 2 * std::sqrt(2.0) / 3, 1e-2);
+  for (int k = 0; k < flow.path.elements(); ++k) EXPECT_LE(flow.path.node(k)[0], flow.path.node(k + 1)[0]);
+}
+
+TEST(GradientFlow, StopsWhenToldTo) {
+  const Problem problem = double_well(40);
+  Flow flow(problem);
+  int left = 3;
+  GradientFlow descent(problem, flow.path, flow.w, [&] { return --left > 0; });
+  EXPECT_FALSE(descent.run());
+  EXPECT_EQ(left, 0);
+}
+
+/// Without a minimum: the action falls without bound.
+TEST(GradientFlow, GivesUpWhereThereIsNoMinimum) {
+  const Problem problem = fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 20);
+  Flow flow(problem);
+  GradientFlow descent(problem, flow.path, flow.w, [] { return true; });
+  EXPECT_FALSE(descent.run());
+}
+
+/// Ends that are not at rest hold a path in time.
+TEST(Balance, NeedsTwoRests) {
+  const Problem problem = fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 2);
+  Flow flow(problem);
+  EXPECT_FALSE(Balance(problem, flow.path).exists());
+}
+
+}  // namespace
+}  // namespace extremal::laws
