@@ -53,6 +53,10 @@ Solution run(const Study& study, int repeat = 1);
 /// The same for study.solutions extremals, as Solver::solve_all returns them.
 std::vector<Solution> run_all(const Study& study, int repeat = 1);
 
+/// Of a solution with constants that were asked for, L + Σ ν g at these becomes the study's Lagrangian: momenta
+/// and energies are read off with it. Others leave it as it is.
+void use_constants(const Solution& solution, Study& study);
+
 /// Conditions of zero momentum that stationarity adds at the ends. Periodic ends and momenta given otherwise
 /// are none.
 int natural_conditions(const Problem& problem);

@@ -1,0 +1,386 @@
+#include "solve/bordered/bordered_solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "solve/bordered/bordered_judge.hpp"
+#include "solve/bordered/bordered_newton.hpp"
+#include "solve/bordered/limits.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/mesh/resolution.hpp"
+
+namespace extremal {
+
+using namespace limits::bordered;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A starting path: the guess with noise.
+struct Start {
+  double size = 0;
+  unsigned seed = 0;
+};
+
+/// A state, and where it came from.
+struct Found {
+  BorderedState state;
+  const ElementTables *tables = nullptr, *own = nullptr;
+  double correction = 0;
+};
+
+/// Elements of one degree for the Lagrangian of all coordinates and that of the path.
+struct Elements {
+  const ElementTables *tables, *own;
+};
+
+class BorderedSolve {
+ public:
+  BorderedSolve(const Problem& problem, const SolveOptions& options)
+      : problem_(problem), extension_(*problem.extension), options_(options), n_(problem.coordinates()) {
+    levels_.bind(extension_.lagrangian);
+    own_levels_.bind(problem.lagrangian);
+    if (options.scheme) {
+      rule_.emplace(*options.scheme, 0);
+      scheme_.bind(*rule_, *extension_.lagrangian);
+      own_scheme_.bind(*rule_, *problem.lagrangian);
+    }
+    for (const Waypoint& w : extension_.waypoints)
+      times_.push_back(w.free ? w.time * problem.duration.value : w.time);
+    times_.push_back(problem.duration.value);
+  }
+
+  Solution run() {
+    const auto start = Clock::now();
+    std::string first_failure;
+    for (const Start& attempt : starts()) {
+      if (attempt.size > 0 && spent()) break;
+      Solution solution = solve_from(attempt);
+      if (solution.converged()) {
+        solution.strategy = attempt.size > 0 ? "newton from the guess with smooth noise" : "newton from the guess";
+        solution.iterations = iterations_;
+        const double all = std::chrono::duration<double>(Clock::now() - start).count();
+        solution.seconds_solve = all - seconds_analyse_;
+        solution.seconds_analyse = seconds_analyse_;
+        return solution;
+      }
+      if (first_failure.empty()) first_failure = solution.message;
+    }
+    Solution solution;
+    solution.status = spent() ? Status::iteration_limit : Status::not_converged;
+    solution.message = first_failure + (spent() ? "; the budget is spent" : "") +
+                       "; no guess with noise led to a solution either: try another guess of the path, of the "
+                       "unknowns or of the duration";
+    solution.iterations = iterations_;
+    solution.seconds_solve = std::chrono::duration<double>(Clock::now() - start).count();
+    return solution;
+  }
+
+ private:
+  bool spent() const { return options_.deadline.passed() || iterations_ >= options_.max_iterations; }
+
+  static std::vector<Start> starts() {
+    std::vector<Start> all{{}};
+    for (unsigned seed = 0; seed < bends_of_a_size; ++seed)
+      for (const double size : bends) all.push_back({size, seed});
+    return all;
+  }
+
+  Elements lobatto(int degree) { return {&levels_.at(degree), &own_levels_.at(degree)}; }
+
+  /// Elements of each leg, in proportion to its duration.
+  LegMesh equal_elements(int elements) const {
+    LegMesh mesh;
+    mesh.first.push_back(0);
+    const int legs = static_cast<int>(times_.size());
+    for (int l = 0; l < legs; ++l) {
+      const double share = (times_[l] - (l > 0 ? times_[l - 1] : 0)) / times_.back();
+      const int left = elements - mesh.first.back() - (legs - l - 1);
+      const int count = l + 1 == legs ? std::max(1, left)
+                                      : std::clamp(static_cast<int>(std::lround(share * elements)), 1,
+                                                   std::max(1, left));
+      for (int k = 0; k < count; ++k) mesh.parts.push_back(1.0 / count);
+      mesh.first.push_back(mesh.first.back() + count);
+    }
+    return mesh;
+  }
+
+  /// The values at waypoints that are given.
+  void set_waypoints(BorderedState& state) const {
+    for (std::size_t w = 0; w < extension_.waypoints.size(); ++w)
+      for (const auto& [a, value] : extension_.waypoints[w].fixed)
+        state.path.set_node(state.mesh.first[w + 1], a, value);
+    state.path.load_ends();
+  }
+
+  BorderedState first_state(const LegMesh& mesh, const Elements& elements, const Start& start) const {
+    BorderedState state{{}, mesh, times_, std::vector<double>(extension_.conditions.size())};
+    const std::vector<double> lengths = element_lengths(mesh, times_);
+    Path path;
+    path.reset(*elements.own, mesh_nodes(lengths), times_.back(), lengths);
+    start_path(problem_, starting_ends(problem_), *elements.own, path);
+    if (start.size > 0) bend_path(problem_, {start.size, start.seed}, *elements.own, path);
+    std::vector<double> constants = extension_.guess;
+    constants.resize(extension_.constants(), 0);
+    with_constants(path, *elements.tables, constants, state.path);
+    set_waypoints(state);
+    return state;
+  }
+
+  /// Starts of another size, where that brings the integrals nearer to what is given.
+  Start sized(const LegMesh& mesh, const Elements& elements, Start start) {
+    if (extension_.multipliers() == 0 || start.size == 0) return start;
+    equations_.reset(problem_, *elements.tables, *elements.own, mesh);
+    double least = INFINITY;
+    Start best = start;
+    for (double size = least_bend; size < most_bend; size *= bend_ratio) {
+      const Start tried{size, start.seed};
+      if (!equations_.evaluate(first_state(mesh, elements, tried), false)) continue;
+      double missed = 0;
+      for (int j = 0; j < extension_.multipliers(); ++j)
+        missed = std::max(missed, std::abs(equations_.values()[equations_.first_constant() +
+                                                               extension_.unknowns() + j]));
+      if (missed < least) {
+        least = missed;
+        best = tried;
+      }
+    }
+    // Between the sizes that come nearest and those asked for.
+    if (start.size != *bends.begin()) best.size *= 1 + 0.5 * (start.size - *bends.begin());
+    return best;
+  }
+
+  bool newton(Found& found, std::string& failure) {
+    equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
+    const BorderedReport report = converge(equations_, found.state, [&](double step, double damping) {
+      ++iterations_;
+      if (options_.progress)
+        options_.progress({found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step,
+                           damping});
+      return !spent();
+    });
+    found.correction = report.correction;
+    failure = report.failure;
+    return report.converged;
+  }
+
+  static Solution failed(std::string message) {
+    Solution solution;
+    solution.message = std::move(message);
+    return solution;
+  }
+
+  Resolution::Error errors(const Found& found) {
+    Path path;
+    without_constants(found.state.path, *found.own, path);
+    resolution_.measure(path, *found.own);
+    return resolution_.at(found.state.path.degree());
+  }
+
+  Scales sizes(const Found& found) const {
+    Path path;
+    without_constants(found.state.path, *found.own, path);
+    return scales(path, *found.own);
+  }
+
+  /// The state on other elements.
+  Found moved(const Found& found, const LegMesh& mesh, const Elements& elements) const {
+    Found to{{{}, mesh, found.state.times, found.state.multipliers}, elements.tables, elements.own};
+    Path old, path;
+    without_constants(found.state.path, *found.own, old);
+    const std::vector<double> lengths = element_lengths(mesh, found.state.times);
+    path.reset(*elements.own, mesh_nodes(lengths), found.state.times.back(), lengths);
+    path.resample_from(old, *elements.own, mesh_nodes(lengths));
+    with_constants(path, *elements.tables, found.state.constants(n_), to.state.path);
+    move_exactly(to.state, *elements.tables);
+    set_waypoints(to.state);
+    return to;
+  }
+
+  /// Elements as long as the parts of the legs say, to the last digit.
+  static void move_exactly(BorderedState& state, const ElementTables& tables) {
+    const std::vector<double> times = state.times;
+    state.times.clear();
+    move_to(state, tables, times);
+  }
+
+  /// Elements cut where their coefficients are larger than a part of the tolerance.
+  LegMesh cut(const Found& found, double aim_q, double aim_v) const {
+    const int degree = found.state.path.degree();
+    LegMesh mesh;
+    mesh.first.push_back(0);
+    for (int l = 0; l < found.state.mesh.legs(); ++l) {
+      for (int k = found.state.mesh.first[l]; k < found.state.mesh.first[l + 1]; ++k) {
+        const Resolution::Tail& tail = resolution_.tails()[k];
+        const double left = tail.size * tail.fall / (1 - std::min(tail.fall, 0.9));
+        const double of_v = left * (degree + 1) * (degree + 2) / tail.h;
+        const double excess = std::max(left / aim_q, of_v / aim_v);
+        const int count =
+            std::clamp(static_cast<int>(std::ceil(std::pow(std::max(excess, 0.0), 1.0 / (degree + 1)))), 1,
+                       strongest_cut);
+        for (int i = 0; i < count; ++i) mesh.parts.push_back(found.state.mesh.parts[k] / count);
+      }
+      mesh.first.push_back(static_cast<int>(mesh.parts.size()));
+    }
+    return mesh;
+  }
+
+  static LegMesh halved(const LegMesh& mesh) {
+    LegMesh result;
+    for (const int first : mesh.first) result.first.push_back(2 * first);
+    for (const double part : mesh.parts) result.parts.insert(result.parts.end(), 2, part / 2);
+    return result;
+  }
+
+  /// Elements that resolve the starting path.
+  LegMesh first_mesh(const Elements& elements, const Start& start) {
+    const int legs = static_cast<int>(times_.size());
+    for (int count = std::max(first_elements, 2 * legs);; count *= 2) {
+      const LegMesh mesh = equal_elements(count);
+      Found found{first_state(mesh, elements, start), elements.tables, elements.own};
+      if (count >= most_first_elements || errors(found).q <= guess_error * sizes(found).q) return mesh;
+    }
+  }
+
+  Solution solve_from(Start start) {
+    return options_.scheme ? solve_with_scheme(start) : solve_adapted(start);
+  }
+
+  Found begin(const LegMesh& mesh, const Elements& elements, const Start& start) {
+    Found found{first_state(mesh, elements, start), elements.tables, elements.own};
+    equations_.reset(problem_, *elements.tables, *elements.own, mesh);
+    estimate_multipliers(equations_, found.state, problem_);
+    first_size_ = path_size(found.state.path, n_);
+    return found;
+  }
+
+  Solution solve_adapted(const Start& wanted) {
+    const Elements coarse = lobatto(first_degree);
+    const LegMesh mesh = first_mesh(coarse, wanted);
+    const Start start = sized(mesh, coarse, wanted);
+    Found found = begin(mesh, coarse, start);
+    std::string failure;
+    if (!newton(found, failure)) return failed(failure);
+    for (int round = 0; round < most_refinements && !spent(); ++round) {
+      const Scales size = sizes(found);
+      const double tolerance = options_.tolerance * size.q,
+                   of_v = velocity_tolerances * options_.tolerance * std::max(size.v, size.slowest);
+      const Resolution::Error error = errors(found);
+      const bool fine = found.state.path.degree() == degree;
+      if (fine && error.q <= tolerance && error.v <= of_v) {
+        if (std::optional<Solution> solution = compared(found, tolerance, of_v, error.q)) return *std::move(solution);
+        if (found.state.mesh.elements() * 2 > most_elements) break;
+        found = moved(found, halved(found.state.mesh), lobatto(degree));
+      } else {
+        const LegMesh next = cut(found, aim * tolerance, aim * of_v);
+        if (next.elements() > most_elements) break;
+        const bool same = next.elements() == found.state.mesh.elements();
+        found = moved(found, fine && same ? halved(next) : fine ? next : coarser(next, found), lobatto(degree));
+      }
+      if (!newton(found, failure)) return failed(failure);
+    }
+    return failed(spent() ? "the limit of work for one solve is reached"
+                          : "the elements do not resolve the path to the tolerance; try a larger tolerance");
+  }
+
+  /// From the first degree to the next, elements are not cut yet.
+  static LegMesh coarser(const LegMesh&, const Found& found) { return found.state.mesh; }
+
+  /// The solution, if elements of a higher degree confirm it.
+  std::optional<Solution> compared(const Found& found, double tolerance, double of_v, double truncation) {
+    Found finer = moved(found, found.state.mesh, lobatto(compared_with));
+    std::string failure;
+    if (!newton(finer, failure)) return std::nullopt;
+    const auto [q, v] = differences(found, finer);
+    const double size = path_size(found.state.path, n_);
+    const double error = std::max({q, truncation, (found.correction + finer.correction) * size});
+    if (!(error <= tolerance && v <= of_v)) return std::nullopt;
+    return judged(found, error);
+  }
+
+  Solution judged(const Found& found, double error) {
+    const auto start = Clock::now();
+    equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
+    Solution solution =
+        judge(problem_, options_, equations_, found.state, *found.own, error, first_size_);
+    seconds_analyse_ += std::chrono::duration<double>(Clock::now() - start).count();
+    return solution;
+  }
+
+  /// The largest differences of q and q' of two paths at the same parts of their legs.
+  std::pair<double, double> differences(const Found& a, const Found& b) const {
+    Path first, second;
+    without_constants(a.state.path, *a.own, first);
+    without_constants(b.state.path, *b.own, second);
+    const Trajectory one = trajectory_of(first), two = trajectory_of(second);
+    std::vector<double> q(n_), v(n_), other_q(n_), other_v(n_);
+    double most_q = 0, most_v = 0;
+    const int ratio = b.state.mesh.elements() / a.state.mesh.elements();
+    const std::vector<double>& nodes = a.own->scheme().lobatto;
+    for (int k = 0; k < one.elements(); ++k)
+      for (const double tau : nodes) {
+        one.in_element(k, tau, q, v);
+        const int part = std::min(ratio - 1, static_cast<int>(tau * ratio));
+        two.in_element(ratio * k + part, tau * ratio - part, other_q, other_v);
+        for (int i = 0; i < n_; ++i) {
+          most_q = std::max(most_q, std::abs(q[i] - other_q[i]));
+          most_v = std::max(most_v, std::abs(v[i] - other_v[i]));
+        }
+      }
+    return {most_q, most_v};
+  }
+
+  /// Equal elements of the scheme that is asked for: so many, or doubled until the tolerance is met.
+  Solution solve_with_scheme(const Start& wanted) {
+    const Elements elements{&scheme_, &own_scheme_};
+    const int legs = static_cast<int>(times_.size());
+    const bool pinned = options_.elements > 0;
+    const LegMesh mesh = equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
+    Found found = begin(mesh, elements, sized(mesh, elements, wanted));
+    std::string failure;
+    if (!newton(found, failure)) return failed(failure);
+    const double gain = std::pow(2.0, options_.scheme->order) - 1;
+    for (;;) {
+      Found finer = moved(found, halved(found.state.mesh), elements);
+      if (finer.state.mesh.elements() > most_scheme_elements)
+        return failed(fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
+                                  "scheme of higher order",
+                                  found.state.mesh.elements()));
+      if (!newton(finer, failure)) return failed(failure);
+      const double difference = differences(found, finer).first;
+      if (pinned) return judged(found, difference * (1 + 1 / gain));
+      if (difference * (1 + 1 / gain) <= options_.tolerance * sizes(found).q)
+        return judged(found, difference * (1 + 1 / gain));
+      if (spent()) return failed("the limit of work for one solve is reached");
+      found = std::move(finer);
+    }
+  }
+
+  const Problem& problem_;
+  const Extension& extension_;
+  const SolveOptions& options_;
+  int n_;
+  Levels levels_, own_levels_;
+  std::optional<SchemeTables> rule_;
+  ElementTables scheme_, own_scheme_;
+  std::vector<double> times_;  ///< of the waypoints, then T: guesses where free
+  BorderedEquations equations_;
+  Resolution resolution_;
+  int iterations_ = 0;
+  double seconds_analyse_ = 0, first_size_ = 1;
+};
+
+}  // namespace
+
+Solution solve_bordered(const Problem& problem, const SolveOptions& options) {
+  return BorderedSolve(problem, options).run();
+}
+
+}  // namespace extremal
