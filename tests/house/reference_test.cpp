@@ -27,6 +27,7 @@ struct TableOfKeys {
 const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
                                          {"system", "### system"},
                                          {"boundary", "### boundary"},
+                                         {"waypoints", "### waypoints"},
                                          {"guess", "### guess"},
                                          {"solve", "### solve"},
                                          {"search", "### search"},
@@ -104,8 +105,10 @@ TEST(Reference, ExamplesAreAccepted) {
   for (const extremal::KeyRecord& record : extremal::key_records()) {
     if (!record.available) continue;
     const bool top = record.table.empty() || record.table == "system file";
-    const std::string text =
-        (top ? "" : fmt::format("[{}]\n", record.table)) + std::string(record.example) + "\n";
+    const extremal::KeyRecord* const table = top ? nullptr : extremal::find_key("", record.table);
+    const bool list = table && table->kind == extremal::Kind::tables;
+    const std::string text = (top ? "" : fmt::format(list ? "[[{}]]\n" : "[{}]\n", record.table)) +
+                             std::string(record.example) + "\n";
     const extremal::Document document = extremal::parse_document(source(text));
     EXPECT_NO_THROW(extremal::check_keys(document, document.root, top ? record.table : "")) << text;
     const bool names_it = record.key == "*" || record.example.starts_with(record.key);

@@ -85,7 +85,6 @@ void BorderedEquations::number_unknowns() {
 }
 
 void BorderedEquations::add(int row, int column, double value) {
-  if (value == 0) return;
   symmetric_.emplace_back(row, column, value);
   if (!replaced_[row]) entries_.emplace_back(row, column, value);
 }
@@ -106,6 +105,8 @@ bool BorderedEquations::evaluate(const BorderedState& state, bool matrix) {
   add_elements(state, matrix);
   if (!action_.finite()) return false;
   const Extension& e = extension();
+  target_sizes_.clear();
+  for (const double c : e.integrals) target_sizes_.push_back(std::max(1.0, std::abs(c)));
   for (int j = 0; j < e.multipliers(); ++j) values_[first_constant() + e.unknowns() + j] -= e.integrals[j];
   for (std::size_t end = 0; end < problem_->boundary.momenta.size(); ++end) {
     const bool start = end < static_cast<std::size_t>(n_);
@@ -115,8 +116,23 @@ bool BorderedEquations::evaluate(const BorderedState& state, bool matrix) {
   }
   add_conditions(state, matrix);
   add_closing(state, matrix);
+  const std::vector<int> rows = target_rows();
+  for (std::size_t i = 0; i < offsets_.size(); ++i) values_[rows[i]] -= offsets_[i];
   if (matrix && held_ > 0) add_held(state);
   return values_.allFinite();
+}
+
+std::vector<int> BorderedEquations::target_rows() const {
+  std::vector<int> rows;
+  for (int r = first_constant() + extension().unknowns(); r < first_time(); ++r) rows.push_back(r);
+  rows.insert(rows.end(), closing_rows_.begin(), closing_rows_.end());
+  return rows;
+}
+
+std::vector<double> BorderedEquations::targets() const {
+  std::vector<double> values;
+  for (const int row : target_rows()) values.push_back(values_[row]);
+  return values;
 }
 
 void BorderedEquations::add_elements(const BorderedState& state, bool matrix) {
@@ -170,6 +186,29 @@ void BorderedEquations::add_element(int k, int lane, const BatchValues& values, 
   }
 }
 
+/// Of the condition whose gradient was evaluated last.
+double BorderedEquations::size_of_terms(std::span<const double> start, std::span<const double> end) const {
+  double size = 1;
+  for (int e = 0; e < 2 * all_; ++e)
+    size = std::max(size, std::abs(gradient_[e] * (e < all_ ? start[e] : end[e - all_])));
+  return size;
+}
+
+double BorderedEquations::mismatch() const {
+  double most = 0;
+  const std::vector<int> rows = target_rows();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    most = std::max(most, std::abs(values_[rows[i]]) / target_sizes_[i]);
+  return most;
+}
+
+double BorderedEquations::energy_jump() const {
+  double most = 0;
+  for (int row = first_time(); row < first_held(); ++row)
+    if (!replaced_[row]) most = std::max(most, std::abs(values_[row]));
+  return most;
+}
+
 void BorderedEquations::add_conditions(const BorderedState& state, bool matrix) {
   const std::size_t all = all_;
   const std::span<const double> start{state.path.node(0), all}, end{state.path.node(elements_), all};
@@ -177,6 +216,7 @@ void BorderedEquations::add_conditions(const BorderedState& state, bool matrix) 
     const int row = first_multiplier() + i;
     const double eta = state.multipliers[i];
     values_[row] = extension().conditions[i].function(start, end, gradient_, matrix ? hessian_ : std::span<double>{});
+    target_sizes_.push_back(size_of_terms(start, end));
     for (int e = 0; e < 2 * all_; ++e) {
       if (gradient_[e] == 0) continue;
       for (const Share& share : end_shares(e)) {
@@ -199,19 +239,16 @@ void BorderedEquations::add_closing(const BorderedState& state, bool matrix) {
   if (problem_->duration.energy) values_[time_unknown_.back()] += *problem_->duration.energy;
   const std::size_t all = all_;
   const std::span<const double> start{state.path.node(0), all}, end{state.path.node(elements_), all};
-  mismatch_ = 0;
   for (std::size_t i = 0; i < closing_rows_.size(); ++i) {
     const int row = closing_rows_[i];
     values_[row] = extension().where[i].function(start, end, gradient_, {});
-    double terms = 1;
+    target_sizes_.push_back(size_of_terms(start, end));
     for (int e = 0; e < 2 * all_; ++e) {
       if (gradient_[e] == 0) continue;
-      terms = std::max(terms, std::abs(gradient_[e] * (e < all_ ? start[e] : end[e - all_])));
       if (matrix)
         for (const Share& share : end_shares(e))
           entries_.emplace_back(row, share.unknown, share.factor * gradient_[e]);
     }
-    mismatch_ = std::max(mismatch_, std::abs(values_[row]) / terms);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "action/discrete_action.hpp"
@@ -27,6 +28,12 @@ class BorderedEquations {
   /// Both must outlive it. `tables` are those of the extension's Lagrangian, `own` those of the n coordinates.
   void reset(const Problem& problem, const ElementTables& tables, const ElementTables& own,
              const LegMesh& mesh);
+
+  /// From now on the integrals, the conditions r and w, in this order, are to have these values beside what is
+  /// given; empty: none. Kept by reset().
+  void set_offsets(std::vector<double> offsets) { offsets_ = std::move(offsets); }
+  /// The values that they have, of the state evaluated last.
+  std::vector<double> targets() const;
 
   int unknowns() const { return unknowns_; }
   int of_path() const { return of_path_; }            ///< unknowns of the path
@@ -54,8 +61,10 @@ class BorderedEquations {
   double momentum() const { return momentum_; }  ///< the largest at an end of an element
   /// The largest of the equations of the path, by the largest momentum.
   double residual() const;
-  /// Of each condition w, by the sizes of its terms.
-  double mismatch() const { return mismatch_; }
+  /// Of the integrals, the conditions r and w, by the sizes of their terms.
+  double mismatch() const;
+  /// The largest that is left of the equations of the free times: energies.
+  double energy_jump() const;
 
   /// Index and nullity of the second variation where constants and times are held: on the paths that keep the
   /// integrals and the conditions. The matrix was evaluated last.
@@ -84,6 +93,8 @@ class BorderedEquations {
   void add_element(int k, int lane, const BatchValues& values, const BorderedState& state, bool matrix);
   void add_conditions(const BorderedState& state, bool matrix);
   void add_closing(const BorderedState& state, bool matrix);
+  std::vector<int> target_rows() const;
+  double size_of_terms(std::span<const double> start, std::span<const double> end) const;
   void add_held(const BorderedState& state);
 
   const Problem* problem_ = nullptr;
@@ -99,8 +110,10 @@ class BorderedEquations {
   DiscreteAction action_;
   Eigen::VectorXd values_;
   std::vector<Eigen::Triplet<double>> entries_, symmetric_;
+  std::vector<double> offsets_;
   std::vector<double> node_gradient_, gradient_, hessian_;
-  double mismatch_ = 0, momentum_ = 0;
+  double momentum_ = 0;
+  std::vector<double> target_sizes_;  ///< of the terms of each integral, r and w
   Path own_path_;
   PhaseConditions phases_;
 };

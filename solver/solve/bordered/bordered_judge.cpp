@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solution/extension_values.hpp"
@@ -79,6 +80,10 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
                                equations.residual()));
   if (!(equations.mismatch() <= largest_mismatch))
     return refused(fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch()));
+  const double energy = equations.momentum() * size / state.times.back();
+  if (!(equations.energy_jump() <= largest_residual * std::max(energy, std::abs(problem.duration.energy.value_or(0)))))
+    return refused(fmt::format("the energy at a free time is missed by {:.1e}; try another guess",
+                               equations.energy_jump()));
   Solution solution;
   solution.status = Status::converged;
   solution.message = "converged";

@@ -4,6 +4,7 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "linear/dense.hpp"
 #include "solve/bordered/limits.hpp"
@@ -40,22 +41,23 @@ class BorderedNewton {
       return false;
     }
     const BorderedEquations::Matrix matrix = equations_.matrix();
-    if (!analysed_) lu_.analyzePattern(matrix);
+    // Zeros are kept as entries, but for those of conditions, of which the gradient may vanish by chance.
+    if (matrix.nonZeros() != analysed_) lu_.analyzePattern(matrix);
+    analysed_ = matrix.nonZeros();
     lu_.factorize(matrix);
-    analysed_ = false;  // entries that vanish by chance change the pattern
-    if (lu_.info() != Eigen::Success) {
-      failure_ = "the second variation with the conditions is singular";
-      return false;
-    }
     set_units(matrix);
-    return true;
+    find_null_directions(matrix);
+    if (lu_.info() == Eigen::Success || least_norm_) return true;
+    failure_ = "the second variation with the conditions is singular";
+    return false;
   }
 
   /// The correction from the values evaluated last.
   Eigen::VectorXd correction() const {
     Eigen::VectorXd right = -equations_.values();
     for (Eigen::Index j = equations_.first_held(); j < right.size(); ++j) right[j] = 0;
-    return lu_.solve(right);
+    if (!least_norm_) return lu_.solve(right);
+    return units_.cwiseProduct(least_norm_->solve(right.cwiseProduct(row_units_)));
   }
 
   double length(const Eigen::VectorXd& step) const {
@@ -88,6 +90,28 @@ class BorderedNewton {
     }
     for (int c = equations_.first_time(); c < equations_.first_held(); ++c) units_[c] = state_.times.back();
   }
+  /// A singular matrix belongs to a family of solutions: of all steps the shortest is taken. It shows in a
+  /// solution that is much larger than its right-hand side.
+  void find_null_directions(const BorderedEquations::Matrix& matrix) {
+    least_norm_.reset();
+    const Eigen::Index size = matrix.rows();
+    if (size > most_dense) return;
+    row_units_.setZero(size);
+    for (Eigen::Index c = 0; c < size; ++c)
+      for (BorderedEquations::Matrix::InnerIterator it(matrix, c); it; ++it)
+        row_units_[it.row()] = std::max(row_units_[it.row()], std::abs(it.value()) * units_[c]);
+    for (double& unit : row_units_) unit = unit > 0 ? 1 / unit : 1;
+    Eigen::VectorXd probe(size);
+    for (Eigen::Index i = 0; i < size; ++i) probe[i] = std::cos(1.0 + 2.3 * static_cast<double>(i));
+    if (lu_.info() == Eigen::Success) {
+      const Eigen::VectorXd answer = lu_.solve(probe.cwiseQuotient(row_units_)).cwiseQuotient(units_);
+      if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_direction) return;
+    }
+    const Eigen::MatrixXd dense =
+        row_units_.asDiagonal() * Eigen::MatrixXd(matrix) * units_.asDiagonal();
+    least_norm_.emplace(size, size);
+    least_norm_->setThreshold(null_direction).compute(dense);
+  }
   int coordinates() const {
     return state_.path.coordinates() - (equations_.first_multiplier() - equations_.first_constant());
   }
@@ -95,8 +119,9 @@ class BorderedNewton {
   BorderedEquations& equations_;
   BorderedState& state_;
   Eigen::SparseLU<BorderedEquations::Matrix> lu_;
-  Eigen::VectorXd units_;
-  bool analysed_ = false;
+  Eigen::VectorXd units_, row_units_;
+  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> least_norm_;
+  Eigen::Index analysed_ = -1;  ///< entries of the pattern
   std::string failure_;
 };
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 #include "solve/bordered/bordered_judge.hpp"
 #include "solve/bordered/bordered_newton.hpp"
@@ -14,6 +17,7 @@
 #include "solve/guess/starting_ends.hpp"
 #include "solve/mesh/levels.hpp"
 #include "solve/mesh/resolution.hpp"
+#include "solve/newton/ends.hpp"
 
 namespace extremal {
 
@@ -23,10 +27,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A starting path: the guess with noise.
+/// A starting path: the guess, perhaps bent; and whether the integrals and conditions that it has are led to
+/// those that are given.
 struct Start {
-  double size = 0;
-  unsigned seed = 0;
+  Bend bend = {};
+  bool led = false;
+
+  const char* strategy() const {
+    if (bend.size == 0)
+      return led ? "newton from the guess, integrals and conditions led to what is given" : "newton from the guess";
+    return led ? "newton from the guess with smooth noise, integrals and conditions led to what is given"
+               : "newton from the guess with smooth noise";
+  }
 };
 
 /// A state, and where it came from.
@@ -61,13 +73,13 @@ class BorderedSolve {
     const auto start = Clock::now();
     std::string first_failure;
     for (const Start& attempt : starts()) {
-      if (attempt.size > 0 && spent()) break;
-      Solution solution = solve_from(attempt);
+      if (attempt.bend.size != 0 && spent()) break;
+      equations_.set_offsets({});
+      Solution solution = options_.scheme ? solve_with_scheme(attempt) : solve_adapted(attempt);
+      solution.iterations = iterations_;
       if (solution.converged()) {
-        solution.strategy = attempt.size > 0 ? "newton from the guess with smooth noise" : "newton from the guess";
-        solution.iterations = iterations_;
-        const double all = std::chrono::duration<double>(Clock::now() - start).count();
-        solution.seconds_solve = all - seconds_analyse_;
+        solution.strategy = attempt.strategy();
+        solution.seconds_solve = seconds_since(start) - seconds_analyse_;
         solution.seconds_analyse = seconds_analyse_;
         return solution;
       }
@@ -79,18 +91,46 @@ class BorderedSolve {
                        "; no guess with noise led to a solution either: try another guess of the path, of the "
                        "unknowns or of the duration";
     solution.iterations = iterations_;
-    solution.seconds_solve = std::chrono::duration<double>(Clock::now() - start).count();
+    solution.seconds_solve = seconds_since(start);
     return solution;
   }
 
  private:
   bool spent() const { return options_.deadline.passed() || iterations_ >= options_.max_iterations; }
 
-  static std::vector<Start> starts() {
+  static double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+  bool has_targets() const {
+    return extension_.multipliers() > 0 || !extension_.conditions.empty() || !extension_.where.empty();
+  }
+
+  /// The guess, then bends of it to both sides, that of less action first.
+  std::vector<Start> starts() {
     std::vector<Start> all{{}};
-    for (unsigned seed = 0; seed < bends_of_a_size; ++seed)
-      for (const double size : bends) all.push_back({size, seed});
+    if (has_targets()) all.push_back({{}, true});
+    const Elements elements = lobatto(first_degree);
+    const LegMesh mesh = equal_elements(first_elements * static_cast<int>(times_.size()));
+    for (const BendRow& row : bends)
+      for (int seed = 0; seed < row.seeds; ++seed) {
+        Start one{{row.size, static_cast<unsigned>(seed), row.modes}}, other = one;
+        other.bend.size = -row.size;
+        if (action_of(mesh, elements, other) < action_of(mesh, elements, one)) std::swap(one, other);
+        for (Start& start : {std::ref(one), std::ref(other)}) {
+          all.push_back(start);
+          start.led = true;
+          if (has_targets()) all.push_back(start);
+        }
+      }
     return all;
+  }
+
+  /// Of L alone; infinite where it is not finite.
+  double action_of(const LegMesh& mesh, const Elements& elements, const Start& start) {
+    equations_.reset(problem_, *elements.tables, *elements.own, mesh);
+    const bool finite = equations_.evaluate(first_state(mesh, elements, start), false);
+    return finite ? equations_.action().action() : INFINITY;
   }
 
   Elements lobatto(int degree) { return {&levels_.at(degree), &own_levels_.at(degree)}; }
@@ -120,41 +160,36 @@ class BorderedSolve {
     state.path.load_ends();
   }
 
+  /// Adds smooth noise, the ends at rest; closed paths stay closed.
+  void bend(const Bend& bend, const ElementTables& tables, Path& path) const {
+    if (bend.size == 0) return;
+    if (problem_.periodic) return bend_path(problem_, bend, tables, path);
+    const Trajectory before = trajectory_of(path);
+    const std::vector<double> extent = extents(path, negligible_extent[bend.seed % 2]);
+    Noise noise(bend.seed);
+    std::vector<double> amplitude(static_cast<std::size_t>(bend.modes) * n_), v(n_);
+    for (double& c : amplitude) c = bend.size * noise();
+    fill_path(ends_of(path), tables, path, [&](double tau, double* point) {
+      before.at(tau * before.duration(), {point, static_cast<std::size_t>(n_)}, v);
+      for (int m = 1; m <= bend.modes; ++m)
+        for (int a = 0; a < n_; ++a)
+          point[a] += extent[a] / m * amplitude[static_cast<std::size_t>(m - 1) * n_ + a] *
+                      std::sin(m * std::numbers::pi * tau);
+    });
+  }
+
   BorderedState first_state(const LegMesh& mesh, const Elements& elements, const Start& start) const {
     BorderedState state{{}, mesh, times_, std::vector<double>(extension_.conditions.size())};
     const std::vector<double> lengths = element_lengths(mesh, times_);
     Path path;
     path.reset(*elements.own, mesh_nodes(lengths), times_.back(), lengths);
     start_path(problem_, starting_ends(problem_), *elements.own, path);
-    if (start.size > 0) bend_path(problem_, {start.size, start.seed}, *elements.own, path);
+    bend(start.bend, *elements.own, path);
     std::vector<double> constants = extension_.guess;
     constants.resize(extension_.constants(), 0);
     with_constants(path, *elements.tables, constants, state.path);
     set_waypoints(state);
     return state;
-  }
-
-  /// Starts of another size, where that brings the integrals nearer to what is given.
-  Start sized(const LegMesh& mesh, const Elements& elements, Start start) {
-    if (extension_.multipliers() == 0 || start.size == 0) return start;
-    equations_.reset(problem_, *elements.tables, *elements.own, mesh);
-    double least = INFINITY;
-    Start best = start;
-    for (double size = least_bend; size < most_bend; size *= bend_ratio) {
-      const Start tried{size, start.seed};
-      if (!equations_.evaluate(first_state(mesh, elements, tried), false)) continue;
-      double missed = 0;
-      for (int j = 0; j < extension_.multipliers(); ++j)
-        missed = std::max(missed, std::abs(equations_.values()[equations_.first_constant() +
-                                                               extension_.unknowns() + j]));
-      if (missed < least) {
-        least = missed;
-        best = tried;
-      }
-    }
-    // Between the sizes that come nearest and those asked for.
-    if (start.size != *bends.begin()) best.size *= 1 + 0.5 * (start.size - *bends.begin());
-    return best;
   }
 
   bool newton(Found& found, std::string& failure) {
@@ -242,15 +277,47 @@ class BorderedSolve {
   /// Elements that resolve the starting path.
   LegMesh first_mesh(const Elements& elements, const Start& start) {
     const int legs = static_cast<int>(times_.size());
+    const int most = start.bend.size == 0 ? most_first_elements : most_bent_elements;
     for (int count = std::max(first_elements, 2 * legs);; count *= 2) {
       const LegMesh mesh = equal_elements(count);
       Found found{first_state(mesh, elements, start), elements.tables, elements.own};
-      if (count >= most_first_elements || errors(found).q <= guess_error * sizes(found).q) return mesh;
+      if (count >= most || errors(found).q <= guess_error * sizes(found).q) return mesh;
     }
   }
 
-  Solution solve_from(Start start) {
-    return options_.scheme ? solve_with_scheme(start) : solve_adapted(start);
+  /// Newton's method from the start; or along the family of problems with the integrals and conditions that
+  /// the start has, to those that are given.
+  bool reach(Found& found, const Start& start, std::string& failure) {
+    if (!start.led) return newton(found, failure);
+    if (!equations_.evaluate(found.state, false)) return false;
+    const std::vector<double> targets = equations_.targets();
+    const auto newton_at = [&](double part) {
+      std::vector<double> offsets = targets;
+      for (double& x : offsets) x *= 1 - part;
+      equations_.set_offsets(offsets);
+      return newton(found, failure);
+    };
+    if (!newton_at(0)) return false;
+    double part = 0, step = 0.25;
+    while (part < 1 && !spent()) {
+      const Found kept = found;
+      const double next = std::min(1.0, part + step);
+      if (newton_at(next)) {
+        part = next;
+        step *= 2;
+        if (errors(found).q > way_error * sizes(found).q && !options_.scheme) {
+          const LegMesh finer = cut(found, way_error * sizes(found).q / 2, INFINITY);
+          if (finer.elements() > most_elements) return false;
+          found = moved(found, finer, {found.tables, found.own});
+        }
+        continue;
+      }
+      found = kept;
+      step = (next - part) / 4;
+      if (step < least_part) return false;
+    }
+    equations_.set_offsets({});
+    return part == 1 && newton(found, failure);
   }
 
   Found begin(const LegMesh& mesh, const Elements& elements, const Start& start) {
@@ -261,13 +328,11 @@ class BorderedSolve {
     return found;
   }
 
-  Solution solve_adapted(const Start& wanted) {
+  Solution solve_adapted(const Start& start) {
     const Elements coarse = lobatto(first_degree);
-    const LegMesh mesh = first_mesh(coarse, wanted);
-    const Start start = sized(mesh, coarse, wanted);
-    Found found = begin(mesh, coarse, start);
+    Found found = begin(first_mesh(coarse, start), coarse, start);
     std::string failure;
-    if (!newton(found, failure)) return failed(failure);
+    if (!reach(found, start, failure)) return failed(failure);
     for (int round = 0; round < most_refinements && !spent(); ++round) {
       const Scales size = sizes(found);
       const double tolerance = options_.tolerance * size.q,
@@ -282,16 +347,14 @@ class BorderedSolve {
         const LegMesh next = cut(found, aim * tolerance, aim * of_v);
         if (next.elements() > most_elements) break;
         const bool same = next.elements() == found.state.mesh.elements();
-        found = moved(found, fine && same ? halved(next) : fine ? next : coarser(next, found), lobatto(degree));
+        // From the first degree to the next, elements are not cut yet.
+        found = moved(found, !fine ? found.state.mesh : same ? halved(next) : next, lobatto(degree));
       }
       if (!newton(found, failure)) return failed(failure);
     }
     return failed(spent() ? "the limit of work for one solve is reached"
                           : "the elements do not resolve the path to the tolerance; try a larger tolerance");
   }
-
-  /// From the first degree to the next, elements are not cut yet.
-  static LegMesh coarser(const LegMesh&, const Found& found) { return found.state.mesh; }
 
   /// The solution, if elements of a higher degree confirm it.
   std::optional<Solution> compared(const Found& found, double tolerance, double of_v, double truncation) {
@@ -338,14 +401,14 @@ class BorderedSolve {
   }
 
   /// Equal elements of the scheme that is asked for: so many, or doubled until the tolerance is met.
-  Solution solve_with_scheme(const Start& wanted) {
+  Solution solve_with_scheme(const Start& start) {
     const Elements elements{&scheme_, &own_scheme_};
     const int legs = static_cast<int>(times_.size());
     const bool pinned = options_.elements > 0;
     const LegMesh mesh = equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
-    Found found = begin(mesh, elements, sized(mesh, elements, wanted));
+    Found found = begin(mesh, elements, start);
     std::string failure;
-    if (!newton(found, failure)) return failed(failure);
+    if (!reach(found, start, failure)) return failed(failure);
     const double gain = std::pow(2.0, options_.scheme->order) - 1;
     for (;;) {
       Found finer = moved(found, halved(found.state.mesh), elements);

@@ -12,6 +12,11 @@ inline constexpr double least_leg = 0.1;
 /// roundoff, which the elimination lets grow by some orders.
 inline constexpr double null_eigenvalue = 1e-10;
 
+/// Of the equations and unknowns in their units: a direction in which the matrix is so small is one of a family
+/// of solutions. It is looked for in so many unknowns at most.
+inline constexpr double null_direction = 1e-10;
+inline constexpr int most_dense = 1500;
+
 /// Of the damped iteration.
 inline constexpr int most_steps = 60;
 inline constexpr double least_damping = 1e-3;
@@ -28,7 +33,7 @@ inline constexpr double most_growth = 1e4;
 
 /// Elements: of the first attempt, of those that follow, at most.
 inline constexpr int first_degree = 6, degree = 10, compared_with = 12;
-inline constexpr int first_elements = 4, most_elements = 2000, most_first_elements = 64;
+inline constexpr int first_elements = 8, most_elements = 2000, most_first_elements = 64, most_bent_elements = 16;
 /// Of the range: a guess is resolved to this before the iteration begins.
 inline constexpr double guess_error = 1e-2;
 /// Of the tolerance, that a plan of elements aims at.
@@ -42,11 +47,16 @@ inline constexpr double velocity_tolerances = 10;
 /// Of a result: equations of the path by the largest momentum, conditions by their terms.
 inline constexpr double largest_residual = 1e-9, largest_mismatch = 1e-10;
 
-/// Starting paths bent by noise: sizes by the extent of the guess, and how many of each.
-inline constexpr std::initializer_list<double> bends = {0.3, 0.1, 0.6, 1.0};
-inline constexpr int bends_of_a_size = 6;
-/// With integrals, sizes among which the one is chosen that comes nearest to them.
-inline constexpr double least_bend = 0.02, bend_ratio = 1.3, most_bend = 5;
+/// Starting paths bent by noise: sizes by the extent of the guess, waves, and how many of each.
+struct BendRow {
+  double size;
+  int modes, seeds;
+};
+inline constexpr std::initializer_list<BendRow> bends = {{0.1, 1, 3}, {0.3, 1, 3}, {0.3, 3, 4}, {1.0, 3, 4}};
+/// On the way from what a starting path has to what is given, shortest step.
+inline constexpr double least_part = 1.0 / 512;
+/// Of the range: elements on that way.
+inline constexpr double way_error = 1e-3;
 
 /// Elements of a scheme are doubled at most up to this many.
 inline constexpr int most_scheme_elements = 1 << 15;
