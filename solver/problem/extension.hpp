@@ -16,8 +16,8 @@ namespace extremal {
 
 /// A point in between: coordinates that are fixed at a time.
 struct Waypoint {
-  double time = 0;    ///< in (0, T); where it is free, t/T of its guess
-  bool free = false;  ///< S is stationary in the time: the energy is continuous
+  double time = 0;                            ///< in (0, T); where it is free, t/T of its guess
+  bool free = false;                          ///< S is stationary in the time: the energy is continuous
   std::vector<std::pair<int, double>> fixed;  ///< coordinate, value
 };
 
@@ -28,9 +28,9 @@ struct Waypoint {
 /// in the path, in ν and in η. The constants k are held there; the conditions w(q(0), q(T), k) = 0 determine
 /// them, and where no energy does, a free duration.
 ///
-/// The constants k and ν are coordinates of `lagrangian`, L + Σ ν_j g_j, behind the n of the path: coordinates
-/// that are constant along the path and have no velocity. So all derivatives with respect to them come from
-/// the same tape.
+/// The constants k and ν are coordinates of `lagrangian`, L + Σ ν_j g_j, behind the n of the path:
+/// coordinates that are constant along the path and have no velocity. So all derivatives with respect to them
+/// come from the same tape.
 struct Extension {
   std::shared_ptr<const Lagrangian> lagrangian;  ///< of n + u + m coordinates: q, k, ν
   std::vector<std::string> names;                ///< of k, u entries

@@ -135,7 +135,8 @@ struct Checker {
 
   void check_tables(const toml::node& node, std::string_view name, const std::string& label) const {
     if (!single(Kind::tables, node))
-      refuse(node, fmt::format("{} must be a list of tables, found {}; write [[{}]]", label, type_name(node), name));
+      refuse(node, fmt::format("{} must be a list of tables, found {}; write [[{}]]", label, type_name(node),
+                               name));
     for (const toml::node& item : *node.as_array()) check_table(*item.as_table(), name);
   }
 

@@ -61,14 +61,16 @@ void check_where_list(const Scene& scene) {
                     wanted = boundary.unknowns.size() + (boundary.free && !boundary.energy ? 1 : 0);
   const Location at = given > 0 ? boundary.where_list.front().at : boundary.unknowns.front().name_at;
   if (given != wanted)
-    throw SceneError(at, fmt::format("'where' has {} equation{}, and {} {} to be determined: the unknowns{}; "
-                                     "give as many equations, or more unknowns",
-                                     given, given == 1 ? "" : "s", wanted, wanted == 1 ? "number is" : "numbers are",
-                                     boundary.free && !boundary.energy ? " and the duration" : ""));
+    throw SceneError(
+        at, fmt::format("'where' has {} equation{}, and {} {} to be determined: the unknowns{}; "
+                        "give as many equations, or more unknowns",
+                        given, given == 1 ? "" : "s", wanted, wanted == 1 ? "number is" : "numbers are",
+                        boundary.free && !boundary.energy ? " and the duration" : ""));
   if (!boundary.free && boundary.energy)
-    throw SceneError(boundary.energy->at,
-                     "'energy' closes a free duration, but duration is fixed; write duration = \"free\" or leave "
-                     "'energy' out");
+    throw SceneError(
+        boundary.energy->at,
+        "'energy' closes a free duration, but duration is fixed; write duration = \"free\" or leave "
+        "'energy' out");
   if (!boundary.free && scene.guess.duration)
     throw SceneError(
         scene.guess.duration->at,

@@ -62,8 +62,8 @@ struct BoundaryTable {
   Quantity duration;
   bool free = false;  ///< duration = "free"
   std::optional<Quantity> energy;
-  std::optional<Text> where;        ///< where it is one, and there are no unknowns
-  std::vector<Text> where_list;     ///< else
+  std::optional<Text> where;     ///< where it is one, and there are no unknowns
+  std::vector<Text> where_list;  ///< else
   std::vector<Text> integrals;
   std::vector<Assignment> unknowns;  ///< parameters to be found, with guesses
 };

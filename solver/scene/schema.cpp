@@ -83,7 +83,8 @@ constexpr KeyRecord keys[] = {
      "affine.",
      R"(map = { theta = "theta + 2*pi" })", true},
     {"boundary", "conditions", Kind::texts, "none",
-     "Equations between end values, instead of `start` and `end`, linear or not. The directions that they leave "
+     "Equations between end values, instead of `start` and `end`, linear or not. The directions that they "
+     "leave "
      "free get the natural condition.",
      "conditions = [\"x(0) = 1\", \"x(T)^2 + y(T)^2 = 4\"]"},
     {"boundary", "integrals", Kind::texts, "none",
@@ -170,7 +171,8 @@ constexpr Exclusion pairs[] = {
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration", "boundary.unknowns"},
     {"boundary.integrals", "system.force", "with forces there is no action that could be stationary"},
     {"boundary.unknowns", "system.force", "with forces unknown constants are not available"},
-    {"boundary.integrals", "system.hamiltonian", "integrals join a Lagrangian; write the 'lagrangian' instead"},
+    {"boundary.integrals", "system.hamiltonian",
+     "integrals join a Lagrangian; write the 'lagrangian' instead"},
     {"boundary.unknowns", "system.hamiltonian", "unknowns join a Lagrangian; write the 'lagrangian' instead"},
     {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
     {"guess.file", "guess.state", "a guess has one source"},

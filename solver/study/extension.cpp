@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -124,12 +126,14 @@ Integral integral_of(const Text& text) {
 double value_of(const Text& text, const System& system) {
   const Integral integral = integral_of(text);
   try {
-    return number(integral.value, system, "integrals");
+    const double value = number(integral.value, system, "integrals");
+    if (std::isfinite(value)) return value;
   } catch (const FormulaError& e) {
     if (e.where.starts_with("definitions.")) throw;
     throw SceneError(position(text, integral.value_offset + e.offset),
                      fmt::format("{}; the right side of an integral is a number", e.what()));
   }
+  throw SceneError(position(text, integral.value_offset), "the value of the integral is not finite");
 }
 
 /// Each integrand alone as a Lagrangian, so that its errors are found at their places.
@@ -157,8 +161,8 @@ Text law_with(const Scene& scene, const std::vector<std::string>& multipliers) {
   Text law = *scene.system.lagrangian;
   law.value = "(" + law.value + ")";
   for (std::size_t j = 0; j < multipliers.size(); ++j)
-    law.value += fmt::format(" + ({})*({})", multipliers[j],
-                             integral_of(scene.boundary.integrals[j]).integrand.value);
+    law.value +=
+        fmt::format(" + ({})*({})", multipliers[j], integral_of(scene.boundary.integrals[j]).integrand.value);
   return law;
 }
 
@@ -212,9 +216,10 @@ void split_end(const char* place, const Dependents& dependents, std::vector<Assi
     };
     if (!std::ranges::any_of(a.values, depends)) return false;
     if (a.list || a.name.starts_with("p_"))
-      throw SceneError(a.at, fmt::format("'{}' depends on an unknown, which only single coordinates may; write "
-                                         "an entry for each, or 'conditions'",
-                                         a.name));
+      throw SceneError(a.at,
+                       fmt::format("'{}' depends on an unknown, which only single coordinates may; write "
+                                   "an entry for each, or 'conditions'",
+                                   a.name));
     conditions.push_back({fmt::format("{}({}) = {}", a.name, place, *formula_of(a.values.front())), a.at});
     return true;
   });
@@ -249,8 +254,8 @@ std::vector<Waypoint> read_waypoints(const Scene& scene, const System& system, c
     }
     const double duration = problem.duration.value;
     if (!(waypoint.time > 0 && waypoint.time < duration))
-      throw SceneError(table.time.at, fmt::format("at = {}; a waypoint lies between 0 and T = {}", waypoint.time,
-                                                  duration));
+      throw SceneError(table.time.at,
+                       fmt::format("at = {}; a waypoint lies between 0 and T = {}", waypoint.time, duration));
     if (!(waypoint.time > last))
       throw SceneError(table.time.at, fmt::format("at = {} is not after the waypoint before, at {}; write "
                                                   "waypoints in order of their times",
@@ -288,8 +293,8 @@ ExtendedScene split(const Scene& scene, const System& system) {
   std::erase_if(parts.linear.conditions, [&](const Text& text) {
     const bool contains = any_of(names_in(text.value), dependents);
     const bool linear = !contains && placed(text, [&](const std::string& s) {
-                          return end_equation(s, system, "conditions");
-                        }).affine;
+                                       return end_equation(s, system, "conditions");
+                                     }).affine;
     if (!linear) parts.conditions.push_back(text);
     return !linear;
   });
@@ -318,8 +323,10 @@ ExtendedScene split(const Scene& scene, const System& system) {
 }
 
 void check_extended(const Scene& scene, Purpose purpose) {
-  const std::string asks =
-      "with integrals, unknowns, nonlinear conditions or waypoints ";
+  const std::string asks = "with integrals, unknowns, nonlinear conditions or waypoints ";
+  if (purpose == Purpose::comparison)
+    throw SceneError(scene.boundary.at,
+                     asks + "shooting is not available to compare with; write 'solve' instead");
   if (!scene.system.force.empty())
     throw SceneError(scene.system.force.front().name_at,
                      asks + "there must be an action; forces have none: leave them out");
@@ -327,14 +334,21 @@ void check_extended(const Scene& scene, Purpose purpose) {
     throw SceneError(scene.search->solutions.at,
                      asks + "[search] is not available; leave it out, and give a guess for each extremal");
   if (scene.continuation && purpose == Purpose::family)
-    throw SceneError(scene.continuation->at, asks +
-                                                 "families are not continued; solve for each value with --set "
-                                                 "instead");
+    throw SceneError(scene.continuation->at,
+                     asks +
+                         "families are not continued; solve for each value with --set "
+                         "instead");
   if (scene.solve.method && scene.solve.method->value != "newton")
-    throw SceneError(position(*scene.solve.method, 0),
-                     fmt::format("{}method '{}' is not available; leave it out", asks, scene.solve.method->value));
+    throw SceneError(
+        position(*scene.solve.method, 0),
+        fmt::format("{}method '{}' is not available; leave it out", asks, scene.solve.method->value));
   if (scene.solve.steps)
     throw SceneError(position(*scene.solve.steps, 0), asks + "the steps are equal; leave 'steps' out");
+  const std::size_t legs = scene.waypoints.size() + 1;
+  if (scene.solve.elements && scene.solve.elements->value < static_cast<double>(legs))
+    throw SceneError(scene.solve.elements->at,
+                     fmt::format("elements = {}; need at least {}, one for each leg between waypoints",
+                                 scene.solve.elements->value, legs));
   if (scene.boundary.periodic && !scene.waypoints.empty())
     throw SceneError(scene.waypoints.front().at, "a periodic orbit has no waypoints; leave them out");
 }
@@ -351,10 +365,16 @@ std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene) {
 void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system, Problem& problem) {
   const Dependents dependents = dependents_of(scene), constants = constants_of(scene, dependents);
   const System host = extended_system(scene, dependents);
+  const std::size_t ends = 2 * system.names.size(), given = problem.boundary.rows + parts.conditions.size();
+  if (given > ends)
+    throw SceneError(parts.conditions.back().at,
+                     fmt::format("{} conditions for {} end values; at most {} can hold, so leave some out",
+                                 given, ends, ends));
   if (host.lagrangian->kinks())
-    throw SceneError(scene.system.law().at,
-                     "with integrals, unknowns, nonlinear conditions or waypoints L must be smooth; abs, min, max "
-                     "and step are not available");
+    throw SceneError(
+        scene.system.law().at,
+        "with integrals, unknowns, nonlinear conditions or waypoints L must be smooth; abs, min, max "
+        "and step are not available");
   auto extension = std::make_shared<Extension>();
   extension->lagrangian = host.lagrangian;
   for (const Assignment& unknown : scene.boundary.unknowns) {

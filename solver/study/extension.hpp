@@ -31,8 +31,8 @@ void check_extended(const Scene& scene, Purpose purpose);
 /// L + Σ g, with the unknowns at their guesses: what stands for L until the multipliers are known.
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene);
 
-/// The extension of a problem, whose relation, duration and guess are read; a guess through the waypoints where
-/// there is none.
+/// The extension of a problem, whose relation, duration and guess are read; a guess through the waypoints
+/// where there is none.
 void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system, Problem& problem);
 
 }  // namespace extremal

@@ -38,7 +38,8 @@ std::vector<std::pair<int, double>> end_values(const Problem& problem, bool at_e
   std::vector<std::pair<int, double>> values;
   const int n = problem.coordinates();
   for (int a = 0; a < n; ++a)
-    if (const int e = at_end ? n + a : a; problem.ends.fixed[e]) values.emplace_back(a, problem.ends.offset[e]);
+    if (const int e = at_end ? n + a : a; problem.ends.fixed[e])
+      values.emplace_back(a, problem.ends.offset[e]);
   return values;
 }
 

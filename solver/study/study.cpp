@@ -76,9 +76,10 @@ void check_initial_data(const Scene& scene, Purpose purpose) {
 }
 
 [[noreturn]] void refuse_initial_data(const Scene& scene) {
-  throw SceneError(scene.boundary.at,
-                   "'start' gives initial data, every coordinate and every momentum: integrals, unknowns, nonlinear "
-                   "conditions and waypoints have nothing to determine; leave them out");
+  throw SceneError(
+      scene.boundary.at,
+      "'start' gives initial data, every coordinate and every momentum: integrals, unknowns, nonlinear "
+      "conditions and waypoints have nothing to determine; leave them out");
 }
 
 Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline, Purpose purpose) {

@@ -130,9 +130,7 @@ EndCondition end_condition(const std::string& text, const Vocabulary& vocabulary
   if (function->read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
   add_curvatures(*function);
   return {[function](std::span<const double> start, std::span<const double> end, std::span<double> gradient,
-                     std::span<double> hessian) {
-    return play(*function, start, end, gradient, hessian);
-  }};
+                     std::span<double> hessian) { return play(*function, start, end, gradient, hessian); }};
 }
 
 AffineForm affine_form(const std::string& text, const Vocabulary& vocabulary, const std::string& where,

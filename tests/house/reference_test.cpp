@@ -24,16 +24,11 @@ struct TableOfKeys {
   std::string_view table;
   std::string heading;
 };
-const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
-                                         {"system", "### system"},
-                                         {"boundary", "### boundary"},
-                                         {"waypoints", "### waypoints"},
-                                         {"guess", "### guess"},
-                                         {"solve", "### solve"},
-                                         {"search", "### search"},
-                                         {"spectrum", "### spectrum"},
-                                         {"continuation", "### continuation"},
-                                         {"system file", "### System files"}};
+const std::vector<TableOfKeys> tables = {
+    {"", "### Top of a scene"},         {"system", "### system"},     {"boundary", "### boundary"},
+    {"waypoints", "### waypoints"},     {"guess", "### guess"},       {"solve", "### solve"},
+    {"search", "### search"},           {"spectrum", "### spectrum"}, {"continuation", "### continuation"},
+    {"system file", "### System files"}};
 
 bool is_value(std::string_view fallback) {
   return fallback == "true" || fallback == "false" || fallback.find_first_of("\"0123456789") == 0;

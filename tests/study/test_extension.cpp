@@ -8,13 +8,15 @@
 using namespace extremal;
 using namespace extremal::test;
 
-/// \file Integrals, unknown constants, nonlinear conditions and waypoints, against values known in closed form.
+/// \file Integrals, unknown constants, nonlinear conditions and waypoints, against values known in closed
+/// form.
 
 namespace {
 
 const double pi = std::numbers::pi;
 
-std::string system(const std::string& coordinates, const std::string& lagrangian, const std::string& more = "") {
+std::string system(const std::string& coordinates, const std::string& lagrangian,
+                   const std::string& more = "") {
   return "[system]\ncoordinates = " + coordinates + "\nlagrangian = \"" + lagrangian + "\"\n" + more;
 }
 
@@ -54,10 +56,10 @@ TEST_F(Scenes, DidosArc) {
 }
 
 TEST_F(Scenes, SturmLiouville) {
-  const Solution s = run(study(system("[\"y\"]", "y'^2") +
-                               "[boundary]\nstart = { y = 0 }\nend = { y = 0 }\nduration = 1\n"
-                               "integrals = [\"y^2 = 1\"]\n[guess]\ny = \"1.3*sin(2*pi*t)\"\n"
-                               "[solve]\ntolerance = 1e-11\n"));
+  const Solution s =
+      run(study(system("[\"y\"]", "y'^2") + "[boundary]\nstart = { y = 0 }\nend = { y = 0 }\nduration = 1\n"
+                                            "integrals = [\"y^2 = 1\"]\n[guess]\ny = \"1.3*sin(2*pi*t)\"\n"
+                                            "[solve]\ntolerance = 1e-11\n"));
   ASSERT_TRUE(s.converged()) << s.message;
   EXPECT_NEAR(s.action, 4 * pi * pi, 1e-8);
   EXPECT_NEAR(s.extension->integral_multipliers[0], -4 * pi * pi, 1e-8);
@@ -66,9 +68,10 @@ TEST_F(Scenes, SturmLiouville) {
 }
 
 TEST_F(Scenes, CharacteristicValueOfMathieu) {
-  const std::string scene = system("[\"x\"]", "x'^2/2 - (a - 2*q*cos(2*t))*x^2/2", "parameters = { q = 1, a = 0 }\n") +
-                            "[boundary]\nduration = \"pi\"\nunknowns = { a = -0.4 }\nwhere = [\"x(0) = 0.1\"]\n"
-                            "[guess]\nx = 0.1\n[solve]\ntolerance = 1e-11\n";
+  const std::string scene =
+      system("[\"x\"]", "x'^2/2 - (a - 2*q*cos(2*t))*x^2/2", "parameters = { q = 1, a = 0 }\n") +
+      "[boundary]\nduration = \"pi\"\nunknowns = { a = -0.4 }\nwhere = [\"x(0) = 0.1\"]\n"
+      "[guess]\nx = 0.1\n[solve]\ntolerance = 1e-11\n";
   const Solution s = run(study(scene));
   ASSERT_TRUE(s.converged()) << s.message;
   EXPECT_NEAR(s.extension->unknowns[0].second, -0.455138604107414, 1e-9);
@@ -77,9 +80,10 @@ TEST_F(Scenes, CharacteristicValueOfMathieu) {
 
 /// A unit of mass that reaches a circle in a given time moves along its radius.
 TEST_F(Scenes, CurvedEnd) {
-  const Solution s = run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
-                               "[boundary]\nconditions = [\"x(0) = 3\", \"y(0) = 4\", \"x(T)^2 + y(T)^2 = 4\"]\n"
-                               "duration = 1\n[guess]\nx = \"3 - 2*t\"\ny = \"4 - 2*t\"\n"));
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
+                "[boundary]\nconditions = [\"x(0) = 3\", \"y(0) = 4\", \"x(T)^2 + y(T)^2 = 4\"]\n"
+                "duration = 1\n[guess]\nx = \"3 - 2*t\"\ny = \"4 - 2*t\"\n"));
   ASSERT_TRUE(s.converged()) << s.message;
   EXPECT_NEAR(at(s, 1, 0), 1.2, 1e-12);
   EXPECT_NEAR(at(s, 1, 1), 1.6, 1e-12);
@@ -89,9 +93,10 @@ TEST_F(Scenes, CurvedEnd) {
 
 /// The farthest point of the circle: no minimum across it.
 TEST_F(Scenes, CurvedEndBeyond) {
-  const Solution s = run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
-                               "[boundary]\nconditions = [\"x(0) = 3\", \"y(0) = 4\", \"x(T)^2 + y(T)^2 = 4\"]\n"
-                               "duration = 1\n[guess]\nx = \"3 - 4*t\"\ny = \"4 - 5.5*t\"\n"));
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
+                "[boundary]\nconditions = [\"x(0) = 3\", \"y(0) = 4\", \"x(T)^2 + y(T)^2 = 4\"]\n"
+                "duration = 1\n[guess]\nx = \"3 - 4*t\"\ny = \"4 - 5.5*t\"\n"));
   ASSERT_TRUE(s.converged()) << s.message;
   EXPECT_NEAR(at(s, 1, 0), -1.2, 1e-12);
   EXPECT_EQ(s.morse_index, 1);
@@ -118,17 +123,20 @@ TEST_F(Scenes, WaypointsAtGivenTimes) {
   const auto slope = [](double from, double to, bool at_end) {
     return at_end ? (to * std::cos(1) - from) / std::sin(1) : (to - from * std::cos(1)) / std::sin(1);
   };
-  EXPECT_NEAR(s.extension->waypoints[0].impulse[0].second, slope(0.5, 0.2, false) - slope(0, 0.5, true), 1e-10);
-  EXPECT_NEAR(s.extension->waypoints[1].impulse[0].second, slope(0.2, 1, false) - slope(0.5, 0.2, true), 1e-10);
+  EXPECT_NEAR(s.extension->waypoints[0].impulse[0].second, slope(0.5, 0.2, false) - slope(0, 0.5, true),
+              1e-10);
+  EXPECT_NEAR(s.extension->waypoints[1].impulse[0].second, slope(0.2, 1, false) - slope(0.5, 0.2, true),
+              1e-10);
   EXPECT_NEAR(at(s, 1, 0), 0.5, 1e-14);
 }
 
 /// The length of a pendulum of given period and amplitude: T = 4 sqrt(l/g) K(sin(1/2)).
 TEST_F(Scenes, UnknownOfAPeriodicOrbit) {
-  const Solution s = run(study(system("[\"q\"]", "l^2*q'^2/2 + g*l*cos(q)", "parameters = { g = 9.81, l = 1 }\n") +
-                               "[boundary]\nperiodic = true\nduration = 2\nunknowns = { l = 0.9 }\n"
-                               "where = [\"q(0) = 1\"]\n[guess]\nq = \"cos(pi*t)\"\n"
-                               "[solve]\ntolerance = 1e-12\n"));
+  const Solution s =
+      run(study(system("[\"q\"]", "l^2*q'^2/2 + g*l*cos(q)", "parameters = { g = 9.81, l = 1 }\n") +
+                "[boundary]\nperiodic = true\nduration = 2\nunknowns = { l = 0.9 }\n"
+                "where = [\"q(0) = 1\"]\n[guess]\nq = \"cos(pi*t)\"\n"
+                "[solve]\ntolerance = 1e-12\n"));
   ASSERT_TRUE(s.converged()) << s.message;
   const double k = std::comp_ellint_1(std::sin(0.5));
   EXPECT_NEAR(s.extension->unknowns[0].second, 9.81 / (4 * k * k), 1e-10);
@@ -149,10 +157,11 @@ TEST_F(Scenes, UnknownOfAContinuumOfOrbits) {
 
 /// With a free duration one condition more; an end made of an unknown.
 TEST_F(Scenes, UnknownWithAFreeDuration) {
-  const Solution s = run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - g*y", "parameters = { g = 1 }\n") +
-                               "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = \"2*u\", y = 0 }\n"
-                               "duration = \"free\"\nenergy = 2\nunknowns = { u = 1.5 }\n"
-                               "where = [\"u = 1.2\"]\n[guess]\nduration = 2\nx = \"t\"\ny = \"t*(2 - t)\"\n"));
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - g*y", "parameters = { g = 1 }\n") +
+                "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = \"2*u\", y = 0 }\n"
+                "duration = \"free\"\nenergy = 2\nunknowns = { u = 1.5 }\n"
+                "where = [\"u = 1.2\"]\n[guess]\nduration = 2\nx = \"t\"\ny = \"t*(2 - t)\"\n"));
   ASSERT_TRUE(s.converged()) << s.message;
   EXPECT_NEAR(s.extension->unknowns[0].second, 1.2, 1e-12);
   EXPECT_NEAR(at(s, s.duration(), 0), 2.4, 1e-11);
@@ -168,15 +177,19 @@ TEST_F(Scenes, ExtensionsThatAreRefused) {
             "scene.toml:8:1: this waypoint fixes no coordinate; name one, x = 0.2");
   EXPECT_EQ(message(free + fixed + "[[waypoints]]\nat = 2.5\nx = 1\n"),
             "scene.toml:9:6: at = 2.5; a waypoint lies between 0 and T = 2");
-  EXPECT_EQ(message(free + fixed + "[[waypoints]]\nat = 1\nx = 1\n[[waypoints]]\nat = 1\nx = 2\n"),
-            "scene.toml:12:6: at = 1 is not after the waypoint before, at 1; write waypoints in order of their "
-            "times");
-  EXPECT_EQ(message(free + fixed + "integrals = [\"x\"]\n").rfind("scene.toml:8:15: an integral is an equation", 0),
-            0u);
+  EXPECT_EQ(
+      message(free + fixed + "[[waypoints]]\nat = 1\nx = 1\n[[waypoints]]\nat = 1\nx = 2\n"),
+      "scene.toml:12:6: at = 1 is not after the waypoint before, at 1; write waypoints in order of their "
+      "times");
+  EXPECT_EQ(
+      message(free + fixed + "integrals = [\"x\"]\n").rfind("scene.toml:8:15: an integral is an equation", 0),
+      0u);
   EXPECT_EQ(message(free + fixed + "integrals = [\"x'*zz = 1\"]\n").rfind("scene.toml:8:18: ", 0), 0u);
-  EXPECT_EQ(message(free + fixed + "unknowns = { k = 1 }\n").rfind("scene.toml:8:14: 'where' has 0 equations", 0),
-            0u);
-  EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[search]\nsolutions = 2\n").rfind("scene.toml:10:13: ", 0),
+  EXPECT_EQ(
+      message(free + fixed + "unknowns = { k = 1 }\n").rfind("scene.toml:8:14: 'where' has 0 equations", 0),
+      0u);
+  EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[search]\nsolutions = 2\n")
+                .rfind("scene.toml:10:13: ", 0),
             0u);
   EXPECT_EQ(message(free + "[boundary]\nconditions = [\"x(0)^2 = 1\", \"y(0) = 0\"]\nduration = 1\n"
                            "[continuation]\nparameter = \"duration\"\nto = 2\n")

@@ -44,7 +44,8 @@ void BorderedEquations::number_unknowns() {
     inner[k] = next;
     next += inner_ / all_ * n_;
     for (int a = 0; a < n_ && k + 1 < elements_; ++a)
-      if (const std::size_t place = static_cast<std::size_t>(k + 1) * n_ + a; !fixed[place]) node[place] = next++;
+      if (const std::size_t place = static_cast<std::size_t>(k + 1) * n_ + a; !fixed[place])
+        node[place] = next++;
   }
   of_path_ = next;
   shares_.clear();
@@ -143,7 +144,8 @@ void BorderedEquations::add_elements(const BorderedState& state, bool matrix) {
   });
 }
 
-/// A free time t_l ends leg l and begins the next: an element of part s of a leg is longer by s δt, or shorter.
+/// A free time t_l ends leg l and begins the next: an element of part s of a leg is longer by s δt, or
+/// shorter.
 void BorderedEquations::add_element(int k, int lane, const BatchValues& values, const BorderedState& state,
                                     bool matrix) {
   const int lanes = simd_lanes(), leg = leg_[k];
@@ -215,7 +217,8 @@ void BorderedEquations::add_conditions(const BorderedState& state, bool matrix) 
   for (int i = 0; i < conditions(); ++i) {
     const int row = first_multiplier() + i;
     const double eta = state.multipliers[i];
-    values_[row] = extension().conditions[i].function(start, end, gradient_, matrix ? hessian_ : std::span<double>{});
+    values_[row] =
+        extension().conditions[i].function(start, end, gradient_, matrix ? hessian_ : std::span<double>{});
     target_sizes_.push_back(size_of_terms(start, end));
     for (int e = 0; e < 2 * all_; ++e) {
       if (gradient_[e] == 0) continue;

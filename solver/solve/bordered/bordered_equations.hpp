@@ -13,9 +13,9 @@
 
 namespace extremal {
 
-/// The equations of a problem with an extension on one discretisation. Unknowns are numbered: those of the path
-/// (inner ones, nodes, free ends), then k, ν, η, the free times, and the multipliers of the directions that a
-/// periodic path is held across. With
+/// The equations of a problem with an extension on one discretisation. Unknowns are numbered: those of the
+/// path (inner ones, nodes, free ends), then k, ν, η, the free times, and the multipliers of the directions
+/// that a periodic path is held across. With
 ///
 ///   Ŝ = S_h[L + Σ ν g] − Σ ν c + Σ η r,
 ///
@@ -25,19 +25,20 @@ class BorderedEquations {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  /// Both must outlive it. `tables` are those of the extension's Lagrangian, `own` those of the n coordinates.
+  /// Both must outlive it. `tables` are those of the extension's Lagrangian, `own` those of the n
+  /// coordinates.
   void reset(const Problem& problem, const ElementTables& tables, const ElementTables& own,
              const LegMesh& mesh);
 
-  /// From now on the integrals, the conditions r and w, in this order, are to have these values beside what is
-  /// given; empty: none. Kept by reset().
+  /// From now on the integrals, the conditions r and w, in this order, are to have these values beside what
+  /// is given; empty: none. Kept by reset().
   void set_offsets(std::vector<double> offsets) { offsets_ = std::move(offsets); }
   /// The values that they have, of the state evaluated last.
   std::vector<double> targets() const;
 
   int unknowns() const { return unknowns_; }
-  int of_path() const { return of_path_; }            ///< unknowns of the path
-  int first_constant() const { return of_path_; }     ///< k, then ν
+  int of_path() const { return of_path_; }                                     ///< unknowns of the path
+  int first_constant() const { return of_path_; }                              ///< k, then ν
   int first_multiplier() const { return of_path_ + extension().constants(); }  ///< η
   int first_time() const { return first_multiplier() + conditions(); }
   int first_held() const { return first_time() + static_cast<int>(free_times_.size()); }
@@ -78,8 +79,7 @@ class BorderedEquations {
   const Extension& extension() const { return *problem_->extension; }
   std::span<const Share> shares(int element, int local) const {
     const std::size_t place = static_cast<std::size_t>(element) * local_ + local;
-    return {shares_.data() + start_[place],
-            static_cast<std::size_t>(start_[place + 1] - start_[place])};
+    return {shares_.data() + start_[place], static_cast<std::size_t>(start_[place + 1] - start_[place])};
   }
   /// Of end coordinate e of 2N.
   std::span<const Share> end_shares(int e) const {

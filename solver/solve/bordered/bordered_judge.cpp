@@ -75,13 +75,16 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   if (!(size < most_growth * first) || !(state.times.back() < most_growth * problem.duration.value))
     return refused("the path ran away from the guess; try another guess");
   if (!(equations.residual() <= largest_residual))
-    return refused(fmt::format("a residual of {:.1e} of the largest momentum remains: there is no extremal near; "
-                               "try another guess",
-                               equations.residual()));
+    return refused(
+        fmt::format("a residual of {:.1e} of the largest momentum remains: there is no extremal near; "
+                    "try another guess",
+                    equations.residual()));
   if (!(equations.mismatch() <= largest_mismatch))
-    return refused(fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch()));
+    return refused(
+        fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch()));
   const double energy = equations.momentum() * size / state.times.back();
-  if (!(equations.energy_jump() <= largest_residual * std::max(energy, std::abs(problem.duration.energy.value_or(0)))))
+  if (!(equations.energy_jump() <=
+        largest_residual * std::max(energy, std::abs(problem.duration.energy.value_or(0)))))
     return refused(fmt::format("the energy at a free time is missed by {:.1e}; try another guess",
                                equations.energy_jump()));
   Solution solution;

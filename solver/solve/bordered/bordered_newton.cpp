@@ -107,8 +107,7 @@ class BorderedNewton {
       const Eigen::VectorXd answer = lu_.solve(probe.cwiseQuotient(row_units_)).cwiseQuotient(units_);
       if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_direction) return;
     }
-    const Eigen::MatrixXd dense =
-        row_units_.asDiagonal() * Eigen::MatrixXd(matrix) * units_.asDiagonal();
+    const Eigen::MatrixXd dense = row_units_.asDiagonal() * Eigen::MatrixXd(matrix) * units_.asDiagonal();
     least_norm_.emplace(size, size);
     least_norm_->setThreshold(null_direction).compute(dense);
   }

@@ -11,13 +11,13 @@ namespace extremal {
 
 struct BorderedReport {
   bool converged = false;
-  std::string failure;    ///< why not
+  std::string failure;  ///< why not
   int steps = 0;
   double correction = 1;  ///< the last, relative: of q by its range, of T by itself, of constants by theirs
 };
 
-/// Damped by natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3), until corrections are
-/// roundoff. The state stays where it has got to. `on_step` is told each step's size and damping; it says
+/// Damped by natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3), until corrections
+/// are roundoff. The state stays where it has got to. `on_step` is told each step's size and damping; it says
 /// whether there may be more.
 BorderedReport converge(BorderedEquations& equations, BorderedState& state,
                         const std::function<bool(double step, double damping)>& on_step);

@@ -30,14 +30,17 @@ using Clock = std::chrono::steady_clock;
 /// A starting path: the guess, perhaps bent; and whether the integrals and conditions that it has are led to
 /// those that are given.
 struct Start {
-  Bend bend = {};
+  double size = 0;  ///< of the waves, by the extent; 0: the guess itself
+  int first = 1, last = 3;
+  unsigned seed = 0;
   bool led = false;
 
   const char* strategy() const {
-    if (bend.size == 0)
-      return led ? "newton from the guess, integrals and conditions led to what is given" : "newton from the guess";
-    return led ? "newton from the guess with smooth noise, integrals and conditions led to what is given"
-               : "newton from the guess with smooth noise";
+    if (size == 0)
+      return led ? "newton from the guess, integrals and conditions led to what is given"
+                 : "newton from the guess";
+    return led ? "newton from the guess with waves added, integrals and conditions led to what is given"
+               : "newton from the guess with waves added";
   }
 };
 
@@ -71,28 +74,26 @@ class BorderedSolve {
 
   Solution run() {
     const auto start = Clock::now();
+    std::vector<Start> starts{{}};
+    if (has_targets()) starts.push_back({.led = true});
     std::string first_failure;
-    for (const Start& attempt : starts()) {
-      if (attempt.bend.size != 0 && spent()) break;
+    for (std::size_t k = 0; k < starts.size() && !(k > 0 && spent()); ++k) {
       equations_.set_offsets({});
-      Solution solution = options_.scheme ? solve_with_scheme(attempt) : solve_adapted(attempt);
-      solution.iterations = iterations_;
+      Solution solution = options_.scheme ? solve_with_scheme(starts[k]) : solve_adapted(starts[k]);
       if (solution.converged()) {
-        solution.strategy = attempt.strategy();
-        solution.seconds_solve = seconds_since(start) - seconds_analyse_;
-        solution.seconds_analyse = seconds_analyse_;
-        return solution;
+        solution.strategy = starts[k].strategy();
+        return timed(std::move(solution), start);
       }
       if (first_failure.empty()) first_failure = solution.message;
+      if (k + 1 == starts.size() && starts[k].size == 0) add_bent(starts);
     }
     Solution solution;
     solution.status = spent() ? Status::iteration_limit : Status::not_converged;
-    solution.message = first_failure + (spent() ? "; the budget is spent" : "") +
-                       "; no guess with noise led to a solution either: try another guess of the path, of the "
-                       "unknowns or of the duration";
-    solution.iterations = iterations_;
-    solution.seconds_solve = seconds_since(start);
-    return solution;
+    solution.message =
+        first_failure + (spent() ? "; the budget is spent" : "") +
+        "; no guess with waves added led to a solution either: try another guess of the path, of the "
+        "unknowns or of the duration";
+    return timed(std::move(solution), start);
   }
 
  private:
@@ -106,16 +107,21 @@ class BorderedSolve {
     return extension_.multipliers() > 0 || !extension_.conditions.empty() || !extension_.where.empty();
   }
 
-  /// The guess, then bends of it to both sides, that of less action first.
-  std::vector<Start> starts() {
-    std::vector<Start> all{{}};
-    if (has_targets()) all.push_back({{}, true});
+  Solution timed(Solution solution, Clock::time_point start) const {
+    solution.iterations = iterations_;
+    solution.seconds_analyse = seconds_analyse_;
+    solution.seconds_solve = seconds_since(start) - seconds_analyse_;
+    return solution;
+  }
+
+  /// Bends of the guess to both sides, that of less action first.
+  void add_bent(std::vector<Start>& all) {
     const Elements elements = lobatto(first_degree);
     const LegMesh mesh = equal_elements(first_elements * static_cast<int>(times_.size()));
     for (const BendRow& row : bends)
       for (int seed = 0; seed < row.seeds; ++seed) {
-        Start one{{row.size, static_cast<unsigned>(seed), row.modes}}, other = one;
-        other.bend.size = -row.size;
+        Start one{row.size, row.first, row.last, static_cast<unsigned>(seed)}, other = one;
+        other.size = -row.size;
         if (action_of(mesh, elements, other) < action_of(mesh, elements, one)) std::swap(one, other);
         for (Start& start : {std::ref(one), std::ref(other)}) {
           all.push_back(start);
@@ -123,7 +129,6 @@ class BorderedSolve {
           if (has_targets()) all.push_back(start);
         }
       }
-    return all;
   }
 
   /// Of L alone; infinite where it is not finite.
@@ -143,9 +148,9 @@ class BorderedSolve {
     for (int l = 0; l < legs; ++l) {
       const double share = (times_[l] - (l > 0 ? times_[l - 1] : 0)) / times_.back();
       const int left = elements - mesh.first.back() - (legs - l - 1);
-      const int count = l + 1 == legs ? std::max(1, left)
-                                      : std::clamp(static_cast<int>(std::lround(share * elements)), 1,
-                                                   std::max(1, left));
+      const int count =
+          l + 1 == legs ? std::max(1, left)
+                        : std::clamp(static_cast<int>(std::lround(share * elements)), 1, std::max(1, left));
       for (int k = 0; k < count; ++k) mesh.parts.push_back(1.0 / count);
       mesh.first.push_back(mesh.first.back() + count);
     }
@@ -160,21 +165,60 @@ class BorderedSolve {
     state.path.load_ends();
   }
 
-  /// Adds smooth noise, the ends at rest; closed paths stay closed.
-  void bend(const Bend& bend, const ElementTables& tables, Path& path) const {
-    if (bend.size == 0) return;
-    if (problem_.periodic) return bend_path(problem_, bend, tables, path);
-    const Trajectory before = trajectory_of(path);
-    const std::vector<double> extent = extents(path, negligible_extent[bend.seed % 2]);
-    Noise noise(bend.seed);
-    std::vector<double> amplitude(static_cast<std::size_t>(bend.modes) * n_), v(n_);
-    for (double& c : amplitude) c = bend.size * noise();
-    fill_path(ends_of(path), tables, path, [&](double tau, double* point) {
-      before.at(tau * before.duration(), {point, static_cast<std::size_t>(n_)}, v);
-      for (int m = 1; m <= bend.modes; ++m)
+  /// Adds waves, the ends at rest; closed paths stay closed.
+  void bend(const Start& start, const ElementTables& tables, Path& path) const {
+    if (start.size == 0) return;
+    if (problem_.periodic) return bend_path(problem_, {start.size, start.seed, start.last}, tables, path);
+    const std::vector<double> extent = extents(path, negligible_extent[start.seed % 2]);
+    Noise noise(start.seed);
+    std::vector<double> amplitude(static_cast<std::size_t>(start.last + 1) * n_);
+    for (double& c : amplitude) c = start.size * noise();
+    // One wave of one coordinate has the size that is asked for.
+    if (start.first == start.last && n_ == 1) std::ranges::fill(amplitude, start.size);
+    add_to(path, tables, [&](double tau, double* point) {
+      for (int m = start.first; m <= start.last; ++m)
         for (int a = 0; a < n_; ++a)
-          point[a] += extent[a] / m * amplitude[static_cast<std::size_t>(m - 1) * n_ + a] *
+          point[a] += extent[a] / m * amplitude[static_cast<std::size_t>(m) * n_ + a] *
                       std::sin(m * std::numbers::pi * tau);
+    });
+  }
+
+  /// The path is moved through the waypoints: by as much as it misses them, in proportion between them.
+  void lead_through_waypoints(const ElementTables& tables, Path& path) const {
+    if (extension_.waypoints.empty()) return;
+    const Trajectory before = trajectory_of(path);
+    std::vector<std::vector<double>> tau(n_, {0.0}), missed(n_, {0.0});
+    std::vector<double> q(n_), v(n_);
+    for (std::size_t w = 0; w < extension_.waypoints.size(); ++w) {
+      before.at(times_[w], q, v);
+      for (const auto& [a, value] : extension_.waypoints[w].fixed) {
+        tau[a].push_back(times_[w] / times_.back());
+        missed[a].push_back(value - q[a]);
+      }
+    }
+    for (int a = 0; a < n_; ++a) {
+      tau[a].push_back(1);
+      missed[a].push_back(0);
+    }
+    add_to(path, tables, [&](double t, double* point) {
+      for (int a = 0; a < n_; ++a) {
+        const auto after = std::min(std::ranges::upper_bound(tau[a], t), tau[a].end() - 1);
+        const auto k = static_cast<std::size_t>(after - tau[a].begin());
+        const double part = (t - tau[a][k - 1]) / (tau[a][k] - tau[a][k - 1]);
+        point[a] += missed[a][k - 1] + part * (missed[a][k] - missed[a][k - 1]);
+      }
+    });
+  }
+
+  /// Adds a function of t/T, which changes q(t) in place, to a path; nothing at the ends.
+  template <class Change>
+  static void add_to(Path& path, const ElementTables& tables, const Change& change) {
+    const Trajectory before = trajectory_of(path);
+    const auto n = static_cast<std::size_t>(path.coordinates());
+    std::vector<double> v(n);
+    fill_path(ends_of(path), tables, path, [&](double tau, double* point) {
+      before.at(tau * before.duration(), {point, n}, v);
+      change(tau, point);
     });
   }
 
@@ -184,7 +228,8 @@ class BorderedSolve {
     Path path;
     path.reset(*elements.own, mesh_nodes(lengths), times_.back(), lengths);
     start_path(problem_, starting_ends(problem_), *elements.own, path);
-    bend(start.bend, *elements.own, path);
+    bend(start, *elements.own, path);
+    lead_through_waypoints(*elements.own, path);
     std::vector<double> constants = extension_.guess;
     constants.resize(extension_.constants(), 0);
     with_constants(path, *elements.tables, constants, state.path);
@@ -197,8 +242,8 @@ class BorderedSolve {
     const BorderedReport report = converge(equations_, found.state, [&](double step, double damping) {
       ++iterations_;
       if (options_.progress)
-        options_.progress({found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step,
-                           damping});
+        options_.progress(
+            {found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step, damping});
       return !spent();
     });
     found.correction = report.correction;
@@ -277,7 +322,7 @@ class BorderedSolve {
   /// Elements that resolve the starting path.
   LegMesh first_mesh(const Elements& elements, const Start& start) {
     const int legs = static_cast<int>(times_.size());
-    const int most = start.bend.size == 0 ? most_first_elements : most_bent_elements;
+    const int most = start.size == 0 ? most_first_elements : most_bent_elements;
     for (int count = std::max(first_elements, 2 * legs);; count *= 2) {
       const LegMesh mesh = equal_elements(count);
       Found found{first_state(mesh, elements, start), elements.tables, elements.own};
@@ -340,7 +385,8 @@ class BorderedSolve {
       const Resolution::Error error = errors(found);
       const bool fine = found.state.path.degree() == degree;
       if (fine && error.q <= tolerance && error.v <= of_v) {
-        if (std::optional<Solution> solution = compared(found, tolerance, of_v, error.q)) return *std::move(solution);
+        if (std::optional<Solution> solution = compared(found, tolerance, of_v, error.q))
+          return *std::move(solution);
         if (found.state.mesh.elements() * 2 > most_elements) break;
         found = moved(found, halved(found.state.mesh), lobatto(degree));
       } else {
@@ -371,8 +417,7 @@ class BorderedSolve {
   Solution judged(const Found& found, double error) {
     const auto start = Clock::now();
     equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
-    Solution solution =
-        judge(problem_, options_, equations_, found.state, *found.own, error, first_size_);
+    Solution solution = judge(problem_, options_, equations_, found.state, *found.own, error, first_size_);
     seconds_analyse_ += std::chrono::duration<double>(Clock::now() - start).count();
     return solution;
   }
@@ -413,9 +458,10 @@ class BorderedSolve {
     for (;;) {
       Found finer = moved(found, halved(found.state.mesh), elements);
       if (finer.state.mesh.elements() > most_scheme_elements)
-        return failed(fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
-                                  "scheme of higher order",
-                                  found.state.mesh.elements()));
+        return failed(
+            fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
+                        "scheme of higher order",
+                        found.state.mesh.elements()));
       if (!newton(finer, failure)) return failed(failure);
       const double difference = differences(found, finer).first;
       if (pinned) return judged(found, difference * (1 + 1 / gain));

@@ -12,8 +12,8 @@ inline constexpr double least_leg = 0.1;
 /// roundoff, which the elimination lets grow by some orders.
 inline constexpr double null_eigenvalue = 1e-10;
 
-/// Of the equations and unknowns in their units: a direction in which the matrix is so small is one of a family
-/// of solutions. It is looked for in so many unknowns at most.
+/// Of the equations and unknowns in their units: a direction in which the matrix is so small is one of a
+/// family of solutions. It is looked for in so many unknowns at most.
 inline constexpr double null_direction = 1e-10;
 inline constexpr int most_dense = 1500;
 
@@ -33,7 +33,8 @@ inline constexpr double most_growth = 1e4;
 
 /// Elements: of the first attempt, of those that follow, at most.
 inline constexpr int first_degree = 6, degree = 10, compared_with = 12;
-inline constexpr int first_elements = 8, most_elements = 2000, most_first_elements = 64, most_bent_elements = 16;
+inline constexpr int first_elements = 8, most_elements = 2000, most_first_elements = 64,
+                     most_bent_elements = 16;
 /// Of the range: a guess is resolved to this before the iteration begins.
 inline constexpr double guess_error = 1e-2;
 /// Of the tolerance, that a plan of elements aims at.
@@ -47,12 +48,14 @@ inline constexpr double velocity_tolerances = 10;
 /// Of a result: equations of the path by the largest momentum, conditions by their terms.
 inline constexpr double largest_residual = 1e-9, largest_mismatch = 1e-10;
 
-/// Starting paths bent by noise: sizes by the extent of the guess, waves, and how many of each.
+/// Starting paths bent by waves sin(mπt/T): sizes by the extent of the guess, first and last m, and how many.
 struct BendRow {
   double size;
-  int modes, seeds;
+  int first, last, seeds;
 };
-inline constexpr std::initializer_list<BendRow> bends = {{0.1, 1, 3}, {0.3, 1, 3}, {0.3, 3, 4}, {1.0, 3, 4}};
+inline constexpr std::initializer_list<BendRow> bends = {{0.1, 1, 1, 1}, {0.1, 2, 2, 1}, {0.3, 1, 1, 2},
+                                                         {0.3, 2, 2, 2}, {0.1, 3, 3, 1}, {0.3, 1, 3, 4},
+                                                         {1.0, 1, 3, 4}};
 /// On the way from what a starting path has to what is given, shortest step.
 inline constexpr double least_part = 1.0 / 512;
 /// Of the range: elements on that way.

@@ -19,8 +19,8 @@ struct LegMesh {
   int elements() const { return first.back(); }
 };
 
-/// A path of the n + u + m coordinates q, k, ν, of which k and ν are the same at all nodes; the multipliers η;
-/// the times of the waypoints, then T.
+/// A path of the n + u + m coordinates q, k, ν, of which k and ν are the same at all nodes; the multipliers
+/// η; the times of the waypoints, then T.
 struct BorderedState {
   Path path;
   LegMesh mesh;
