@@ -15,7 +15,7 @@
 namespace extremal {
 
 /// A point in between: coordinates that are fixed at a time.
-struct Waypoint {
+struct WaypointCondition {
   double time = 0;                            ///< in (0, T); where it is free, t/T of its guess
   bool free = false;                          ///< S is stationary in the time: the energy is continuous
   std::vector<std::pair<int, double>> fixed;  ///< coordinate, value
@@ -38,7 +38,7 @@ struct Extension {
   std::vector<double> integrals;                 ///< c, m entries
   std::vector<EndCondition> conditions;          ///< r, over the ends of all n + u + m coordinates
   std::vector<EndCondition> where;               ///< w, likewise
-  std::vector<Waypoint> waypoints;               ///< in order of their times
+  std::vector<WaypointCondition> waypoints;      ///< in order of their times
   /// L + Σ ν_j g_j of n coordinates for given values of k and ν.
   std::function<std::shared_ptr<const Lagrangian>(const std::vector<double>& constants)> at;
 

@@ -105,8 +105,8 @@ struct Problem {
   std::optional<double> curvature;             ///< a bound of M⁻¹V'' known to hold everywhere
   /// In place of conditions at the ends: `boundary` fixes q(0) alone. The duration is then fixed.
   std::optional<InitialData> initial;
-  /// Unknown constants, integrals, nonlinear conditions, waypoints; null: there are none. `lagrangian` is then L
-  /// at the guess of the constants, and `where` is part of the extension.
+  /// Unknown constants, integrals, nonlinear conditions, waypoints; null: there are none. `lagrangian` is
+  /// then L + Σ g_j, the constants at their guesses; what closes the duration is part of the extension.
   std::shared_ptr<const Extension> extension;
 
   int coordinates() const { return boundary.coordinates; }

@@ -95,7 +95,7 @@ constexpr KeyRecord keys[] = {
      "Parameters that are to be found, with guesses; `where` has as many equations.",
      "unknowns = { k = 1.0 }", true},
 
-    {"waypoints", "at", Kind::quantity, "required",
+    {"waypoints", "at", Kind::quantity, "no default",
      R"(Time between 0 and T, or `"free"`: the action is stationary in the time too.)", "at = 1.5"},
     {"waypoints", "*", Kind::quantities, "none",
      "Coordinate that is fixed there; its momentum may jump. At least one.", "x = 0.2"},

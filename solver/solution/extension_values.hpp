@@ -5,11 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "system/lagrangian.hpp"
-
 /// \file What a problem with an extension (problem/extension.hpp) was solved for beside its path.
 
 namespace extremal {
+
+class Lagrangian;
 
 /// Time of a waypoint and, of its fixed coordinates, the momentum after it less that before.
 struct WaypointImpulse {

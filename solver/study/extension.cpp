@@ -225,8 +225,8 @@ void split_end(const char* place, const Dependents& dependents, std::vector<Assi
   });
 }
 
-Waypoint read_waypoint(const WaypointTable& table, const System& system) {
-  Waypoint waypoint;
+WaypointCondition read_waypoint(const WaypointTable& table, const System& system) {
+  WaypointCondition waypoint;
   waypoint.free = table.free;
   if (!table.free) waypoint.time = evaluate(table.time, system);
   std::vector<char> fixed(system.names.size());
@@ -242,11 +242,12 @@ Waypoint read_waypoint(const WaypointTable& table, const System& system) {
   return waypoint;
 }
 
-std::vector<Waypoint> read_waypoints(const Scene& scene, const System& system, const Problem& problem) {
-  std::vector<Waypoint> waypoints;
+std::vector<WaypointCondition> read_waypoints(const Scene& scene, const System& system,
+                                              const Problem& problem) {
+  std::vector<WaypointCondition> waypoints;
   double last = 0;
   for (const WaypointTable& table : scene.waypoints) {
-    Waypoint& waypoint = waypoints.emplace_back(read_waypoint(table, system));
+    WaypointCondition& waypoint = waypoints.emplace_back(read_waypoint(table, system));
     if (waypoint.free) {
       if (!problem.lagrangian->structure().autonomous)
         throw SceneError(table.time.at, "at = \"free\" needs a Lagrangian that does not depend on t");

@@ -44,7 +44,7 @@ std::vector<std::pair<int, double>> end_values(const Problem& problem, bool at_e
 }
 
 /// Where free, times in proportion to the distances between points.
-void time_by_distance(std::vector<Waypoint>& waypoints, const Problem& problem) {
+void time_by_distance(std::vector<WaypointCondition>& waypoints, const Problem& problem) {
   const double duration = problem.duration.value;
   for (std::size_t first = 0; first < waypoints.size();) {
     if (!waypoints[first].free) {
@@ -74,12 +74,12 @@ void time_by_distance(std::vector<Waypoint>& waypoints, const Problem& problem) 
 }
 
 /// Where free, the times at which the guess is nearest, in order.
-void time_by_guess(std::vector<Waypoint>& waypoints, const Problem& problem) {
+void time_by_guess(std::vector<WaypointCondition>& waypoints, const Problem& problem) {
   const std::size_t n = problem.coordinates();
   std::vector<double> q(n);
   double from = 0;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
-    Waypoint& waypoint = waypoints[k];
+    WaypointCondition& waypoint = waypoints[k];
     if (!waypoint.free) {
       from = waypoint.time / problem.duration.value;
       continue;
@@ -107,7 +107,7 @@ void time_by_guess(std::vector<Waypoint>& waypoints, const Problem& problem) {
 
 }  // namespace
 
-void guess_through(std::vector<Waypoint>& waypoints, Problem& problem) {
+void guess_through(std::vector<WaypointCondition>& waypoints, Problem& problem) {
   if (problem.guess.given()) return time_by_guess(waypoints, problem);
   time_by_distance(waypoints, problem);
   const std::size_t n = problem.coordinates();
@@ -119,11 +119,13 @@ void guess_through(std::vector<Waypoint>& waypoints, Problem& problem) {
     }
   };
   add(0, end_values(problem, false));
-  for (const Waypoint& w : waypoints) add(w.free ? w.time : w.time / problem.duration.value, w.fixed);
+  for (const WaypointCondition& w : waypoints)
+    add(w.free ? w.time : w.time / problem.duration.value, w.fixed);
   add(1, end_values(problem, true));
   Guess& guess = problem.guess;
   for (int k = 0; k <= samples; ++k) guess.tau.push_back(static_cast<double>(k) / samples);
-  for (const Waypoint& w : waypoints) guess.tau.push_back(w.free ? w.time : w.time / problem.duration.value);
+  for (const WaypointCondition& w : waypoints)
+    guess.tau.push_back(w.free ? w.time : w.time / problem.duration.value);
   std::ranges::sort(guess.tau);
   guess.tau.erase(std::unique(guess.tau.begin(), guess.tau.end()), guess.tau.end());
   for (const double tau : guess.tau)

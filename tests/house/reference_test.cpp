@@ -102,8 +102,9 @@ TEST(Reference, ExamplesAreAccepted) {
     const bool top = record.table.empty() || record.table == "system file";
     const extremal::KeyRecord* const table = top ? nullptr : extremal::find_key("", record.table);
     const bool list = table && table->kind == extremal::Kind::tables;
-    const std::string text = (top ? "" : fmt::format(list ? "[[{}]]\n" : "[{}]\n", record.table)) +
-                             std::string(record.example) + "\n";
+    const std::string brackets = list ? "[[" : "[", closing = list ? "]]\n" : "]\n";
+    const std::string text =
+        (top ? "" : brackets + std::string(record.table) + closing) + std::string(record.example) + "\n";
     const extremal::Document document = extremal::parse_document(source(text));
     EXPECT_NO_THROW(extremal::check_keys(document, document.root, top ? record.table : "")) << text;
     const bool names_it = record.key == "*" || record.example.starts_with(record.key);
@@ -230,6 +231,12 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   add_fields("solve",
              "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2\", force = { x = \"-x'\" } }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
+             fields);
+  add_fields("solve",
+             "system = { coordinates = [\"x\"], parameters = { k = 1 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
+             "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2, integrals = [\"x = 0.8\"],\n"
+             "unknowns = { k = 1 }, where = [\"k = 0.5\"] }\n"
+             "waypoints = [{ at = 1, x = 0.4 }]\n",
              fields);
   EXPECT_EQ(fields, names_in("## Fields of a result"));
 }

@@ -112,6 +112,8 @@ TEST_F(Scenes, ReflectionAtALine) {
   EXPECT_NEAR(at(s, w.time, 0), 1, 1e-12);
   EXPECT_EQ(w.impulse.size(), 1u);
   EXPECT_NEAR(w.impulse[0].second, 3, 1e-12);  // p_y from −3/2 to 3/2
+  ASSERT_EQ(s.windows.size(), 2u);
+  EXPECT_EQ(s.windows[0][1], w.time);
 }
 
 TEST_F(Scenes, WaypointsAtGivenTimes) {
@@ -128,6 +130,33 @@ TEST_F(Scenes, WaypointsAtGivenTimes) {
   EXPECT_NEAR(s.extension->waypoints[1].impulse[0].second, slope(0.2, 1, false) - slope(0.5, 0.2, true),
               1e-10);
   EXPECT_NEAR(at(s, 1, 0), 0.5, 1e-14);
+  EXPECT_EQ(s.windows.size(), 3u);
+}
+
+/// From a line, on which the length is stationary, Newton's method leads nowhere; no chain is shorter than
+/// it.
+TEST_F(Scenes, ChainsThatAreTooShort) {
+  const Solution s = run(study(system("[\"y\"]", "y*sqrt(1 + y'^2)") +
+                               "[boundary]\nstart = { y = 1 }\nend = { y = 3 }\nduration = 1\n"
+                               "integrals = [\"sqrt(1 + y'^2) = 2\"]\n[solve]\nbudget = 20\n"));
+  EXPECT_FALSE(s.converged());
+  EXPECT_NE(s.message.find("try another guess"), std::string::npos);
+}
+
+/// The elements of a scheme converge with its order.
+TEST_F(Scenes, IntegralsWithAScheme) {
+  double error[2];
+  for (int k = 0; k < 2; ++k) {
+    const Solution s =
+        run(study(system("[\"y\"]", "y'^2") + "[boundary]\nstart = { y = 0 }\nend = { y = 0 }\nduration = 1\n"
+                                              "integrals = [\"y^2 = 1\"]\n[guess]\ny = \"1.3*sin(pi*t)\"\n"
+                                              "[solve]\nscheme = \"midpoint\"\n",
+                  {"solve.elements=" + std::to_string(32 << k)}));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_TRUE(s.pinned);
+    error[k] = s.action - pi * pi;
+  }
+  EXPECT_NEAR(error[0] / error[1], 4, 0.05);
 }
 
 /// The length of a pendulum of given period and amplitude: T = 4 sqrt(l/g) K(sin(1/2)).

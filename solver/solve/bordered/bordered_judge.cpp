@@ -43,17 +43,59 @@ std::shared_ptr<const ExtensionValues> read_extension_values(const Problem& prob
   return values;
 }
 
-/// Windows, conjugate times and multipliers of L + Σ ν g with all constants held; none with waypoints, where
-/// Jacobi fields jump too.
-void read_variation(const Problem& problem, const SolveOptions& options, const Path& path, double size,
-                    Solution& solution) {
-  if (!problem.extension->waypoints.empty()) {
-    solution.message += "; windows are not found across waypoints";
+/// The elements of one leg as a trajectory of its own, from time 0.
+Trajectory leg_of(const Trajectory& whole, int first, int last) {
+  Trajectory leg;
+  leg.coordinates = whole.coordinates;
+  leg.degree = whole.degree;
+  for (int k = first; k <= last; ++k) leg.times.push_back(whole.times[k] - whole.times[first]);
+  const auto size = static_cast<std::ptrdiff_t>(whole.degree + 1) * whole.coordinates;
+  leg.nodes.assign(whole.nodes.begin() + first * size, whole.nodes.begin() + last * size);
+  leg.slopes.assign(whole.slopes.begin() + first * size, whole.slopes.begin() + last * size);
+  leg.lengths.assign(whole.lengths.begin() + first, whole.lengths.begin() + last);
+  return leg;
+}
+
+/// Windows of each leg, and times conjugate to its start. None where L depends on t: legs begin at other
+/// times.
+void read_legs(const Problem& held, const SolveOptions& options, const BorderedState& state,
+               Solution& solution) {
+  if (!held.lagrangian->structure().autonomous) {
+    solution.message += "; windows are not found between waypoints where L depends on t";
     return;
   }
+  SecondVariation variation;
+  Solution whole = solution;
+  whole.conjugate_times_known = true;
+  for (int l = 0; l < state.mesh.legs(); ++l) {
+    const double start = l > 0 ? state.times[l - 1] : 0;
+    Solution leg = solution;
+    leg.trajectory = leg_of(solution.trajectory, state.mesh.first[l], state.mesh.first[l + 1]);
+    read_minimality(held, options, variation, leg);
+    if (leg.windows.empty()) {
+      solution.message = leg.message;
+      if (!leg.morse_index) {
+        solution.morse_index.reset();
+        solution.minimizing = false;
+      }
+      return;
+    }
+    for (const auto& [from, to] : leg.windows) whole.windows.push_back({start + from, start + to});
+    whole.windows.back()[1] = state.times[l];
+    for (const double t : leg.conjugate_times) whole.conjugate_times.push_back(start + t);
+    whole.conjugate_times_known = whole.conjugate_times_known && leg.conjugate_times_known;
+    whole.certificate = leg.certificate;
+  }
+  solution = std::move(whole);
+}
+
+/// Windows, conjugate times and multipliers of L + Σ ν g with all constants held; with waypoints leg by leg.
+void read_variation(const Problem& problem, const SolveOptions& options, const BorderedState& state,
+                    double size, Solution& solution) {
   Problem held = problem;
   held.lagrangian = solution.extension->lagrangian;
-  held.duration.value = path.duration();
+  held.duration.value = state.times.back();
+  if (state.mesh.legs() > 1) return read_legs(held, options, state, solution);
   SecondVariation variation;
   const std::optional<int> index = solution.morse_index;
   const bool minimizing = solution.minimizing;
@@ -112,7 +154,7 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
   observe_energy(*solution.extension->lagrangian, solution);
-  read_variation(problem, options, path, size, solution);
+  read_variation(problem, options, state, size, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned)
     solution.element_energies = element_energies(*solution.extension->lagrangian, own.scheme().node,

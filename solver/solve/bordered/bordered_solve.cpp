@@ -67,7 +67,7 @@ class BorderedSolve {
       scheme_.bind(*rule_, *extension_.lagrangian);
       own_scheme_.bind(*rule_, *problem.lagrangian);
     }
-    for (const Waypoint& w : extension_.waypoints)
+    for (const WaypointCondition& w : extension_.waypoints)
       times_.push_back(w.free ? w.time * problem.duration.value : w.time);
     times_.push_back(problem.duration.value);
   }
