@@ -234,7 +234,7 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
              fields);
   add_fields("solve",
              "system = { coordinates = [\"x\"], parameters = { k = 1 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
-             "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2, integrals = [\"x = 0.8\"],\n"
+             "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2, integrals = [\"x = 0.8\"], "
              "unknowns = { k = 1 }, where = [\"k = 0.5\"] }\n"
              "waypoints = [{ at = 1, x = 0.4 }]\n",
              fields);

@@ -83,6 +83,8 @@ void BorderedEquations::number_unknowns() {
   for (int k = 0; k < e.unknowns(); ++k) closing_rows_.push_back(first_constant() + k);
   if (problem_->duration.free && !problem_->duration.energy) closing_rows_.push_back(time_unknown_.back());
   for (const int row : closing_rows_) replaced_[row] = 1;
+  for (std::size_t l = 0; l + 1 < time_unknown_.size(); ++l)
+    if (times_held_ && time_unknown_[l] >= 0) replaced_[time_unknown_[l]] = 1;
 }
 
 void BorderedEquations::add(int row, int column, double value) {
@@ -119,6 +121,12 @@ bool BorderedEquations::evaluate(const BorderedState& state, bool matrix) {
   add_closing(state, matrix);
   const std::vector<int> rows = target_rows();
   for (std::size_t i = 0; i < offsets_.size(); ++i) values_[rows[i]] -= offsets_[i];
+  if (times_held_)
+    for (std::size_t l = 0; l + 1 < time_unknown_.size(); ++l)
+      if (const int row = time_unknown_[l]; row >= 0) {
+        values_[row] = 0;
+        if (matrix) entries_.emplace_back(row, row, 1.0);
+      }
   if (matrix && held_ > 0) add_held(state);
   return values_.allFinite();
 }

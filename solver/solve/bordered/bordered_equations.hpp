@@ -36,6 +36,9 @@ class BorderedEquations {
   /// The values that they have, of the state evaluated last.
   std::vector<double> targets() const;
 
+  /// Whether the free times of waypoints stay as they are, for now. Kept by reset().
+  void hold_times(bool on) { times_held_ = on; }
+
   int unknowns() const { return unknowns_; }
   int of_path() const { return of_path_; }                                     ///< unknowns of the path
   int first_constant() const { return of_path_; }                              ///< k, then ν
@@ -113,6 +116,7 @@ class BorderedEquations {
   std::vector<double> offsets_;
   std::vector<double> node_gradient_, gradient_, hessian_;
   double momentum_ = 0;
+  bool times_held_ = false;
   std::vector<double> target_sizes_;  ///< of the terms of each integral, r and w
   Path own_path_;
   PhaseConditions phases_;

@@ -124,9 +124,10 @@ class BorderedSolve {
         other.size = -row.size;
         if (action_of(mesh, elements, other) < action_of(mesh, elements, one)) std::swap(one, other);
         for (Start& start : {std::ref(one), std::ref(other)}) {
+          start.led = has_targets();
+          if (start.led) all.push_back(start);
+          start.led = false;
           all.push_back(start);
-          start.led = true;
-          if (has_targets()) all.push_back(start);
         }
       }
   }
@@ -330,10 +331,21 @@ class BorderedSolve {
     }
   }
 
-  /// Newton's method from the start; or along the family of problems with the integrals and conditions that
-  /// the start has, to those that are given.
+  bool has_free_waypoints() const {
+    return std::ranges::any_of(extension_.waypoints, [](const WaypointCondition& w) { return w.free; });
+  }
+
+  /// Newton's method from the start, of a bent one with the times of waypoints held first; or along the
+  /// family of problems with the integrals and conditions that the start has, to those that are given.
   bool reach(Found& found, const Start& start, std::string& failure) {
+    if (start.size != 0 && has_free_waypoints()) {
+      equations_.hold_times(true);
+      const bool reached = newton(found, failure);
+      equations_.hold_times(false);
+      if (!reached) return false;
+    }
     if (!start.led) return newton(found, failure);
+    equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
     if (!equations_.evaluate(found.state, false)) return false;
     const std::vector<double> targets = equations_.targets();
     const auto newton_at = [&](double part) {
