@@ -60,7 +60,11 @@ std::vector<Recipe> one_coordinate() {
        .velocities = {{"theta", -2, 2}},
        .time = 3,
        .maps = {R"({ theta = "-theta" })", R"({ theta = "theta + 2*pi" })"}},
-      {.system = "hanging-chain", .positions = {{"y", 0.8, 3}}, .velocities = {{"y", -1, 1}}, .time = 1.5},
+      {.system = "hanging-chain",
+       .parameters = {},
+       .positions = {{"y", 0.8, 3}},
+       .velocities = {{"y", -1, 1}},
+       .time = 1.5},
   };
 }
 
