@@ -27,7 +27,7 @@ Comparison compared(const Study& study, bool quiet) {
 
 int compare(const CompareArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
-  const Study study = load(a.scene, a.sets, Purpose::solution);
+  const Study study = load(a.scene, a.sets, Purpose::comparison);
   outputs.keep(study.files);
   const Comparison found = compared(study, a.quiet);
   std::vector<FileContent> files;

@@ -165,6 +165,7 @@ int solve(const SolveArguments& a) {
       result = search_result(std::move(result), run_all(study, a.repeat), a, at, study);
   }
   const bool converged = result.solution.converged();
+  use_constants(result.solution, study);
   if (converged && study.solutions == 0) {
     result.samples = wanted_samples(a, at, study, result.solution);
     if (study.spectrum) result.spectrum = spectrum_of(study, *study.spectrum, result.solution);

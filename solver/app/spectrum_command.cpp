@@ -15,12 +15,13 @@ namespace extremal::app {
 
 int spectrum(const CompareArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
-  const Study study = load(a.scene, a.sets, Purpose::solution);
+  Study study = load(a.scene, a.sets, Purpose::solution);
   outputs.keep(study.files);
   Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
   result.natural_conditions = natural_conditions(study.problem);
   result.solution = study.fit ? run_fit(study).solution : run(study);
   const bool converged = result.solution.converged();
+  use_constants(result.solution, study);
   if (converged)
     result.spectrum = spectrum_of(study, study.spectrum.value_or(SpectrumRequest{}), result.solution);
   std::vector<FileContent> files;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "problem/copies.hpp"
+#include "problem/extension.hpp"
 #include "problem/recurrence.hpp"
 #include "problem/reduction.hpp"
 
@@ -41,8 +42,20 @@ void check_duration(const Problem& problem) {
           duration.value);
   const int closures = (duration.energy ? 1 : 0) + (duration.where ? 1 : 0);
   if (!duration.free) {
+    if (problem.extension)
+      require(static_cast<int>(problem.extension->where.size()) == problem.extension->unknowns(),
+              "{} conditions close {} unknown constants; need as many", problem.extension->where.size(),
+              problem.extension->unknowns());
     require(closures == 0, "the duration is fixed at {}; energy or where need a free duration",
             duration.value);
+    return;
+  }
+  if (problem.extension) {
+    const int wanted = problem.extension->unknowns() + (duration.energy ? 0 : 1);
+    const int given = static_cast<int>(problem.extension->where.size());
+    require(given == wanted, "{} conditions close {} unknown constants and the duration; need {}", given,
+            problem.extension->unknowns(), wanted);
+    require(autonomous, "a free duration needs a Lagrangian that does not depend on t");
     return;
   }
   require(!problem.copies || !duration.energy, "with forces the energy varies; it closes no free duration");
@@ -96,6 +109,17 @@ void check_initial(const Problem& problem) {
   require(!problem.duration.free, "initial data need a duration that is a number");
 }
 
+/// L with all constants at their guesses may have symmetries that L + Σ ν g has not.
+Problem at_other_multipliers(const Problem& problem) {
+  constexpr double other = 0.37;
+  const Extension& extension = *problem.extension;
+  Problem result = problem;
+  std::vector<double> constants = extension.guess;
+  for (int j = 0; j < extension.multipliers(); ++j) constants.push_back(other + j / 7.0);
+  result.lagrangian = extension.at(constants);
+  return result;
+}
+
 }  // namespace
 
 Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration) {
@@ -117,6 +141,12 @@ Problem make_problem(Problem problem) {
   problem.ends = solve_relation(problem.boundary);
   if (problem.copies) {
     problem.pair = std::make_shared<const Problem>(make_problem(pair_of(problem)));
+    return problem;
+  }
+  if (problem.extension) {
+    const Problem other = at_other_multipliers(problem);
+    check_recurrence(other);
+    if (problem.periodic) problem.symmetries = continuous_symmetries(other);
     return problem;
   }
   check_recurrence(problem);

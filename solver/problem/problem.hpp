@@ -85,6 +85,7 @@ struct InitialData {
 };
 
 struct Reduction;
+struct Extension;
 
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
 struct Problem {
@@ -104,6 +105,9 @@ struct Problem {
   std::optional<double> curvature;             ///< a bound of M⁻¹V'' known to hold everywhere
   /// In place of conditions at the ends: `boundary` fixes q(0) alone. The duration is then fixed.
   std::optional<InitialData> initial;
+  /// Unknown constants, integrals, nonlinear conditions, waypoints; null: there are none. `lagrangian` is
+  /// then L + Σ g_j, the constants at their guesses; what closes the duration is part of the extension.
+  std::shared_ptr<const Extension> extension;
 
   int coordinates() const { return boundary.coordinates; }
   /// What the equations of motion are made of: they depend on t where this does.

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "report/file.hpp"
+#include "solution/extension_values.hpp"
 
 namespace extremal {
 
@@ -40,6 +41,7 @@ class Fields {
     append(object_, "momentum_start", momentum("momentum_start", result.solution.momentum_start));
     append(object_, "momentum_end", momentum("momentum_end", result.solution.momentum_end));
     multipliers();
+    if (converged_ && result.solution.extension) extension(*result.solution.extension);
     if (converged_ && result.spectrum) spectrum(*result.spectrum);
     if (converged_ && result.fit) fit(*result.fit);
     counts();
@@ -109,6 +111,28 @@ class Fields {
     if (converged_ && result_.solution.minimal_period)
       append_number("minimal_period", result_.solution.minimal_period);
     append_number("symplectic_defect", paired ? std::optional(floquet->symplectic_defect) : std::nullopt);
+  }
+
+  /// Multipliers of integrals, impulses at waypoints.
+  void extension(const ExtensionValues& values) {
+    if (!values.integral_multipliers.empty()) {
+      Json multipliers = Json::array();
+      for (const double nu : values.integral_multipliers)
+        multipliers.push_back(number("integral_multipliers", nu));
+      append(object_, "integral_multipliers", std::move(multipliers));
+    }
+    if (values.waypoints.empty()) return;
+    Json waypoints = Json::array();
+    for (const WaypointImpulse& waypoint : values.waypoints) {
+      Json impulse = Json::object();
+      for (const auto& [a, jump] : waypoint.impulse)
+        append(impulse, result_.names.at(a), number("waypoints.impulse", jump));
+      Json object = Json::object();
+      append(object, "t", number("waypoints.t", waypoint.time));
+      append(object, "impulse", std::move(impulse));
+      waypoints.push_back(std::move(object));
+    }
+    append(object_, "waypoints", std::move(waypoints));
   }
 
   void spectrum(const SolutionSpectrum& spectrum) {
@@ -191,13 +215,22 @@ class Fields {
     if (converged_ && solution.pinned) nodes();
     append(object_, "elements", std::max(0, solution.trajectory.elements()));
     append(object_, "degree", solution.degree);
-    append(object_, "unknowns", solution.unknowns);
+    append(object_, "unknowns", unknowns());
     append(object_, "iterations", solution.iterations);
     Json seconds = Json::object();
     append(seconds, "read", number("seconds.read", result_.seconds_read));
     append(seconds, "solve", number("seconds.solve", solution.seconds_solve));
     append(seconds, "analyse", number("seconds.analyse", solution.seconds_analyse));
     append(object_, "seconds", std::move(seconds));
+  }
+
+  /// The constants that were asked for; elsewhere how many unknowns the equations had.
+  Json unknowns() const {
+    const auto& extension = result_.solution.extension;
+    if (!converged_ || !extension || extension->unknowns.empty()) return result_.solution.unknowns;
+    Json values = Json::object();
+    for (const auto& [name, value] : extension->unknowns) append(values, name, number("unknowns", value));
+    return values;
   }
 
   Json momentum(const std::string& field, const std::vector<double>& values) const {

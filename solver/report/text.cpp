@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "report/figure.hpp"
+#include "solution/extension_values.hpp"
 
 namespace extremal {
 
@@ -182,6 +183,17 @@ std::string fit_text(const Fitted& fit) {
   return fmt::format("\n{}{}", plain_text(table), rest.text());
 }
 
+/// Constants that were found, multipliers of integrals, and impulses.
+void add_extension(const ExtensionValues& values, const std::vector<std::string>& names, Lines& lines) {
+  for (const auto& [name, value] : values.unknowns) lines.add_number(name, value);
+  for (const double nu : values.integral_multipliers) lines.add_number("multiplier", nu);
+  for (const WaypointImpulse& waypoint : values.waypoints) {
+    std::string text = fmt::format("t = {:.12g}, impulse", waypoint.time);
+    for (const auto& [a, jump] : waypoint.impulse) text += fmt::format(" {} {:.12g}", names.at(a), jump);
+    lines.add("waypoint", text);
+  }
+}
+
 }  // namespace
 
 std::string summary(const Result& result) {
@@ -197,6 +209,7 @@ std::string summary(const Result& result) {
   if (trajectory.elements() > 0) {
     lines.add_number("duration", solution.duration());
     lines.add_number("action", solution.action);
+    if (solution.extension) add_extension(*solution.extension, result.names, lines);
     lines.add("energy", energy_text(solution));
     if (solution.work) lines.add_number("work of forces", *solution.work);
     if (solution.converged()) lines.add_small("error estimate", solution.error_estimate);

@@ -60,6 +60,8 @@ bool single(Kind kind, const toml::node& node) {
       return false;
     case Kind::table:
       return node.is_table();
+    case Kind::tables:
+      return node.is_array_of_tables();
   }
   return false;
 }
@@ -121,12 +123,21 @@ struct Checker {
         refuse(*value, fmt::format("{} must be a table, found {}", label, type_name(*value)));
       if (record->kind == Kind::table)
         check_table(*value->as_table(), key->str());
+      else if (record->kind == Kind::tables)
+        check_tables(*value, key->str(), label);
       else if (record->by_name)
         check_named(*value->as_table(), record->kind,
                     top ? std::string(key->str()) : fmt::format("{}.{}", name, key->str()));
       else
         check_value(*value, record->kind, label);
     }
+  }
+
+  void check_tables(const toml::node& node, std::string_view name, const std::string& label) const {
+    if (!single(Kind::tables, node))
+      refuse(node, fmt::format("{} must be a list of tables, found {}; write [[{}]]", label, type_name(node),
+                               name));
+    for (const toml::node& item : *node.as_array()) check_table(*item.as_table(), name);
   }
 
   void check_named(const toml::table& table, Kind kind, const std::string& name) const {
@@ -158,7 +169,7 @@ void check_keys(const Document& document, const toml::table& table, std::string_
 void check_relations(const Document& document) {
   for (const Exclusion& e : exclusions()) {
     const toml::key *a = find_set(document, e.a), *b = find_set(document, e.b);
-    if (!a || !b) continue;
+    if (!a || !b || (!e.unless.empty() && find_set(document, e.unless))) continue;
     if (precedes(document.at(a->source()), document.at(b->source()))) std::swap(a, b);
     throw SceneError(document.at(a->source()),
                      fmt::format("'{}' and '{}' exclude each other: {}", a->str(), b->str(), e.why));

@@ -91,8 +91,35 @@ BoundaryTable read_boundary_table(const Document& document, const toml::table& t
   boundary.duration = *duration;
   boundary.free = duration->formula() && std::get<std::string>(duration->value) == "free";
   boundary.energy = quantity(document, table, "energy");
-  boundary.where = text(document, table, "where");
+  boundary.integrals = texts(document, table, "integrals");
+  boundary.unknowns = assignments(document, table["unknowns"].as_table());
+  boundary.where_list = texts(document, table, "where");
+  if (const toml::node* where = table.get("where"); where && where->is_string())
+    boundary.where_list.push_back(text(document, *where));
+  if (boundary.where_list.size() == 1 && boundary.unknowns.empty()) {
+    boundary.where = boundary.where_list.front();
+    boundary.where_list.clear();
+  }
   return boundary;
+}
+
+std::vector<WaypointTable> read_waypoint_tables(const Document& document, const toml::array& tables) {
+  std::vector<WaypointTable> waypoints;
+  for (const toml::node& node : tables) {
+    const toml::table& table = *node.as_table();
+    WaypointTable& waypoint = waypoints.emplace_back();
+    waypoint.at = document.at(table);
+    const auto time = quantity(document, table, "at");
+    if (!time) throw SceneError(waypoint.at, "this waypoint has no 'at'; give its time, or at = \"free\"");
+    waypoint.time = *time;
+    waypoint.free = time->formula() && std::get<std::string>(time->value) == "free";
+    for (const Entry& entry : document.entries(table))
+      if (find_key("waypoints", entry.key->str())->key == "*")
+        waypoint.values.push_back(assignment(document, entry));
+    if (waypoint.values.empty())
+      throw SceneError(waypoint.at, "this waypoint fixes no coordinate; name one, x = 0.2");
+  }
+  return waypoints;
 }
 
 GuessTable read_guess_table(const Document& document, const toml::table& table) {

@@ -10,6 +10,7 @@ namespace extremal {
 /// [system] as it is written, not merged with what it uses.
 SystemTable read_system_table(const Document& document, const toml::table& table);
 BoundaryTable read_boundary_table(const Document& document, const toml::table& table);
+std::vector<WaypointTable> read_waypoint_tables(const Document& document, const toml::array& tables);
 GuessTable read_guess_table(const Document& document, const toml::table& table);
 SolveTable read_solve_table(const Document& document, const toml::table& table);
 SearchTable read_search_table(const Document& document, const toml::table& table);

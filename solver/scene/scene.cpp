@@ -54,9 +54,35 @@ void check_system(const SystemTable& system) {
                      fmt::format("curvature = {}; need 0 or more", system.curvature->value));
 }
 
+/// Where there are unknowns, or several conditions: each condition determines one number.
+void check_where_list(const Scene& scene) {
+  const BoundaryTable& boundary = scene.boundary;
+  const std::size_t given = boundary.where_list.size(),
+                    wanted = boundary.unknowns.size() + (boundary.free && !boundary.energy ? 1 : 0);
+  const Location at = given > 0 ? boundary.where_list.front().at : boundary.unknowns.front().name_at;
+  if (given != wanted)
+    throw SceneError(
+        at, fmt::format("'where' has {} equation{}, and {} {} to be determined: the unknowns{}; "
+                        "give as many equations, or more unknowns",
+                        given, given == 1 ? "" : "s", wanted, wanted == 1 ? "number is" : "numbers are",
+                        boundary.free && !boundary.energy ? " and the duration" : ""));
+  if (!boundary.free && boundary.energy)
+    throw SceneError(
+        boundary.energy->at,
+        "'energy' closes a free duration, but duration is fixed; write duration = \"free\" or leave "
+        "'energy' out");
+  if (!boundary.free && scene.guess.duration)
+    throw SceneError(
+        scene.guess.duration->at,
+        "'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or leave the guess out");
+  if (boundary.free && !scene.guess.duration && !scene.guess.file)
+    throw SceneError(boundary.duration.at, "a free duration needs 'duration' in [guess], or a guess file");
+}
+
 /// What the duration allows and asks for.
 void check_duration(const Scene& scene) {
   const BoundaryTable& boundary = scene.boundary;
+  if (!boundary.unknowns.empty() || !boundary.where_list.empty()) return check_where_list(scene);
   const Location* closing = boundary.energy  ? &boundary.energy->at
                             : boundary.where ? &boundary.where->at
                                              : nullptr;
@@ -169,6 +195,8 @@ Scene read_scene(const std::shared_ptr<const Source>& text, const std::vector<st
     scene.system = merge(std::move(used), scene.system);
   }
   scene.boundary = read_boundary_table(document, *table(document, "boundary", true));
+  if (const toml::array* waypoints = document.root["waypoints"].as_array())
+    scene.waypoints = read_waypoint_tables(document, *waypoints);
   if (const auto* guess = table(document, "guess", false)) scene.guess = read_guess_table(document, *guess);
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);
   if (const auto* search = table(document, "search", false))

@@ -63,7 +63,18 @@ struct BoundaryTable {
   Quantity duration;
   bool free = false;  ///< duration = "free"
   std::optional<Quantity> energy;
-  std::optional<Text> where;
+  std::optional<Text> where;     ///< where it is one, and there are no unknowns
+  std::vector<Text> where_list;  ///< else
+  std::vector<Text> integrals;
+  std::vector<Assignment> unknowns;  ///< parameters to be found, with guesses
+};
+
+/// Of [[waypoints]]: coordinates that are fixed at a time.
+struct WaypointTable {
+  Location at;
+  Quantity time;
+  bool free = false;  ///< at = "free"
+  std::vector<Assignment> values;
 };
 
 /// [guess]: formulas, a file or a state; empty for the default guess.
@@ -125,6 +136,7 @@ struct Scene {
   std::string title;
   SystemTable system;
   BoundaryTable boundary;
+  std::vector<WaypointTable> waypoints;
   GuessTable guess;
   SolveTable solve;
   std::optional<SearchTable> search;

@@ -12,6 +12,8 @@ constexpr KeyRecord keys[] = {
      "The Lagrangian or Hamiltonian: coordinates, parameters and formulas.", R"(system.use = "kepler")"},
     {"", "boundary", Kind::table, "required", "Conditions at the ends, and the duration.",
      "boundary.duration = 2.5"},
+    {"", "waypoints", Kind::tables, "none", "Points in between, in order of their times.",
+     "waypoints = [{ at = 1.5, x = 0.2 }]"},
     {"", "guess", Kind::table, "the default guess", "The path from which the search begins.",
      "guess.x = \"cos(pi*t/T)\""},
     {"", "solve", Kind::table, "none", "Tolerance, scheme and method.", "solve.tolerance = 1e-12"},
@@ -71,9 +73,10 @@ constexpr KeyRecord keys[] = {
      "duration = \"2*pi/sqrt(mu)\""},
     {"boundary", "energy", Kind::quantity, "none",
      "Energy p·q' − L of the extremal; it determines a free duration.", "energy = -0.4"},
-    {"boundary", "where", Kind::text, "none",
+    {"boundary", "where", Kind::note, "none",
      "Equation between end values; it determines a free duration. The duration is varied until the extremal "
-     "satisfies it.",
+     "satisfies it. With `unknowns` a list: as many as there are unknowns, and one more for a free duration "
+     "without `energy`.",
      R"(where = "x(0) = 0.777413")"},
     {"boundary", "periodic", Kind::boolean, "false",
      "Periodic orbit: q(T) = q(0), and the momenta agree; without other conditions at the ends.",
@@ -83,9 +86,22 @@ constexpr KeyRecord keys[] = {
      "affine.",
      R"(map = { theta = "theta + 2*pi" })", true},
     {"boundary", "conditions", Kind::texts, "none",
-     "Linear equations between end values, instead of `start` and `end`. The remaining directions get the "
-     "natural condition.",
-     "conditions = [\"x(0) = 1\", \"y(T) = -y(0)\"]"},
+     "Equations between end values, instead of `start` and `end`, linear or not. The directions that they "
+     "leave "
+     "free get the natural condition.",
+     "conditions = [\"x(0) = 1\", \"x(T)^2 + y(T)^2 = 4\"]"},
+    {"boundary", "integrals", Kind::texts, "none",
+     "Integrals that are given: the left side, a formula of coordinates, velocities, `t`, parameters and "
+     "definitions, is integrated from 0 to T.",
+     "integrals = [\"sqrt(1 + y'^2) = 4\"]"},
+    {"boundary", "unknowns", Kind::number, "none",
+     "Parameters that are to be found, with guesses; `where` has as many equations.",
+     "unknowns = { k = 1.0 }", true},
+
+    {"waypoints", "at", Kind::quantity, "no default",
+     R"(Time between 0 and T, or `"free"`: the action is stationary in the time too.)", "at = 1.5"},
+    {"waypoints", "*", Kind::quantities, "none",
+     "Coordinate that is fixed there; its momentum may jump. At least one.", "x = 0.2"},
 
     {"guess", "file", Kind::text, "none",
      "Result with samples, or CSV with the columns `t` and coordinates. Its times are scaled to [0, T].",
@@ -182,8 +198,13 @@ constexpr Exclusion pairs[] = {
     {"boundary.periodic", "boundary.conditions", "both relate the ends"},
     {"boundary.conditions", "boundary.start", "write the fixed ends as conditions too"},
     {"boundary.conditions", "boundary.end", "write the fixed ends as conditions too"},
-    {"boundary.energy", "boundary.where", "exactly one of them closes a free duration"},
     {"system.force", "system.curvature", "with forces there are no windows to certify"},
+    {"boundary.energy", "boundary.where", "exactly one of them closes a free duration", "boundary.unknowns"},
+    {"boundary.integrals", "system.force", "with forces there is no action that could be stationary"},
+    {"boundary.unknowns", "system.force", "with forces unknown constants are not available"},
+    {"boundary.integrals", "system.hamiltonian",
+     "integrals join a Lagrangian; write the 'lagrangian' instead"},
+    {"boundary.unknowns", "system.hamiltonian", "unknowns join a Lagrangian; write the 'lagrangian' instead"},
     {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
     {"fit.data", "search.solutions", "a fit follows one extremal"},
     {"fit.data", "solve.steps", "a fit keeps the times of the nodes"},
@@ -224,6 +245,8 @@ const char* description(Kind kind) {
       return "a number, a formula or a list of them";
     case Kind::note:
       return "a string or a list of strings";
+    case Kind::tables:
+      return "a list of tables";
     case Kind::table:
       break;
   }

@@ -20,6 +20,7 @@ enum class Kind {
   quantities,  ///< a quantity or a list of them
   note,        ///< a string or a list of strings
   table,       ///< with keys of its own in the schema
+  tables,      ///< a list of such tables
 };
 
 /// "a number or a formula", as a message says what was expected.
@@ -50,6 +51,7 @@ std::vector<std::string> keys_of(std::string_view table);
 struct Exclusion {
   std::string_view a, b;
   std::string_view why;
+  std::string_view unless = {};  ///< another key, with which both make sense
 };
 std::span<const Exclusion> exclusions();
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 namespace extremal {
 
 class Path;
+struct ExtensionValues;
 
 enum class Status {
   converged,
@@ -93,6 +95,9 @@ struct Solution {
   std::optional<Floquet> floquet;        ///< of a periodic problem that has windows, coordinates not too many
   std::optional<double> minimal_period;  ///< of a path with q(T) = q(0) that is periodic; T, or a part of it
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
+
+  /// Constants, multipliers and impulses of a problem that asks for them.
+  std::shared_ptr<const ExtensionValues> extension;
 
   bool pinned = false;  ///< the scheme of its elements was asked for
   /// Of those elements: the discrete energy −∂L_d/∂h of each. Empty as element_energies() (observe.hpp) is.

@@ -10,6 +10,7 @@
 #include "solution/one_copy.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
+#include "solve/bordered/bordered_solve.hpp"
 #include "solve/march/initial_motion.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/search/distinct.hpp"
@@ -128,13 +129,14 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.push_back(step);
     if (options.progress) options.progress(step);
   };
-  Solution solution = solve_once(problem, recording, memory_->workspace);
+  Solution solution = problem.extension ? solve_bordered(problem, recording)
+                                        : solve_once(problem, recording, memory_->workspace);
   solution.history = std::move(history);
   return solution;
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
-  if (problem.initial) return {solve(problem, options)};
+  if (problem.initial || problem.extension) return {solve(problem, options)};
   if (problem.pair) {
     std::vector<Solution> found = solve_all(*problem.pair, options, most);
     for (Solution& solution : found)

@@ -114,11 +114,9 @@ void read_initial_data(const EndEntries& start, const System& system, PlacedRela
 void add_condition(const Text& text, const System& system, PlacedRelation& relation) {
   const EndEquation equation =
       placed(text, [&](const std::string& s) { return end_equation(s, system, "conditions"); });
-  if (!equation.affine)
-    throw SceneError(
-        position(text, 0),
-        "a condition must be linear in the end values; one that is not can close a free duration: "
-        "'where' with duration = \"free\" and a guess of it");
+  if (!equation.affine)  // at another value of a parameter
+    throw SceneError(position(text, 0),
+                     "a condition that is linear in the end values must stay so along a family");
   const int row = relation.relation.add_row(-equation.constant);
   for (const Triplet& entry : equation.coefficients) relation.relation.add(row, entry.column, entry.value);
   relation.rows.push_back(position(text, 0));

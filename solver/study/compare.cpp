@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 #include "motion/dop853.hpp"
 #include "motion/flow.hpp"
@@ -48,6 +49,8 @@ class Comparer {
   }
 
   Comparison run() {
+    if (study_.problem.extension)
+      throw std::invalid_argument("shooting knows no integrals, unknowns, nonlinear conditions or waypoints");
     if (study_.problem.initial) return run_motions();
     std::vector<ShootingMethod> shooting(std::begin(shooting_methods), std::end(shooting_methods));
     std::erase_if(shooting, [this](const ShootingMethod& method) {

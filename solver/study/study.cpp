@@ -8,8 +8,10 @@
 
 #include "problem/recurrence.hpp"
 #include "scene/scene.hpp"
+#include "solution/extension_values.hpp"
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
+#include "study/extension.hpp"
 #include "study/fitting.hpp"
 #include "study/guess.hpp"
 #include "study/memory.hpp"
@@ -74,6 +76,13 @@ void check_initial_data(const Scene& scene, Purpose purpose) {
                        scene.solve.method->value));
 }
 
+[[noreturn]] void refuse_initial_data(const Scene& scene) {
+  throw SceneError(
+      scene.boundary.at,
+      "'start' gives initial data, every coordinate and every momentum: integrals, unknowns, nonlinear "
+      "conditions and waypoints have nothing to determine; leave them out");
+}
+
 Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline, Purpose purpose) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
@@ -81,12 +90,20 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
-  set_relation(scene.boundary, system, problem);
+  const ExtendedScene parts = split(scene, system);
+  set_relation(parts.linear, system, problem);
   if (problem.initial) check_initial_data(scene, purpose);
-  problem.duration = read_duration(scene.boundary, system);
+  problem.duration = read_duration(parts.linear, system);
+  if (parts.extended) {
+    if (problem.initial) refuse_initial_data(scene);
+    check_extended(scene, purpose);
+    problem.lagrangian = extended_lagrangian(scene);
+    problem.curvature.reset();
+  }
   // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
   if (scene.guess.state && system.lagrangian->structure().quadratic) check_regular(problem, scene.system);
   read_guess(scene, system, deadline, problem);
+  if (parts.extended) read_extension(scene, parts, system, problem);
   try {
     problem = make_problem(std::move(problem));
   } catch (const RecurrenceError& e) {
@@ -95,7 +112,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
     throw SceneError(scene.boundary.at, e.what());
   }
   check_regular(problem, scene.system);
-  if (scene.boundary.energy) check_energy_at_ends(problem, scene.boundary.energy->at);
+  if (scene.boundary.energy && !problem.extension) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
   return problem;
 }
@@ -160,7 +177,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
 /// Of a path or a text.
 template <class Where>
 Study load_checked(const Where& where, const std::vector<std::string>& sets, Purpose purpose) {
-  const Scene scene = read_scene(where, sets);
+  const Scene scene = with_unknowns(read_scene(where, sets));
   try {
     return make_study(scene, purpose);
   } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
@@ -201,6 +218,10 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 }
 
 }  // namespace
+
+void use_constants(const Solution& solution, Study& study) {
+  if (solution.extension) study.problem.lagrangian = solution.extension->lagrangian;
+}
 
 int natural_conditions(const Problem& problem) {
   const std::vector<double>& given = problem.boundary.momenta;

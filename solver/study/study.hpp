@@ -40,8 +40,8 @@ struct Study {
   double seconds_read = 0;                ///< from opening the file until this was ready
 };
 
-/// What a scene is read for: [continuation] is left aside where one solution is wanted.
-enum class Purpose { solution, family };
+/// What a scene is read for: [continuation] is left aside where no family is wanted.
+enum class Purpose { solution, family, comparison };
 
 /// When work on a study that begins now is to end.
 Deadline deadline_of(const Study& study);
@@ -62,6 +62,10 @@ Solution run(const Study& study, int repeat = 1);
 
 /// The same for study.solutions extremals, as Solver::solve_all returns them.
 std::vector<Solution> run_all(const Study& study, int repeat = 1);
+
+/// Of a solution with constants that were asked for, L + Σ ν g at these becomes the study's Lagrangian:
+/// momenta and energies are read off with it. Others leave it as it is.
+void use_constants(const Solution& solution, Study& study);
 
 /// Conditions of zero momentum that stationarity adds at the ends. Periodic ends and momenta given otherwise
 /// are none.

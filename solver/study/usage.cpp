@@ -16,6 +16,7 @@ class NamesUsed {
   explicit NamesUsed(const Scene& scene) {
     add(scene.system);
     add(scene.boundary);
+    add(scene.waypoints);
     add(scene.guess);
     if (scene.fit) add(scene.fit->observe);
     if (scene.continuation) names_.insert(scene.continuation->parameter.value);
@@ -52,6 +53,12 @@ class NamesUsed {
     add(boundary.duration);
     add(boundary.energy);
     add(boundary.where);
+    add(boundary.where_list);
+    add(boundary.integrals);
+  }
+  void add(const WaypointTable& waypoint) {
+    add(waypoint.time);
+    add(waypoint.values);
   }
   void add(const GuessTable& guess) {
     add(guess.formulas);

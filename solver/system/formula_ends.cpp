@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "system/end_condition.hpp"
 #include "system/expression_evaluate.hpp"
 #include "system/formula_binder.hpp"
 
@@ -21,6 +22,7 @@ struct EndFunction {
   NodeId value = 0;
   std::vector<std::uint32_t> read;
   std::vector<NodeId> slopes;
+  std::vector<NodeId> curvatures = {};  ///< second derivatives, input by input; empty: not made
 };
 
 EndFunction function_of(Formula& formula, Names& names, int index = 0) {
@@ -54,9 +56,9 @@ AffineForm coefficients(const EndFunction& function) {
   return form;
 }
 
-/// g at both ends, and its gradient over the 2n end values. All nodes are evaluated in one sweep.
-double play(const EndFunction& function, std::span<const double> start, std::span<const double> end,
-            std::span<double> gradient) {
+/// The values of all nodes at both ends, in one sweep.
+std::vector<double> values_of(const EndFunction& function, std::span<const double> start,
+                              std::span<const double> end) {
   std::vector<double> values(function.graph.size());
   for (NodeId id = 0; id < values.size(); ++id) {
     const Node& node = function.graph[id];
@@ -69,12 +71,32 @@ double play(const EndFunction& function, std::span<const double> start, std::spa
       values[id] = scalar::apply(node.op, values[node.a], values[node.b]);
     }
   }
+  return values;
+}
+
+/// g at both ends, its gradient over the 2n end values, and its second derivatives.
+double play(const EndFunction& function, std::span<const double> start, std::span<const double> end,
+            std::span<double> gradient, std::span<double> hessian = {}) {
+  const std::vector<double> values = values_of(function, start, end);
+  const std::size_t count = function.read.size(), size = 2 * start.size();
   if (!gradient.empty()) {
     std::ranges::fill(gradient, 0.0);
-    for (std::size_t k = 0; k < function.read.size(); ++k)
-      gradient[function.read[k]] = values[function.slopes[k]];
+    for (std::size_t k = 0; k < count; ++k) gradient[function.read[k]] = values[function.slopes[k]];
+  }
+  if (!hessian.empty()) {
+    std::ranges::fill(hessian, 0.0);
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t j = 0; j < count; ++j)
+        hessian[function.read[k] * size + function.read[j]] = values[function.curvatures[k * count + j]];
   }
   return values[function.value];
+}
+
+void add_curvatures(EndFunction& function) {
+  std::vector<std::uint32_t> inputs(function.read.size());
+  for (std::uint32_t k = 0; k < inputs.size(); ++k) inputs[k] = k;
+  for (const NodeId slope : function.slopes)
+    for (const NodeId second : gradient(function.graph, slope, inputs)) function.curvatures.push_back(second);
 }
 
 }  // namespace
@@ -98,6 +120,17 @@ EndEquation end_equation(const std::string& text, const Vocabulary& vocabulary, 
     return play(*function, start, end, gradient);
   };
   return equation;
+}
+
+EndCondition end_condition(const std::string& text, const Vocabulary& vocabulary, const std::string& where) {
+  using namespace formula;
+  Names names = names_of(Kind::condition, vocabulary);
+  Formula formula = parse_equation(text, where);
+  const auto function = std::make_shared<EndFunction>(function_of(formula, names));
+  if (function->read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
+  add_curvatures(*function);
+  return {[function](std::span<const double> start, std::span<const double> end, std::span<double> gradient,
+                     std::span<double> hessian) { return play(*function, start, end, gradient, hessian); }};
 }
 
 AffineForm affine_form(const std::string& text, const Vocabulary& vocabulary, const std::string& where,

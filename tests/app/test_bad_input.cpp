@@ -60,9 +60,6 @@ std::vector<Case> cases() {
        "= 1\n",
        "scene.toml:8:10: energy = 0.1, but at the end (x = 1) it is at least 0.5, its value at rest; raise "
        "it, or move this end\n"},
-      {"ConditionThatIsNotLinear", chain + "conditions = [\"q[1](0)^2 = 1\"]\nduration = 1\n",
-       "scene.toml:5:16: a condition must be linear in the end values; one that is not can close a free "
-       "duration: "},
       {"NotFiniteAtTheGuess", with("cos(q)", "1/q") + "[guess]\nq = 0\n",
        "scene.toml:9:1: L is not finite on the guess at t = "},
       {"Empty", "", "scene.toml: the file is empty\n"},

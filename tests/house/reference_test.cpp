@@ -28,6 +28,7 @@ struct TableOfKeys {
 const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
                                          {"system", "### system"},
                                          {"boundary", "### boundary"},
+                                         {"waypoints", "### waypoints"},
                                          {"guess", "### guess"},
                                          {"solve", "### solve"},
                                          {"search", "### search"},
@@ -107,8 +108,11 @@ TEST(Reference, ExamplesAreAccepted) {
   for (const extremal::KeyRecord& record : extremal::key_records()) {
     if (!record.available) continue;
     const bool top = record.table.empty() || record.table == "system file";
+    const extremal::KeyRecord* const table = top ? nullptr : extremal::find_key("", record.table);
+    const bool list = table && table->kind == extremal::Kind::tables;
+    const std::string brackets = list ? "[[" : "[", closing = list ? "]]\n" : "]\n";
     const std::string text =
-        (top ? "" : fmt::format("[{}]\n", record.table)) + std::string(record.example) + "\n";
+        (top ? "" : brackets + std::string(record.table) + closing) + std::string(record.example) + "\n";
     const extremal::Document document = extremal::parse_document(source(text));
     EXPECT_NO_THROW(extremal::check_keys(document, document.root, top ? record.table : "")) << text;
     const bool names_it = record.key == "*" || record.example.starts_with(record.key);
@@ -241,6 +245,12 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   add_fields("solve",
              "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2\", force = { x = \"-x'\" } }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
+             fields);
+  add_fields("solve",
+             "system = { coordinates = [\"x\"], parameters = { k = 1 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
+             "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2, integrals = [\"x = 0.8\"], "
+             "unknowns = { k = 1 }, where = [\"k = 0.5\"] }\n"
+             "waypoints = [{ at = 1, x = 0.4 }]\n",
              fields);
   write("data.csv", "t,x\n0,1\n1,0.5\n1.5,0.1\n2,-0.4\n");
   add_fields(

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "problems/reference.hpp"
+#include "solution/extension_values.hpp"
 #include "study/study.hpp"
 
 using namespace extremal;
@@ -38,6 +39,9 @@ double quantity(const std::string& text, const Solution& solution, const std::ve
   if (text == "duration") return solution.duration();
   const std::size_t dot = text.find('.');
   const std::string kind = text.substr(0, dot);
+  if (kind == "unknowns")
+    for (const auto& [name, value] : solution.extension->unknowns)
+      if (name == text.substr(dot + 1)) return value;
   const int coordinate = index_of(text.substr(dot + 1), names);
   if (kind == "momentum_start") return solution.momentum_start[coordinate];
   if (kind == "momentum_end") return solution.momentum_end[coordinate];

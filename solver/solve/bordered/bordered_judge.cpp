@@ -1,0 +1,165 @@
+#include "solve/bordered/bordered_judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solution/extension_values.hpp"
+#include "solution/observe.hpp"
+#include "solve/accept/minimality.hpp"
+#include "solve/bordered/bordered_newton.hpp"
+#include "solve/bordered/limits.hpp"
+#include "solve/periodic/stability.hpp"
+
+namespace extremal {
+
+using namespace limits::bordered;
+
+namespace {
+
+Solution refused(std::string message) {
+  Solution solution;
+  solution.message = std::move(message);
+  return solution;
+}
+
+std::shared_ptr<const ExtensionValues> read_extension_values(const Problem& problem,
+                                                             const BorderedEquations& equations,
+                                                             const BorderedState& state) {
+  const Extension& extension = *problem.extension;
+  const std::vector<double> constants = state.constants(problem.coordinates());
+  auto values = std::make_shared<ExtensionValues>();
+  for (int k = 0; k < extension.unknowns(); ++k)
+    values->unknowns.emplace_back(extension.names[k], constants[k]);
+  values->integral_multipliers.assign(constants.begin() + extension.unknowns(), constants.end());
+  for (std::size_t w = 0; w < extension.waypoints.size(); ++w) {
+    WaypointImpulse& impulse = values->waypoints.emplace_back();
+    impulse.time = state.times[w];
+    for (const auto& [a, value] : extension.waypoints[w].fixed)
+      impulse.impulse.emplace_back(a, -equations.node_gradient(state.mesh.first[w + 1], a));
+  }
+  values->lagrangian = extension.at(constants);
+  return values;
+}
+
+/// The elements of one leg as a trajectory of its own, from time 0.
+Trajectory leg_of(const Trajectory& whole, int first, int last) {
+  Trajectory leg;
+  leg.coordinates = whole.coordinates;
+  leg.degree = whole.degree;
+  for (int k = first; k <= last; ++k) leg.times.push_back(whole.times[k] - whole.times[first]);
+  const auto size = static_cast<std::ptrdiff_t>(whole.degree + 1) * whole.coordinates;
+  leg.nodes.assign(whole.nodes.begin() + first * size, whole.nodes.begin() + last * size);
+  leg.slopes.assign(whole.slopes.begin() + first * size, whole.slopes.begin() + last * size);
+  leg.lengths.assign(whole.lengths.begin() + first, whole.lengths.begin() + last);
+  return leg;
+}
+
+/// Windows of each leg, and times conjugate to its start. None where L depends on t: legs begin at other
+/// times.
+void read_legs(const Problem& held, const SolveOptions& options, const BorderedState& state,
+               Solution& solution) {
+  if (!held.lagrangian->structure().autonomous) {
+    solution.message += "; windows are not found between waypoints where L depends on t";
+    return;
+  }
+  SecondVariation variation;
+  Solution whole = solution;
+  whole.conjugate_times_known = true;
+  for (int l = 0; l < state.mesh.legs(); ++l) {
+    const double start = l > 0 ? state.times[l - 1] : 0;
+    Solution leg = solution;
+    leg.trajectory = leg_of(solution.trajectory, state.mesh.first[l], state.mesh.first[l + 1]);
+    read_minimality(held, options, variation, leg);
+    if (leg.windows.empty()) {
+      solution.message = leg.message;
+      if (!leg.morse_index) {
+        solution.morse_index.reset();
+        solution.minimizing = false;
+      }
+      return;
+    }
+    for (const auto& [from, to] : leg.windows) whole.windows.push_back({start + from, start + to});
+    whole.windows.back()[1] = state.times[l];
+    for (const double t : leg.conjugate_times) whole.conjugate_times.push_back(start + t);
+    whole.conjugate_times_known = whole.conjugate_times_known && leg.conjugate_times_known;
+    whole.certificate = leg.certificate;
+  }
+  solution = std::move(whole);
+}
+
+/// Windows, conjugate times and multipliers of L + Σ ν g with all constants held; with waypoints leg by leg.
+void read_variation(const Problem& problem, const SolveOptions& options, const BorderedState& state,
+                    double size, Solution& solution) {
+  Problem held = problem;
+  held.lagrangian = solution.extension->lagrangian;
+  held.duration.value = state.times.back();
+  if (state.mesh.legs() > 1) return read_legs(held, options, state, solution);
+  SecondVariation variation;
+  const std::optional<int> index = solution.morse_index;
+  const bool minimizing = solution.minimizing;
+  read_minimality(held, options, variation, solution);
+  // Integrals and conditions take directions from the index, which conjugate times do not.
+  if (solution.morse_index) {
+    solution.morse_index = index;
+    solution.minimizing = minimizing;
+  }
+  read_stability(held, variation, size, solution);
+}
+
+}  // namespace
+
+Solution judge(const Problem& problem, const SolveOptions& options, BorderedEquations& equations,
+               const BorderedState& state, const ElementTables& own, double error, double first) {
+  const double size = path_size(state.path, problem.coordinates());
+  if (!equations.evaluate(state, true)) return refused("the action is not finite along the path found");
+  if (!(size < most_growth * first) || !(state.times.back() < most_growth * problem.duration.value))
+    return refused("the path ran away from the guess; try another guess");
+  if (!(equations.residual() <= largest_residual))
+    return refused(
+        fmt::format("a residual of {:.1e} of the largest momentum remains: there is no extremal near; "
+                    "try another guess",
+                    equations.residual()));
+  if (!(equations.mismatch() <= largest_mismatch))
+    return refused(
+        fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch()));
+  const double energy = equations.momentum() * size / state.times.back();
+  if (!(equations.energy_jump() <=
+        largest_residual * std::max(energy, std::abs(problem.duration.energy.value_or(0)))))
+    return refused(fmt::format("the energy at a free time is missed by {:.1e}; try another guess",
+                               equations.energy_jump()));
+  Solution solution;
+  solution.status = Status::converged;
+  solution.message = "converged";
+  solution.extension = read_extension_values(problem, equations, state);
+  Path path;
+  without_constants(state.path, own, path);
+  solution.trajectory = trajectory_of(path);
+  const DiscreteAction& action = equations.action();
+  const Extension& extension = *problem.extension;
+  solution.action = action.action();
+  for (int j = 0; j < extension.multipliers(); ++j)
+    solution.action -= solution.extension->integral_multipliers[j] * extension.integrals[j];
+  for (int a = 0; a < problem.coordinates(); ++a) {
+    solution.momentum_start.push_back(-action.start_gradient()[a]);
+    solution.momentum_end.push_back(action.end_gradient()[a]);
+  }
+  solution.residual = equations.residual();
+  solution.error_estimate = error;
+  solution.degree = path.degree();
+  solution.unknowns = equations.first_held();
+  const Inertia inertia = equations.inertia();
+  solution.morse_index = inertia.negative;
+  solution.nullity = inertia.zero;
+  solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
+  observe_energy(*solution.extension->lagrangian, solution);
+  read_variation(problem, options, state, size, solution);
+  solution.pinned = options.scheme.has_value();
+  if (solution.pinned)
+    solution.element_energies = element_energies(*solution.extension->lagrangian, own.scheme().node,
+                                                 own.scheme().weight, solution.trajectory);
+  return solution;
+}
+
+}  // namespace extremal

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "solve/bordered/bordered_equations.hpp"
+
+/// \file Newton's method for a path together with constants, multipliers and times.
+
+namespace extremal {
+
+struct BorderedReport {
+  bool converged = false;
+  std::string failure;  ///< why not
+  int steps = 0;
+  double correction = 1;  ///< the last, relative: of q by its range, of T by itself, of constants by theirs
+};
+
+/// Damped by natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3), until corrections
+/// are roundoff. The state stays where it has got to. `on_step` is told each step's size and damping; it says
+/// whether there may be more.
+BorderedReport converge(BorderedEquations& equations, BorderedState& state,
+                        const std::function<bool(double step, double damping)>& on_step);
+
+/// ν and η that balance the equations of the path best, in the sense of least squares.
+void estimate_multipliers(BorderedEquations& equations, BorderedState& state, const Problem& problem);
+
+/// Largest range of a coordinate, or its magnitude where that is negligible.
+double path_size(const Path& path, int coordinates);
+
+}  // namespace extremal

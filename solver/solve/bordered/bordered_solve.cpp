@@ -1,0 +1,507 @@
+#include "solve/bordered/bordered_solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "solve/bordered/bordered_judge.hpp"
+#include "solve/bordered/bordered_newton.hpp"
+#include "solve/bordered/limits.hpp"
+#include "solve/guess/first_path.hpp"
+#include "solve/guess/starting_ends.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/mesh/resolution.hpp"
+#include "solve/newton/ends.hpp"
+
+namespace extremal {
+
+using namespace limits::bordered;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A starting path: the guess, perhaps bent; and whether the integrals and conditions that it has are led to
+/// those that are given.
+struct Start {
+  double size = 0;  ///< of the waves, by the extent; 0: the guess itself
+  int first = 1, last = 3;
+  unsigned seed = 0;
+  bool led = false;
+
+  const char* strategy() const {
+    if (size == 0)
+      return led ? "newton from the guess, integrals and conditions led to what is given"
+                 : "newton from the guess";
+    return led ? "newton from the guess with waves added, integrals and conditions led to what is given"
+               : "newton from the guess with waves added";
+  }
+};
+
+/// A state, and where it came from.
+struct Found {
+  BorderedState state;
+  const ElementTables *tables = nullptr, *own = nullptr;
+  double correction = 0;
+};
+
+/// Elements of one degree for the Lagrangian of all coordinates and that of the path.
+struct Elements {
+  const ElementTables *tables, *own;
+};
+
+class BorderedSolve {
+ public:
+  BorderedSolve(const Problem& problem, const SolveOptions& options)
+      : problem_(problem), extension_(*problem.extension), options_(options), n_(problem.coordinates()) {
+    levels_.bind(extension_.lagrangian);
+    own_levels_.bind(problem.lagrangian);
+    if (options.scheme) {
+      rule_.emplace(*options.scheme, 0);
+      scheme_.bind(*rule_, *extension_.lagrangian);
+      own_scheme_.bind(*rule_, *problem.lagrangian);
+    }
+    for (const WaypointCondition& w : extension_.waypoints)
+      times_.push_back(w.free ? w.time * problem.duration.value : w.time);
+    times_.push_back(problem.duration.value);
+  }
+
+  Solution run() {
+    const auto start = Clock::now();
+    std::vector<Start> starts{{}};
+    if (has_targets()) starts.push_back({.led = true});
+    std::string first_failure;
+    for (std::size_t k = 0; k < starts.size() && !(k > 0 && spent()); ++k) {
+      equations_.set_offsets({});
+      Solution solution = options_.scheme ? solve_with_scheme(starts[k]) : solve_adapted(starts[k]);
+      if (solution.converged()) {
+        solution.strategy = starts[k].strategy();
+        return timed(std::move(solution), start);
+      }
+      if (first_failure.empty()) first_failure = solution.message;
+      if (k + 1 == starts.size() && starts[k].size == 0) add_bent(starts);
+    }
+    Solution solution;
+    solution.status = spent() ? Status::iteration_limit : Status::not_converged;
+    solution.message =
+        first_failure + (spent() ? "; the budget is spent" : "") +
+        "; no guess with waves added led to a solution either: try another guess of the path, of the "
+        "unknowns or of the duration";
+    return timed(std::move(solution), start);
+  }
+
+ private:
+  bool spent() const { return options_.deadline.passed() || iterations_ >= options_.max_iterations; }
+
+  static double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+  bool has_targets() const {
+    return extension_.multipliers() > 0 || !extension_.conditions.empty() || !extension_.where.empty();
+  }
+
+  Solution timed(Solution solution, Clock::time_point start) const {
+    solution.iterations = iterations_;
+    solution.seconds_analyse = seconds_analyse_;
+    solution.seconds_solve = seconds_since(start) - seconds_analyse_;
+    return solution;
+  }
+
+  /// Bends of the guess to both sides, that of less action first.
+  void add_bent(std::vector<Start>& all) {
+    const Elements elements = lobatto(first_degree);
+    const LegMesh mesh = equal_elements(first_elements * static_cast<int>(times_.size()));
+    for (const BendRow& row : bends)
+      for (int seed = 0; seed < row.seeds; ++seed) {
+        Start one{row.size, row.first, row.last, static_cast<unsigned>(seed)}, other = one;
+        other.size = -row.size;
+        if (action_of(mesh, elements, other) < action_of(mesh, elements, one)) std::swap(one, other);
+        for (Start& start : {std::ref(one), std::ref(other)}) {
+          start.led = has_targets();
+          if (start.led) all.push_back(start);
+          start.led = false;
+          all.push_back(start);
+        }
+      }
+  }
+
+  /// Of L alone; infinite where it is not finite.
+  double action_of(const LegMesh& mesh, const Elements& elements, const Start& start) {
+    equations_.reset(problem_, *elements.tables, *elements.own, mesh);
+    const bool finite = equations_.evaluate(first_state(mesh, elements, start), false);
+    return finite ? equations_.action().action() : INFINITY;
+  }
+
+  Elements lobatto(int degree) { return {&levels_.at(degree), &own_levels_.at(degree)}; }
+
+  /// Elements of each leg, in proportion to its duration.
+  LegMesh equal_elements(int elements) const {
+    LegMesh mesh;
+    mesh.first.push_back(0);
+    const int legs = static_cast<int>(times_.size());
+    for (int l = 0; l < legs; ++l) {
+      const double share = (times_[l] - (l > 0 ? times_[l - 1] : 0)) / times_.back();
+      const int left = elements - mesh.first.back() - (legs - l - 1);
+      const int count =
+          l + 1 == legs ? std::max(1, left)
+                        : std::clamp(static_cast<int>(std::lround(share * elements)), 1, std::max(1, left));
+      for (int k = 0; k < count; ++k) mesh.parts.push_back(1.0 / count);
+      mesh.first.push_back(mesh.first.back() + count);
+    }
+    return mesh;
+  }
+
+  /// The values at waypoints that are given.
+  void set_waypoints(BorderedState& state) const {
+    for (std::size_t w = 0; w < extension_.waypoints.size(); ++w)
+      for (const auto& [a, value] : extension_.waypoints[w].fixed)
+        state.path.set_node(state.mesh.first[w + 1], a, value);
+    state.path.load_ends();
+  }
+
+  /// Adds waves, the ends at rest; closed paths stay closed.
+  void bend(const Start& start, const ElementTables& tables, Path& path) const {
+    if (start.size == 0) return;
+    if (problem_.periodic) return bend_path(problem_, {start.size, start.seed, start.last}, tables, path);
+    const std::vector<double> extent = extents(path, negligible_extent[start.seed % 2]);
+    Noise noise(start.seed);
+    std::vector<double> amplitude(static_cast<std::size_t>(start.last + 1) * n_);
+    for (double& c : amplitude) c = start.size * noise();
+    // One wave of one coordinate has the size that is asked for.
+    if (start.first == start.last && n_ == 1) std::ranges::fill(amplitude, start.size);
+    add_to(path, tables, [&](double tau, double* point) {
+      for (int m = start.first; m <= start.last; ++m)
+        for (int a = 0; a < n_; ++a)
+          point[a] += extent[a] / m * amplitude[static_cast<std::size_t>(m) * n_ + a] *
+                      std::sin(m * std::numbers::pi * tau);
+    });
+  }
+
+  /// The path is moved through the waypoints: by as much as it misses them, in proportion between them.
+  void lead_through_waypoints(const ElementTables& tables, Path& path) const {
+    if (extension_.waypoints.empty()) return;
+    const Trajectory before = trajectory_of(path);
+    std::vector<std::vector<double>> tau(n_, {0.0}), missed(n_, {0.0});
+    std::vector<double> q(n_), v(n_);
+    for (std::size_t w = 0; w < extension_.waypoints.size(); ++w) {
+      before.at(times_[w], q, v);
+      for (const auto& [a, value] : extension_.waypoints[w].fixed) {
+        tau[a].push_back(times_[w] / times_.back());
+        missed[a].push_back(value - q[a]);
+      }
+    }
+    for (int a = 0; a < n_; ++a) {
+      tau[a].push_back(1);
+      missed[a].push_back(0);
+    }
+    add_to(path, tables, [&](double t, double* point) {
+      for (int a = 0; a < n_; ++a) {
+        const auto after = std::min(std::ranges::upper_bound(tau[a], t), tau[a].end() - 1);
+        const auto k = static_cast<std::size_t>(after - tau[a].begin());
+        const double part = (t - tau[a][k - 1]) / (tau[a][k] - tau[a][k - 1]);
+        point[a] += missed[a][k - 1] + part * (missed[a][k] - missed[a][k - 1]);
+      }
+    });
+  }
+
+  /// Adds a function of t/T, which changes q(t) in place, to a path; nothing at the ends.
+  template <class Change>
+  static void add_to(Path& path, const ElementTables& tables, const Change& change) {
+    const Trajectory before = trajectory_of(path);
+    const auto n = static_cast<std::size_t>(path.coordinates());
+    std::vector<double> v(n);
+    fill_path(ends_of(path), tables, path, [&](double tau, double* point) {
+      before.at(tau * before.duration(), {point, n}, v);
+      change(tau, point);
+    });
+  }
+
+  BorderedState first_state(const LegMesh& mesh, const Elements& elements, const Start& start) const {
+    BorderedState state{{}, mesh, times_, std::vector<double>(extension_.conditions.size())};
+    const std::vector<double> lengths = element_lengths(mesh, times_);
+    Path path;
+    path.reset(*elements.own, mesh_nodes(lengths), times_.back(), lengths);
+    start_path(problem_, starting_ends(problem_), *elements.own, path);
+    bend(start, *elements.own, path);
+    lead_through_waypoints(*elements.own, path);
+    std::vector<double> constants = extension_.guess;
+    constants.resize(extension_.constants(), 0);
+    with_constants(path, *elements.tables, constants, state.path);
+    set_waypoints(state);
+    return state;
+  }
+
+  bool newton(Found& found, std::string& failure) {
+    equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
+    const BorderedReport report = converge(equations_, found.state, [&](double step, double damping) {
+      ++iterations_;
+      if (options_.progress)
+        options_.progress(
+            {found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step, damping});
+      return !spent();
+    });
+    found.correction = report.correction;
+    failure = report.failure;
+    return report.converged;
+  }
+
+  static Solution failed(std::string message) {
+    Solution solution;
+    solution.message = std::move(message);
+    return solution;
+  }
+
+  Resolution::Error errors(const Found& found) {
+    Path path;
+    without_constants(found.state.path, *found.own, path);
+    resolution_.measure(path, *found.own);
+    return resolution_.at(found.state.path.degree());
+  }
+
+  Scales sizes(const Found& found) const {
+    Path path;
+    without_constants(found.state.path, *found.own, path);
+    return scales(path, *found.own);
+  }
+
+  /// The state on other elements.
+  Found moved(const Found& found, const LegMesh& mesh, const Elements& elements) const {
+    Found to{{{}, mesh, found.state.times, found.state.multipliers}, elements.tables, elements.own};
+    Path old, path;
+    without_constants(found.state.path, *found.own, old);
+    const std::vector<double> lengths = element_lengths(mesh, found.state.times);
+    path.reset(*elements.own, mesh_nodes(lengths), found.state.times.back(), lengths);
+    path.resample_from(old, *elements.own, mesh_nodes(lengths));
+    with_constants(path, *elements.tables, found.state.constants(n_), to.state.path);
+    move_exactly(to.state, *elements.tables);
+    set_waypoints(to.state);
+    return to;
+  }
+
+  /// Elements as long as the parts of the legs say, to the last digit.
+  static void move_exactly(BorderedState& state, const ElementTables& tables) {
+    const std::vector<double> times = state.times;
+    state.times.clear();
+    move_to(state, tables, times);
+  }
+
+  /// Elements cut where their coefficients are larger than a part of the tolerance.
+  LegMesh cut(const Found& found, double aim_q, double aim_v) const {
+    const int degree = found.state.path.degree();
+    LegMesh mesh;
+    mesh.first.push_back(0);
+    for (int l = 0; l < found.state.mesh.legs(); ++l) {
+      for (int k = found.state.mesh.first[l]; k < found.state.mesh.first[l + 1]; ++k) {
+        const Resolution::Tail& tail = resolution_.tails()[k];
+        const double left = tail.size * tail.fall / (1 - std::min(tail.fall, 0.9));
+        const double of_v = left * (degree + 1) * (degree + 2) / tail.h;
+        const double excess = std::max(left / aim_q, of_v / aim_v);
+        const int count =
+            std::clamp(static_cast<int>(std::ceil(std::pow(std::max(excess, 0.0), 1.0 / (degree + 1)))), 1,
+                       strongest_cut);
+        for (int i = 0; i < count; ++i) mesh.parts.push_back(found.state.mesh.parts[k] / count);
+      }
+      mesh.first.push_back(static_cast<int>(mesh.parts.size()));
+    }
+    return mesh;
+  }
+
+  static LegMesh halved(const LegMesh& mesh) {
+    LegMesh result;
+    for (const int first : mesh.first) result.first.push_back(2 * first);
+    for (const double part : mesh.parts) result.parts.insert(result.parts.end(), 2, part / 2);
+    return result;
+  }
+
+  /// Elements that resolve the starting path.
+  LegMesh first_mesh(const Elements& elements, const Start& start) {
+    const int legs = static_cast<int>(times_.size());
+    const int most = start.size == 0 ? most_first_elements : most_bent_elements;
+    for (int count = std::max(first_elements, 2 * legs);; count *= 2) {
+      const LegMesh mesh = equal_elements(count);
+      Found found{first_state(mesh, elements, start), elements.tables, elements.own};
+      if (count >= most || errors(found).q <= guess_error * sizes(found).q) return mesh;
+    }
+  }
+
+  bool has_free_waypoints() const {
+    return std::ranges::any_of(extension_.waypoints, [](const WaypointCondition& w) { return w.free; });
+  }
+
+  /// Newton's method from the start, of a bent one with the times of waypoints held first; or along the
+  /// family of problems with the integrals and conditions that the start has, to those that are given.
+  bool reach(Found& found, const Start& start, std::string& failure) {
+    if (start.size != 0 && has_free_waypoints()) {
+      equations_.hold_times(true);
+      const bool reached = newton(found, failure);
+      equations_.hold_times(false);
+      if (!reached) return false;
+    }
+    if (!start.led) return newton(found, failure);
+    equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
+    if (!equations_.evaluate(found.state, false)) return false;
+    const std::vector<double> targets = equations_.targets();
+    const auto newton_at = [&](double part) {
+      std::vector<double> offsets = targets;
+      for (double& x : offsets) x *= 1 - part;
+      equations_.set_offsets(offsets);
+      return newton(found, failure);
+    };
+    if (!newton_at(0)) return false;
+    double part = 0, step = 0.25;
+    while (part < 1 && !spent()) {
+      const Found kept = found;
+      const double next = std::min(1.0, part + step);
+      if (newton_at(next)) {
+        part = next;
+        step *= 2;
+        if (errors(found).q > way_error * sizes(found).q && !options_.scheme) {
+          const LegMesh finer = cut(found, way_error * sizes(found).q / 2, INFINITY);
+          if (finer.elements() > most_elements) return false;
+          found = moved(found, finer, {found.tables, found.own});
+        }
+        continue;
+      }
+      found = kept;
+      step = (next - part) / 4;
+      if (step < least_part) return false;
+    }
+    equations_.set_offsets({});
+    return part == 1 && newton(found, failure);
+  }
+
+  Found begin(const LegMesh& mesh, const Elements& elements, const Start& start) {
+    Found found{first_state(mesh, elements, start), elements.tables, elements.own};
+    equations_.reset(problem_, *elements.tables, *elements.own, mesh);
+    estimate_multipliers(equations_, found.state, problem_);
+    first_size_ = path_size(found.state.path, n_);
+    return found;
+  }
+
+  Solution solve_adapted(const Start& start) {
+    const Elements coarse = lobatto(first_degree);
+    Found found = begin(first_mesh(coarse, start), coarse, start);
+    std::string failure;
+    if (!reach(found, start, failure)) return failed(failure);
+    for (int round = 0; round < most_refinements && !spent(); ++round) {
+      const Scales size = sizes(found);
+      const double tolerance = options_.tolerance * size.q,
+                   of_v = velocity_tolerances * options_.tolerance * std::max(size.v, size.slowest);
+      const Resolution::Error error = errors(found);
+      const bool fine = found.state.path.degree() == degree;
+      if (fine && error.q <= tolerance && error.v <= of_v) {
+        if (std::optional<Solution> solution = compared(found, tolerance, of_v, error.q))
+          return *std::move(solution);
+        if (found.state.mesh.elements() * 2 > most_elements) break;
+        found = moved(found, halved(found.state.mesh), lobatto(degree));
+      } else {
+        const LegMesh next = cut(found, aim * tolerance, aim * of_v);
+        if (next.elements() > most_elements) break;
+        const bool same = next.elements() == found.state.mesh.elements();
+        // From the first degree to the next, elements are not cut yet.
+        found = moved(found, !fine ? found.state.mesh : same ? halved(next) : next, lobatto(degree));
+      }
+      if (!newton(found, failure)) return failed(failure);
+    }
+    return failed(spent() ? "the limit of work for one solve is reached"
+                          : "the elements do not resolve the path to the tolerance; try a larger tolerance");
+  }
+
+  /// The solution, if elements of a higher degree confirm it.
+  std::optional<Solution> compared(const Found& found, double tolerance, double of_v, double truncation) {
+    Found finer = moved(found, found.state.mesh, lobatto(compared_with));
+    std::string failure;
+    if (!newton(finer, failure)) return std::nullopt;
+    const auto [q, v] = differences(found, finer);
+    const double size = path_size(found.state.path, n_);
+    const double error = std::max({q, truncation, (found.correction + finer.correction) * size});
+    if (!(error <= tolerance && v <= of_v)) return std::nullopt;
+    return judged(found, error);
+  }
+
+  Solution judged(const Found& found, double error) {
+    const auto start = Clock::now();
+    equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
+    Solution solution = judge(problem_, options_, equations_, found.state, *found.own, error, first_size_);
+    seconds_analyse_ += std::chrono::duration<double>(Clock::now() - start).count();
+    return solution;
+  }
+
+  /// The largest differences of q and q' of two paths at the same parts of their legs.
+  std::pair<double, double> differences(const Found& a, const Found& b) const {
+    Path first, second;
+    without_constants(a.state.path, *a.own, first);
+    without_constants(b.state.path, *b.own, second);
+    const Trajectory one = trajectory_of(first), two = trajectory_of(second);
+    std::vector<double> q(n_), v(n_), other_q(n_), other_v(n_);
+    double most_q = 0, most_v = 0;
+    const int ratio = b.state.mesh.elements() / a.state.mesh.elements();
+    const std::vector<double>& nodes = a.own->scheme().lobatto;
+    for (int k = 0; k < one.elements(); ++k)
+      for (const double tau : nodes) {
+        one.in_element(k, tau, q, v);
+        const int part = std::min(ratio - 1, static_cast<int>(tau * ratio));
+        two.in_element(ratio * k + part, tau * ratio - part, other_q, other_v);
+        for (int i = 0; i < n_; ++i) {
+          most_q = std::max(most_q, std::abs(q[i] - other_q[i]));
+          most_v = std::max(most_v, std::abs(v[i] - other_v[i]));
+        }
+      }
+    return {most_q, most_v};
+  }
+
+  /// Equal elements of the scheme that is asked for: so many, or doubled until the tolerance is met.
+  Solution solve_with_scheme(const Start& start) {
+    const Elements elements{&scheme_, &own_scheme_};
+    const int legs = static_cast<int>(times_.size());
+    const bool pinned = options_.elements > 0;
+    const LegMesh mesh = equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
+    Found found = begin(mesh, elements, start);
+    std::string failure;
+    if (!reach(found, start, failure)) return failed(failure);
+    const double gain = std::pow(2.0, options_.scheme->order) - 1;
+    for (;;) {
+      Found finer = moved(found, halved(found.state.mesh), elements);
+      if (finer.state.mesh.elements() > most_scheme_elements)
+        return failed(
+            fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
+                        "scheme of higher order",
+                        found.state.mesh.elements()));
+      if (!newton(finer, failure)) return failed(failure);
+      const double difference = differences(found, finer).first;
+      if (pinned) return judged(found, difference * (1 + 1 / gain));
+      if (difference * (1 + 1 / gain) <= options_.tolerance * sizes(found).q)
+        return judged(found, difference * (1 + 1 / gain));
+      if (spent()) return failed("the limit of work for one solve is reached");
+      found = std::move(finer);
+    }
+  }
+
+  const Problem& problem_;
+  const Extension& extension_;
+  const SolveOptions& options_;
+  int n_;
+  Levels levels_, own_levels_;
+  std::optional<SchemeTables> rule_;
+  ElementTables scheme_, own_scheme_;
+  std::vector<double> times_;  ///< of the waypoints, then T: guesses where free
+  BorderedEquations equations_;
+  Resolution resolution_;
+  int iterations_ = 0;
+  double seconds_analyse_ = 0, first_size_ = 1;
+};
+
+}  // namespace
+
+Solution solve_bordered(const Problem& problem, const SolveOptions& options) {
+  return BorderedSolve(problem, options).run();
+}
+
+}  // namespace extremal

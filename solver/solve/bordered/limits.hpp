@@ -1,0 +1,67 @@
+#pragma once
+
+#include <initializer_list>
+
+/// \file The numbers that decide in solves with further unknowns.
+
+namespace extremal::limits::bordered {
+
+/// A leg between waypoints becomes in one step no shorter than this part of itself.
+inline constexpr double least_leg = 0.1;
+/// Eigenvalues of the second variation this small, by its largest entry, are null: entries are known to
+/// roundoff, which the elimination lets grow by some orders.
+inline constexpr double null_eigenvalue = 1e-10;
+
+/// Of the equations and unknowns in their units: a direction in which the matrix is so small is one of a
+/// family of solutions. It is looked for in so many unknowns at most.
+inline constexpr double null_direction = 1e-10;
+inline constexpr int most_dense = 1500;
+
+/// Of the damped iteration.
+inline constexpr int most_steps = 60;
+inline constexpr double least_damping = 1e-3;
+/// Corrections below this, relative, are taken as they are: their simplified steps are roundoff.
+inline constexpr double roundoff_step = 1e-11;
+/// Corrections that no longer shrink by this factor are roundoff, if they are below `amplified`.
+inline constexpr double shrinks = 0.25, amplified = 1e-8;
+/// The last correction of a result, relative.
+inline constexpr double converged_step = 1e-14;
+/// A constant that is this small beside 1 has no size of its own.
+inline constexpr double least_constant = 1e-8;
+/// A path may become so many times larger than its guess, a duration so many times longer.
+inline constexpr double most_growth = 1e4;
+
+/// Elements: of the first attempt, of those that follow, at most.
+inline constexpr int first_degree = 6, degree = 10, compared_with = 12;
+inline constexpr int first_elements = 8, most_elements = 2000, most_first_elements = 64,
+                     most_bent_elements = 16;
+/// Of the range: a guess is resolved to this before the iteration begins.
+inline constexpr double guess_error = 1e-2;
+/// Of the tolerance, that a plan of elements aims at.
+inline constexpr double aim = 0.1;
+/// An element becomes at most so many.
+inline constexpr int strongest_cut = 4;
+inline constexpr int most_refinements = 14;
+/// Errors of q' may be so many tolerances, relative to its range.
+inline constexpr double velocity_tolerances = 10;
+
+/// Of a result: equations of the path by the largest momentum, conditions by their terms.
+inline constexpr double largest_residual = 1e-9, largest_mismatch = 1e-10;
+
+/// Starting paths bent by waves sin(mπt/T): sizes by the extent of the guess, first and last m, and how many.
+struct BendRow {
+  double size;
+  int first, last, seeds;
+};
+inline constexpr std::initializer_list<BendRow> bends = {{0.1, 1, 1, 1}, {0.1, 2, 2, 1}, {0.3, 1, 1, 2},
+                                                         {0.3, 2, 2, 2}, {0.1, 3, 3, 1}, {0.3, 1, 3, 4},
+                                                         {1.0, 1, 3, 4}};
+/// On the way from what a starting path has to what is given, shortest step.
+inline constexpr double least_part = 1.0 / 512;
+/// Of the range: elements on that way.
+inline constexpr double way_error = 1e-3;
+
+/// Elements of a scheme are doubled at most up to this many.
+inline constexpr int most_scheme_elements = 1 << 15;
+
+}  // namespace extremal::limits::bordered

@@ -1,0 +1,395 @@
+#include "study/extension.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include "problem/extension.hpp"
+#include "scene/schema.hpp"
+#include "study/modelling.hpp"
+#include "study/naming.hpp"
+#include "study/polyline.hpp"
+
+namespace extremal {
+namespace {
+
+using Dependents = std::set<std::string>;
+
+bool any_of(const std::set<std::string>& names, const Dependents& dependents) {
+  return std::ranges::any_of(names, [&](const std::string& name) { return dependents.contains(name); });
+}
+
+const std::string* formula_of(const Quantity& quantity) { return std::get_if<std::string>(&quantity.value); }
+
+/// The unknowns, and the parameters and definitions that are made of them.
+Dependents dependents_of(const Scene& scene) {
+  Dependents found;
+  for (const Assignment& unknown : scene.boundary.unknowns) found.insert(unknown.name);
+  for (std::size_t before = 0; before != found.size();) {
+    before = found.size();
+    for (const Definition& d : scene.system.definitions)
+      if (any_of(names_in(d.formula.value), found)) found.insert(d.name);
+    for (const Assignment& p : scene.system.parameters)
+      for (const Quantity& q : p.values)
+        if (formula_of(q) && any_of(names_in(*formula_of(q)), found)) found.insert(p.name);
+  }
+  return found;
+}
+
+/// Those that are the same at all times: no coordinate, velocity or time is in them.
+Dependents constants_of(const Scene& scene, const Dependents& dependents) {
+  std::set<std::string> varying{"t"};
+  for (const Text& c : scene.system.coordinates) varying.insert(c.value.substr(0, c.value.find('[')));
+  for (std::size_t before = 0; before != varying.size();) {
+    before = varying.size();
+    for (const Definition& d : scene.system.definitions)
+      if (any_of(names_in(d.formula.value), varying)) varying.insert(d.name);
+  }
+  Dependents constants;
+  std::ranges::set_difference(dependents, varying, std::inserter(constants, constants.end()));
+  return constants;
+}
+
+bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/// A condition with each of `constants` as an end value, k(0): they are coordinates of the extended system.
+struct Rewritten {
+  std::string text;
+  std::vector<std::size_t> added;  ///< where "(0)" was added, in `text`
+
+  std::size_t original(std::size_t offset) const {
+    std::size_t before = 0;
+    for (const std::size_t place : added)
+      if (place < offset) before += std::min<std::size_t>(3, offset - place);
+    return offset - before;
+  }
+};
+
+Rewritten rewritten(const std::string& text, const Dependents& constants) {
+  Rewritten result;
+  for (std::size_t i = 0; i < text.size();) {
+    if (!starts_name(text[i])) {
+      // Digits and the letters of an exponent are no names.
+      std::size_t end = i + 1;
+      if (std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.')
+        while (end < text.size() && (in_name(text[end]) || text[end] == '.')) ++end;
+      result.text += text.substr(i, end - i);
+      i = end;
+      continue;
+    }
+    std::size_t end = i;
+    while (end < text.size() && in_name(text[end])) ++end;
+    const std::string name = text.substr(i, end - i);
+    const std::size_t next = text.find_first_not_of(' ', end);
+    result.text += name;
+    if (constants.contains(name) && !(next != std::string::npos && text[next] == '(')) {
+      result.added.push_back(result.text.size());
+      result.text += "(0)";
+    }
+    i = end;
+  }
+  return result;
+}
+
+EndCondition condition(const Text& text, const System& host, const Dependents& constants, const char* where) {
+  const Rewritten written = rewritten(text.value, constants);
+  try {
+    return end_condition(written.text, host, where);
+  } catch (const FormulaError& e) {
+    if (e.where.starts_with("definitions.")) throw;
+    throw SceneError(position(text, written.original(e.offset)), e.what());
+  }
+}
+
+/// "g = c".
+struct Integral {
+  Text integrand;
+  std::string value;
+  std::size_t value_offset;
+};
+
+Integral integral_of(const Text& text) {
+  const std::size_t equals = text.value.find('=');
+  if (equals == std::string::npos || text.value.find('=', equals + 1) != std::string::npos)
+    throw SceneError(position(text, 0),
+                     "an integral is an equation: the integrand on the left, its integral from 0 to T on the "
+                     "right, as in \"sqrt(1 + y'^2) = 4\"");
+  return {{text.value.substr(0, equals), text.at}, text.value.substr(equals + 1), equals + 1};
+}
+
+double value_of(const Text& text, const System& system) {
+  const Integral integral = integral_of(text);
+  try {
+    const double value = number(integral.value, system, "integrals");
+    if (std::isfinite(value)) return value;
+  } catch (const FormulaError& e) {
+    if (e.where.starts_with("definitions.")) throw;
+    throw SceneError(position(text, integral.value_offset + e.offset),
+                     fmt::format("{}; the right side of an integral is a number", e.what()));
+  }
+  throw SceneError(position(text, integral.value_offset), "the value of the integral is not finite");
+}
+
+/// Each integrand alone as a Lagrangian, so that its errors are found at their places.
+void check_integrands(const Scene& scene) {
+  for (const Text& text : scene.boundary.integrals) {
+    SystemTable table = scene.system;
+    table.lagrangian = integral_of(text).integrand;
+    table.force.clear();
+    make_system(table);
+  }
+}
+
+std::string unused_name(const std::string& stem, const SystemTable& table) {
+  std::set<std::string> taken;
+  for (const Text& c : table.coordinates) taken.insert(c.value.substr(0, c.value.find('[')));
+  for (const Assignment& p : table.parameters) taken.insert(p.name);
+  for (const Definition& d : table.definitions) taken.insert(d.name);
+  std::string name = stem;
+  while (taken.contains(name)) name += "_";
+  return name;
+}
+
+/// L + Σ ν g with ν as the texts given.
+Text law_with(const Scene& scene, const std::vector<std::string>& multipliers) {
+  Text law = *scene.system.lagrangian;
+  law.value = "(" + law.value + ")";
+  for (std::size_t j = 0; j < multipliers.size(); ++j)
+    law.value +=
+        fmt::format(" + ({})*({})", multipliers[j], integral_of(scene.boundary.integrals[j]).integrand.value);
+  return law;
+}
+
+/// The system whose coordinates are those of the path, the unknowns and the multipliers.
+System extended_system(const Scene& scene, const Dependents& dependents) {
+  SystemTable table = scene.system;
+  table.curvature.reset();
+  std::erase_if(table.parameters, [&](const Assignment& p) {
+    if (!dependents.contains(p.name)) return false;
+    const auto is = [&](const Assignment& unknown) { return unknown.name == p.name; };
+    if (std::ranges::any_of(scene.boundary.unknowns, is)) return true;
+    if (p.list)
+      throw SceneError(p.name_at, fmt::format("the list '{}' depends on an unknown; write its elements as "
+                                              "definitions",
+                                              p.name));
+    table.definitions.push_back({p.name, p.name_at, {*formula_of(p.values.front()), p.values.front().at}});
+    return true;
+  });
+  for (const Assignment& unknown : scene.boundary.unknowns)
+    table.coordinates.push_back({unknown.name, unknown.name_at});
+  std::vector<std::string> multipliers;
+  for (const Text& integral : scene.boundary.integrals) {
+    multipliers.push_back(unused_name(fmt::format("nu{}", multipliers.size() + 1), table));
+    table.coordinates.push_back({multipliers.back(), integral.at});
+  }
+  if (!multipliers.empty()) table.lagrangian = law_with(scene, multipliers);
+  return make_system(table);
+}
+
+/// L + Σ ν g for values of the unknowns, then of the multipliers.
+std::shared_ptr<const Lagrangian> lagrangian_at(const Scene& scene, const std::vector<double>& constants) {
+  SystemTable table = scene.system;
+  table.curvature.reset();
+  const std::size_t unknowns = scene.boundary.unknowns.size();
+  for (std::size_t k = 0; k < unknowns; ++k)
+    for (Assignment& p : table.parameters)
+      if (p.name == scene.boundary.unknowns[k].name) p.values.front().value = constants[k];
+  std::vector<std::string> multipliers;
+  for (std::size_t j = unknowns; j < constants.size(); ++j)
+    multipliers.push_back(fmt::format("{:.17g}", constants[j]));
+  if (!multipliers.empty()) table.lagrangian = law_with(scene, multipliers);
+  return make_system(table).lagrangian;
+}
+
+/// The entries of "start" or "end" without those made of unknowns, which become conditions.
+void split_end(const char* place, const Dependents& dependents, std::vector<Assignment>& entries,
+               std::vector<Text>& conditions) {
+  std::erase_if(entries, [&](const Assignment& a) {
+    const auto depends = [&](const Quantity& q) {
+      return formula_of(q) && any_of(names_in(*formula_of(q)), dependents);
+    };
+    if (!std::ranges::any_of(a.values, depends)) return false;
+    if (a.list || a.name.starts_with("p_"))
+      throw SceneError(a.at,
+                       fmt::format("'{}' depends on an unknown, which only single coordinates may; write "
+                                   "an entry for each, or 'conditions'",
+                                   a.name));
+    conditions.push_back({fmt::format("{}({}) = {}", a.name, place, *formula_of(a.values.front())), a.at});
+    return true;
+  });
+}
+
+WaypointCondition read_waypoint(const WaypointTable& table, const System& system) {
+  WaypointCondition waypoint;
+  waypoint.free = table.free;
+  if (!table.free) waypoint.time = evaluate(table.time, system);
+  std::vector<char> fixed(system.names.size());
+  for (const Assignment& a : table.values)
+    for_each_value(a, range_of(a.name, a.name_at, system, keys_of("waypoints")),
+                   [&](int coordinate, const Quantity& value, int index) {
+                     if (std::exchange(fixed[coordinate], 1))
+                       throw SceneError(a.name_at, fmt::format("'{}' is given by its whole array already",
+                                                               system.names[coordinate]));
+                     waypoint.fixed.emplace_back(coordinate, evaluate(value, system, index));
+                   });
+  std::ranges::sort(waypoint.fixed);
+  return waypoint;
+}
+
+std::vector<WaypointCondition> read_waypoints(const Scene& scene, const System& system,
+                                              const Problem& problem) {
+  std::vector<WaypointCondition> waypoints;
+  double last = 0;
+  for (const WaypointTable& table : scene.waypoints) {
+    WaypointCondition& waypoint = waypoints.emplace_back(read_waypoint(table, system));
+    if (waypoint.free) {
+      if (!problem.lagrangian->structure().autonomous)
+        throw SceneError(table.time.at, "at = \"free\" needs a Lagrangian that does not depend on t");
+      continue;
+    }
+    const double duration = problem.duration.value;
+    if (!(waypoint.time > 0 && waypoint.time < duration))
+      throw SceneError(table.time.at,
+                       fmt::format("at = {}; a waypoint lies between 0 and T = {}", waypoint.time, duration));
+    if (!(waypoint.time > last))
+      throw SceneError(table.time.at, fmt::format("at = {} is not after the waypoint before, at {}; write "
+                                                  "waypoints in order of their times",
+                                                  waypoint.time, last));
+    last = waypoint.time;
+  }
+  return waypoints;
+}
+
+}  // namespace
+
+Scene with_unknowns(Scene scene) {
+  for (const Assignment& unknown : scene.boundary.unknowns) {
+    if (unknown.list)
+      throw SceneError(unknown.at, fmt::format("'{}' must be one number, the guess", unknown.name));
+    const auto same = [&](const Assignment& p) { return p.name == unknown.name; };
+    const auto known = std::ranges::find_if(scene.system.parameters, same);
+    if (known == scene.system.parameters.end())
+      scene.system.parameters.push_back(unknown);
+    else if (known->list)
+      throw SceneError(unknown.name_at,
+                       fmt::format("'{}' is a list; an unknown must be one number", unknown.name));
+    else
+      known->values = unknown.values;
+  }
+  return scene;
+}
+
+ExtendedScene split(const Scene& scene, const System& system) {
+  ExtendedScene parts;
+  parts.linear = scene.boundary;
+  const Dependents dependents = dependents_of(scene);
+  split_end("0", dependents, parts.linear.start, parts.conditions);
+  split_end("T", dependents, parts.linear.end, parts.conditions);
+  std::erase_if(parts.linear.conditions, [&](const Text& text) {
+    const bool contains = any_of(names_in(text.value), dependents);
+    const bool linear = !contains && placed(text, [&](const std::string& s) {
+                                       return end_equation(s, system, "conditions");
+                                     }).affine;
+    if (!linear) parts.conditions.push_back(text);
+    return !linear;
+  });
+  parts.extended = !scene.boundary.unknowns.empty() || !scene.boundary.integrals.empty() ||
+                   !scene.waypoints.empty() || !parts.conditions.empty();
+  if (!parts.extended) return parts;
+  parts.where = scene.boundary.where_list;
+  if (scene.boundary.where) parts.where.push_back(*scene.boundary.where);
+  parts.linear.where.reset();
+  const Quantity& duration = scene.boundary.duration;
+  const auto refuse = [&](const Quantity& q, const char* name) {
+    if (formula_of(q) && any_of(names_in(*formula_of(q)), dependents))
+      throw SceneError(q.at, fmt::format("{} depends on an unknown; it must be a number{}", name,
+                                         &q == &duration ? ", or \"free\" with one more condition" : ""));
+  };
+  refuse(duration, "the duration");
+  if (scene.boundary.energy) refuse(*scene.boundary.energy, "the energy");
+  for (const Assignment& line : scene.boundary.map)
+    for (const Quantity& q : line.values) refuse(q, "the map");
+  for (const WaypointTable& waypoint : scene.waypoints) {
+    refuse(waypoint.time, "the time of a waypoint");
+    for (const Assignment& a : waypoint.values)
+      for (const Quantity& q : a.values) refuse(q, "a waypoint");
+  }
+  return parts;
+}
+
+void check_extended(const Scene& scene, Purpose purpose) {
+  const std::string asks = "with integrals, unknowns, nonlinear conditions or waypoints ";
+  if (purpose == Purpose::comparison)
+    throw SceneError(scene.boundary.at,
+                     asks + "shooting is not available to compare with; write 'solve' instead");
+  if (!scene.system.force.empty())
+    throw SceneError(scene.system.force.front().name_at,
+                     asks + "there must be an action; forces have none: leave them out");
+  if (scene.search)
+    throw SceneError(scene.search->solutions.at,
+                     asks + "[search] is not available; leave it out, and give a guess for each extremal");
+  if (scene.continuation && purpose == Purpose::family)
+    throw SceneError(scene.continuation->at,
+                     asks +
+                         "families are not continued; solve for each value with --set "
+                         "instead");
+  if (scene.solve.method && scene.solve.method->value != "newton")
+    throw SceneError(
+        position(*scene.solve.method, 0),
+        fmt::format("{}method '{}' is not available; leave it out", asks, scene.solve.method->value));
+  if (scene.solve.steps)
+    throw SceneError(position(*scene.solve.steps, 0), asks + "the steps are equal; leave 'steps' out");
+  const std::size_t legs = scene.waypoints.size() + 1;
+  if (scene.solve.elements && scene.solve.elements->value < static_cast<double>(legs))
+    throw SceneError(scene.solve.elements->at,
+                     fmt::format("elements = {}; need at least {}, one for each leg between waypoints",
+                                 scene.solve.elements->value, legs));
+  if (scene.boundary.periodic && !scene.waypoints.empty())
+    throw SceneError(scene.waypoints.front().at, "a periodic orbit has no waypoints; leave them out");
+}
+
+std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene) {
+  check_integrands(scene);
+  std::vector<double> constants;
+  for (const Assignment& unknown : scene.boundary.unknowns)
+    constants.push_back(std::get<double>(unknown.values.front().value));
+  constants.resize(constants.size() + scene.boundary.integrals.size(), 1.0);
+  return lagrangian_at(scene, constants);
+}
+
+void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system, Problem& problem) {
+  const Dependents dependents = dependents_of(scene), constants = constants_of(scene, dependents);
+  const System host = extended_system(scene, dependents);
+  const std::size_t ends = 2 * system.names.size(), given = problem.boundary.rows + parts.conditions.size();
+  if (given > ends)
+    throw SceneError(parts.conditions.back().at,
+                     fmt::format("{} conditions for {} end values; at most {} can hold, so leave some out",
+                                 given, ends, ends));
+  if (host.lagrangian->kinks())
+    throw SceneError(
+        scene.system.law().at,
+        "with integrals, unknowns, nonlinear conditions or waypoints L must be smooth; abs, min, max "
+        "and step are not available");
+  auto extension = std::make_shared<Extension>();
+  extension->lagrangian = host.lagrangian;
+  for (const Assignment& unknown : scene.boundary.unknowns) {
+    extension->names.push_back(unknown.name);
+    extension->guess.push_back(std::get<double>(unknown.values.front().value));
+  }
+  for (const Text& text : scene.boundary.integrals) extension->integrals.push_back(value_of(text, system));
+  for (const Text& text : parts.conditions)
+    extension->conditions.push_back(condition(text, host, constants, "conditions"));
+  for (const Text& text : parts.where) extension->where.push_back(condition(text, host, constants, "where"));
+  extension->waypoints = read_waypoints(scene, system, problem);
+  extension->at = [scene](const std::vector<double>& values) { return lagrangian_at(scene, values); };
+  if (!extension->waypoints.empty()) guess_through(extension->waypoints, problem);
+  problem.extension = std::move(extension);
+}
+
+}  // namespace extremal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "problem/problem.hpp"
+#include "scene/scene.hpp"
+#include "study/study.hpp"
+#include "system/formula.hpp"
+
+/// \file Unknown constants, integrals, nonlinear conditions and waypoints of a scene.
+
+namespace extremal {
+
+/// The scene with its unknowns as parameters, which have the values of their guesses.
+Scene with_unknowns(Scene scene);
+
+/// What a scene asks for beside its path, and what is left of [boundary]: a linear relation between numbers.
+struct ExtendedScene {
+  bool extended = false;
+  BoundaryTable linear;
+  std::vector<Text> conditions;  ///< nonlinear ones, and those that contain unknowns
+  std::vector<Text> where;
+};
+ExtendedScene split(const Scene& scene, const System& system);
+
+/// Throws SceneError where such a problem cannot be solved for this purpose or in this way.
+void check_extended(const Scene& scene, Purpose purpose);
+
+/// L + Σ g, with the unknowns at their guesses: what stands for L until the multipliers are known.
+std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene);
+
+/// The extension of a problem, whose relation, duration and guess are read; a guess through the waypoints
+/// where there is none.
+void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system, Problem& problem);
+
+}  // namespace extremal

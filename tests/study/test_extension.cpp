@@ -1,0 +1,227 @@
+#include <cmath>
+#include <numbers>
+
+#include "problem/extension.hpp"
+#include "scenes.hpp"
+#include "solution/extension_values.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+/// \file Integrals, unknown constants, nonlinear conditions and waypoints, against values known in closed
+/// form.
+
+namespace {
+
+const double pi = std::numbers::pi;
+
+std::string system(const std::string& coordinates, const std::string& lagrangian,
+                   const std::string& more = "") {
+  return "[system]\ncoordinates = " + coordinates + "\nlagrangian = \"" + lagrangian + "\"\n" + more;
+}
+
+double at(const Solution& s, double t, int a) {
+  const std::size_t n = s.trajectory.coordinates;
+  std::vector<double> q(n), v(n);
+  s.trajectory.at(t, q, v);
+  return q[a];
+}
+
+}  // namespace
+
+TEST_F(Scenes, HangingChain) {
+  const Solution s = run(study(system("[\"y\"]", "y*sqrt(1 + y'^2)") +
+                               "[boundary]\nstart = { y = 1 }\nend = { y = 3 }\nduration = 1\n"
+                               "integrals = [\"sqrt(1 + y'^2) = 4\"]\n[solve]\ntolerance = 1e-11\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.action, 5.0684801110, 1e-9);
+  ASSERT_EQ(s.extension->integral_multipliers.size(), 1u);
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_TRUE(s.minimizing);
+}
+
+/// The largest area under a curve of given length is bounded by an arc of a circle.
+TEST_F(Scenes, DidosArc) {
+  const double angle = 1.1, radius = 1 / std::sin(angle);  // half of the chord is 1
+  const std::string length = std::to_string(2 * angle * radius);
+  const Solution s = run(study(system("[\"y\"]", "y") +
+                               "[boundary]\nstart = { y = 0 }\nend = { y = 0 }\nduration = 2\nintegrals = "
+                               "[\"sqrt(1 + y'^2) = " +
+                               length + "\"]\n[guess]\ny = \"0.6*t*(2 - t)\"\n[solve]\ntolerance = 1e-11\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  // The length is rounded to six digits: the radius follows from the multiplier, which is −R.
+  const double r = -s.extension->integral_multipliers[0];
+  EXPECT_NEAR(std::abs(r), radius, 1e-5);
+  EXPECT_NEAR(at(s, 1, 0), r - std::sqrt(r * r - 1), 1e-9);
+}
+
+TEST_F(Scenes, SturmLiouville) {
+  const Solution s =
+      run(study(system("[\"y\"]", "y'^2") + "[boundary]\nstart = { y = 0 }\nend = { y = 0 }\nduration = 1\n"
+                                            "integrals = [\"y^2 = 1\"]\n[guess]\ny = \"1.3*sin(2*pi*t)\"\n"
+                                            "[solve]\ntolerance = 1e-11\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.action, 4 * pi * pi, 1e-8);
+  EXPECT_NEAR(s.extension->integral_multipliers[0], -4 * pi * pi, 1e-8);
+  EXPECT_EQ(s.morse_index, 1);  // the first eigenfunction
+  EXPECT_EQ(s.nullity, 0);
+}
+
+TEST_F(Scenes, CharacteristicValueOfMathieu) {
+  const std::string scene =
+      system("[\"x\"]", "x'^2/2 - (a - 2*q*cos(2*t))*x^2/2", "parameters = { q = 1, a = 0 }\n") +
+      "[boundary]\nduration = \"pi\"\nunknowns = { a = -0.4 }\nwhere = [\"x(0) = 0.1\"]\n"
+      "[guess]\nx = 0.1\n[solve]\ntolerance = 1e-11\n";
+  const Solution s = run(study(scene));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.extension->unknowns[0].second, -0.455138604107414, 1e-9);
+  EXPECT_NEAR(at(s, 0, 0), 0.1, 1e-14);
+}
+
+/// A unit of mass that reaches a circle in a given time moves along its radius.
+TEST_F(Scenes, CurvedEnd) {
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
+                "[boundary]\nconditions = [\"x(0) = 3\", \"y(0) = 4\", \"x(T)^2 + y(T)^2 = 4\"]\n"
+                "duration = 1\n[guess]\nx = \"3 - 2*t\"\ny = \"4 - 2*t\"\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(at(s, 1, 0), 1.2, 1e-12);
+  EXPECT_NEAR(at(s, 1, 1), 1.6, 1e-12);
+  EXPECT_NEAR(s.action, 4.5, 1e-12);
+  EXPECT_EQ(s.morse_index, 0);
+}
+
+/// The farthest point of the circle: no minimum across it.
+TEST_F(Scenes, CurvedEndBeyond) {
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
+                "[boundary]\nconditions = [\"x(0) = 3\", \"y(0) = 4\", \"x(T)^2 + y(T)^2 = 4\"]\n"
+                "duration = 1\n[guess]\nx = \"3 - 4*t\"\ny = \"4 - 5.5*t\"\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(at(s, 1, 0), -1.2, 1e-12);
+  EXPECT_EQ(s.morse_index, 1);
+}
+
+TEST_F(Scenes, ReflectionAtALine) {
+  const Solution s = run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2") +
+                               "[boundary]\nstart = { x = 0, y = 1 }\nend = { x = 3, y = 2 }\nduration = 2\n"
+                               "[[waypoints]]\nat = \"free\"\ny = 0\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  const WaypointImpulse& w = s.extension->waypoints.at(0);
+  EXPECT_NEAR(w.time, 2.0 / 3, 1e-12);
+  EXPECT_NEAR(at(s, w.time, 0), 1, 1e-12);
+  EXPECT_EQ(w.impulse.size(), 1u);
+  EXPECT_NEAR(w.impulse[0].second, 3, 1e-12);  // p_y from −3/2 to 3/2
+  ASSERT_EQ(s.windows.size(), 2u);
+  EXPECT_EQ(s.windows[0][1], w.time);
+}
+
+TEST_F(Scenes, WaypointsAtGivenTimes) {
+  const Study three = study(system("[\"x\"]", "x'^2/2 - x^2/2") +
+                            "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 3\n"
+                            "[[waypoints]]\nat = 1\nx = 0.5\n[[waypoints]]\nat = \"2\"\nx = 0.2\n");
+  const Solution s = run(three);
+  ASSERT_TRUE(s.converged()) << s.message;
+  const auto slope = [](double from, double to, bool at_end) {
+    return at_end ? (to * std::cos(1) - from) / std::sin(1) : (to - from * std::cos(1)) / std::sin(1);
+  };
+  EXPECT_NEAR(s.extension->waypoints[0].impulse[0].second, slope(0.5, 0.2, false) - slope(0, 0.5, true),
+              1e-10);
+  EXPECT_NEAR(s.extension->waypoints[1].impulse[0].second, slope(0.2, 1, false) - slope(0.5, 0.2, true),
+              1e-10);
+  EXPECT_NEAR(at(s, 1, 0), 0.5, 1e-14);
+  EXPECT_EQ(s.windows.size(), 3u);
+}
+
+/// From a line, on which the length is stationary, Newton's method leads nowhere; no chain is shorter than
+/// it.
+TEST_F(Scenes, ChainsThatAreTooShort) {
+  const Solution s = run(study(system("[\"y\"]", "y*sqrt(1 + y'^2)") +
+                               "[boundary]\nstart = { y = 1 }\nend = { y = 3 }\nduration = 1\n"
+                               "integrals = [\"sqrt(1 + y'^2) = 2\"]\n[solve]\nbudget = 20\n"));
+  EXPECT_FALSE(s.converged());
+  EXPECT_NE(s.message.find("try another guess"), std::string::npos);
+}
+
+/// The elements of a scheme converge with its order.
+TEST_F(Scenes, IntegralsWithAScheme) {
+  double error[2];
+  for (int k = 0; k < 2; ++k) {
+    const Solution s =
+        run(study(system("[\"y\"]", "y'^2") + "[boundary]\nstart = { y = 0 }\nend = { y = 0 }\nduration = 1\n"
+                                              "integrals = [\"y^2 = 1\"]\n[guess]\ny = \"1.3*sin(pi*t)\"\n"
+                                              "[solve]\nscheme = \"midpoint\"\n",
+                  {"solve.elements=" + std::to_string(32 << k)}));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_TRUE(s.pinned);
+    error[k] = s.action - pi * pi;
+  }
+  EXPECT_NEAR(error[0] / error[1], 4, 0.05);
+}
+
+/// The length of a pendulum of given period and amplitude: T = 4 sqrt(l/g) K(sin(1/2)).
+TEST_F(Scenes, UnknownOfAPeriodicOrbit) {
+  const Solution s =
+      run(study(system("[\"q\"]", "l^2*q'^2/2 + g*l*cos(q)", "parameters = { g = 9.81, l = 1 }\n") +
+                "[boundary]\nperiodic = true\nduration = 2\nunknowns = { l = 0.9 }\n"
+                "where = [\"q(0) = 1\"]\n[guess]\nq = \"cos(pi*t)\"\n"
+                "[solve]\ntolerance = 1e-12\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  const double k = std::comp_ellint_1(std::sin(0.5));
+  EXPECT_NEAR(s.extension->unknowns[0].second, 9.81 / (4 * k * k), 1e-10);
+  ASSERT_TRUE(s.floquet.has_value());
+  EXPECT_EQ(s.floquet->trivial_pairs, 1);
+}
+
+/// All of Kepler's orbits of one axis have one period: of a continuum that near the guess.
+TEST_F(Scenes, UnknownOfAContinuumOfOrbits) {
+  const Solution s = run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 + mu/sqrt(x^2 + y^2)") +
+                               "[boundary]\nperiodic = true\nduration = 4\nunknowns = { mu = 2.2 }\n"
+                               "where = [\"x(0)^2 + y(0)^2 = 1\"]\n"
+                               "[guess]\nx = \"1.02*cos(pi*t/2)\"\ny = \"1.02*sin(pi*t/2)\"\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.extension->unknowns[0].second, pi * pi / 4, 0.2);
+  EXPECT_EQ(s.morse_index, 0);
+}
+
+/// With a free duration one condition more; an end made of an unknown.
+TEST_F(Scenes, UnknownWithAFreeDuration) {
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - g*y", "parameters = { g = 1 }\n") +
+                "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = \"2*u\", y = 0 }\n"
+                "duration = \"free\"\nenergy = 2\nunknowns = { u = 1.5 }\n"
+                "where = [\"u = 1.2\"]\n[guess]\nduration = 2\nx = \"t\"\ny = \"t*(2 - t)\"\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.extension->unknowns[0].second, 1.2, 1e-12);
+  EXPECT_NEAR(at(s, s.duration(), 0), 2.4, 1e-11);
+  EXPECT_NEAR(*s.energy, 2, 1e-10);
+}
+
+TEST_F(Scenes, ExtensionsThatAreRefused) {
+  const std::string free = system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2");  // lines 1 to 3
+  const std::string fixed = "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 1, y = 1 }\nduration = 2\n";
+  EXPECT_EQ(message(free + fixed + "[[waypoints]]\nx = 1\n"),
+            "scene.toml:8:1: this waypoint has no 'at'; give its time, or at = \"free\"");
+  EXPECT_EQ(message(free + fixed + "[[waypoints]]\nat = 1\n"),
+            "scene.toml:8:1: this waypoint fixes no coordinate; name one, x = 0.2");
+  EXPECT_EQ(message(free + fixed + "[[waypoints]]\nat = 2.5\nx = 1\n"),
+            "scene.toml:9:6: at = 2.5; a waypoint lies between 0 and T = 2");
+  EXPECT_EQ(
+      message(free + fixed + "[[waypoints]]\nat = 1\nx = 1\n[[waypoints]]\nat = 1\nx = 2\n"),
+      "scene.toml:12:6: at = 1 is not after the waypoint before, at 1; write waypoints in order of their "
+      "times");
+  EXPECT_EQ(
+      message(free + fixed + "integrals = [\"x\"]\n").rfind("scene.toml:8:15: an integral is an equation", 0),
+      0u);
+  EXPECT_EQ(message(free + fixed + "integrals = [\"x'*zz = 1\"]\n").rfind("scene.toml:8:18: ", 0), 0u);
+  EXPECT_EQ(
+      message(free + fixed + "unknowns = { k = 1 }\n").rfind("scene.toml:8:14: 'where' has 0 equations", 0),
+      0u);
+  EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[search]\nsolutions = 2\n")
+                .rfind("scene.toml:10:13: ", 0),
+            0u);
+  EXPECT_EQ(message(free + "[boundary]\nconditions = [\"x(0)^2 = 1\", \"y(0) = 0\"]\nduration = 1\n"
+                           "[continuation]\nparameter = \"duration\"\nto = 2\n")
+                .rfind("scene.toml:7:1: ", 0),
+            0u);
+}
