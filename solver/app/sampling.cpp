@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/commands.hpp"
+#include "problem/manifold.hpp"
 #include "study/phase.hpp"
 
 namespace extremal::app {
@@ -41,7 +42,9 @@ std::vector<double> equal_times(int count, double duration) {
 Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times) {
   const std::size_t n = problem.coordinates();
   const std::vector<Column> columns(n, Column(times.size()));
-  Samples samples{times, columns, columns, columns};
+  Samples samples{times, columns, columns, columns, {}};
+  if (problem.manifold)
+    samples.constraint_forces.assign(problem.manifold->constraints(), Column(times.size()));
   std::vector<double> q(n), v(n), p(n);
   Scratch scratch;
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -51,6 +54,9 @@ Samples sample(const Problem& problem, const Trajectory& trajectory, const std::
       samples.v[a][k] = v[a];
       samples.p[a][k] = p[a];
     }
+    if (!problem.manifold) continue;
+    const std::vector<double> forces = problem.manifold->multipliers(q, times[k], v);
+    for (std::size_t i = 0; i < forces.size(); ++i) samples.constraint_forces[i][k] = forces[i];
   }
   return samples;
 }

@@ -21,6 +21,8 @@ struct Samples {
   std::vector<Column> q;  ///< coordinates
   std::vector<Column> v;  ///< velocities dq/dt
   std::vector<Column> p;  ///< canonical momenta ∂L/∂q'
+  /// With constraints: λ_k(t) of each, d/dt ∂L/∂q' − ∂L/∂q = Σ λ_k ∂g_k/∂q.
+  std::vector<Column> constraint_forces = {};
 
   std::size_t count() const { return t.size(); }
   std::size_t coordinates() const { return q.size(); }
@@ -35,7 +37,7 @@ struct Result {
   /// Those of a search, by action; `solution` is the first of them, or tells why there is none.
   std::optional<std::vector<Result>> solutions = {};
   std::optional<SolutionSpectrum> spectrum = {};  ///< where it was asked for
-  int natural_conditions = 0;  ///< at the ends, of a problem that is not periodic
+  int natural_conditions = 0;                     ///< at the ends, of a problem that is not periodic
 };
 
 /// Keys in JSON and CSV: "x[1]'" and "p_x[1]".
