@@ -37,6 +37,18 @@ double move_nodes(const Manifold& manifold, Trajectory& trajectory) {
   return most;
 }
 
+/// By how far the nodes of a solution were moved.
+void refuse_off_manifold(double moved, Solution& solution) {
+  double size = 0;
+  for (const double x : solution.trajectory.nodes) size = std::max(size, std::abs(x));
+  if (moved <=
+      limits::on_manifold::most_moved * solution.error_estimate + limits::on_manifold::roundings * size)
+    return;
+  solution.status = Status::not_converged;
+  solution.message = fmt::format(
+      "the path found is off the constraints by {:.1e}; give a guess that is nearer to a solution", moved);
+}
+
 /// The momentum of L at an end, of which that of L̃ is the projection.
 void convert(const Manifold& manifold, const Trajectory& trajectory, double t,
              std::vector<double>& momentum) {
@@ -114,20 +126,17 @@ void leave_out_normal(const Problem& problem, const Trajectory& trajectory, Floq
             std::exp(problem.manifold->rate() * trajectory.duration()), floquet);
 }
 
+void check_on_manifold(const Problem& problem, Solution& solution) {
+  Trajectory trajectory = solution.trajectory;
+  refuse_off_manifold(move_nodes(*problem.manifold, trajectory), solution);
+}
+
 void move_onto_manifold(const Problem& problem, Solution& solution) {
-  Trajectory& trajectory = solution.trajectory;
-  if (trajectory.times.empty()) return;
-  const Manifold& manifold = *problem.manifold;
   if (!solution.converged()) return;
-  double size = 0;
-  for (const double x : trajectory.nodes) size = std::max(size, std::abs(x));
-  const double moved = move_nodes(manifold, trajectory), error = solution.error_estimate;
-  if (!(moved <= limits::on_manifold::most_moved * error + limits::on_manifold::roundings * size)) {
-    solution.status = Status::not_converged;
-    solution.message = fmt::format(
-        "the path found misses the constraints by {:.1e}; give a guess that is nearer to a solution", moved);
-    return;
-  }
+  Trajectory& trajectory = solution.trajectory;
+  const Manifold& manifold = *problem.manifold;
+  refuse_off_manifold(move_nodes(manifold, trajectory), solution);
+  if (!solution.converged()) return;
   if (solution.floquet) leave_out_normal(problem, trajectory, *solution.floquet);
   convert(manifold, trajectory, 0, solution.momentum_start);
   convert(manifold, trajectory, trajectory.duration(), solution.momentum_end);

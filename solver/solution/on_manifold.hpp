@@ -6,6 +6,9 @@
 
 namespace extremal {
 
+/// A converged solution for L̃ whose nodes are off the manifold by more than its error is refused.
+void check_on_manifold(const Problem& problem, Solution& solution);
+
 /// Leaves out of the multipliers of a closed path those of what is beside the manifold.
 void leave_out_normal(const Problem& problem, const Trajectory& trajectory, Floquet& floquet);
 

@@ -151,7 +151,7 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   adaptive.elements = 0;
   if (options.scheme) adaptive.deadline = options.deadline.share(search_share);
   std::vector<Solution> found = Several(problem, adaptive, w).run(most);
-  if (problem.manifold)
+  if (problem.manifold && !options.scheme)
     for (Solution& solution : found) move_onto_manifold(problem, solution);
   if (!options.scheme || !found.front().converged()) return found;
   std::vector<Solution> discrete;

@@ -168,6 +168,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.system = make_system(scene.system);
   check_parameters_used(scene);
   study.forces = scene.system.force;
+  study.constraints = scene.system.constraints;
   check_forces(scene);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;
