@@ -49,9 +49,7 @@ void add_log(const std::string& path, Tally& tally) {
 }
 
 /// Random states are off the manifold of constraints.
-bool constrained(const fs::path& file) {
-  return !extremal::describe(file.stem()).system.constraints.empty();
-}
+bool constrained(const fs::path& file) { return !extremal::describe(file.stem()).system.constraints.empty(); }
 
 /// A system of a file without a recipe would never be tried.
 void check_catalogue() {

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "app/commands.hpp"
-#include "problem/manifold.hpp"
 #include "study/phase.hpp"
 
 namespace extremal::app {
@@ -43,8 +42,6 @@ Samples sample(const Problem& problem, const Trajectory& trajectory, const std::
   const std::size_t n = problem.coordinates();
   const std::vector<Column> columns(n, Column(times.size()));
   Samples samples{times, columns, columns, columns, {}};
-  if (problem.manifold)
-    samples.constraint_forces.assign(problem.manifold->constraints(), Column(times.size()));
   std::vector<double> q(n), v(n), p(n);
   Scratch scratch;
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -54,8 +51,8 @@ Samples sample(const Problem& problem, const Trajectory& trajectory, const std::
       samples.v[a][k] = v[a];
       samples.p[a][k] = p[a];
     }
-    if (!problem.manifold) continue;
-    const std::vector<double> forces = problem.manifold->multipliers(q, times[k], v);
+    const std::vector<double> forces = constraint_forces(problem, q, v, times[k]);
+    samples.constraint_forces.resize(forces.size(), Column(times.size()));
     for (std::size_t i = 0; i < forces.size(); ++i) samples.constraint_forces[i][k] = forces[i];
   }
   return samples;

@@ -91,7 +91,7 @@ void leave_out(const VectorXcd& turns, double growth, Floquet& floquet) {
       std::size_t nearest = 0;
       double least = INFINITY;
       for (std::size_t i = 0; i < left_out.size(); ++i)
-        if (const double distance = std::abs(floquet.multipliers[i] - wanted);
+        if (const double distance = std::abs(floquet.multipliers[i] - wanted) / std::abs(wanted);
             !left_out[i] && distance < least) {
           least = distance;
           nearest = i;

@@ -86,7 +86,8 @@ void constrain(const SystemTable& table, const System& system, double time, Prob
   if (table.constraints.empty()) return;
   check_counts(table, system);
   problem.duration.value = time;
-  put_constraints(table, system, metric_of(*system.lagrangian, problem), 1 / time, problem);
+  put_constraints(table, system, metric_of(*system.lagrangian, problem),
+                  (problem.initial ? growth_of_motions : growth) / time, problem);
 }
 
 void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem) {

@@ -15,8 +15,8 @@ struct EndPoints {
   std::vector<double> start, end;  ///< n each
 };
 
-/// Puts L̃ and the manifold of the constraints into a problem that has its relation; ω is 1/time. Does nothing
-/// without constraints. Throws SceneError.
+/// Puts L̃ and the manifold of the constraints into a problem that has its relation; `time` is about its
+/// duration. Does nothing without constraints. Throws SceneError.
 void constrain(const SystemTable& table, const System& system, double time, Problem& problem);
 
 /// The same with the metric and ω of another problem of the family.

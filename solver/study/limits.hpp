@@ -7,6 +7,9 @@ namespace extremal::limits::constraints {
 /// Expressions of L̃ are dense in the coordinates: their Hessian has (2n)² entries that each hold all
 /// constraints.
 inline constexpr int most_coordinates = 64;
+/// ω T between ends: what is beside the manifold costs more than the forces of constraints gain there.
+/// Motions from initial data, which would be amplified so, have less.
+inline constexpr double growth = 12, growth_of_motions = 1;
 /// Points about the guess at which masses are compared.
 inline constexpr int mass_points = 16;
 /// A mass matrix nearer to singular is no metric.

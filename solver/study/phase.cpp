@@ -18,4 +18,10 @@ void phase_point(const Problem& problem, const Trajectory& trajectory, double t,
   std::copy(values.dv.begin(), values.dv.end(), p.begin());
 }
 
+std::vector<double> constraint_forces(const Problem& problem, std::span<const double> q,
+                                      std::span<const double> v, double t) {
+  if (!problem.manifold) return {};
+  return problem.manifold->multipliers(q, t, v);
+}
+
 }  // namespace extremal

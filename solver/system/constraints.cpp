@@ -11,6 +11,10 @@ namespace {
 
 using Symbols = std::vector<Symbol>;
 
+/// Steps onto the manifold after the first. One is enough for the second variation; with another L̃ has other
+/// extremals beside the manifold only farther away.
+constexpr int further_steps = 2;
+
 /// A vector that depends on (x, t), and its rate along x(t).
 struct Moving {
   Symbols value, rate;
@@ -34,8 +38,8 @@ class Projector {
   }
 
   NodeId run() {
-    const Moving first = moved(x_, g_);
-    const Moving q = curved() ? moved(first, constraints_at(first)) : first;
+    Moving q = moved(x_, g_);
+    for (int further = 0; further < further_steps && curved(); ++further) q = moved(q, constraints_at(q));
     Symbol sum(&graph_, substitute(graph_, system_.lagrangian, inputs(q)));
     const double square = normal_.rate * normal_.rate;
     for (int k = 0; k < m_; ++k) {

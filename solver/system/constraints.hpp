@@ -7,8 +7,9 @@
 /// \file Holonomic constraints g(q, t) = 0 in a Lagrangian of the same coordinates.
 ///
 /// Near the manifold of the constraints a point is q = P(x, t), where P moves x onto the manifold:
-///   P₁ = x − W Gᵀ A⁻¹ g(x),   P = P₁ − W Gᵀ A⁻¹ g(P₁),   G = ∂g/∂q at x,  A = G W Gᵀ,
-/// W a constant metric. g(P) is of third order in g(x). Let c_k = g_k / √A_kk. The extremals of
+///   P₁ = x − W Gᵀ A⁻¹ g(x),  P₂ = P₁ − W Gᵀ A⁻¹ g(P₁),  P = P₂ − W Gᵀ A⁻¹ g(P₂),  G = ∂g/∂q at x,  A = G W
+///   Gᵀ,
+/// W a constant metric. g(P) is of fourth order in g(x). Let c_k = g_k / √A_kk. The extremals of
 ///   L̃ = L(P, dP/dt, t) + ½ Σ_k (c_k'² + ω² c_k²)
 /// that begin and end with c = 0 are those of L under the constraints. For P is the identity on the manifold,
 /// and its derivative projects onto the tangent space: variations of x along W Gᵀ do not change L(P) to
