@@ -12,9 +12,9 @@ void check_on_manifold(const Problem& problem, Solution& solution);
 /// Leaves out of the multipliers of a closed path those of what is beside the manifold.
 void leave_out_normal(const Problem& problem, const Trajectory& trajectory, Floquet& floquet);
 
-/// Of a problem with constraints, given its solution for L̃: the nodes are moved onto the manifold, where they
-/// are but for truncation, momenta become those of L, and the multipliers of what is beside the manifold are
-/// left out. A path that is not on the manifold within its error is no solution.
+/// Of a problem with constraints, given its solution for L̃: nodes are moved onto the manifold, where they
+/// are but for truncation, momenta become those of L, multipliers of what is beside the manifold are left
+/// out. A path that is not on the manifold within its error is no solution.
 void move_onto_manifold(const Problem& problem, Solution& solution);
 
 }  // namespace extremal
