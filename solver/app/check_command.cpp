@@ -88,6 +88,12 @@ std::vector<std::string> force_texts(const Study& study) {
   return texts;
 }
 
+std::vector<std::string> constraint_texts(const std::vector<Text>& constraints) {
+  std::vector<std::string> texts;
+  for (const Text& constraint : constraints) texts.push_back(constraint.value);
+  return texts;
+}
+
 void print_structure(const Inspection& found) {
   if (!found.autonomous)
     line("time", "L depends on t");
@@ -145,6 +151,7 @@ int check(const CheckArguments& arguments) {
   line("coordinates", coordinates_text(study.system));
   lines("parameters", parameter_texts(study.system));
   lines("forces", force_texts(study));
+  lines("constraints", constraint_texts(study.constraints));
   print_ends(study.problem);
   line("duration", duration_text(study.problem.duration));
   print_fit(study);

@@ -42,6 +42,9 @@ void print_formulas(const SystemTable& system) {
   std::vector<std::string> forces;
   for (const Assignment& force : system.force) forces.push_back(assignment_text(force));
   lines("forces", forces);
+  std::vector<std::string> constraints;
+  for (const Text& constraint : system.constraints) constraints.push_back(constraint.value);
+  lines("constraints", constraints);
 }
 
 }  // namespace

@@ -84,6 +84,7 @@ struct InitialData {
   bool paired = false;  ///< of two copies of the coordinates, see copies.hpp
 };
 
+class Manifold;
 struct Reduction;
 struct Extension;
 
@@ -94,7 +95,10 @@ struct Problem {
   std::shared_ptr<const Lagrangian> copies;
   std::shared_ptr<const Problem> pair;  ///< with forces: the problem of both copies, which is solved
   bool paired = false;                  ///< the coordinates are two copies, which agree along a solution
-  std::vector<std::string> names;       ///< of the coordinates: "x", "q[1]"
+  /// With constraints: their manifold. `lagrangian` is then L̃ of system/constraints.hpp. Null: there are
+  /// none.
+  std::shared_ptr<const Manifold> manifold;
+  std::vector<std::string> names;  ///< of the coordinates: "x", "q[1]"
   BoundaryRelation boundary;
   EndMap ends;                        ///< of `boundary`
   bool periodic = false;              ///< closed, perhaps up to a symmetry

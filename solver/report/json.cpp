@@ -271,6 +271,19 @@ void write_column(std::ostream& out, const std::string& indent, const std::strin
   out << indent << dumped(key) << ": " << dumped(column);
 }
 
+/// A list of columns, one for each constraint; nothing without constraints.
+void write_forces(std::ostream& out, const std::string& indent, const std::vector<Column>& forces) {
+  if (forces.empty()) return;
+  Json lists = Json::array();
+  for (const Column& column : forces) {
+    if (const auto bad = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
+        bad != column.end())
+      refuse(fmt::format("samples.constraint_forces[{}]", bad - column.begin()), *bad);
+    lists.push_back(column);
+  }
+  out << ",\n" << indent << "\"constraint_forces\": " << dumped(lists);
+}
+
 /// Column by column: a tree of all the samples would cost several times their memory.
 void write_samples(std::ostream& out, const std::string& indent, const Samples& samples,
                    const std::vector<std::string>& names) {
@@ -287,6 +300,7 @@ void write_samples(std::ostream& out, const std::string& indent, const Samples& 
   write_columns(samples.q, [](const std::string& coordinate) { return coordinate; });
   write_columns(samples.v, velocity_key);
   write_columns(samples.p, momentum_key);
+  write_forces(out, inner, samples.constraint_forces);
   out << "\n" << indent << "}";
 }
 

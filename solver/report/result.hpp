@@ -21,6 +21,8 @@ struct Samples {
   std::vector<Column> q;  ///< coordinates
   std::vector<Column> v;  ///< velocities dq/dt
   std::vector<Column> p;  ///< canonical momenta ∂L/∂q'
+  /// With constraints: λ_k(t) of each, d/dt ∂L/∂q' − ∂L/∂q = Σ λ_k ∂g_k/∂q.
+  std::vector<Column> constraint_forces = {};
 
   std::size_t count() const { return t.size(); }
   std::size_t coordinates() const { return q.size(); }

@@ -32,7 +32,7 @@ std::vector<double> equal_times(int count, double duration) {
 Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times) {
   const std::size_t n = problem.coordinates();
   const std::vector<Column> columns(n, Column(times.size()));
-  Samples samples{times, columns, columns, columns};
+  Samples samples{times, columns, columns, columns, {}};
   std::vector<double> q(n), v(n), p(n);
   Scratch scratch;
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -42,6 +42,9 @@ Samples sample(const Problem& problem, const Trajectory& trajectory, const std::
       samples.v[a][k] = v[a];
       samples.p[a][k] = p[a];
     }
+    const std::vector<double> forces = constraint_forces(problem, q, v, times[k]);
+    samples.constraint_forces.resize(forces.size(), Column(times.size()));
+    for (std::size_t i = 0; i < forces.size(); ++i) samples.constraint_forces[i][k] = forces[i];
   }
   return samples;
 }

@@ -73,6 +73,7 @@ SystemTable read_system_table(const Document& document, const toml::table& table
   system.lagrangian = text(document, table, "lagrangian");
   system.hamiltonian = text(document, table, "hamiltonian");
   system.force = assignments(document, table["force"].as_table());
+  system.constraints = texts(document, table, "constraints");
   system.curvature = number(document, table, "curvature");
   return system;
 }

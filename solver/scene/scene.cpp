@@ -34,6 +34,7 @@ SystemTable merge(SystemTable file, const SystemTable& scene) {
     file.hamiltonian = scene.hamiltonian;
   }
   overlay(file.force, scene.force);
+  if (!scene.constraints.empty()) file.constraints = scene.constraints;
   if (scene.curvature) file.curvature = scene.curvature;
   return file;
 }
@@ -49,6 +50,14 @@ void check_system(const SystemTable& system) {
         system.force.front().name_at,
         "forces act on a system that a Lagrangian describes, and this one has a Hamiltonian; write "
         "its 'lagrangian' instead");
+  if (system.hamiltonian && !system.constraints.empty())
+    throw SceneError(
+        position(system.constraints.front(), 0),
+        "constraints hold a system that a Lagrangian describes, and this one has a Hamiltonian; write "
+        "its 'lagrangian' instead");
+  if (!system.constraints.empty() && !system.force.empty())
+    throw SceneError(position(system.constraints.front(), 0),
+                     "constraints and forces together are not available yet; leave one of them out");
   if (system.curvature && system.curvature->value < 0)
     throw SceneError(system.curvature->at,
                      fmt::format("curvature = {}; need 0 or more", system.curvature->value));

@@ -48,6 +48,7 @@ struct SystemTable {
   std::vector<Definition> definitions;
   std::optional<Text> lagrangian, hamiltonian;  ///< one of them
   std::vector<Assignment> force;
+  std::vector<Text> constraints;
   std::optional<Number> curvature;
   std::vector<Text> axes, centres;  ///< of [about], as written
 

@@ -58,7 +58,10 @@ constexpr KeyRecord keys[] = {
      "Bound of M⁻¹V'' for all positions. With it the windows of L = q'ᵀMq'/2 − V have the certificate "
      "`global`.",
      "curvature = 4.0"},
-    {"system", "constraints", Kind::texts, "", "", "", false, false},
+    {"system", "constraints", Kind::texts, "none",
+     "Holonomic constraints: equations of coordinates, `t`, parameters and definitions that hold at every t. "
+     "The motion has the forces λ ∂(left − right)/∂q that keep them.",
+     "constraints = [\"x^2 + y^2 = l^2\"]"},
 
     {"boundary", "start", Kind::quantities, "none",
      "Coordinates at t = 0: numbers, formulas, for an array a list or one formula in the index `i`; or "
@@ -205,6 +208,11 @@ constexpr Exclusion pairs[] = {
     {"boundary.integrals", "system.hamiltonian",
      "integrals join a Lagrangian; write the 'lagrangian' instead"},
     {"boundary.unknowns", "system.hamiltonian", "unknowns join a Lagrangian; write the 'lagrangian' instead"},
+    {"system.constraints", "system.curvature",
+     "a bound along all positions says nothing of constrained ones"},
+    {"system.constraints", "system.hamiltonian", "constraints hold a system that a Lagrangian describes"},
+    {"system.constraints", "system.force", "constraints and forces together are not available yet"},
+    {"system.constraints", "fit.data", "fits with constraints are not available yet"},
     {"system.force", "system.hamiltonian", "forces act on a system that a Lagrangian describes"},
     {"fit.data", "search.solutions", "a fit follows one extremal"},
     {"fit.data", "solve.steps", "a fit keeps the times of the nodes"},

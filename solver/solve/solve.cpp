@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
@@ -131,6 +132,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   };
   Solution solution = problem.extension ? solve_bordered(problem, recording)
                                         : solve_once(problem, recording, memory_->workspace);
+  if (problem.manifold) move_onto_manifold(problem, solution);
   solution.history = std::move(history);
   return solution;
 }
@@ -151,6 +153,8 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   adaptive.elements = 0;
   if (options.scheme) adaptive.deadline = options.deadline.share(search_share);
   std::vector<Solution> found = Several(problem, adaptive, w).run(most);
+  if (problem.manifold && !options.scheme)
+    for (Solution& solution : found) move_onto_manifold(problem, solution);
   if (!options.scheme || !found.front().converged()) return found;
   std::vector<Solution> discrete;
   for (const Solution& guess : found) {

@@ -8,8 +8,11 @@
 #include <stdexcept>
 
 #include "problem/copies.hpp"
+#include "problem/manifold.hpp"
 #include "problem/recurrence.hpp"
+#include "solution/on_manifold.hpp"
 #include "study/boundary.hpp"
+#include "study/constraints.hpp"
 #include "study/modelling.hpp"
 #include "study/study.hpp"
 
@@ -71,27 +74,32 @@ Assignment* find_parameter(SystemTable& table, const std::string& name) {
 class VariedScene {
  public:
   VariedScene(const Scene& scene, Problem problem, std::string parameter)
-      : system_(scene.system),
-        boundary_(scene.boundary),
+      : scene_(scene),
+        near_(end_points(problem)),
         problem_(std::move(problem)),
         parameter_(std::move(parameter)) {
     problem_.guess = {};
   }
 
   Problem at(double value) {
-    find_parameter(system_, parameter_)->values.front().value = value;
-    const System system = make_system(system_);
+    find_parameter(scene_.system, parameter_)->values.front().value = value;
+    const System system = make_system(scene_.system);
     Problem problem = problem_;
     problem.lagrangian = system.lagrangian;
     problem.copies = system.copies;
-    set_relation(boundary_, system, problem);
-    problem.duration = read_duration(boundary_, system);
+    set_relation(scene_.boundary, system, problem);
+    problem.duration = read_duration(scene_.boundary, system);
+    if (problem_.manifold) {
+      constrain_like(*problem_.manifold, scene_.system, system, problem);
+      EndPoints near = near_;
+      settle_ends(scene_, near, problem);
+    }
     return problem;
   }
 
  private:
-  SystemTable system_;
-  BoundaryTable boundary_;
+  Scene scene_;
+  EndPoints near_;  ///< where the family begins
   Problem problem_;
   std::string parameter_;
 };
@@ -155,6 +163,13 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
   return continued;
 }
 
+/// By the constraints that hold there.
+void move_point_onto_manifold(const ProblemFamily& family, BranchPoint& point) {
+  std::optional<Problem> there;
+  if (family.varied == Varied::parameter) there = family.at(point.parameter);
+  move_onto_manifold(there ? *there : family.problem, point.solution);
+}
+
 }  // namespace
 
 Continued read_continued(const Scene& scene, const System& system, const Problem& problem) {
@@ -182,8 +197,13 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
   followed.parameter = continued.parameter;
   followed.names = study.problem.names;
   while (diagram.advance()) {
-    followed.points.push_back(diagram.point());
-    if (progress) progress(diagram.point());
+    BranchPoint point = diagram.point();
+    if (study.problem.manifold) {
+      move_point_onto_manifold(continued.family, point);
+      if (!point.solution.converged()) break;
+    }
+    followed.points.push_back(std::move(point));
+    if (progress) progress(followed.points.back());
   }
   followed.branches = diagram.branches();
   return followed;

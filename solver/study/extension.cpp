@@ -331,6 +331,12 @@ void check_extended(const Scene& scene, Purpose purpose) {
   if (!scene.system.force.empty())
     throw SceneError(scene.system.force.front().name_at,
                      asks + "there must be an action; forces have none: leave them out");
+  if (!scene.system.constraints.empty())
+    throw SceneError(position(scene.system.constraints.front(), 0),
+                     asks + "constraints are not available; leave one or the other out");
+  if (scene.fit)
+    throw SceneError(scene.fit->at, asks + "a fit is not available; leave [fit] out, or write parameters "
+                                           "that are to be found there");
   if (scene.search)
     throw SceneError(scene.search->solutions.at,
                      asks + "[search] is not available; leave it out, and give a guess for each extremal");

@@ -24,6 +24,8 @@ std::map<std::string, Text> places_of(const SystemTable& table) {
   }
   for (const Definition& d : table.definitions) places["definitions." + d.name] = d.formula;
   places[table.hamiltonian ? "hamiltonian" : "lagrangian"] = table.law();
+  for (std::size_t k = 0; k < table.constraints.size(); ++k)
+    places[fmt::format("constraints[{}]", k)] = table.constraints[k];
   for (const Assignment& force : table.force)
     for (std::size_t k = 0; k < force.values.size(); ++k)
       if (const auto* formula = std::get_if<std::string>(&force.values[k].value))
@@ -95,6 +97,17 @@ System make_system(const SystemTable& table, const std::vector<std::string>& act
     throw at_its_place(table, e);
   } catch (const std::invalid_argument& e) {
     throw SceneError(table.law().at, e.what());
+  }
+}
+
+ConstrainedGraph make_constrained(const SystemTable& table) {
+  std::vector<ConstraintText> constraints;
+  for (std::size_t k = 0; k < table.constraints.size(); ++k)
+    constraints.push_back({table.constraints[k].value, fmt::format("constraints[{}]", k)});
+  try {
+    return constrained_graph(text_of(table), constraints);
+  } catch (const FormulaError& e) {
+    throw at_its_place(table, e);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "system/constraints.hpp"
 #include "system/formula.hpp"
 
 /// \file [system] as a compiled system.
@@ -16,6 +17,9 @@ SystemText system_text(const SystemTable& table);
 /// Throws SceneError at the place in the scene or system file where a formula is wrong. `active`: parameters
 /// that derivatives are asked for.
 System make_system(const SystemTable& table, const std::vector<std::string>& active = {});
+
+/// The same with its constraints, as an expression. Throws SceneError likewise.
+ConstrainedGraph make_constrained(const SystemTable& table);
 
 /// An error of a formula of the system, at its place.
 SceneError at_its_place(const SystemTable& table, const FormulaError& error);

@@ -2,13 +2,26 @@
 
 #include <algorithm>
 
+#include "problem/manifold.hpp"
+
 namespace extremal {
 
 void phase_point(const Problem& problem, const Trajectory& trajectory, double t, std::span<double> q,
                  std::span<double> v, std::span<double> p, Scratch& scratch) {
   trajectory.at(t, q, v);
-  const PointValues values = evaluate_at(*problem.lagrangian, q, v, t, Order::gradient, scratch);
+  if (problem.manifold) {
+    problem.manifold->project(q, t);
+    problem.manifold->make_tangent(q, t, v);
+  }
+  const Lagrangian& lagrangian = problem.manifold ? problem.manifold->lagrangian() : *problem.lagrangian;
+  const PointValues values = evaluate_at(lagrangian, q, v, t, Order::gradient, scratch);
   std::copy(values.dv.begin(), values.dv.end(), p.begin());
+}
+
+std::vector<double> constraint_forces(const Problem& problem, std::span<const double> q,
+                                      std::span<const double> v, double t) {
+  if (!problem.manifold) return {};
+  return problem.manifold->multipliers(q, t, v);
 }
 
 }  // namespace extremal

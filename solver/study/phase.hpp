@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "problem/problem.hpp"
 #include "solution/solution.hpp"
@@ -12,5 +13,9 @@ namespace extremal {
 /// q, q' and the canonical momenta p = ∂L/∂q' at time t in [0, T], n entries each.
 void phase_point(const Problem& problem, const Trajectory& trajectory, double t, std::span<double> q,
                  std::span<double> v, std::span<double> p, Scratch& scratch);
+
+/// λ of d/dt ∂L/∂q' − ∂L/∂q = Σ λ_k ∂g_k/∂q at such a point, one for each constraint g_k = 0.
+std::vector<double> constraint_forces(const Problem& problem, std::span<const double> q,
+                                      std::span<const double> v, double t);
 
 }  // namespace extremal

@@ -11,11 +11,13 @@
 #include "solution/extension_values.hpp"
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
+#include "study/constraints.hpp"
 #include "study/extension.hpp"
 #include "study/fitting.hpp"
 #include "study/guess.hpp"
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
+#include "study/naming.hpp"
 #include "study/suggestion.hpp"
 #include "study/usage.hpp"
 
@@ -83,6 +85,29 @@ void check_initial_data(const Scene& scene, Purpose purpose) {
       "conditions and waypoints have nothing to determine; leave them out");
 }
 
+/// The duration, or a guess of it; 0 where a file has it.
+double expected_duration(const Scene& scene, const System& system, const Problem& problem) {
+  if (!problem.duration.free) return problem.duration.value;
+  return scene.guess.duration ? evaluate(*scene.guess.duration, system) : 0;
+}
+
+/// The guess, and what constraints make of it and of the ends.
+void read_constrained_guess(const Scene& scene, const System& system, const Deadline& deadline,
+                            Problem& problem) {
+  const double time = expected_duration(scene, system, problem);
+  if (!(time > 0)) {
+    read_guess(scene, system, deadline, problem);
+    constrain(scene.system, system, problem.duration.value, problem);
+  } else {
+    constrain(scene.system, system, time, problem);
+    read_guess(scene, system, deadline, problem);
+  }
+  EndPoints ends = end_points(problem);
+  check_independent(scene, ends, problem);
+  settle_ends(scene, ends, problem);
+  settle_guess(scene, ends, problem);
+}
+
 Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline, Purpose purpose) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
@@ -101,8 +126,13 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
     problem.curvature.reset();
   }
   // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
-  if (scene.guess.state && system.lagrangian->structure().quadratic) check_regular(problem, scene.system);
-  read_guess(scene, system, deadline, problem);
+  const bool constrained = !scene.system.constraints.empty();
+  if (scene.guess.state && system.lagrangian->structure().quadratic && !constrained)
+    check_regular(problem, scene.system);
+  if (constrained)
+    read_constrained_guess(scene, system, deadline, problem);
+  else
+    read_guess(scene, system, deadline, problem);
   if (parts.extended) read_extension(scene, parts, system, problem);
   try {
     problem = make_problem(std::move(problem));
@@ -157,6 +187,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.system = make_system(scene.system);
   check_parameters_used(scene);
   study.forces = scene.system.force;
+  study.constraints = scene.system.constraints;
   check_forces(scene);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;

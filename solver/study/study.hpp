@@ -33,6 +33,7 @@ struct Study {
   int solutions = 0;   ///< so many extremals are wanted; 0: the one reached from the guess
   std::optional<Continued> continuation;
   std::vector<Assignment> forces;   ///< as written; none: the problem has none
+  std::vector<Text> constraints;    ///< likewise
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
   std::optional<Units> units;

@@ -46,6 +46,7 @@ class NamesUsed {
     add(system.lagrangian);
     add(system.hamiltonian);
     add(system.force);
+    add(system.constraints);
   }
   void add(const BoundaryTable& boundary) {
     for (const auto* ends : {&boundary.start, &boundary.end, &boundary.map}) add(*ends);

@@ -18,6 +18,8 @@
 
 namespace extremal {
 
+struct ConstrainedGraph;
+
 /// A formula that does not parse or names what does not exist. `where` says which text (see
 /// SystemText), `offset` is the position in it, in bytes.
 struct FormulaError : std::runtime_error {
@@ -93,6 +95,15 @@ struct ForceText {
 
 /// The Lagrangian of two copies of a system with forces, see two_copies(). Throws FormulaError.
 std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces);
+
+/// An equation "left = right" between coordinates; `where` names the text in errors.
+struct ConstraintText {
+  std::string formula{}, where{};
+};
+
+/// A system with the left sides (left − right) of its constraints. Throws FormulaError, also for one that is
+/// not smooth.
+ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints);
 
 /// Parses, differentiates and compiles. Throws FormulaError, also where the second derivative of a
 /// Hamiltonian by the momenta is singular.

@@ -216,6 +216,23 @@ LagrangianGraph graph_of(Names& names, const std::string& text, const std::strin
   return target;
 }
 
+LagrangianGraph equation_of(Names& names, const std::string& text, const std::string& where) {
+  Formula formula = parse_equation(text, where);
+  resolve(formula, names);
+  for (const Syntax& node : formula.nodes)
+    if (node.form != Form::number && node.count <= 1u * node.indexed && (node.reads & of_velocities))
+      fail(formula, node.offset,
+           fmt::format(
+               "'{}' stands for velocities; a constraint holds between coordinates, and its derivative "
+               "by time follows",
+               formula.name(node)));
+  if (!(formula.nodes[formula.root].reads & of_coordinates))
+    fail(formula, 0, "the constraint depends on no coordinate; leave it out");
+  LagrangianGraph target;
+  Splitter(names, target).split(formula);
+  return target;
+}
+
 LagrangianGraph power_of(Names& names, std::span<const ForceText> forces) {
   const int n = names.elements;
   std::string multiplier = "multiplier";

@@ -20,4 +20,8 @@ LagrangianGraph graph_of(Names& names, const std::string& text, const std::strin
 /// FormulaError.
 LagrangianGraph power_of(Names& names, std::span<const ForceText> forces);
 
+/// left − right of an equation "left = right" in coordinates, t and parameters, likewise. Throws
+/// FormulaError, also where velocities or no coordinates stand in it.
+LagrangianGraph equation_of(Names& names, const std::string& text, const std::string& where);
+
 }  // namespace extremal::formula

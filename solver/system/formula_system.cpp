@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "system/constraints.hpp"
 #include "system/copies.hpp"
 #include "system/formula_graph.hpp"
 #include "system/hamiltonian.hpp"
@@ -56,6 +57,22 @@ std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::sp
   formula::Names names = formula::names_of(text), of_forces = formula::names_of(text);
   const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian, "lagrangian");
   return make_lagrangian(two_copies(lagrangian, formula::power_of(of_forces, forces)));
+}
+
+ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints) {
+  formula::Names names = formula::names_of(text);
+  const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian, "lagrangian");
+  ConstrainedGraph system;
+  system.coordinates = lagrangian.coordinates;
+  system.parameters.assign(lagrangian.uniforms.begin(), lagrangian.uniforms.begin() + lagrangian.parameters);
+  system.lagrangian = flattened(lagrangian, system.graph);
+  for (const ConstraintText& constraint : constraints) {
+    const LagrangianGraph equation = formula::equation_of(names, constraint.formula, constraint.where);
+    system.constraints.push_back(flattened(equation, system.graph));
+    if (has_kinks(system.graph, system.constraints.back()))
+      throw FormulaError("a constraint must be smooth, without abs, min, max and step", constraint.where, 0);
+  }
+  return system;
 }
 
 }  // namespace extremal

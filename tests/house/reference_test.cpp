@@ -247,6 +247,11 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
              fields);
   add_fields("solve",
+             "system = { coordinates = [\"x\", \"y\"], lagrangian = \"(x'^2 + y'^2)/2\", "
+             "constraints = [\"x^2 + y^2 = 1\"] }\n"
+             "boundary = { start = { x = 1, y = 0 }, end = { x = 0, y = 1 }, duration = 2 }\n",
+             fields, {"--samples", "2"});
+  add_fields("solve",
              "system = { coordinates = [\"x\"], parameters = { k = 1 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2, integrals = [\"x = 0.8\"], "
              "unknowns = { k = 1 }, where = [\"k = 0.5\"] }\n"

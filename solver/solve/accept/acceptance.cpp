@@ -6,6 +6,7 @@
 #include <chrono>
 #include <utility>
 
+#include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
@@ -207,6 +208,7 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
       judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
+  if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned && solution.converged() && !problem.paired) {
     const SchemeTables& scheme = found.tables->scheme();

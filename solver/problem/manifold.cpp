@@ -1,0 +1,172 @@
+#include "problem/manifold.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace extremal {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_steps = 60;
+constexpr double least_factor = 1e-3;
+/// Steps below so many roundings of the point gain nothing more.
+constexpr double settled = 4 * std::numeric_limits<double>::epsilon();
+/// Where g cannot be made smaller, so long a step was one of roundoff.
+constexpr double roundoff = 1e3 * settled;
+
+/// A point with t, and multipliers zero but for one.
+std::vector<double> extended(std::span<const double> q, double t, int further, int one = -1) {
+  std::vector<double> point(q.begin(), q.end());
+  point.push_back(t);
+  point.resize(point.size() + further);
+  if (one >= 0) point[q.size() + 1 + one] = 1;
+  return point;
+}
+
+Eigen::Map<const MatrixXd> square(const std::vector<double>& entries, Index n) {
+  return {entries.data(), n, n};
+}
+
+Eigen::Map<const VectorXd> vector(std::span<const double> values) {
+  return {values.data(), static_cast<Index>(values.size())};
+}
+
+std::vector<double> values_of(const VectorXd& vector) { return {vector.begin(), vector.end()}; }
+
+}  // namespace
+
+bool Manifold::autonomous() const {
+  if (!parts_.lagrangian->structure().autonomous) return false;
+  const auto reads_time = [n = coordinates()](int z) { return z == n; };
+  return std::ranges::none_of(parts_.forms->structure().gradient, reads_time);
+}
+
+ConstraintValues Manifold::at(std::span<const double> q, double t) const {
+  const Index n = coordinates(), m = constraints(), all = n + 1 + m;
+  const std::vector<double> point = extended(q, t, static_cast<int>(m)), rest(all);
+  Scratch scratch;
+  const PointValues values = evaluate_at(*parts_.forms, point, rest, 0, Order::hessian, scratch);
+  const auto hessian = square(values.qq, all);
+  return {vector(values.dq).tail(m), hessian.block(n + 1, 0, m, n), hessian.block(n + 1, n, m, 1)};
+}
+
+/// W Gᵀ A⁻¹ g, the shortest where gradients depend on each other.
+VectorXd Manifold::normal_step(const ConstraintValues& values, const VectorXd& g) const {
+  const MatrixXd across = parts_.metric * values.slopes.transpose();
+  const MatrixXd a = values.slopes * across;
+  return across * a.completeOrthogonalDecomposition().solve(g);
+}
+
+bool Manifold::project(std::span<double> q, double t) const {
+  Eigen::Map<VectorXd> point(q.data(), static_cast<Index>(q.size()));
+  ConstraintValues values = at(q, t);
+  for (int k = 0; k < most_steps && !values.g.isZero(0); ++k) {
+    const VectorXd from = point, step = normal_step(values, values.g);
+    const double length = step.norm(), before = values.g.norm();
+    if (!std::isfinite(length)) return false;
+    bool nearer = false;
+    for (double factor = 1; factor > least_factor && !nearer; factor /= 2) {
+      point = from - factor * step;
+      const ConstraintValues there = at(q, t);
+      nearer = there.g.norm() < before;
+      if (nearer) values = there;
+    }
+    if (!nearer) {
+      point = from;
+      return length <= roundoff * point.norm();
+    }
+    if (length <= settled * point.norm()) return true;
+  }
+  return values.g.isZero(0);
+}
+
+void Manifold::make_tangent(std::span<const double> q, double t, std::span<double> v) const {
+  Eigen::Map<VectorXd> velocity(v.data(), static_cast<Index>(v.size()));
+  const ConstraintValues values = at(q, t);
+  for (int pass = 0; pass < 2; ++pass)
+    velocity -= normal_step(values, values.slopes * velocity + values.rates);
+}
+
+double Manifold::distance(std::span<const double> q, double t) const {
+  const ConstraintValues values = at(q, t);
+  return normal_step(values, values.g).norm();
+}
+
+std::vector<double> Manifold::projected_momentum(std::span<const double> q, double t,
+                                                 std::span<const double> p) const {
+  const ConstraintValues values = at(q, t);
+  const MatrixXd across = parts_.metric * values.slopes.transpose();
+  const MatrixXd a = values.slopes * across;
+  const VectorXd normal = a.completeOrthogonalDecomposition().solve(across.transpose() * vector(p));
+  return values_of(vector(p) - values.slopes.transpose() * normal);
+}
+
+/// Newton's method for L_v(v) = projection + Gᵀ μ, G v + ∂g/∂t = 0.
+std::vector<double> Manifold::momentum(std::span<const double> q, double t,
+                                       std::span<const double> projection, std::span<double> v) const {
+  constexpr int most = 20;
+  const Index n = coordinates(), m = constraints();
+  const ConstraintValues values = at(q, t);
+  Eigen::Map<VectorXd> velocity(v.data(), n);
+  Scratch scratch;
+  double before = INFINITY;
+  for (int k = 0; k < most; ++k) {
+    const PointValues l = evaluate_at(*parts_.lagrangian, q, v, t, Order::hessian, scratch);
+    MatrixXd matrix = MatrixXd::Zero(n + m, n + m);
+    matrix << square(l.vv, n), values.slopes.transpose(), values.slopes, MatrixXd::Zero(m, m);
+    VectorXd right(n + m);
+    right << vector(projection) - vector(l.dv), -(values.slopes * velocity + values.rates);
+    const VectorXd step = matrix.completeOrthogonalDecomposition().solve(right).head(n);
+    const double length = step.norm();
+    if (!(length < before)) break;
+    velocity += step;
+    before = length;
+    if (length <= settled * velocity.norm()) break;
+  }
+  return momentum(q, t, v);
+}
+
+std::vector<double> Manifold::momentum(std::span<const double> q, double t, std::span<const double> v) const {
+  Scratch scratch;
+  return evaluate_at(*parts_.lagrangian, q, v, t, Order::gradient, scratch).dv;
+}
+
+double Manifold::energy(std::span<const double> q, double t, std::span<const double> v) const {
+  Scratch scratch;
+  const PointValues l = evaluate_at(*parts_.lagrangian, q, v, t, Order::gradient, scratch);
+  return vector(l.dv).dot(vector(v)) - l.value;
+}
+
+/// M q'' − Gᵀ λ = L_q − L_vq q' − L_vt and G q'' = −(second derivative of g along the motion without q'').
+std::vector<double> Manifold::multipliers(std::span<const double> q, double t,
+                                          std::span<const double> v) const {
+  const Index n = coordinates(), m = constraints(), all = n + 1 + m;
+  const std::vector<double> rest(all), state = extended(q, t, 0);
+  const std::vector<double> motion = extended(v, 1, 0);
+  const ConstraintValues values = at(q, t);
+  Scratch scratch;
+  const PointValues l = evaluate_at(*parts_.timed, state, motion, 0, Order::hessian, scratch);
+  // Of (q', q), row-major.
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> vq(
+      l.vq.data(), n + 1, n + 1);
+  MatrixXd matrix = MatrixXd::Zero(n + m, n + m);
+  matrix << square(l.vv, n + 1).topLeftCorner(n, n), -values.slopes.transpose(), values.slopes,
+      MatrixXd::Zero(m, m);
+  VectorXd right(n + m);
+  right.head(n) = vector(l.dq).head(n) - (vq * vector(motion)).head(n);
+  for (Index k = 0; k < m; ++k) {
+    const std::vector<double> point = extended(q, t, static_cast<int>(m), static_cast<int>(k));
+    const PointValues form = evaluate_at(*parts_.forms, point, rest, 0, Order::hessian, scratch);
+    const MatrixXd second = square(form.qq, all).topLeftCorner(n + 1, n + 1);
+    right[n + k] = -vector(motion).dot(second * vector(motion));
+  }
+  return values_of(matrix.completeOrthogonalDecomposition().solve(right).tail(m));
+}
+
+}  // namespace extremal

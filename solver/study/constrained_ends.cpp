@@ -1,0 +1,244 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "linear/dense.hpp"
+#include "problem/manifold.hpp"
+#include "study/constraints.hpp"
+#include "study/limits.hpp"
+
+namespace extremal {
+namespace {
+
+using namespace limits::constraints;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+const Location& place_of(const BoundaryTable& boundary, bool at_end) {
+  const std::vector<Assignment>& table = at_end ? boundary.end : boundary.start;
+  if (!table.empty()) return table.front().name_at;
+  return boundary.conditions.empty() ? boundary.at : boundary.conditions.front().at;
+}
+
+int rank_of(const MatrixXd& m) {
+  if (m.size() == 0) return 0;
+  const VectorXd values = singular_values(m);
+  return static_cast<int>((values.array() > rank * std::max(values[0], 1e-300)).count());
+}
+
+/// Both ends of a constrained problem.
+class ConstrainedEnds {
+ public:
+  ConstrainedEnds(const Scene& scene, EndPoints& near, Problem& problem)
+      : scene_(scene), near_(near), problem_(problem), manifold_(*problem.manifold) {
+    n_ = problem.coordinates();
+    m_ = manifold_.constraints();
+  }
+
+  void settle() {
+    check_momenta();
+    fit_fixed();
+    for (const bool at_end : {false, true})
+      if (fixed(at_end)) meet(at_end);
+    if (problem_.initial) return settle_initial();
+    if (problem_.periodic || suits()) return project_free();
+    pin_determined();
+    if (!suits()) refuse_partly_free();
+    project_free();
+  }
+
+ private:
+  std::span<double> point(bool at_end) { return at_end ? near_.end : near_.start; }
+  double time(bool at_end) const { return at_end ? problem_.duration.value : 0; }
+  bool fixed(bool at_end) const {
+    const auto begin = problem_.ends.fixed.begin() + (at_end ? n_ : 0);
+    return std::all_of(begin, begin + n_, [](char f) { return f; });
+  }
+
+  /// Ends as the relation has them where it fixes them.
+  void fit_fixed() {
+    for (int e = 0; e < 2 * n_; ++e)
+      if (problem_.ends.fixed[e]) point(e >= n_)[e % n_] = problem_.ends.offset[e];
+  }
+
+  void solve_again() { problem_.ends = solve_relation(problem_.boundary); }
+
+  /// The end is on the manifold but for its decimals, which the relation then gets.
+  void meet(bool at_end) {
+    const std::span<double> q = point(at_end);
+    std::vector<double> moved(q.begin(), q.end());
+    const double t = time(at_end), size = vector(q).lpNorm<Eigen::Infinity>();
+    const bool found = manifold_.project(moved, t);
+    const double distance = found ? (vector(moved) - vector(q)).norm() : INFINITY;
+    if (!(distance <= end_distance * std::max(size, least_size()))) refuse_missed(at_end);
+    for (const Triplet& entry : problem_.boundary.matrix)
+      if ((entry.column >= n_) == at_end)
+        problem_.boundary.value[entry.row] += entry.value * (moved[entry.column % n_] - q[entry.column % n_]);
+    std::copy(moved.begin(), moved.end(), q.begin());
+    solve_again();
+    for (int a = 0; a < n_; ++a) problem_.ends.offset[(at_end ? n_ : 0) + a] = q[a];
+  }
+
+  /// Of an end where all coordinates are near zero, that of the other.
+  double least_size() {
+    return std::max(vector(near_.start).lpNorm<Eigen::Infinity>(),
+                    vector(near_.end).lpNorm<Eigen::Infinity>());
+  }
+
+  [[noreturn]] void refuse_missed(bool at_end) {
+    const ConstraintValues values = manifold_.at(point(at_end), time(at_end));
+    Index worst = 0;
+    for (Index k = 1; k < values.g.size(); ++k)
+      if (size(values, k) > size(values, worst)) worst = k;
+    throw SceneError(
+        place_of(scene_.boundary, at_end),
+        fmt::format("the {} does not satisfy the constraint '{}': left − right = {:.6g} there; give values "
+                    "that do, or leave out coordinates that follow from the others",
+                    at_end ? "end" : "start", scene_.system.constraints[worst].value, values.g[worst]));
+  }
+
+  static double size(const ConstraintValues& values, Index k) {
+    return std::abs(values.g[k]) / std::max(values.slopes.row(k).norm(), 1e-300);
+  }
+
+  static Eigen::Map<const VectorXd> vector(std::span<const double> values) {
+    return {values.data(), static_cast<Index>(values.size())};
+  }
+
+  /// A momentum at an end whose point is not known does not have a known projection.
+  void check_momenta() const {
+    const std::vector<double>& given = problem_.boundary.momenta;
+    for (std::size_t e = 0; e < given.size(); ++e)
+      if (given[e] != 0)
+        throw SceneError(place_of(scene_.boundary, e >= static_cast<std::size_t>(n_)),
+                         "with constraints the momentum at an end cannot be given without its coordinates; "
+                         "leave it out, or give all of them as initial data");
+  }
+
+  /// The momenta of L̃; a part normal to the manifold would be none of a motion on it.
+  void settle_initial() {
+    auto& [q, p, paired] = *problem_.initial;
+    std::copy(near_.start.begin(), near_.start.end(), q.begin());
+    const std::vector<double> projection = manifold_.projected_momentum(q, 0, p);
+    std::vector<double> v(n_, 0);
+    const std::vector<double> own = manifold_.momentum(q, 0, projection, v);
+    const double largest = vector(p).lpNorm<Eigen::Infinity>();
+    for (int a = 0; a < n_; ++a)
+      if (!(std::abs(own[a] - p[a]) <= normal_momentum * largest))
+        throw SceneError(place_of(scene_.boundary, false),
+                         fmt::format("the momenta at the start are those of a velocity that leaves the "
+                                     "constraints: p_{} is {:.9g}, and {:.9g} keeps them",
+                                     problem_.names[a], p[a], own[a]));
+    p = projection;
+  }
+
+  /// The free directions of the ends, 2n × f.
+  MatrixXd directions() const {
+    MatrixXd z = MatrixXd::Zero(2 * n_, problem_.ends.free);
+    for (const Triplet& entry : problem_.ends.z) z(entry.row, entry.column) += entry.value;
+    return z;
+  }
+
+  /// ∂g/∂q of both ends, 2m × 2n.
+  MatrixXd slopes(VectorXd* g = nullptr) {
+    MatrixXd both = MatrixXd::Zero(2 * m_, 2 * n_);
+    if (g) g->resize(2 * m_);
+    for (const bool at_end : {false, true}) {
+      const ConstraintValues values = manifold_.at(point(at_end), time(at_end));
+      both.block(at_end ? m_ : 0, at_end ? n_ : 0, m_, n_) = values.slopes;
+      if (g) g->segment(at_end ? m_ : 0, m_) = values.g;
+    }
+    return both;
+  }
+
+  /// Whether the free directions are virtual displacements and displacements along W Gᵀ: then the natural
+  /// conditions of L̃ are those on the manifold.
+  bool suits() {
+    const MatrixXd z = directions(), g = slopes();
+    const int free = problem_.ends.free;
+    if (free == 0) return true;
+    MatrixXd across = MatrixXd::Zero(2 * n_, 2 * m_), both(2 * n_, free + 2 * m_);
+    for (int end : {0, 1})
+      across.block(end * n_, end * m_, n_, m_) =
+          manifold_.metric() * g.block(end * m_, end * n_, m_, n_).transpose();
+    for (Index k = 0; k < across.cols(); ++k) across.col(k).normalize();
+    both << z, across;
+    const int tangent = free - rank_of(g * z), normal = free + rank_of(across) - rank_of(both);
+    return tangent + normal == free;
+  }
+
+  /// Moves the ends onto the manifold within their relation, and fixes what no virtual displacement moves.
+  void pin_determined() {
+    constexpr int most_steps = 50;
+    const MatrixXd z = directions();
+    VectorXd g;
+    MatrixXd by_free;
+    for (int k = 0; k < most_steps; ++k) {
+      by_free = slopes(&g) * z;
+      const VectorXd step = z * least_norm(by_free, -g);
+      for (int e = 0; e < 2 * n_; ++e) point(e >= n_)[e % n_] += step[e];
+      if (step.norm() <= 1e-15 * std::max(vector(near_.start).norm(), vector(near_.end).norm())) break;
+    }
+    for (const bool at_end : {false, true})
+      if (!(manifold_.distance(point(at_end), time(at_end)) <= end_distance * least_size()))
+        refuse_missed(at_end);
+    const SingularValues parts = singular_value_decomposition(by_free);
+    const int found = rank_of(by_free);
+    const MatrixXd moving = z * parts.v.rightCols(parts.v.cols() - found);
+    const std::vector<int> home = problem_.ends.home;
+    for (const int e : home)
+      if (moving.cols() == 0 || moving.row(e).norm() <= rank * moving.norm())
+        problem_.boundary.fix(e % n_, e >= n_, point(e >= n_)[e % n_]);
+    solve_again();
+  }
+
+  [[noreturn]] void refuse_partly_free() const {
+    throw SceneError(
+        place_of(scene_.boundary, !std::ranges::any_of(problem_.ends.home, [&](int e) { return e < n_; })),
+        "this end is fixed in part, and constraints link what is fixed with what is free; such ends are not "
+        "available yet: give all coordinates of the end, or none");
+  }
+
+  /// Free ends near the manifold.
+  void project_free() {
+    for (const bool at_end : {false, true})
+      if (!fixed(at_end)) {
+        std::vector<double> moved(point(at_end).begin(), point(at_end).end());
+        if (manifold_.project(moved, time(at_end))) std::ranges::copy(moved, point(at_end).begin());
+      }
+  }
+
+  const Scene& scene_;
+  EndPoints& near_;
+  Problem& problem_;
+  const Manifold& manifold_;
+  int n_ = 0, m_ = 0;
+};
+
+}  // namespace
+
+EndPoints end_points(const Problem& problem) {
+  const std::size_t n = problem.coordinates();
+  EndPoints points{std::vector<double>(n), std::vector<double>(n)};
+  const EndMap& ends = problem.ends;
+  if (problem.guess.given()) {
+    problem.guess.at(0, points.start);
+    problem.guess.at(1, points.end);
+  }
+  for (std::size_t a = 0; a < n; ++a) {
+    if (ends.fixed[a]) points.start[a] = ends.offset[a];
+    if (ends.fixed[n + a]) points.end[a] = ends.offset[n + a];
+    if (problem.guess.given()) continue;
+    if (!ends.fixed[a] && ends.fixed[n + a]) points.start[a] = points.end[a];
+    if (ends.fixed[a] && !ends.fixed[n + a]) points.end[a] = points.start[a];
+  }
+  return points;
+}
+
+void settle_ends(const Scene& scene, EndPoints& near, Problem& problem) {
+  ConstrainedEnds(scene, near, problem).settle();
+}
+
+}  // namespace extremal

@@ -1,0 +1,97 @@
+#include "study/constraints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "linear/dense.hpp"
+#include "problem/manifold.hpp"
+#include "problem/nearby.hpp"
+#include "study/limits.hpp"
+#include "study/modelling.hpp"
+#include "system/constraints.hpp"
+
+namespace extremal {
+namespace {
+
+using namespace limits::constraints;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The mean of ∂²L/∂q'² over coordinates and points.
+double mean_mass(const Lagrangian& lagrangian, const Problem& problem) {
+  const std::size_t n = problem.coordinates();
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, v;
+  double sum = 0;
+  int found = 0;
+  for (int k = 0; k < mass_points; ++k) {
+    const double t = points.next(q, v);
+    const PointValues values = evaluate_at(lagrangian, q, v, t, Order::hessian, scratch);
+    double trace = 0;
+    for (std::size_t a = 0; a < n; ++a) trace += std::abs(values.vv[a * n + a]);
+    if (!std::isfinite(trace) || trace == 0) continue;
+    sum += trace / static_cast<double>(n);
+    ++found;
+  }
+  return found > 0 ? sum / found : 1;
+}
+
+/// The inverse of a constant positive definite mass matrix, else that of the mean mass: symmetries of L then
+/// are isometries.
+MatrixXd metric_of(const Lagrangian& lagrangian, const Problem& problem) {
+  const Structure& structure = lagrangian.structure();
+  const Index n = problem.coordinates();
+  if (structure.quadratic) {
+    MatrixXd mass = MatrixXd::Zero(n, n);
+    for (const Triplet& m : structure.mass) mass(m.row, m.column) += m.value;
+    const auto factors = mass.llt();
+    if (factors.info() == Eigen::Success && factors.rcond() > least_rcond)
+      return factors.solve(MatrixXd::Identity(n, n));
+  }
+  return MatrixXd::Identity(n, n) / mean_mass(lagrangian, problem);
+}
+
+void put_constraints(const SystemTable& table, const System& system, MatrixXd metric, double rate,
+                     Problem& problem) {
+  const ConstrainedGraph graph = make_constrained(table);
+  NormalMotion normal{{}, rate};
+  for (Index a = 0; a < metric.rows(); ++a)
+    for (Index b = 0; b < metric.cols(); ++b)
+      if (metric(a, b) != 0)
+        normal.metric.push_back({static_cast<int>(a), static_cast<int>(b), metric(a, b)});
+  problem.lagrangian = make_lagrangian(projected(graph, normal));
+  problem.manifold = std::make_shared<const Manifold>(
+      Manifold::Parts{system.lagrangian, make_lagrangian(with_time_as_coordinate(graph)),
+                      make_lagrangian(multiplier_form(graph)), std::move(metric), rate});
+}
+
+void check_counts(const SystemTable& table, const System& system) {
+  const std::size_t n = system.names.size(), m = table.constraints.size();
+  if (m >= n)
+    throw SceneError(
+        position(table.constraints[std::min(n - 1, m - 1)], 0),
+        fmt::format("{} constraints leave no motion to {} coordinates; fewer than {} can hold", m, n, n));
+  if (n > most_coordinates)
+    throw SceneError(position(table.constraints.front(), 0),
+                     fmt::format("constraints of {} coordinates; {} are the most", n, most_coordinates));
+}
+
+}  // namespace
+
+void constrain(const SystemTable& table, const System& system, double time, Problem& problem) {
+  if (table.constraints.empty()) return;
+  check_counts(table, system);
+  problem.duration.value = time;
+  put_constraints(table, system, metric_of(*system.lagrangian, problem),
+                  (problem.initial ? growth_of_motions : growth) / time, problem);
+}
+
+void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem) {
+  put_constraints(table, system, other.metric(), other.rate(), problem);
+}
+
+}  // namespace extremal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "problem/problem.hpp"
+#include "scene/scene.hpp"
+#include "system/formula.hpp"
+
+/// \file Constraints of a system in a problem.
+
+namespace extremal {
+
+/// Points of the motion, or near it, at its ends.
+struct EndPoints {
+  std::vector<double> start, end;  ///< n each
+};
+
+/// Puts L̃ and the manifold of the constraints into a problem that has its relation; `time` is about its
+/// duration. Does nothing without constraints. Throws SceneError.
+void constrain(const SystemTable& table, const System& system, double time, Problem& problem);
+
+/// The same with the metric and ω of another problem of the family.
+void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem);
+
+/// The ends of the guess, or near those that the relation fixes.
+EndPoints end_points(const Problem& problem);
+
+/// Throws SceneError where constraints depend on each other at all points tried near the guess and the ends.
+void check_independent(const Scene& scene, const EndPoints& ends, const Problem& problem);
+
+/// Makes the relation of a constrained problem one of ends on the manifold. Ends that are given must satisfy
+/// the constraints; coordinates that follow from those given are fixed too, near `near`, which becomes points
+/// on the manifold. Momenta of initial data become those of L̃. Throws SceneError with the amount by which a
+/// constraint is missed, and for relations that are not available.
+void settle_ends(const Scene& scene, EndPoints& near, Problem& problem);
+
+/// Moves the guess onto the manifold, also the default one. Throws SceneError where that is impossible.
+void settle_guess(const Scene& scene, const EndPoints& ends, Problem& problem);
+
+}  // namespace extremal
