@@ -23,6 +23,8 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   elimination_ = &elimination();
   border_ = border;
   momenta_ = {};
+  costs_ = {};
+  cost_slopes_.clear();
   n_ = tables.coordinates();
   elements_ = elements;
   batches_ = (elements + lanes_ - 1) / lanes_;
@@ -131,6 +133,7 @@ void DiscreteAction::evaluate_plain(const Path& path) {
     assemble_gradient(elements, b, buffers.work.data());
     gather(path, b);
   }
+  add_costs(path);
   finish_sums();
 }
 
@@ -178,6 +181,7 @@ void DiscreteAction::reduce_gradient(const Path& path) {
     gather_gradient(b);
   });
   if (tables_->kinks()) measure_corners(path);
+  add_costs(path);
   finish_sums();
 }
 
@@ -212,6 +216,7 @@ void DiscreteAction::visit(const Path& path, bool hessian,
     use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr, corner,
             border_ ? sums(b, of_slope) : nullptr});
   }
+  add_costs(path);
   finish_sums();
 }
 
@@ -252,6 +257,8 @@ void DiscreteAction::evaluate(const Path& path) {
     measure_corners(path);
     add_corners();
   }
+  add_costs(path);
+  add_stiffness_of_costs();
   finish_sums();
 }
 

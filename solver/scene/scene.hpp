@@ -60,7 +60,8 @@ struct BoundaryTable {
   bool periodic = false;
   std::vector<Text> conditions;
   Quantity duration;
-  bool free = false;  ///< duration = "free"
+  bool free = false;      ///< duration = "free"
+  bool infinite = false;  ///< duration = "infinite"
   std::optional<Quantity> energy;
   std::optional<Text> where;
 };

@@ -11,6 +11,7 @@
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
 #include "study/guess.hpp"
+#include "study/infinite.hpp"
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/suggestion.hpp"
@@ -85,7 +86,10 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   problem.duration = read_duration(scene.boundary, system);
   // A state is integrated, which takes a regular mass matrix; a constant one is the same at all points.
   if (scene.guess.state && system.lagrangian->structure().quadratic) check_regular(problem, scene.system);
+  std::optional<InfiniteEnds> infinite;
+  if (scene.boundary.infinite) infinite = read_infinite_ends(scene, problem);
   read_guess(scene, system, deadline, problem);
+  if (infinite) leave_infinite_ends(scene, *std::move(infinite), problem);
   try {
     problem = make_problem(std::move(problem));
   } catch (const RecurrenceError& e) {
@@ -148,6 +152,10 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
+  if (scene.continuation && purpose == Purpose::family && study.problem.infinite)
+    throw SceneError(scene.continuation->at,
+                     "families with ends at infinity are not available; solve at each value of the parameter "
+                     "with --set instead");
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;
@@ -191,7 +199,12 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 int natural_conditions(const Problem& problem) {
   const std::vector<double>& given = problem.boundary.momenta;
   const auto zeros = std::count(given.begin(), given.end(), 0.0);
-  return problem.periodic || problem.initial ? 0 : problem.ends.free - static_cast<int>(given.size() - zeros);
+  if (problem.periodic || problem.initial) return 0;
+  int free = problem.ends.free - static_cast<int>(given.size() - zeros);
+  if (problem.infinite)
+    for (const std::vector<double>* end : {&problem.infinite->start, &problem.infinite->end})
+      if (!end->empty()) free -= problem.coordinates();
+  return free;
 }
 
 double median(std::vector<double> values) {
