@@ -24,6 +24,8 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   elimination_ = &elimination();
   border_ = border;
   momenta_ = {};
+  costs_ = {};
+  cost_slopes_.clear();
   n_ = tables.coordinates();
   elements_ = elements;
   batches_ = (elements + lanes_ - 1) / lanes_;
@@ -132,6 +134,7 @@ void DiscreteAction::evaluate_plain(const Path& path) {
     assemble_gradient(elements, b, buffers.work.data());
     gather(path, b);
   }
+  add_costs(path);
   finish_sums();
 }
 
@@ -179,6 +182,7 @@ void DiscreteAction::reduce_gradient(const Path& path) {
     gather_gradient(b);
   });
   if (tables_->kinks()) measure_corners(path);
+  add_costs(path);
   finish_sums();
 }
 
@@ -213,6 +217,7 @@ void DiscreteAction::visit(const Path& path, bool hessian,
     use(b, {gradient, hessian ? entries_.data() : nullptr, hessian && border_ ? row : nullptr, corner,
             border_ ? sums(b, of_slope) : nullptr});
   }
+  add_costs(path);
   finish_sums();
 }
 
@@ -253,6 +258,8 @@ void DiscreteAction::evaluate(const Path& path) {
     measure_corners(path);
     add_corners();
   }
+  add_costs(path);
+  add_stiffness_of_costs();
   finish_sums();
 }
 

@@ -9,6 +9,7 @@
 #include "action/path.hpp"
 #include "linear/chain.hpp"
 #include "machine/simd.hpp"
+#include "problem/end_cost.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file The discrete action S_h = Σ L_d of a path, its derivatives, and the equations that remain at the
@@ -62,7 +63,8 @@ class DiscreteAction {
   /// Until reset() the ends have given momenta (2n; empty: none), which must outlive it: `nodes` and
   /// imbalance() are derivatives of S_h + p(0)·q(0) − p(T)·q(T).
   void give_momenta(std::span<const double> momenta) { momenta_ = momenta; }
-  std::span<const double> momenta() const { return momenta_; }
+  /// Likewise costs of the ends (2; or empty): `nodes`, imbalance() and action() are those of S_h with them.
+  void give_costs(std::span<const EndCost> costs) { costs_ = costs; }
 
   /// From now on evaluate() and evaluate_gradient() take gradients in extended precision, where they can.
   void extend(bool on) { extended_on_ = on; }
@@ -103,7 +105,7 @@ class DiscreteAction {
   std::span<const double> start_gradient() const { return start_gradient_; }  ///< ∂S_h/∂q(0), n
   std::span<const double> end_gradient() const { return end_gradient_; }      ///< ∂S_h/∂q(T), n
 
-  /// ∂S_h/∂x_e of the end coordinate e, less what momenta that are given make of it.
+  /// ∂S_h/∂x_e of the end coordinate e, less what momenta and costs that are given make of it.
   double imbalance(int e) const;
 
   /// Inner steps from the steps of the nodes and of T, into `step` (laid out as Path::x).
@@ -186,6 +188,8 @@ class DiscreteAction {
   void add_corners();
   void finish_sums();
   void add_momenta();
+  void add_costs(const Path& path);
+  void add_stiffness_of_costs();
   std::size_t batch_size() const { return sizes_.matrix + 2 * sizes_.vector; }
   double* matrix(int b) { return matrices_.data() + b * batch_size(); }
   const double* matrix(int b) const { return matrices_.data() + b * batch_size(); }
@@ -203,7 +207,9 @@ class DiscreteAction {
   bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path
   ExtendedGradient extended_;
   std::span<const double> momenta_;
-  bool changed_ = false;  ///< its change is taken in its place
+  std::span<const EndCost> costs_;
+  std::vector<double> cost_slopes_;  ///< 2n, of the path evaluated last; empty without costs
+  bool changed_ = false;             ///< its change is taken in its place
   double action_ = 0, slope_duration_ = 0, residual_ = 0, momentum_scale_ = 0;
   Sizes sizes_{};
   std::vector<Buffers> buffers_;               // the first of the thread that calls

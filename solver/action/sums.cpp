@@ -214,9 +214,29 @@ void DiscreteAction::add_momenta() {
   }
 }
 
+/// Value and slopes of the costs of the ends.
+void DiscreteAction::add_costs(const Path& path) {
+  if (costs_.empty()) return;
+  const std::size_t n = n_;
+  cost_slopes_.assign(2 * n, 0);
+  nodes.end_parts.resize(2 * n);
+  for (const std::size_t end : {0, 1})
+    if (costs_[end].given())
+      action_ += costs_[end].add(path.node(end == 0 ? 0 : elements_), cost_slopes_.data() + end * n);
+  for (std::size_t e = 0; e < 2 * n; ++e) nodes.end_parts[e] += cost_slopes_[e];
+}
+
+void DiscreteAction::add_stiffness_of_costs() {
+  for (std::size_t end = 0; end < costs_.size(); ++end) {
+    std::vector<double>& block = end == 0 ? nodes.first : nodes.last;
+    for (std::size_t k = 0; k < costs_[end].stiffness.size(); ++k) block[k] += costs_[end].stiffness[k];
+  }
+}
+
 double DiscreteAction::imbalance(int e) const {
   const double given = momenta_.empty() ? 0 : momenta_[e];
-  return e < n_ ? start_gradient_[e] + given : end_gradient_[e - n_] - given;
+  const double slope = cost_slopes_.empty() ? 0 : cost_slopes_[e];
+  return slope + (e < n_ ? start_gradient_[e] + given : end_gradient_[e - n_] - given);
 }
 
 }  // namespace extremal

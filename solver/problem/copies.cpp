@@ -27,7 +27,8 @@ BoundaryRelation relation_of_both(const BoundaryRelation& one) {
                         .rows = 2 * one.rows,
                         .matrix = {},
                         .value = one.value,
-                        .momenta = for_both(one.momenta, -1)};
+                        .momenta = for_both(one.momenta, -1),
+                        .costs = {}};
   const int n = one.coordinates;
   for (const int copy : {0, 1})
     for (const Triplet& e : one.matrix)

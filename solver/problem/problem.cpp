@@ -120,6 +120,26 @@ Problem at_other_multipliers(const Problem& problem) {
   return result;
 }
 
+/// Those that leave both equilibria where they are.
+std::vector<Generator> symmetries_about_rest(const Problem& problem) {
+  std::vector<Generator> found = continuous_symmetries(problem);
+  const std::size_t n = problem.coordinates();
+  std::erase_if(found, [&](const Generator& generator) {
+    constexpr double roundoff = 1e-9;
+    for (const std::vector<double>* q : {&problem.infinite->start, &problem.infinite->end})
+      for (std::size_t a = 0; a < n; ++a) {
+        double moved = generator.shift[a], size = std::abs(moved);
+        for (std::size_t b = 0; b < n; ++b) {
+          moved += generator.matrix[a * n + b] * (*q)[b];
+          size += std::abs(generator.matrix[a * n + b] * (*q)[b]);
+        }
+        if (std::abs(moved) > roundoff * std::max(size, 1.0)) return true;
+      }
+    return false;
+  });
+  return found;
+}
+
 }  // namespace
 
 Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration) {
@@ -151,6 +171,7 @@ Problem make_problem(Problem problem) {
   }
   check_recurrence(problem);
   if (problem.periodic) problem.symmetries = continuous_symmetries(problem);
+  if (problem.infinite && problem.infinite->both()) problem.symmetries = symmetries_about_rest(problem);
   if (problem.paired)
     problem.symmetries = symmetries_of_copies(problem.symmetries);
   else

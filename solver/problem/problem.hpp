@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "problem/end_cost.hpp"
 #include "problem/symmetry.hpp"
 #include "system/lagrangian.hpp"
 
@@ -25,6 +26,8 @@ struct BoundaryRelation {
   /// The momenta ∂L/∂q' (2n) that the natural conditions of the ends left free ask for; empty: all zero. They
   /// are those of the action S + p(0)·q(0) − p(T)·q(T), whose second variation is that of S.
   std::vector<double> momenta;
+  /// Costs of the ends, of the start and of the end; empty: none. The action is S with them.
+  std::vector<EndCost> costs;
 
   /// Adds q_a(0) = x (at_end = false) or q_a(T) = x.
   void fix(int coordinate, bool at_end, double x);
@@ -85,6 +88,14 @@ struct InitialData {
 };
 
 class Manifold;
+
+/// Ends at infinity: there the path approaches an equilibrium of L exponentially. The problem leaves such an
+/// end free, and its duration is that of the first guess.
+struct InfiniteEnds {
+  std::vector<double> start, end;  ///< the equilibria, n each; empty: this end is finite
+  bool both() const { return !start.empty() && !end.empty(); }
+};
+
 struct Reduction;
 struct Extension;
 
@@ -112,11 +123,18 @@ struct Problem {
   /// Unknown constants, integrals, nonlinear conditions, waypoints; null: there are none. `lagrangian` is
   /// then L + Σ g_j, the constants at their guesses; what closes the duration is part of the extension.
   std::shared_ptr<const Extension> extension;
+  std::optional<InfiniteEnds> infinite;
 
   int coordinates() const { return boundary.coordinates; }
   /// What the equations of motion are made of: they depend on t where this does.
   const Lagrangian& motion() const { return copies ? *copies : *lagrangian; }
   int motion_copies() const { return copies ? 2 : 1; }  ///< of the coordinates there
+  /// Whether shifts in time move one extremal to others.
+  bool shifts_in_time() const {
+    return (periodic || (infinite && infinite->both())) && lagrangian->structure().autonomous;
+  }
+  /// Whether both ends are at finite times, and apart.
+  bool has_ends() const { return !periodic && !infinite; }
 };
 
 /// The problem whose motion starts at (q, p) and lasts that long. Throws as make_problem().

@@ -225,7 +225,7 @@ Problem part_of(const Problem& problem, const Orbit& orbit, const SignedPermutat
                 const Reduction& reduction) {
   const int n = problem.coordinates();
   Problem part = problem;
-  part.boundary = {.coordinates = n, .rows = 0, .matrix = {}, .value = {}};
+  part.boundary = {.coordinates = n, .rows = 0, .matrix = {}, .value = {}, .momenta = {}, .costs = {}};
   if (reduction.mirror) {
     part.periodic = false;
     hold(reduction.turn.inverse() * *reduction.mirror, false, part.boundary);

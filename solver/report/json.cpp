@@ -70,8 +70,17 @@ class Fields {
     append_number("energy", solution.energy);
     append_number("energy_drift", solution.energy_drift);
     if (solution.work) append_number("work", solution.work);
+    if (converged_ && solution.rates) rates(*solution.rates);
     append_number("error_estimate", known(converged_, solution.error_estimate));
     append_number("residual", known(any, solution.residual));
+  }
+
+  /// Of the infinite ends.
+  void rates(const DecayRates& rates) {
+    Json object = Json::object();
+    if (rates.start) append(object, "start", number("rates.start", *rates.start));
+    if (rates.end) append(object, "end", number("rates.end", *rates.end));
+    append(object_, "rates", std::move(object));
   }
 
   void stability() {

@@ -88,9 +88,12 @@ BoundaryTable read_boundary_table(const Document& document, const toml::table& t
   boundary.conditions = texts(document, table, "conditions");
   const auto duration = quantity(document, table, "duration");
   if (!duration)
-    throw SceneError(boundary.at, "[boundary] has no duration; give a number, a formula or \"free\"");
+    throw SceneError(boundary.at,
+                     "[boundary] has no duration; give a number, a formula, \"free\" or "
+                     "\"infinite\"");
   boundary.duration = *duration;
   boundary.free = duration->formula() && std::get<std::string>(duration->value) == "free";
+  boundary.infinite = duration->formula() && std::get<std::string>(duration->value) == "infinite";
   boundary.energy = quantity(document, table, "energy");
   boundary.integrals = texts(document, table, "integrals");
   boundary.unknowns = assignments(document, table["unknowns"].as_table());

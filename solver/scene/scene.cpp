@@ -88,6 +88,28 @@ void check_where_list(const Scene& scene) {
     throw SceneError(boundary.duration.at, "a free duration needs 'duration' in [guess], or a guess file");
 }
 
+/// Ends at infinity exclude what relates both ends, and what is not made for them.
+void check_infinite(const Scene& scene) {
+  const BoundaryTable& boundary = scene.boundary;
+  const auto refuse = [](const Location& at, const std::string& what) {
+    throw SceneError(at, "duration = \"infinite\": " + what);
+  };
+  if (boundary.periodic)
+    refuse(boundary.duration.at, "a periodic orbit has a period; write a number or \"free\"");
+  if (!scene.system.force.empty())
+    refuse(boundary.duration.at, "ends at infinity need an action without forces; give a finite duration");
+  if (scene.guess.state)
+    refuse(scene.guess.state->empty() ? scene.guess.at : scene.guess.state->front().name_at,
+           "a motion from a state leaves the equilibrium; give formulas or a file as the guess");
+  if (!scene.system.constraints.empty())
+    refuse(boundary.duration.at, "constraints need ends at finite times; give a finite duration");
+  if (scene.fit) refuse(scene.fit->at, "a fit needs ends at finite times; leave [fit] out");
+  if (scene.solve.steps)
+    refuse(scene.solve.steps->at, "free steps need ends at finite times; leave 'steps' out");
+  if (scene.search)
+    refuse(scene.search->solutions.at, "[search] needs ends at finite times; leave it out, and give guesses");
+}
+
 /// What the duration allows and asks for.
 void check_duration(const Scene& scene) {
   const BoundaryTable& boundary = scene.boundary;
@@ -101,10 +123,11 @@ void check_duration(const Scene& scene) {
                                    "' closes a free duration, but duration is fixed; write "
                                    "duration = \"free\" or leave '" +
                                    name + "' out");
-  if (!boundary.free && scene.guess.duration)
+  if (!boundary.free && !boundary.infinite && scene.guess.duration)
     throw SceneError(
         scene.guess.duration->at,
         "'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or leave the guess out");
+  if (boundary.infinite) check_infinite(scene);
   const bool forced = !scene.system.force.empty();
   if (forced && boundary.energy)
     throw SceneError(boundary.energy->at,

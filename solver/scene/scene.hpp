@@ -62,7 +62,8 @@ struct BoundaryTable {
   bool periodic = false;
   std::vector<Text> conditions;
   Quantity duration;
-  bool free = false;  ///< duration = "free"
+  bool free = false;      ///< duration = "free"
+  bool infinite = false;  ///< duration = "infinite"
   std::optional<Quantity> energy;
   std::optional<Text> where;     ///< where it is one, and there are no unknowns
   std::vector<Text> where_list;  ///< else

@@ -72,7 +72,9 @@ constexpr KeyRecord keys[] = {
     {"boundary", "end", Kind::quantities, "none", "The same at t = T.",
      R"(end = { x = "-mu", "q[2]" = 0.5 })", true},
     {"boundary", "duration", Kind::quantity, "required",
-     R"(T > 0, or `"free"` with `energy` or `where`; a free period with forces needs neither.)",
+     R"(T > 0, or `"free"` with `energy` or `where`; a free period with forces needs neither. )"
+     R"(Or `"infinite"`: an end at which every coordinate is fixed at an equilibrium of L is approached )"
+     "exponentially; both ends such are (−∞, ∞), one is [0, ∞) or (−∞, 0].",
      "duration = \"2*pi/sqrt(mu)\""},
     {"boundary", "energy", Kind::quantity, "none",
      "Energy p·q' − L of the extremal; it determines a free duration.", "energy = -0.4"},
@@ -113,7 +115,9 @@ constexpr KeyRecord keys[] = {
      "Initial positions and velocities; the motion from there is the guess. A name that is left out is zero.",
      R"(state = { x = 1.0, "y'" = 0.9 })", true},
     {"guess", "duration", Kind::quantity, "that of `file`",
-     "Guess of a free duration; required unless `file` is given.", "duration = 2.4"},
+     "Guess of a free duration; required unless `file` is given. With an infinite duration, the time T over "
+     "which the guess is given, from t = 0.",
+     "duration = 2.4"},
     {"guess", "*", Kind::quantities, "the line between the ends",
      "Formula of `t`, `T` and parameters; for an array one for each element, or one in the index `i`.",
      "x = \"cos(2*pi*(t/T + i/3))\""},

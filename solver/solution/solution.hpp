@@ -71,6 +71,11 @@ struct Iteration {
   double damping = 1;
 };
 
+/// Of the approach to equilibria at infinite ends: the slowest rate of decay, absent where an end is finite.
+struct DecayRates {
+  std::optional<double> start, end;
+};
+
 /// Pessimistic until proved otherwise.
 struct Solution {
   Status status = Status::not_converged;
@@ -94,6 +99,7 @@ struct Solution {
   Certificate certificate = Certificate::none;
   std::optional<Floquet> floquet;        ///< of a periodic problem that has windows, coordinates not too many
   std::optional<double> minimal_period;  ///< of a path with q(T) = q(0) that is periodic; T, or a part of it
+  std::optional<DecayRates> rates;       ///< of a problem with infinite ends
   std::vector<double> momentum_start, momentum_end;  ///< canonical, −∂S/∂q(0) and ∂S/∂q(T)
 
   /// Constants, multipliers and impulses of a problem that asks for them.

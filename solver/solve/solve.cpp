@@ -12,6 +12,7 @@
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
 #include "solve/bordered/bordered_solve.hpp"
+#include "solve/infinite_solve.hpp"
 #include "solve/march/initial_motion.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/search/distinct.hpp"
@@ -109,6 +110,28 @@ Solution solve_once(const Problem& problem, const SolveOptions& options, Workspa
   return solution;
 }
 
+/// A problem of finite duration, from the guess alone where `near_guess` holds.
+Solution solve_finite(const Problem& problem, const SolveOptions& options, Workspace& w, bool near_guess) {
+  if (!near_guess || options.scheme) return solve_once(problem, options, w);
+  const auto start = Clock::now();
+  w.levels.bind(problem.lagrangian);
+  Search search(problem, options, w);
+  search.run_near_guess();
+  Outcome outcome = search.take();
+  Solution solution = judged(problem, options, outcome, w, start);
+  std::swap(outcome.path, w.spare);
+  return solution;
+}
+
+/// On the whole time axis, where ends are at infinity.
+Solution solve_any(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  if (!problem.infinite) return solve_once(problem, options, w);
+  return solve_infinite(problem, options,
+                        [&w](const Problem& part, const SolveOptions& how, bool near_guess) {
+                          return solve_finite(part, how, w, near_guess);
+                        });
+}
+
 }  // namespace
 
 struct Solver::Memory {
@@ -131,7 +154,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     if (options.progress) options.progress(step);
   };
   Solution solution = problem.extension ? solve_bordered(problem, recording)
-                                        : solve_once(problem, recording, memory_->workspace);
+                                        : solve_any(problem, recording, memory_->workspace);
   if (problem.manifold) move_onto_manifold(problem, solution);
   solution.history = std::move(history);
   return solution;

@@ -190,6 +190,7 @@ void set_relation(const BoundaryTable& boundary, const System& system, Problem& 
 Duration read_duration(const BoundaryTable& boundary, const System& system) {
   Duration duration;
   duration.free = boundary.free;
+  if (boundary.infinite) return duration;
   if (!boundary.free) {
     duration.value = evaluate(boundary.duration, system);
     if (!(duration.value > 0))

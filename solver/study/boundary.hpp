@@ -31,7 +31,7 @@ PlacedRelation read_relation(const BoundaryTable& boundary, const System& system
 /// The relation into a problem, solved. Throws SceneError where conditions depend on each other.
 void set_relation(const BoundaryTable& boundary, const System& system, Problem& problem);
 
-/// Without the guess of a free duration: its value is then 0.
+/// Without the guess of a free duration: its value is then 0. So it is where ends are at infinity.
 Duration read_duration(const BoundaryTable& boundary, const System& system);
 
 }  // namespace extremal

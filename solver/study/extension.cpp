@@ -334,6 +334,8 @@ void check_extended(const Scene& scene, Purpose purpose) {
   if (!scene.system.constraints.empty())
     throw SceneError(position(scene.system.constraints.front(), 0),
                      asks + "constraints are not available; leave one or the other out");
+  if (scene.boundary.infinite)
+    throw SceneError(scene.boundary.duration.at, asks + "an infinite duration is not available; give a number");
   if (scene.fit)
     throw SceneError(scene.fit->at, asks + "a fit is not available; leave [fit] out, or write parameters "
                                            "that are to be found there");

@@ -89,12 +89,12 @@ void read_guess(const Scene& scene, const System& system, const Deadline& deadli
   if (table.file) {
     if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
     SampledFile samples = read_samples(beside(scene.path, table.file->value), system.names);
-    if (problem.duration.free)
+    if (problem.duration.free || scene.boundary.infinite)
       problem.duration.value = guessed_duration(table, system, samples.t.back() - samples.t.front());
     use_samples(std::move(samples), problem.guess);
     return;
   }
-  if (problem.duration.free) problem.duration.value = guessed_duration(table, system, 0);
+  if (problem.duration.free || table.duration) problem.duration.value = guessed_duration(table, system, 0);
   if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
   if (table.state) integrate_state(*table.state, system, table.at, deadline, problem);
 }

@@ -15,6 +15,7 @@
 #include "study/extension.hpp"
 #include "study/fitting.hpp"
 #include "study/guess.hpp"
+#include "study/infinite.hpp"
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
@@ -129,11 +130,14 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   const bool constrained = !scene.system.constraints.empty();
   if (scene.guess.state && system.lagrangian->structure().quadratic && !constrained)
     check_regular(problem, scene.system);
+  std::optional<InfiniteEnds> infinite;
+  if (scene.boundary.infinite) infinite = read_infinite_ends(scene, problem);
   if (constrained)
     read_constrained_guess(scene, system, deadline, problem);
   else
     read_guess(scene, system, deadline, problem);
   if (parts.extended) read_extension(scene, parts, system, problem);
+  if (infinite) leave_infinite_ends(scene, *std::move(infinite), problem);
   try {
     problem = make_problem(std::move(problem));
   } catch (const RecurrenceError& e) {
@@ -200,6 +204,10 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.units) study.units = read_units(*scene.units);
   if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
   if (scene.fit) study.fit = read_fit(scene, study);
+  if (scene.continuation && purpose == Purpose::family && study.problem.infinite)
+    throw SceneError(scene.continuation->at,
+                     "families with ends at infinity are not available; solve at each value of the parameter "
+                     "with --set instead");
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;
@@ -257,7 +265,12 @@ void use_constants(const Solution& solution, Study& study) {
 int natural_conditions(const Problem& problem) {
   const std::vector<double>& given = problem.boundary.momenta;
   const auto zeros = std::count(given.begin(), given.end(), 0.0);
-  return problem.periodic || problem.initial ? 0 : problem.ends.free - static_cast<int>(given.size() - zeros);
+  if (problem.periodic || problem.initial) return 0;
+  int free = problem.ends.free - static_cast<int>(given.size() - zeros);
+  if (problem.infinite)
+    for (const std::vector<double>* end : {&problem.infinite->start, &problem.infinite->end})
+      if (!end->empty()) free -= problem.coordinates();
+  return free;
 }
 
 double median(std::vector<double> values) {

@@ -30,6 +30,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Shifts in time and symmetries that steps leave out.
+int held_directions(const Problem& problem) {
+  return problem.shifts_in_time() + static_cast<int>(problem.symmetries.size());
+}
+
 /// Momenta, residual, index and nullity from one evaluation at the path, on the iteration's elements.
 void read_equations(const Problem& problem, const Path& path, const Outcome& outcome, NewtonIteration& newton,
                     Solution& solution) {
@@ -53,7 +58,8 @@ void read_equations(const Problem& problem, const Path& path, const Outcome& out
   const Inertia inertia = newton.model().inertia(zero_eigenvalue_along(size, outcome.error, path.elements()));
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
-  solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
+  solution.minimizing =
+      inertia.negative == 0 && (problem.periodic || inertia.zero == held_directions(problem));
 }
 
 void read_path(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
@@ -97,6 +103,11 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
   read_path(problem, path, outcome, w, solution);
+  if (outcome.family > 0) {
+    solution.nullity = outcome.family;
+    solution.morse_index = outcome.index_across;
+    solution.minimizing = outcome.index_across == 0;
+  }
   if (auto fails = equations_fail(problem, options, outcome, path, w.iteration, solution))
     return refused(*std::move(fails), solution);
   if (problem.paired)
@@ -156,7 +167,7 @@ Examined examine_all(const Problem& problem, const SolveOptions& options, const 
     const double roundoff = momentum_roundoff * w.iteration.action().momentum_scale();
     check.unlike = !(residual_under_finer(problem, path ? *path : outcome.path, outcome, w) <=
                      residual_growth * part->residual + roundoff);
-  } else {
+  } else if (outcome.family == 0) {
     check = check_quadrature(problem, outcome.path, outcome, solution, w);
     path = polished(options, outcome, outcome.path, check, w);
     if (path) {
@@ -178,6 +189,18 @@ void tell_soft_shift(Solution& solution) {
       "; a shift in time between the rests of this path changes the action by less than roundoff: of the "
       "paths "
       "that differ by it this is the one whose energies at both ends agree";
+}
+
+/// Of conjugate ends the last conjugate time is T itself, which is not between them. The windows are then
+/// those of a path that ends just before.
+void leave_out_end(Solution& solution) {
+  const double T = solution.duration();
+  std::erase_if(solution.conjugate_times, [&](double t) { return t > (1 - conjugate_end) * T; });
+  std::vector<std::array<double, 2>>& windows = solution.windows;
+  while (windows.size() > 1 && windows.back()[0] > (1 - conjugate_end) * T) {
+    windows.pop_back();
+    windows.back()[1] = T;
+  }
 }
 
 /// A solution that is refused has no path.
@@ -204,8 +227,10 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
     if (found.shifts_held)
       tell_soft_shift(solution);
-    else
+    else if (found.family == 0)
       judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
+    else
+      leave_out_end(solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
   if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);

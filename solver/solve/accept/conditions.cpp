@@ -57,7 +57,7 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
     return natural_residual(problem, action, path, error) <=
            std::max(momentum_tolerances * tolerance * range, unit_roundoff * action.momentum_scale());
   }
-  const double part = problem.periodic ? held_tolerances : momentum_tolerances;
+  const double part = problem.shifts_in_time() || problem.periodic ? held_tolerances : momentum_tolerances;
   return natural_residual(problem, action, path) <=
          std::max(part * tolerance * range, momentum_roundoff * action.momentum_scale());
 }
@@ -92,7 +92,10 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
                                      const std::optional<Survey>& found, const DiscreteAction& action,
                                      Solution& solution) {
   const double estimate = solution.error_estimate;
-  const int nullity = solution.nullity.value_or(0);
+  // Shifts in time, which are held, do not count.
+  const int nullity = problem.periodic ? solution.nullity.value_or(0)
+                                       : std::max(0, solution.nullity.value_or(0) - problem.shifts_in_time() -
+                                                         static_cast<int>(problem.symmetries.size()));
   if (found) solution.error_estimate = error_behind_drift(*found, solution.trajectory, estimate);
   const bool raised = solution.error_estimate > estimate;
   const bool conserved =

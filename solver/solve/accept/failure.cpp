@@ -28,7 +28,9 @@ bool singular_mass(const Problem& problem, Point q) {
   const int n = problem.coordinates();
   const std::vector<double> v(n, 0.1);
   Scratch scratch;
-  const PointValues at = evaluate_at(*problem.lagrangian, q, v, 0, Order::hessian, scratch);
+  // Where L depends on t it may be singular at t = 0 alone, as at a radius of zero.
+  const double t = problem.lagrangian->structure().autonomous ? 0 : 0.5 * problem.duration.value;
+  const PointValues at = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
   const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
   return mass.allFinite() && mass.fullPivLu().rank() < n;
 }

@@ -13,6 +13,8 @@ namespace acceptance {
 
 /// A residual under the finer quadrature grows by no more from a part of an orbit to the whole.
 inline constexpr double residual_growth = 10;
+/// Part of T within which a time conjugate to 0 is T, if ends are conjugate.
+inline constexpr double conjugate_end = 1e-5;
 /// Two copies of the coordinates that agree differ by roundoff, relative to the largest coordinate.
 inline constexpr double most_difference_of_copies = 1e-8;
 

@@ -30,17 +30,21 @@ double longest_window(const Problem& problem, const SolveOptions& options, const
 
 bool positive_definite(const Eigen::MatrixXd& m) { return m.allFinite() && m.llt().info() == Eigen::Success; }
 
+/// Whether ∂²L/∂q'∂q' is positive definite; between the ends alone, where it is not at one of them.
+enum class LegendreCondition { holds, between_ends, fails };
+
 /// Legendre's condition, ∂²L/∂q'∂q' > 0, at the ends and in the middle of elements, or where they are many at
 /// some of these points.
-bool legendre_condition(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+LegendreCondition legendre_condition(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   constexpr int most_points = 64;
   const Structure& s = lagrangian.structure();
   const int n = s.coordinates;
   if (s.quadratic) {
     Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n, n);
     for (const Triplet& entry : s.mass) mass(entry.row, entry.column) += entry.value;
-    return positive_definite(mass);
+    return positive_definite(mass) ? LegendreCondition::holds : LegendreCondition::fails;
   }
+  LegendreCondition result = LegendreCondition::holds;
   const int points = std::min(2 * trajectory.elements(), most_points);
   std::vector<double> q(n), v(n);
   Scratch scratch;
@@ -48,9 +52,12 @@ bool legendre_condition(const Lagrangian& lagrangian, const Trajectory& trajecto
     const double t = trajectory.duration() * k / points;
     trajectory.at(t, q, v);
     const PointValues values = evaluate_at(lagrangian, q, v, t, Order::hessian, scratch);
-    if (!positive_definite(Eigen::Map<const Eigen::MatrixXd>(values.vv.data(), n, n))) return false;
+    if (!positive_definite(Eigen::Map<const Eigen::MatrixXd>(values.vv.data(), n, n))) {
+      if (k > 0 && k < points) return LegendreCondition::fails;
+      result = LegendreCondition::between_ends;
+    }
   }
-  return true;
+  return result;
 }
 
 /// There is no part that is a minimum, and the negative eigenvalues are as many as the mesh has room for.
@@ -87,7 +94,13 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
     solution.message += "; windows are not found: Jacobi fields vary too fast for its elements";
     return INFINITY;
   }
-  if (!assembled || !legendre_condition(*problem.lagrangian, solution.trajectory)) {
+  const LegendreCondition legendre = legendre_condition(*problem.lagrangian, solution.trajectory);
+  // As of a radius at zero. The index is that of the second variation all the same.
+  if (legendre == LegendreCondition::between_ends && problem.infinite) {
+    solution.message += "; ∂²L/∂q'∂q' is singular at an end, so windows and conjugate times are not told";
+    return INFINITY;
+  }
+  if (!assembled || legendre != LegendreCondition::holds) {
     if (problem.periodic) memory.assemble(problem.lagrangian, solution.trajectory, {}, map, Definite::none);
     return without_minima(solution);
   }

@@ -22,12 +22,14 @@ struct Outcome {
   bool recovered = false;
   /// Its parts between times of rest are held in time: roundoff hides what would hold them.
   bool shifts_held = false;
-  double error = 0;      ///< of q, absolute
-  double tolerance = 0;  ///< absolute
-  int iterations = 0;    ///< steps that were taken
-  int attempts = 0;      ///< these, and paths from which there was no step
+  double error = 0;        ///< of q, absolute
+  double tolerance = 0;    ///< absolute
+  int iterations = 0;      ///< steps that were taken
+  int attempts = 0;        ///< these, and paths from which there was no step
   double first_range = 0;  ///< of the path that a closed orbit was started from; 0 for other paths
-  bool hidden = false;   ///< an extremal is near, but roundoff is more than the tolerance
+  /// Null directions of a path that is one of a family between conjugate fixed ends, and the index across it.
+  int family = 0, index_across = 0;
+  bool hidden = false;  ///< an extremal is near, but roundoff is more than the tolerance
   /// Where symmetries left a part of an orbit to be found: the part, of which `path` is the whole.
   Path part;
   const Reduction* reduction = nullptr;

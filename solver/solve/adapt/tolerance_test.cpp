@@ -66,7 +66,7 @@ double Refinement::phase_force() const {
 /// A residual that was left within the tolerance becomes roundoff in a few.
 Refinement::Attempt Refinement::satisfy_natural_conditions(const NewtonReport& report) {
   if (problem_.ends.free == 0) return Attempt::converged;
-  const double phase = problem_.periodic ? phase_force() : 0;
+  const double phase = problem_.periodic || problem_.shifts_in_time() ? phase_force() : 0;
   NewtonIteration& newton = w_.iteration;
   // In periodic problems families, as about Kepler's circle, would count as soft.
   if (!problem_.periodic)

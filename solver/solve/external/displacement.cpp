@@ -10,6 +10,7 @@ Displacement::Displacement(const Problem& problem, const ElementTables& tables, 
     : problem_(problem), path_(path), start_(path) {
   action_.reset(*problem.lagrangian, tables, path.elements(), problem.duration.free, false);
   action_.give_momenta(problem.boundary.momenta);
+  action_.give_costs(problem.boundary.costs);
   equations_.reset(problem, tables, path.elements());
   entries_.resize(equations_.rows().size());
   weights_.resize(equations_.unknowns());

@@ -17,6 +17,7 @@ void Equations::reset(const Problem& problem, const ElementTables& tables, int e
   for (int u = 0; u < unknowns_; ++u) all_[u] = {u, 1};
   number_ends();
   list_entries();
+  list_entries_of_costs(problem.boundary.costs);
   gradient_.resize(unknowns_);
   by_duration_.resize(problem.duration.free ? unknowns_ : 0);
 }
@@ -59,6 +60,23 @@ void Equations::list_entries() {
   }
 }
 
+/// Those of the costs of the ends, after those of the elements.
+void Equations::list_entries_of_costs(std::span<const EndCost> costs) {
+  end_entries_.clear();
+  for (std::size_t end = 0; end < costs.size(); ++end)
+    for (std::size_t e = 0; e < costs[end].stiffness.size(); ++e) {
+      const int row = static_cast<int>(end) * n_ + static_cast<int>(e) / n_,
+                column = static_cast<int>(end) * n_ + static_cast<int>(e) % n_;
+      for (int r = end_start_[row]; r < end_start_[row + 1]; ++r)
+        for (int c = end_start_[column]; c < end_start_[column + 1]; ++c) {
+          if (end_shares_[r].unknown < end_shares_[c].unknown) continue;  // one triangle
+          rows_.push_back(end_shares_[r].unknown);
+          columns_.push_back(end_shares_[c].unknown);
+          end_entries_.push_back(end_shares_[r].factor * end_shares_[c].factor * costs[end].stiffness[e]);
+        }
+    }
+}
+
 /// Adds a vector over local unknowns of elements first … last − 1 (one batch) to one over all unknowns.
 void Equations::spread(std::vector<double>& to, int first, int last, const double* batch) const {
   for (int k = first; k < last; ++k)
@@ -69,11 +87,11 @@ void Equations::spread(std::vector<double>& to, int first, int last, const doubl
 
 void Equations::clear_gradient() { std::fill(gradient_.begin(), gradient_.end(), 0.0); }
 
-void Equations::add_momenta(const DiscreteAction& action) {
-  for (std::size_t e = 0; e < action.momenta().size(); ++e)
+void Equations::add_end_parts(const DiscreteAction& action) {
+  const std::vector<double>& parts = action.nodes.end_parts;
+  for (std::size_t e = 0; e < parts.size(); ++e)
     for (int s = end_start_[e]; s < end_start_[e + 1]; ++s)
-      gradient_[end_shares_[s].unknown] +=
-          end_shares_[s].factor * (static_cast<int>(e) < n_ ? 1 : -1) * action.momenta()[e];
+      gradient_[end_shares_[s].unknown] += end_shares_[s].factor * parts[e];
 }
 
 void Equations::add_gradient(int batch, const double* gradient) {
@@ -89,8 +107,8 @@ void Equations::load(std::span<const double> nodes) {
 void Equations::evaluate(DiscreteAction& action, const Path& path, std::span<double> entries) {
   const bool hessian = !entries.empty();
   clear_gradient();
-  add_momenta(action);
   if (hessian) {
+    std::copy(end_entries_.begin(), end_entries_.end(), entries.begin() + source_start_.back());
     std::fill(by_duration_.begin(), by_duration_.end(), 0.0);
     corner_ = 0;
   }
@@ -104,6 +122,7 @@ void Equations::evaluate(DiscreteAction& action, const Path& path, std::span<dou
     spread(by_duration_, first, last, values.border);
     for (int k = first; k < last; ++k) corner_ += values.corner[k - first];
   });
+  add_end_parts(action);
   slope_ = action.slope_duration();
 }
 

@@ -57,8 +57,8 @@ class Equations {
   /// In place of the gradient that was evaluated last, another: add_gradient() for each batch of elements,
   /// over their local unknowns in lanes.
   void clear_gradient();
-  /// The part of the momenta that are given.
-  void add_momenta(const DiscreteAction& action);
+  /// What momenta and costs that the ends are given make of the gradient that `action` evaluated last.
+  void add_end_parts(const DiscreteAction& action);
   void add_gradient(int batch, const double* gradient);
   /// Or a load on the nodes, (N + 1) × n, that on the ends left out.
   void load(std::span<const double> nodes);
@@ -77,6 +77,7 @@ class Equations {
   std::span<const Share> shares(int element, int local) const;
   void number_ends();
   void list_entries();
+  void list_entries_of_costs(std::span<const EndCost> costs);
   void spread(std::vector<double>& to, int first, int last, const double* batch) const;
 
   const ElementTables* tables_ = nullptr;
@@ -88,6 +89,7 @@ class Equations {
   std::vector<int> rows_, columns_;
   std::vector<int> source_start_;  ///< of each element
   std::vector<Source> sources_;
+  std::vector<double> end_entries_;  ///< of the costs of the ends
   std::vector<double> gradient_, by_duration_;
   double corner_ = 0, slope_ = 0;
 };

@@ -57,6 +57,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   const bool sparse = tables.unknowns() > most_dense_unknowns;
   action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
   action_.give_momenta(problem.boundary.momenta);
+  action_.give_costs(problem.boundary.costs);
   if (tables.kinks() && problem.periodic) {
     closed_ = closing_map(problem);
     action_.close(&closed_);
@@ -84,7 +85,7 @@ void NewtonIteration::forget() {
 }
 
 bool NewtonIteration::extend() {
-  if (refined_ || model_ != condensed_.get()) return false;
+  if (refined_ || model_ != condensed_.get() || !problem_->boundary.costs.empty()) return false;
   noise_ = 0;
   refined_ = extended_;
   extended_ = true;

@@ -66,9 +66,9 @@ bool RaisedModel::evaluate(DiscreteAction& action, const Path& path, const Closi
 
 void RaisedModel::evaluate_gradient(DiscreteAction& action, const Path& path) {
   low_.equations().clear_gradient();
-  low_.equations().add_momenta(action);
   action.visit(path, false,
                [&](int batch, const BatchValues& values) { restrict_batch(path, batch, values.gradient); });
+  low_.equations().add_end_parts(action);
   low_.equations().set_slope_duration(action.slope_duration());
 }
 

@@ -34,7 +34,7 @@ Problem doubled(const Problem& problem) {
   const MatrixXd r = map.r * map.r;
   const VectorXd c = map.r * map.c + map.c;
   Problem twice = problem;
-  twice.boundary = {.coordinates = n, .rows = 0, .matrix = {}, .value = {}, .momenta = {}};
+  twice.boundary = {.coordinates = n, .rows = 0, .matrix = {}, .value = {}, .momenta = {}, .costs = {}};
   for (int i = 0; i < n; ++i) {
     const int row = twice.boundary.add_row(c[i]);
     twice.boundary.add(row, n + i, 1);

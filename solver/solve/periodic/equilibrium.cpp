@@ -7,7 +7,8 @@ namespace extremal {
 using namespace limits::equilibrium;
 
 bool shrank(const Problem& problem, double range, double first_range) {
-  const bool autonomous = problem.lagrangian->structure().autonomous;
+  // Beside a hyperbolic equilibrium at infinity there are no small orbits.
+  const bool autonomous = problem.infinite || problem.lagrangian->structure().autonomous;
   return first_range > 0 && range <= (autonomous ? at_rest : at_driven_rest) * first_range;
 }
 

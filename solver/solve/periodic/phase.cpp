@@ -79,7 +79,7 @@ PhaseConditions of_copies(const PhaseConditions& given, std::size_t n, bool shif
 
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases) {
-  const bool shifts = with_time && problem.periodic && problem.lagrangian->structure().autonomous;
+  const bool shifts = with_time && problem.shifts_in_time();
   phases.count = shifts + static_cast<int>(problem.symmetries.size());
   const std::size_t size = path.nodes().size();
   phases.directions.assign(phases.count * size, 0);

@@ -28,7 +28,8 @@ struct PhaseConditions {
   }
 };
 
-/// Those of `problem` at `path`, with or without the shift of time; none unless it is periodic.
+/// Those of `problem` at `path`, with or without the shift of time; none unless it is periodic, or goes from
+/// equilibrium to equilibrium.
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
                     PhaseConditions& phases);
 

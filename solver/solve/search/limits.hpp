@@ -122,6 +122,32 @@ inline constexpr int nodes_an_element = 4;
 
 }  // namespace gradient_flow
 
+namespace continuum {
+
+/// Degree of elements on which conjugate ends are nearly conjugate to roundoff, and how often they are
+/// halved.
+inline constexpr int family_degree = 12, raised = 3, most_family_halvings = 4, most_family_elements = 512;
+/// Directions of the guess that are softer than the others by this factor are taken for null.
+inline constexpr double softer = 0.2;
+/// Eigenvalues so small, relative to the next, are zero but for the error of the elements.
+inline constexpr double null_eigenvalue = 1e-7;
+/// Where the second variation is singular to the last digit, its directions are those of a path that is moved
+/// by this part of its range.
+inline constexpr double beside = 1e-9;
+inline constexpr int inverse_iterations = 4;
+/// A step is at most this part of the range.
+inline constexpr double longest_family_step = 0.5;
+inline constexpr int most_family_steps = 60, most_null_rounds = 12;
+/// Steps of roundoff, relative to the range; and steps so small that they may be, if they no longer fall.
+inline constexpr double arrived = 1e-14, nearly = 1e-10;
+/// Other members of the family are looked for at this part of the range to both sides. There, the force along
+/// the null directions, relative to the largest momentum, is at most this: roundoff.
+inline constexpr double aside = 0.05, no_force = 1e-10;
+/// Part of the tolerance that the elements may take.
+inline constexpr double family_share = 0.3;
+
+}  // namespace continuum
+
 namespace guess_mesh {
 
 /// Elements are at most this long in units of 1/ω, ω the local frequency along the guess.

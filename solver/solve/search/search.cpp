@@ -9,6 +9,7 @@
 #include "solve/homotopy/duration_homotopy.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/periodic/equilibrium.hpp"
+#include "solve/search/continuum.hpp"
 #include "solve/search/descent.hpp"
 #include "solve/search/limits.hpp"
 
@@ -62,8 +63,8 @@ Search::Pursuit Search::pursue(const char* strategy) {
   }
   const bool converged = result == Refinement::Result::converged;
   const bool doubtful = converged ? !refinement_.confirmed() : refinement_.suspicious();
-  // A closed orbit has no ends to be conjugate.
-  const auto doubted = problem_.periodic ? Refinement::Result::failed : Refinement::Result::unreachable;
+  // Neither a closed orbit nor one to infinity has ends that could be conjugate.
+  const auto doubted = !problem_.has_ends() ? Refinement::Result::failed : Refinement::Result::unreachable;
   if (converged && doubtful) return {doubted, doubtful};
   return {converged && acceptance_ ? accepted() : result, doubtful};
 }
@@ -97,7 +98,7 @@ bool Search::by_descent(const std::vector<double>& mesh) {
 
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.
 bool Search::through_other_durations() {
-  if (refinement_.exhausted() || problem_.duration.free || problem_.paired ||
+  if (refinement_.exhausted() || problem_.duration.free || problem_.paired || problem_.infinite ||
       !problem_.lagrangian->structure().autonomous)
     return false;
   const auto count = [this] { return refinement_.count_step(); };
@@ -142,7 +143,7 @@ bool Search::from_noise(unsigned tries) {
 
 /// The default guess, where the user's fails.
 bool Search::from_line() {
-  if (!problem_.guess.given() || problem_.periodic || problem_.duration.free) return false;
+  if (!problem_.guess.given() || !problem_.has_ends() || problem_.duration.free) return false;
   Problem line = problem_;
   line.guess = {};
   guess_ = &line;
@@ -150,6 +151,41 @@ bool Search::from_line() {
       begin() != GuessKind::undefined && (found("newton from the straight line") || by_descent(mesh_));
   guess_ = &problem_;
   return result;
+}
+
+/// Between fixed ends that are conjugate: the member nearest to the guess, where there is a family.
+bool Search::on_family() {
+  if (problem_.ends.free > 0 || problem_.duration.free || !problem_.has_ends() || problem_.paired)
+    return false;
+  if (problem_.lagrangian->kinks() || refinement_.exhausted()) return false;
+  if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
+  const std::string failure = outcome_.message;
+  const auto fill = [&](const ElementTables& tables, const std::vector<double>& mesh, Path& path) {
+    path.reset(tables, mesh, problem_.duration.value);
+    start_path(*guess_, ends_, tables, path);
+    bend_path(problem_, bend_, tables, path);
+  };
+  outcome_.strategy = "newton across a family from the guess";
+  outcome_.elsewhere = false;
+  const auto count = [&] { return refinement_.count_step(); };
+  const Path found = path_;
+  const auto resample = [&](const ElementTables& tables, const std::vector<double>& mesh, Path& path) {
+    path.resample_from(found, tables, mesh);
+  };
+  // The path that was found may be a member, or near one.
+  const bool finite = std::ranges::all_of(found.nodes(), [](double x) { return std::isfinite(x); });
+  const std::vector<double> mesh(found.mesh().begin(), found.mesh().end());
+  if ((finite && nearest_of_family(problem_, options_, w_, mesh, fill, resample, count, outcome_)) ||
+      nearest_of_family(problem_, options_, w_, mesh_, fill, fill, count, outcome_)) {
+    outcome_.status = Status::converged;
+    if (!acceptance_ || accepted() == Refinement::Result::converged) return true;
+  }
+  outcome_.family = 0;
+  outcome_.status = Status::not_converged;
+  outcome_.strategy = from_guess;
+  outcome_.message = failure;
+  refinement_.rebind();
+  return false;
 }
 
 const ElementTables& Search::open(const std::vector<double>& mesh, int degree) {
@@ -194,7 +230,7 @@ Search::GuessKind Search::prepare() {
   if (guess == GuessKind::undefined) return guess;
   const Scales size = scales(path_, refinement_.tables());
   magnitude_ = size.magnitude;
-  if (problem_.periodic) outcome_.first_range = size.range;
+  if (!problem_.has_ends()) outcome_.first_range = size.range;
   const double unknowns = static_cast<double>(refinement_.tables().unknowns()) * path_.elements();
   allowance_ = std::min(
       {options_.max_iterations, most_steps, static_cast<int>(std::max(least_steps, most_work / unknowns))});
@@ -216,6 +252,10 @@ const Outcome& Search::run(Acceptance* acceptance) {
   if (guess == GuessKind::undefined) return outcome_;
   acceptance_ = acceptance;
   auto [result, doubtful] = pursue(from_guess);
+  if (result != Refinement::Result::converged && on_family()) {
+    result = Refinement::Result::converged;
+    doubtful = false;
+  }
   if (result == Refinement::Result::failed) {
     const std::string failure = outcome_.message;
     if (guess == GuessKind::colliding) refinement_.allow(allowance_);
@@ -242,7 +282,7 @@ const Outcome& Search::run(Acceptance* acceptance) {
     }
   }
   if (result == Refinement::Result::converged) outcome_.status = Status::converged;
-  if (result != Refinement::Result::converged && doubtful && !problem_.periodic) {
+  if (result != Refinement::Result::converged && doubtful && problem_.has_ends()) {
     outcome_.status = Status::conjugate_ends;
     outcome_.message =
         "the second variation is singular or nearly so: the ends may be conjugate, and there is no extremal "

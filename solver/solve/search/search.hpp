@@ -95,6 +95,7 @@ class Search {
   bool from_line();
   bool from_motions();
   bool from_noise(unsigned tries);
+  bool on_family();
 
   const Problem& problem_;
   const Problem* guess_;  ///< whose guess is started from

@@ -1,0 +1,171 @@
+#include "problem/rest_point.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "linear/dense.hpp"
+
+namespace extremal {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+constexpr int most_newton_steps = 30;
+constexpr double newton_goal = 1e-14;
+/// Exponents whose real part is smaller, relative to the largest exponent, are imaginary: a double zero
+/// splits by the square root of roundoff.
+constexpr double imaginary = 1e-7;
+constexpr int most_sign_steps = 100;
+constexpr double sign_goal = 1e-14;
+/// Exponents that a message lists.
+constexpr int most_listed = 12;
+
+Matrix square(const std::vector<double>& rows, Eigen::Index n) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(rows.data(), n, n);
+}
+
+/// L and its derivatives at rest.
+class AtRest {
+ public:
+  AtRest(const Lagrangian& lagrangian, double t) : lagrangian_(lagrangian), t_(t) {}
+  PointValues operator()(const Eigen::VectorXd& q) {
+    const std::vector<double> rest(q.size(), 0);
+    return evaluate_at(lagrangian_, {q.data(), static_cast<std::size_t>(q.size())}, rest, t_, Order::hessian,
+                       scratch_);
+  }
+
+ private:
+  const Lagrangian& lagrangian_;
+  double t_;
+  Scratch scratch_;
+};
+
+/// sign(A) by Newton's iteration with scaling by the determinant (Roberts, Int. J. Control 32 (1980) 677):
+/// the eigenvalues become the signs of their real parts. Empty where it does not converge.
+Matrix matrix_sign(Matrix a) {
+  const double size = static_cast<double>(a.rows());
+  bool scaled = true;
+  for (int k = 0; k < most_sign_steps; ++k) {
+    const Eigen::PartialPivLU<Matrix> lu(a);
+    const Matrix inverse = lu.solve(Matrix::Identity(a.rows(), a.rows()));
+    if (!inverse.allFinite()) return {};
+    const double logarithm = lu.matrixLU().diagonal().array().abs().log().sum() / size;
+    const double scale = scaled ? std::exp(-logarithm) : 1;
+    const Matrix next = 0.5 * (scale * a + inverse / scale);
+    const double change = (next - a).norm();
+    a = next;
+    if (change <= sign_goal * size * a.norm()) return a;
+    if (change <= 1e-2 * a.norm()) scaled = false;
+  }
+  return {};
+}
+
+/// P of the invariant subspace (q, P q) on which sign(A) = −side.
+Matrix graph(const Matrix& sign, double side) {
+  const Eigen::Index n = sign.rows() / 2;
+  Matrix projector = sign;  // (sign + side I) (I; P) = 0
+  projector.diagonal().array() += side;
+  const Matrix left = projector.rightCols(n), right = -projector.leftCols(n);
+  const Eigen::ColPivHouseholderQR<Matrix> qr(left);
+  if (qr.rank() < n) return {};
+  const Matrix p = qr.solve(right);
+  return 0.5 * (p + p.transpose());
+}
+
+/// (η, π)' = A (η, π) with L = ½ η'ᵀMη' + η'ᵀCη + ½ ηᵀKη and π = Mη' + Cη.
+Matrix linear_motion(const Matrix& m, const Matrix& c, const Matrix& k) {
+  const Eigen::Index n = m.rows();
+  const Matrix inverse = solved(m, Matrix::Identity(n, n)), slope = inverse * c;
+  Matrix a(2 * n, 2 * n);
+  a << -slope, inverse, k - c.transpose() * slope, slope.transpose();
+  return a;
+}
+
+}  // namespace
+
+RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near, double t) {
+  const auto n = static_cast<Eigen::Index>(near.size());
+  const Eigen::VectorXd given = Eigen::Map<const Eigen::VectorXd>(near.data(), n);
+  AtRest at(lagrangian, t);
+  Eigen::VectorXd q = given;
+  PointValues values = at(q);
+  const auto force = [&] { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.dq.data(), n)); };
+  RestPoint rest;
+  rest.force = force().cwiseAbs().maxCoeff();
+  if (!std::isfinite(values.value) || !force().allFinite() || !square(values.qq, n).allFinite() ||
+      !square(values.vv, n).allFinite() || !square(values.vq, n).allFinite())
+    throw std::invalid_argument("L or a derivative of it is not finite at rest there");
+  rest.distance = INFINITY;
+  const double size = std::max(given.cwiseAbs().maxCoeff(), 1e-300);
+  for (int k = 0; k < most_newton_steps; ++k) {
+    const Eigen::VectorXd step = least_norm(square(values.qq, n), -force());
+    if (!step.allFinite() || force().isZero(0)) {
+      if (force().isZero(0)) rest.distance = (q - given).cwiseAbs().maxCoeff();
+      break;
+    }
+    q += step;
+    values = at(q);
+    if (!force().allFinite() || !square(values.qq, n).allFinite()) break;
+    if (step.cwiseAbs().maxCoeff() > newton_goal * size) continue;
+    rest.distance = (q - given).cwiseAbs().maxCoeff();
+    break;
+  }
+  if (!std::isfinite(rest.distance)) {
+    q = given;
+    values = at(q);
+  }
+  rest.q.assign(q.begin(), q.end());
+  rest.momentum = values.dv;
+  rest.value = values.value;
+  const Matrix k = square(values.qq, n);
+  rest.stiffness = k.cwiseAbs().maxCoeff();
+  const Matrix a = linear_motion(square(values.vv, n), square(values.vq, n), k);
+  if (!a.allFinite()) throw std::invalid_argument("the mass matrix ∂²L/∂q'∂q' is singular at rest there");
+  rest.exponents = general_eigenvalues(a);
+  rest.slowest = rest.exponents.real().cwiseAbs().minCoeff();
+  rest.hyperbolic = rest.slowest > imaginary * rest.exponents.cwiseAbs().maxCoeff();
+  if (!rest.hyperbolic) return rest;
+  const Matrix sign = matrix_sign(a);
+  if (sign.size() == 0) return rest;
+  rest.stable = graph(sign, 1);
+  rest.unstable = graph(sign, -1);
+  return rest;
+}
+
+EndCost cost_to(const RestPoint& rest, bool at_end) {
+  const std::size_t n = rest.q.size();
+  const Matrix& subspace = at_end ? rest.stable : rest.unstable;
+  const double sign = at_end ? -1 : 1;
+  EndCost cost{rest.q, rest.momentum, std::vector<double>(n * n)};
+  for (double& p : cost.slope) p *= sign;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t b = 0; b < n; ++b)
+      cost.stiffness[a * n + b] = sign * subspace(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  return cost;
+}
+
+std::string exponents_text(const RestPoint& rest) {
+  std::string text;
+  int listed = 0;
+  for (const std::complex<double>& x : rest.exponents) {
+    if (x.imag() < 0) continue;
+    if (listed++ == most_listed) return text + ", …";
+    if (!text.empty()) text += ", ";
+    const double negligible = 1e-9 * rest.exponents.cwiseAbs().maxCoeff();
+    const bool real = std::abs(x.imag()) <= negligible, turning = std::abs(x.real()) <= negligible;
+    if (real)
+      text += fmt::format("{:.6g}", turning ? 0.0 : x.real());
+    else if (turning)
+      text += fmt::format("±{:.6g}i", x.imag());
+    else
+      text += fmt::format("{:.6g} ± {:.6g}i", x.real(), x.imag());
+  }
+  return text;
+}
+
+}  // namespace extremal

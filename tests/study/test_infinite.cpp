@@ -1,0 +1,117 @@
+#include <cmath>
+#include <numbers>
+
+#include "scenes.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+namespace {
+
+std::string scene_of(const std::string& coordinates, const std::string& lagrangian,
+                     const std::string& boundary, const std::string& guess = "") {
+  return "[system]\ncoordinates = " + coordinates + "\nlagrangian = \"" + lagrangian + "\"\n[boundary]\n" +
+         boundary + "duration = \"infinite\"\n" + guess;
+}
+
+const std::string one = "[\"x\"]", well = "x'^2/2 + (x^2 - 1)^2/4";
+const double kink = 2 * std::sqrt(2.0) / 3;
+
+}  // namespace
+
+class InfiniteEndsOf : public Scenes {
+ protected:
+  Solution solved(const std::string& content) { return run(study(content)); }
+};
+
+TEST_F(InfiniteEndsOf, KinksHaveTheirExactActions) {
+  struct Case {
+    std::string lagrangian, boundary;
+    double action, start, end;
+  };
+  const Case cases[] = {
+      {well, "start = { x = -1 }\nend = { x = 1 }\n", kink, std::sqrt(2.0), std::sqrt(2.0)},
+      {"x'^2/2 + cos(x)", "start = { x = \"-pi\" }\nend = { x = \"pi\" }\n", 8, 1, 1},
+      {"x'^2/2 + x^2*(x^2 - 1)^2/2", "start = { x = 0 }\nend = { x = 1 }\n", 0.25, 1, 2},
+      {"(x' - x + x^3)^2/2", "start = { x = -1 }\nend = { x = 0 }\n", 0.5, 2, 1},
+  };
+  for (const Case& c : cases) {
+    const Solution found = solved(scene_of(one, c.lagrangian, c.boundary));
+    ASSERT_TRUE(found.converged()) << c.lagrangian << ": " << found.message;
+    EXPECT_NEAR(found.action, c.action, 1e-10) << c.lagrangian;
+    EXPECT_EQ(found.morse_index, 0) << c.lagrangian;
+    EXPECT_EQ(found.nullity, 1) << c.lagrangian;
+    EXPECT_TRUE(found.minimizing) << c.lagrangian;
+    ASSERT_TRUE(found.rates && found.rates->start && found.rates->end);
+    EXPECT_NEAR(*found.rates->start, c.start, 1e-12);
+    EXPECT_NEAR(*found.rates->end, c.end, 1e-12);
+  }
+}
+
+TEST_F(InfiniteEndsOf, AHomoclinicOrbitIsASaddleOfTheAction) {
+  const Solution found =
+      solved(scene_of(one, "x'^2/2 + x^2/2 - x^4/4", "start = { x = 0 }\nend = { x = 0 }\n",
+                      "[guess]\nx = \"1/cosh(t - T/2)\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(found.action, 4.0 / 3, 1e-10);
+  EXPECT_EQ(found.morse_index, 1);
+  EXPECT_EQ(found.nullity, 1);
+  EXPECT_FALSE(found.minimizing);
+}
+
+TEST_F(InfiniteEndsOf, HalfLines) {
+  // dS/dx = sqrt(2V) along the motions that come to rest.
+  const Solution to = solved(scene_of(one, well, "start = { x = 0.5 }\nend = { x = 1 }\n"));
+  ASSERT_TRUE(to.converged()) << to.message;
+  EXPECT_NEAR(to.action, kink / 2 - (0.5 - 0.125 / 3) / std::sqrt(2.0), 1e-10);
+  EXPECT_EQ(to.nullity, 0);
+  EXPECT_FALSE(to.rates->start.has_value());
+  const Solution from = solved(scene_of(one, well, "start = { x = 1 }\nend = { x = 3 }\n"));
+  ASSERT_TRUE(from.converged()) << from.message;
+  EXPECT_NEAR(from.action, (26.0 / 3 - 2) / std::sqrt(2.0), 1e-9);
+  // The unstable equilibrium at the start is passed at a finite time.
+  const Solution half = solved(scene_of(one, well, "start = { x = 0 }\nend = { x = 1 }\n"));
+  ASSERT_TRUE(half.converged()) << half.message;
+  EXPECT_NEAR(half.action, kink / 2, 1e-10);
+}
+
+TEST_F(InfiniteEndsOf, TheActionIsThatBeyondRest) {
+  // A constant and a total derivative in L change the action of rest and the momenta.
+  const Solution found =
+      solved(scene_of(one, well + " + 3.5 + 0.25*x'", "start = { x = -1 }\nend = { x = 1 }\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(found.action, kink + 0.5, 1e-10);
+  EXPECT_NEAR(*found.energy, -3.5, 1e-10);
+}
+
+TEST_F(InfiniteEndsOf, BouncesInThreeDimensions) {
+  // Linde, Nucl. Phys. B 216 (1983) 421: S3 = 4.85/δ² of the potential φ²/2 − δ φ³.
+  const Solution found = solved(scene_of("[\"f\"]", "t^2*(f'^2/2 + f^2/2 - f^3/3)", "end = { f = 0 }\n",
+                                         "[guess]\nf = \"6/cosh(t)\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(4 * std::numbers::pi * found.action, 43.660237, 2e-4);
+  EXPECT_EQ(found.morse_index, 1);
+}
+
+TEST_F(InfiniteEndsOf, AreRefusedWhereTheyCannotBe) {
+  const auto refused = [&](const std::string& content, const std::string& part) {
+    const std::string text = message(content);
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  refused(scene_of(one, "x'^2/2 - x^2/2", "start = { x = 0 }\nend = { x = 0.5 }\n"), "±1i");
+  refused(scene_of(one, well, "end = { x = 0.9 }\n"), "the nearest one is x = 1");
+  refused(scene_of(one, well, "start = { x = -1 }\nend = { x = -1 }\n"),
+          "the default guess is the equilibrium");
+  refused(scene_of(one, "x'^2/2 + cos(x) + cos(x/2)", "start = { x = \"2*pi\" }\nend = { x = \"4*pi\" }\n"),
+          "energy of rest");
+  refused(scene_of(one, well, ""), "every coordinate is fixed");
+  refused(scene_of(one, well, "start = { x = -1 }\nend = { x = 1 }\n", "[search]\nsolutions = 3\n"),
+          "search");
+}
+
+TEST_F(InfiniteEndsOf, RestIsNoResult) {
+  const Solution found =
+      solved(scene_of(one, "x'^2/2 + x^2/2 + x^4/4", "start = { x = 0 }\nend = { x = 0 }\n",
+                      "[guess]\nx = \"1/cosh(t - T/2)\"\n"));
+  EXPECT_FALSE(found.converged());
+}
