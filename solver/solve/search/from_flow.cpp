@@ -60,14 +60,18 @@ bool Search::descend_from_guess(double side) {
 /// several of those to the tolerance.
 bool Search::flow_from(double away, double side) {
   constexpr const char* strategy = "minimisation by the gradient flow";
+  // A search for several solutions renews its effort with each.
+  const int most = acceptance_ ? options_.max_iterations : outcome_.attempts + allowance_;
+  if (outcome_.attempts >= most) return false;
   GradientFlow flow(problem_, path_, w_, [&] {
     outcome_.record(w_.iteration, options_);
-    return !options_.deadline.passed();
+    return !options_.deadline.passed() && outcome_.attempts < most;
   });
   flow.prefer(side);
   if (!flow.run(away * flow_limits::kick)) return false;
   // Newton's method may have spent all on long intervals, where its equations are nearly singular.
-  if (refinement_.exhausted()) refinement_.allow(allowance_, flow_limits::share);
+  if (refinement_.exhausted())
+    refinement_.allow(std::min(allowance_, most - outcome_.attempts), flow_limits::share);
   MonotoneCubic curve;
   curve.fit(path_);
   const std::span<const double> nodes = curve.mesh();
