@@ -63,6 +63,7 @@ class DiscreteAction {
   /// Until reset() the ends have given momenta (2n; empty: none), which must outlive it: `nodes` and
   /// imbalance() are derivatives of S_h + p(0)·q(0) − p(T)·q(T).
   void give_momenta(std::span<const double> momenta) { momenta_ = momenta; }
+  std::span<const double> momenta() const { return momenta_; }
   /// Likewise costs of the ends (2; or empty): `nodes`, imbalance() and action() are those of S_h with them.
   void give_costs(std::span<const EndCost> costs) { costs_ = costs; }
 

@@ -18,7 +18,7 @@ namespace {
 /// parameter: their errors and roundoff are near 1e-12.
 constexpr double part = 1e-3;
 constexpr std::array<double, 4> places = {-2, -1, 1, 2};
-constexpr std::array<double, 4> weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+constexpr std::array<double, 4> quotient_weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
 
 double size_of(double value) { return value == 0 ? 1 : std::abs(value); }
 
@@ -283,7 +283,7 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
     std::vector<double> slopes(numbers.front().list().size(), 0);
     for (std::size_t k = 0; k < places.size(); ++k) {
       const std::vector<double> list = numbers[k].list();
-      for (std::size_t i = 0; i < list.size(); ++i) slopes[i] += weights[k] * list[i] / step;
+      for (std::size_t i = 0; i < list.size(); ++i) slopes[i] += quotient_weights[k] * list[i] / step;
     }
     auto next = slopes.begin();
     const auto take = [&](std::vector<double>& to) {
@@ -303,7 +303,7 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
         std::vector<double> gradient(2 * n);
         double slope = 0;
         for (std::size_t k = 0; k < places.size(); ++k)
-          slope += weights[k] * numbers[k].duration.where(start.first(n), end.first(n), gradient) / step;
+          slope += quotient_weights[k] * numbers[k].duration.where(start.first(n), end.first(n), gradient) / step;
         return slope;
       };
     }

@@ -105,7 +105,7 @@ ConstrainedGraph make_constrained(const SystemTable& table) {
   for (std::size_t k = 0; k < table.constraints.size(); ++k)
     constraints.push_back({table.constraints[k].value, fmt::format("constraints[{}]", k)});
   try {
-    return constrained_graph(text_of(table), constraints);
+    return constrained_graph(system_text(table), constraints);
   } catch (const FormulaError& e) {
     throw at_its_place(table, e);
   }
