@@ -246,11 +246,14 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
              "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2\", force = { x = \"-x'\" } }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
              fields);
+  std::set<std::string> constrained;
   add_fields("solve",
              "system = { coordinates = [\"x\", \"y\"], lagrangian = \"(x'^2 + y'^2)/2\", "
              "constraints = [\"x^2 + y^2 = 1\"] }\n"
              "boundary = { start = { x = 1, y = 0 }, end = { x = 0, y = 1 }, duration = 2 }\n",
-             fields, {"--samples", "2"});
+             constrained, {"--samples", "2"});
+  for (const std::string& field : constrained)  // those of y are those of x
+    if (!field.ends_with(".y") && !field.ends_with("_y") && !field.ends_with(".y'")) fields.insert(field);
   add_fields("solve",
              "system = { coordinates = [\"x\"], parameters = { k = 1 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2, integrals = [\"x = 0.8\"], "
