@@ -69,7 +69,7 @@ void bind_branch(py::module_& module) {
       .def("summary", [](const FollowedBranch& b) { return summary(b); })
       .def("plot", plot, py::arg("study"), py::arg("path"), py::arg("quantity"))
       .def("solved", [](const FollowedBranch& b, std::size_t k, const PyStudy& study) {
-        return std::make_shared<Solved>(Solved{study.shared(), b.points.at(k).solution});
+        return solved_by(study.shared(), b.points.at(k).solution);
       });
 }
 

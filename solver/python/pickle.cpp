@@ -4,8 +4,11 @@
 #include <pybind11/stl.h>
 
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <utility>
+
+#include "solution/extension_values.hpp"
 
 namespace extremal::python {
 namespace py = pybind11;
@@ -28,15 +31,31 @@ auto members(Floquet& s) {
   return std::tie(paired, multipliers, krein, vectors, defect, trivial, circle, real, quadruples);
 }
 
+auto members(DecayRates& s) {
+  auto& [start, end] = s;
+  return std::tie(start, end);
+}
+
+auto members(WaypointImpulse& s) {
+  auto& [time, impulse] = s;
+  return std::tie(time, impulse);
+}
+
+/// But for the Lagrangian, which the study has.
+auto members(ExtensionValues& s) {
+  auto& [constants, integral_multipliers, waypoints, lagrangian] = s;
+  return std::tie(constants, integral_multipliers, waypoints);
+}
+
 auto members(Solution& s) {
   auto& [status, message, strategy, trajectory, action, energy, drift, work, error, residual, index, nullity,
-         minimizing, windows, conjugate, conjugate_known, certificate, floquet, period, momentum_start,
-         momentum_end, pinned, energies, degree, unknowns, iterations, history, seconds_solve,
+         minimizing, windows, conjugate, conjugate_known, certificate, floquet, period, rates, momentum_start,
+         momentum_end, extension, pinned, energies, degree, unknowns, iterations, history, seconds_solve,
          seconds_analyse] = s;
   return std::tie(status, message, strategy, trajectory, action, energy, drift, work, error, residual, index,
                   nullity, minimizing, windows, conjugate, conjugate_known, certificate, floquet, period,
-                  momentum_start, momentum_end, pinned, energies, degree, unknowns, iterations, history,
-                  seconds_solve, seconds_analyse);
+                  rates, momentum_start, momentum_end, extension, pinned, energies, degree, unknowns,
+                  iterations, history, seconds_solve, seconds_analyse);
 }
 
 template <class T>
@@ -66,6 +85,20 @@ py::object pack(std::optional<T>& value) {
 template <HasMembers T>
 void unpack(const py::handle& packed, std::optional<T>& value) {
   if (!packed.is_none()) unpack(packed, value.emplace());
+}
+
+template <HasMembers T>
+py::object pack(std::shared_ptr<const T>& value) {
+  if (!value) return py::none();
+  T copy = *value;
+  return pack(copy);
+}
+template <HasMembers T>
+void unpack(const py::handle& packed, std::shared_ptr<const T>& value) {
+  if (packed.is_none()) return;
+  T unpacked;
+  unpack(packed, unpacked);
+  value = std::make_shared<const T>(std::move(unpacked));
 }
 
 template <HasMembers T>

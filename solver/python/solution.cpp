@@ -204,7 +204,7 @@ void bind_solution(py::module_& module) {
       .def("summary", [](const Solved& s) { return summary(result_of(s)); })
       .def("state", [](const Solved& s) { return packed(s.solution); });
   module.def("restored", [](const PyStudy& study, const py::tuple& state) {
-    return std::make_shared<Solved>(Solved{study.shared(), unpacked(state)});
+    return solved_by(study.shared(), unpacked(state));
   });
   module.def("plot", plot, py::arg("path"), py::arg("solutions"));
 }

@@ -5,7 +5,9 @@
 
 #include <utility>
 
+#include "problem/extension.hpp"
 #include "python/run.hpp"
+#include "solution/extension_values.hpp"
 #include "study/continued.hpp"
 
 namespace extremal::python {
@@ -23,6 +25,24 @@ void Solvers::give_back(Solver solver) {
   waiting_.push_back(std::move(solver));
 }
 
+std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution solution) {
+  if (solution.extension) {
+    ExtensionValues values = *solution.extension;
+    if (!values.lagrangian) {
+      std::vector<double> constants;
+      for (const auto& [name, value] : values.unknowns) constants.push_back(value);
+      constants.insert(constants.end(), values.integral_multipliers.begin(),
+                       values.integral_multipliers.end());
+      values.lagrangian = study->problem.extension->at(constants);
+      solution.extension = std::make_shared<const ExtensionValues>(std::move(values));
+    }
+    Study own = *study;
+    use_constants(solution, own);
+    study = std::make_shared<const Study>(std::move(own));
+  }
+  return std::make_shared<Solved>(Solved{std::move(study), std::move(solution)});
+}
+
 PyStudy::PyStudy(const std::string& text, const std::string& name, bool family)
     : solvers_(std::make_shared<Solvers>()) {
   const py::gil_scoped_release unlocked;
@@ -38,7 +58,7 @@ std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py
   if (tolerance) options.tolerance = *tolerance;
   return work.run([&] {
     Solver solver = solvers_->take();
-    auto solved = std::make_shared<Solved>(Solved{study_, solver.solve(study_->problem, options)});
+    auto solved = solved_by(study_, solver.solve(study_->problem, options));
     solvers_->give_back(std::move(solver));
     return solved;
   });
@@ -55,7 +75,7 @@ std::vector<std::shared_ptr<Solved>> PyStudy::search(int most, std::optional<dou
     Solver solver = solvers_->take();
     std::vector<std::shared_ptr<Solved>> found;
     for (Solution& solution : solver.solve_all(study_->problem, options, most))
-      found.push_back(std::make_shared<Solved>(Solved{study_, std::move(solution)}));
+      found.push_back(solved_by(study_, std::move(solution)));
     solvers_->give_back(std::move(solver));
     return found;
   });

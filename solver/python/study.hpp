@@ -21,6 +21,10 @@ struct Solved {
   Solution solution;
 };
 
+/// Constants that the solution found become those of its study; a solution that was pickled has no
+/// Lagrangian.
+std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution solution);
+
 /// Solvers that are not in use, with their memory.
 class Solvers {
  public:

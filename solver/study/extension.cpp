@@ -335,10 +335,12 @@ void check_extended(const Scene& scene, Purpose purpose) {
     throw SceneError(position(scene.system.constraints.front(), 0),
                      asks + "constraints are not available; leave one or the other out");
   if (scene.boundary.infinite)
-    throw SceneError(scene.boundary.duration.at, asks + "an infinite duration is not available; give a number");
+    throw SceneError(scene.boundary.duration.at,
+                     asks + "an infinite duration is not available; give a number");
   if (scene.fit)
-    throw SceneError(scene.fit->at, asks + "a fit is not available; leave [fit] out, or write parameters "
-                                           "that are to be found there");
+    throw SceneError(scene.fit->at, asks +
+                                        "a fit is not available; leave [fit] out, or write parameters "
+                                        "that are to be found there");
   if (scene.search)
     throw SceneError(scene.search->solutions.at,
                      asks + "[search] is not available; leave it out, and give a guess for each extremal");

@@ -303,7 +303,8 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
         std::vector<double> gradient(2 * n);
         double slope = 0;
         for (std::size_t k = 0; k < places.size(); ++k)
-          slope += quotient_weights[k] * numbers[k].duration.where(start.first(n), end.first(n), gradient) / step;
+          slope +=
+              quotient_weights[k] * numbers[k].duration.where(start.first(n), end.first(n), gradient) / step;
         return slope;
       };
     }

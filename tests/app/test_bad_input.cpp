@@ -40,7 +40,7 @@ std::vector<Case> cases() {
        with("lagrangian = \"", "definitions = { a = \"b\", b = \"a\" }\nlagrangian = \"a + "),
        "scene.toml:4:"},
       {"MissingDuration", with("duration = 2.0\n", ""),
-       "scene.toml:5:1: [boundary] has no duration; give a number, a formula or \"free\"\n"},
+       "scene.toml:5:1: [boundary] has no duration; give a number, a formula, \"free\" or \"infinite\"\n"},
       {"NegativeDuration", with("2.0", "-2.0"), "scene.toml:8:12: duration = -2; it must be positive\n"},
       {"EnergyWithFixedDuration", pendulum + "energy = 1\n",
        "scene.toml:9:10: 'energy' closes a free duration, but duration is fixed; "},

@@ -271,6 +271,10 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   for (const auto& [from, to] :
        {std::pair{"open_ends.x(T)", "open_ends.x(0)"}, {"parameters.k", "parameters.k"}})
     if (fields.erase(from)) fields.insert(to);
+  add_fields("solve",
+             "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2 + cos(x)\" }\n"
+             "boundary = { start = { x = \"-pi\" }, end = { x = \"pi\" }, duration = \"infinite\" }\n",
+             fields);
   EXPECT_EQ(fields, names_in("## Fields of a result"));
 }
 

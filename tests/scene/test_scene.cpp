@@ -109,7 +109,7 @@ TEST_F(SceneFiles, WrongTypes) {
 
 TEST_F(SceneFiles, MissingKeys) {
   EXPECT_EQ(message(with("duration = 2\n", "")),
-            "scene.toml:4:1: [boundary] has no duration; give a number, a formula or \"free\"");
+            "scene.toml:4:1: [boundary] has no duration; give a number, a formula, \"free\" or \"infinite\"");
   EXPECT_EQ(message(with("coordinates = [\"q\"]\n", "")),
             "scene.toml:1:1: [system] has no 'coordinates'; list them, or name a system by 'use'");
   EXPECT_EQ(

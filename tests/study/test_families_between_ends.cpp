@@ -8,7 +8,7 @@ using namespace extremal::test;
 
 namespace {
 
-const std::string oscillator =
+const std::string half_period =
     "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\n[boundary]\nstart = { x = 1 "
     "}\nduration = \"pi\"\n";
 
@@ -17,7 +17,7 @@ const std::string oscillator =
 class FamiliesBetweenEnds : public Scenes {};
 
 TEST_F(FamiliesBetweenEnds, TheMemberNearestToTheGuess) {
-  const Solution found = run(study(oscillator + "end = { x = -1 }\n[guess]\nx = \"cos(t) + 0.7*sin(t)\"\n"));
+  const Solution found = run(study(half_period + "end = { x = -1 }\n[guess]\nx = \"cos(t) + 0.7*sin(t)\"\n"));
   ASSERT_TRUE(found.converged()) << found.message;
   EXPECT_EQ(found.nullity, 1);
   EXPECT_EQ(found.morse_index, 0);
@@ -26,13 +26,13 @@ TEST_F(FamiliesBetweenEnds, TheMemberNearestToTheGuess) {
 }
 
 TEST_F(FamiliesBetweenEnds, WithoutAGuessTheOneNearestToTheLine) {
-  const Solution found = run(study(oscillator + "end = { x = -1 }\n"));
+  const Solution found = run(study(half_period + "end = { x = -1 }\n"));
   ASSERT_TRUE(found.converged()) << found.message;
   EXPECT_NEAR(found.momentum_start[0], 0, 1e-8);
 }
 
 TEST_F(FamiliesBetweenEnds, ConjugateEndsWithoutExtremals) {
-  const Solution found = run(study(oscillator + "end = { x = -0.5 }\n"));
+  const Solution found = run(study(half_period + "end = { x = -0.5 }\n"));
   EXPECT_EQ(found.status, Status::conjugate_ends);
 }
 

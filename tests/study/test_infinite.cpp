@@ -102,7 +102,7 @@ TEST_F(InfiniteEndsOf, AreRefusedWhereTheyCannotBe) {
   refused(scene_of(one, well, "end = { x = 0.9 }\n"), "the nearest one is x = 1");
   refused(scene_of(one, well, "start = { x = -1 }\nend = { x = -1 }\n"),
           "the default guess is the equilibrium");
-  refused(scene_of(one, "x'^2/2 + cos(x) + cos(x/2)", "start = { x = \"2*pi\" }\nend = { x = \"4*pi\" }\n"),
+  refused(scene_of(one, "x'^2/2 + x^4/4 - 4*x^3/9 + x^2/6", "start = { x = 0 }\nend = { x = 1 }\n"),
           "energy of rest");
   refused(scene_of(one, well, ""), "every coordinate is fixed");
   refused(scene_of(one, well, "start = { x = -1 }\nend = { x = 1 }\n", "[search]\nsolutions = 3\n"),

@@ -25,6 +25,12 @@ struct FamilyDirection {
   Eigen::VectorXd values;
 };
 
+/// The range of a path, or one of a path at the origin.
+double unit_of(const Path& path, const ElementTables& tables) {
+  const double range = scales(path, tables).q;
+  return range > 0 ? range : 1;
+}
+
 class Continuum {
  public:
   Continuum(const Problem& problem, const std::function<bool()>& count)
@@ -49,27 +55,30 @@ class Continuum {
   }
 
   /// Directions of the least eigenvalues, those that stand apart from the others by `apart`: by inverse
-  /// iteration in a subspace that grows until its last member is not one of them. At least so many.
+  /// iteration in a subspace of one more than can be null. At least so many.
   bool find_null(const Path& path, double apart, int least = 0) {
     null_.clear();
     model_->set_phases(nullptr);
     // Singular to the last digit: a little beside the path, or in another time, it is not.
     if (!model_->evaluate(action_, path, nullptr) && !model_->evaluate(action_, bumped(path), nullptr))
       return false;
-    for (int size = 2; size <= n_ + 1; ++size) {
-      std::vector<FamilyDirection> found;
-      const Eigen::VectorXd eigenvalues = subspace(path, size, found);
-      if (eigenvalues.size() == 0) return false;
-      int small = 0;
-      while (small < size - 1 && std::abs(eigenvalues[small]) <= apart * std::abs(eigenvalues[size - 1]))
-        ++small;
-      if (small == size - 1 && size <= n_) continue;
-      found.resize(std::max(small, least));
-      null_ = std::move(found);
-      orthonormalise();
-      return true;
-    }
-    return false;
+    // There are at most as many null directions as coordinates.
+    const int size = n_ + 1;
+    std::vector<FamilyDirection> found;
+    const Eigen::VectorXd eigenvalues = subspace(path, size, found);
+    if (eigenvalues.size() == 0) return false;
+    // The widest gap between eigenvalues that follow each other.
+    int small = 0;
+    double widest = apart;
+    for (int j = 1; j < size; ++j)
+      if (const double ratio = eigenvalues[j - 1] / eigenvalues[j]; ratio <= widest) {
+        widest = ratio;
+        small = j;
+      }
+    found.resize(std::max(small, least));
+    null_ = std::move(found);
+    orthonormalise();
+    return true;
   }
   int dimension() const { return static_cast<int>(null_.size()); }
 
@@ -88,7 +97,7 @@ class Continuum {
       add(change, null, -along);
     }
     const double size = change.values.cwiseAbs().maxCoeff(),
-                 allowed = longest_family_step * scales(path, *tables_).q;
+                 allowed = longest_family_step * unit_of(path, *tables_);
     path.add(change.step.nodes, change.step.inner, size > allowed ? allowed / size : 1);
     path.load_ends();
     return count_() ? size : INFINITY;
@@ -96,7 +105,7 @@ class Continuum {
 
   /// Steps until they are roundoff.
   bool converge(Path& path, bool to_guess) {
-    const double unit = scales(path, *tables_).q;
+    const double unit = unit_of(path, *tables_);
     double before = INFINITY;
     for (int k = 0; k < most_family_steps; ++k) {
       const double size = step(path, to_guess);
@@ -120,12 +129,13 @@ class Continuum {
         along += action_.nodes.gradient[k] * null.step.nodes[k];
       largest = std::max(largest, std::abs(along) / null.values.cwiseAbs().maxCoeff());
     }
-    return momentum > 0 ? largest / momentum : INFINITY;
+    if (momentum > 0) return largest / momentum;
+    return largest > 0 ? INFINITY : 0;
   }
 
   /// Whether members of the family are on both sides.
   bool extends(const Path& path) {
-    const double unit = scales(path, *tables_).q;
+    const double unit = unit_of(path, *tables_);
     for (const FamilyDirection& null : null_)
       for (const double sign : {1.0, -1.0}) {
         Path moved = path;
@@ -151,7 +161,7 @@ class Continuum {
   }
   Path bumped(const Path& path) const {
     Path moved = path;
-    const double unit = beside * scales(path, *tables_).q;
+    const double unit = beside * unit_of(path, *tables_);
     for (int k = 1; k < elements_; ++k)
       for (int a = 0; a < n_; ++a)
         moved.set_node(k, a, path.node(k)[a] + unit * std::sin(k * (a + 1.0) + path.mesh()[k]));
@@ -337,10 +347,10 @@ bool nearest_of_family(const Problem& problem, const SolveOptions& options, Work
       const Path before = path;
       path.resample_from(before, tables, mesh);
     }
-    const double unit = scales(path, tables).q;
+    const double unit = unit_of(path, tables);
     Continuum continuum(problem, count);
     continuum.reset(tables, guess);
-    if (!(unit > 0) || !reach_member(continuum, path, unit)) return false;
+    if (!reach_member(continuum, path, unit)) return false;
     w.resolution.measure(path, tables);
     const Scales size = scales(path, tables);
     const Resolution::Error error = w.resolution.at(family_degree);
