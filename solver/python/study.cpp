@@ -3,6 +3,7 @@
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
+#include <stdexcept>
 #include <utility>
 
 #include "problem/extension.hpp"
@@ -48,6 +49,7 @@ PyStudy::PyStudy(const std::string& text, const std::string& name, bool family)
   const py::gil_scoped_release unlocked;
   study_ = std::make_shared<const Study>(
       load(text_source(name, text), {}, family ? Purpose::family : Purpose::solution));
+  if (study_->fit) throw std::invalid_argument("fits are not available in Python; use `extremal solve`");
 }
 
 std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py::object& progress) const {
