@@ -13,7 +13,7 @@ using namespace extremal::test;
 
 namespace {
 
-const double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::string system(const std::string& coordinates, const std::string& lagrangian,
                    const std::string& more = "") {
