@@ -15,8 +15,8 @@ using problems::Reference;
 namespace {
 
 Study study_of(const Reference& reference) {
-  std::vector<std::string> sets = reference.sets;
-  sets.push_back("solve.tolerance=1e-12");
+  std::vector<std::string> sets{"solve.tolerance=1e-12"};
+  sets.insert(sets.end(), reference.sets.begin(), reference.sets.end());
   return load(problems::root + "/problems/scenes/" + reference.scene + ".toml", sets);
 }
 

@@ -40,7 +40,7 @@ const std::string rod =
     "lagrangian = \"m*l^2*theta'^2/2 + m*g*l*cos(theta)\"\n";
 
 /// The motion of the pendulum from (1, 0.5), whose data the tests have.
-const std::string motion_of_rod = rod + "[boundary]\nstart = { theta = 1.0, p_theta = 0.845 }\nduration = 3.0\n";
+const std::string rod_motion = rod + "[boundary]\nstart = { theta = 1.0, p_theta = 0.845 }\nduration = 3.0\n";
 
 const std::string forced_oscillator =
     "[system]\n"
@@ -139,7 +139,7 @@ class Fits : public Scenes {
 };
 
 TEST_F(Fits, FindLengthAndGravityOfAPendulumWithoutNoise) {
-  swing_ = samples(motion_of_rod, 41);
+  swing_ = samples(rod_motion, 41);
   write_swing(0, 1);
   const FitResult result = fitted(both_, {"system.parameters.l=1.0", "system.parameters.g=9.2"});
   EXPECT_NEAR(result.values[0], 1.3, 1e-8);
@@ -151,7 +151,7 @@ TEST_F(Fits, FindLengthAndGravityOfAPendulumWithoutNoise) {
 
 /// 80 fits scatter as the covariance of one tells: their variances to four standard deviations of a variance.
 TEST_F(Fits, CovarianceIsThatOfRepeatedFits) {
-  swing_ = samples(motion_of_rod, 41);
+  swing_ = samples(rod_motion, 41);
   constexpr int times = 80;
   std::vector<FitResult> all;
   for (int k = 0; k < times; ++k) {
@@ -172,7 +172,7 @@ TEST_F(Fits, CovarianceIsThatOfRepeatedFits) {
 }
 
 TEST_F(Fits, ScatterScalesTheCovarianceWhereNoSigmaIsGiven) {
-  swing_ = samples(motion_of_rod, 41);
+  swing_ = samples(rod_motion, 41);
   Noise random(3);
   std::string text = "t,theta\n", with = "t,theta,sigma theta\n";
   for (const auto& row : swing_) {
@@ -194,7 +194,7 @@ TEST_F(Fits, ScatterScalesTheCovarianceWhereNoSigmaIsGiven) {
 }
 
 TEST_F(Fits, NameWhatDataDoNotDetermine) {
-  swing_ = samples(motion_of_rod, 41);
+  swing_ = samples(rod_motion, 41);
   write_swing(1, 7, false);
   const std::string scene = rod + "[boundary]\nduration = 3.0\n[fit]\ndata = \"data.csv\"\n";
   const FitResult two = run_fit(study(scene + "parameters = [\"l\", \"g\"]\n"));
@@ -208,7 +208,7 @@ TEST_F(Fits, NameWhatDataDoNotDetermine) {
 }
 
 TEST_F(Fits, RobustLossesCountOutliersLess) {
-  swing_ = samples(motion_of_rod, 41);
+  swing_ = samples(rod_motion, 41);
   Noise random(11);
   std::string text = "t,theta,sigma theta\n";
   for (std::size_t k = 0; k < swing_.size(); ++k)
@@ -345,7 +345,7 @@ TEST_F(Fits, FindTheMassRatioFromAHaloOrbit) {
 }
 
 TEST_F(Fits, KeepTheElementsOfAScheme) {
-  swing_ = samples(motion_of_rod, 41);
+  swing_ = samples(rod_motion, 41);
   write_swing(0, 1);
   const FitResult result = fitted(both_ + "[solve]\nscheme = \"midpoint\"\nelements = 200\n");
   EXPECT_EQ(result.solution.trajectory.elements(), 200);
@@ -387,7 +387,7 @@ TEST_F(Fits, RefuseBadInput) {
                           "[fit]\ndata = \"data.csv\"\n")
                 .find("nothing to be found"),
             std::string::npos);
-  EXPECT_NE(message(motion_of_rod + "[fit]\ndata = \"data.csv\"\nparameters = [\"l\"]\n").find("initial data"),
+  EXPECT_NE(message(rod_motion + "[fit]\ndata = \"data.csv\"\nparameters = [\"l\"]\n").find("initial data"),
             std::string::npos);
 }
 
