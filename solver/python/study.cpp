@@ -44,15 +44,23 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
   return std::make_shared<Solved>(Solved{std::move(study), std::move(solution)});
 }
 
+namespace {
+
+void refuse_fit(const Study& study) {
+  if (study.fit) throw std::invalid_argument("fits are not available in Python; use `extremal solve`");
+}
+
+}  // namespace
+
 PyStudy::PyStudy(const std::string& text, const std::string& name, bool family)
     : solvers_(std::make_shared<Solvers>()) {
   const py::gil_scoped_release unlocked;
   study_ = std::make_shared<const Study>(
       load(text_source(name, text), {}, family ? Purpose::family : Purpose::solution));
-  if (study_->fit) throw std::invalid_argument("fits are not available in Python; use `extremal solve`");
 }
 
 std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py::object& progress) const {
+  refuse_fit(*study_);
   Interruptible work;
   SolveOptions options = study_->options;
   options.deadline = work.deadline(study_->budget);
@@ -68,6 +76,7 @@ std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py
 
 std::vector<std::shared_ptr<Solved>> PyStudy::search(int most, std::optional<double> tolerance,
                                                      const py::object& progress) const {
+  refuse_fit(*study_);
   Interruptible work;
   SolveOptions options = study_->options;
   options.deadline = work.deadline(study_->budget);

@@ -132,7 +132,10 @@ std::vector<Motion> motions() {
                             return Values{0.3 - 0.5 * tau, 0.1 + 4.9 * tau};
                           }),
                   40});
-  list.push_back({"pendulum", fixed_ends(systems::pendulum(), {0.3}, {0.5}, 10), 60});
+  list.push_back({"pendulum",
+                  guessed(fixed_ends(systems::pendulum(), {0.3}, {0.5}, 20),
+                          [](double tau) { return Values{0.8 * std::sin(0.38 + 19.2 * tau)}; }),
+                  60});
   list.push_back({"double pendulum",
                   guessed(fixed_ends(systems::double_pendulum(), {0.5, 0.5}, {-0.2, -0.3}, 2),
                           [](double tau) {
