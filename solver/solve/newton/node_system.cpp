@@ -272,12 +272,16 @@ Inertia NodeSystem::inertia(double threshold) const {
   // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
   // those of the directions across, and as many positive ones.
   const PhaseConditions held = phases_ ? independent(*phases_) : PhaseConditions{};
-  const int columns = free_ + held.count;
+  // Between fixed ends roundoff may give the chain an eigenvalue of either sign along a direction that is
+  // held. A spring σ at the node that it moves most, and a column e with the corner 1/σ, which takes the
+  // spring back, leave the inertia but for one positive eigenvalue.
+  const int springs = free_ == 0 ? held.count : 0, columns = free_ + held.count + springs;
   Chain chain = *chain_;
   Border ends;
   ends.resize(static_cast<int>(right_.size()), columns);
   Eigen::Map<RowMatrix> block(ends.column_block(), std::ssize(right_), columns),
       corner(ends.corner(), columns, columns);
+  block.setZero();
   block.leftCols(free_) =
       Eigen::Map<const RowMatrix>(columns_.data(), std::ssize(right_), border_).leftCols(free_);
   corner.setZero();
@@ -290,12 +294,26 @@ Inertia NodeSystem::inertia(double threshold) const {
       corner(free_ + j, z.column) = corner(z.column, free_ + j);
     }
   }
+  for (int j = 0; j < springs; ++j) {
+    Eigen::Index row = 0;
+    block.col(j).cwiseAbs().maxCoeff(&row);
+    double& entry = chain.diagonal(static_cast<int>(row / n_))[row % n_ * (n_ + 1)];
+    const double spring = entry != 0 ? std::abs(entry) : 1;
+    entry += spring;
+    block(row, held.count + j) = 1;
+    corner(held.count + j, held.count + j) = 1 / spring;
+  }
   ends.factor(chain, std::max(threshold, zero_eigenvalue));
   // With more null directions than can be afforded: as for steps.
   if (!ends.finite()) ends.factor(chain);
   Inertia result = ends.inertia(threshold);
-  result.negative -= held.count;
-  result.positive -= held.count;
+  result.positive -= springs;
+  // Fewer than r of either sign: some of them are among those that were too small to tell.
+  const int negative = std::max(result.negative, held.count),
+            positive = std::max(result.positive, held.count);
+  result.zero -= negative - result.negative + positive - result.positive;
+  result.negative = negative - held.count;
+  result.positive = positive - held.count;
   result.zero += held.count;
   return result;
 }

@@ -293,7 +293,13 @@ bool reach_member(Continuum& continuum, Path& path, double unit) {
   if (!continuum.find_null(path, softer, 1)) return false;
   for (int round = 0; round < most_null_rounds; ++round) {
     if (round > 0 && !continuum.find_null(path, null_eigenvalue)) return false;
-    if (continuum.dimension() == 0) return false;
+    // Far from an extremal no direction need be null: a few whole steps lead nearer.
+    if (continuum.dimension() == 0) {
+      if (round == most_null_rounds - 1) return false;
+      for (int k = 0; k < whole_steps; ++k)
+        if (!(continuum.step(path, false) > near_extremal * unit)) break;
+      continue;
+    }
     const double size = continuum.step(path, true);
     if (round > 0 && size <= nearly * unit) return continuum.converge(path, true);
     if (!std::isfinite(size) || !continuum.converge(path, true)) return false;

@@ -138,6 +138,11 @@ inline constexpr int inverse_iterations = 4;
 /// A step is at most this part of the range.
 inline constexpr double longest_family_step = 0.5;
 inline constexpr int most_family_steps = 60, most_null_rounds = 12;
+/// Of both attempts, from the path that was found and from the guess.
+inline constexpr int most_steps_in_all = 400;
+/// Whole steps from where no direction is null, until they are this part of the range.
+inline constexpr int whole_steps = 4;
+inline constexpr double near_extremal = 1e-3;
 /// Steps of roundoff, relative to the range; and steps so small that they may be, if they no longer fall.
 inline constexpr double arrived = 1e-14, nearly = 1e-10;
 /// Other members of the family are looked for at this part of the range to both sides. There, the force along

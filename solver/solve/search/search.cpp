@@ -157,7 +157,7 @@ bool Search::from_line() {
 bool Search::on_family() {
   if (problem_.ends.free > 0 || problem_.duration.free || !problem_.has_ends() || problem_.paired)
     return false;
-  if (problem_.lagrangian->kinks() || refinement_.exhausted()) return false;
+  if (problem_.lagrangian->kinks()) return false;
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   const std::string failure = outcome_.message;
   const auto fill = [&](const ElementTables& tables, const std::vector<double>& mesh, Path& path) {
@@ -167,7 +167,12 @@ bool Search::on_family() {
   };
   outcome_.strategy = "newton across a family from the guess";
   outcome_.elsewhere = false;
-  const auto count = [&] { return refinement_.count_step(); };
+  // What the path before has spent does not count.
+  int left = limits::continuum::most_steps_in_all;
+  const auto count = [&] {
+    refinement_.count_step();
+    return --left > 0 && !options_.deadline.passed();
+  };
   const Path found = path_;
   const auto resample = [&](const ElementTables& tables, const std::vector<double>& mesh, Path& path) {
     path.resample_from(found, tables, mesh);
