@@ -46,8 +46,15 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
 
 namespace {
 
-void refuse_fit(const Study& study) {
+/// Of one call. Throws std::invalid_argument for a fit.
+SolveOptions options_of(const Study& study, Interruptible& work, std::optional<double> tolerance,
+                        const py::object& progress) {
   if (study.fit) throw std::invalid_argument("fits are not available in Python; use `extremal solve`");
+  SolveOptions options = study.options;
+  options.deadline = work.deadline(study.budget);
+  options.progress = work.callback<Iteration>(progress);
+  if (tolerance) options.tolerance = *tolerance;
+  return options;
 }
 
 }  // namespace
@@ -60,12 +67,8 @@ PyStudy::PyStudy(const std::string& text, const std::string& name, bool family)
 }
 
 std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py::object& progress) const {
-  refuse_fit(*study_);
   Interruptible work;
-  SolveOptions options = study_->options;
-  options.deadline = work.deadline(study_->budget);
-  options.progress = work.callback<Iteration>(progress);
-  if (tolerance) options.tolerance = *tolerance;
+  const SolveOptions options = options_of(*study_, work, tolerance, progress);
   return work.run([&] {
     Solver solver = solvers_->take();
     auto solved = solved_by(study_, solver.solve(study_->problem, options));
@@ -76,12 +79,8 @@ std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py
 
 std::vector<std::shared_ptr<Solved>> PyStudy::search(int most, std::optional<double> tolerance,
                                                      const py::object& progress) const {
-  refuse_fit(*study_);
   Interruptible work;
-  SolveOptions options = study_->options;
-  options.deadline = work.deadline(study_->budget);
-  options.progress = work.callback<Iteration>(progress);
-  if (tolerance) options.tolerance = *tolerance;
+  const SolveOptions options = options_of(*study_, work, tolerance, progress);
   return work.run([&] {
     Solver solver = solvers_->take();
     std::vector<std::shared_ptr<Solved>> found;

@@ -1,5 +1,7 @@
 #include "solve/bordered/bordered_newton.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <Eigen/SparseLU>
 #include <algorithm>
@@ -178,7 +180,7 @@ BorderedReport converge(BorderedEquations& equations, BorderedState& state,
     before = size;
     predicted = std::min(1.0, damping * (simplified < 0.5 * size ? 4 : 2));
   }
-  report.failure = "too many Newton steps did not converge";
+  report.failure = fmt::format("{} Newton steps did not converge", report.steps);
   return report;
 }
 
