@@ -7,6 +7,7 @@
 #include <set>
 
 #include "problems/reference.hpp"
+#include "solve/external/curve_fit.hpp"
 #include "study/annotation.hpp"
 #include "study/inspection.hpp"
 #include "study/study.hpp"
@@ -58,7 +59,13 @@ TEST(Systems, HaveASceneAndAKnownValueEach) {
   }
 }
 
-class EveryScene : public testing::TestWithParam<std::string> {};
+class EveryScene : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (!can_fit() && toml::parse_file(scene_path(GetParam())).contains("fit"))
+      GTEST_SKIP() << "this build has no Ceres, which fits need";
+  }
+};
 
 TEST_P(EveryScene, HasRightDerivatives) {
   const DerivativeCheck check = inspect(load(scene_path(GetParam()))).derivatives;
