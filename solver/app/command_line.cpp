@@ -131,6 +131,9 @@ void CommandLine::add_solve() {
   add_scene(command, a.scene, a.sets);
   add_output(command, a.output, "write the result; - is standard output");
   add_csv(command, a.csv, "write samples (201 without --samples and --at); - is standard output");
+  command.add_option("--npz", a.npz, "write samples as arrays of NumPy; - is standard output")
+      ->type_name("FILE.npz")
+      ->check(output_refusal);
   command.add_option("--oem", a.oem, "write an ephemeris of CCSDS, in [units]; - is standard output")
       ->type_name("FILE.oem")
       ->check(output_refusal);

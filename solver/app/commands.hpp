@@ -26,7 +26,7 @@ struct UsageError : OptionError {
 struct SolveArguments {
   std::string scene;
   std::vector<std::string> sets;
-  std::string output, csv, oem, plot;  ///< paths, "-" for standard output; empty: not wanted
+  std::string output, csv, npz, oem, plot;  ///< paths, "-" for standard output; empty: not wanted
   int samples = 0;                ///< 0: not wanted
   std::string at;                 ///< "T1,T2,…"
   int repeat = 1;

@@ -106,6 +106,10 @@ std::string csv_of(const Study& study, const Result& result) {
   });
 }
 
+std::string npz_of(const Study& study, const Result& result) {
+  return npz_text(result.samples ? *result.samples : sampled(study, result, csv_samples), result.names);
+}
+
 /// Before anything is computed.
 void check_ephemeris(const Study& study) {
   if (!study.units)
@@ -130,6 +134,7 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
     files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
   const bool converged = result.solution.converged();
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
+  if (converged && !a.npz.empty()) files.push_back({a.npz, npz_of(study, result)});
   if (converged && !a.oem.empty()) files.push_back({a.oem, ephemeris_of(study, result)});
   if (converged && !a.plot.empty())
     files.push_back({a.plot, result.fit
@@ -141,7 +146,8 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
 }  // namespace
 
 int solve(const SolveArguments& a) {
-  const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--oem", a.oem}, {"--plot", a.plot}});
+  const Outputs outputs(
+      {{"--output", a.output}, {"--csv", a.csv}, {"--npz", a.npz}, {"--oem", a.oem}, {"--plot", a.plot}});
   const bool table = !outputs.on_standard_output() && !a.quiet;
   const std::vector<double> at = a.at.empty() ? std::vector<double>{} : parse_times(a.at);
   Study study = load(a.scene, a.sets, Purpose::solution);

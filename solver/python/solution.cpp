@@ -42,6 +42,10 @@ std::string json(const Solved& s, const Times& times) {
   return text_of([&](std::ostream& out) { write_json(out, result); });
 }
 
+py::bytes npz(const Solved& s, const Doubles& times) {
+  return npz_text(sample(s.study->problem, s.solution.trajectory, list(times)), s.study->problem.names);
+}
+
 std::string csv(const Solved& s, const Doubles& times) {
   return text_of([&](std::ostream& out) {
     write_csv(out, sample(s.study->problem, s.solution.trajectory, list(times)), s.study->problem.names);
@@ -200,6 +204,7 @@ void bind_solution(py::module_& module) {
       .def("p", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::momentum); })
       .def("json", json, py::arg("times") = py::none())
       .def("csv", csv)
+      .def("npz", npz)
       .def("oem", oem)
       .def("summary", [](const Solved& s) { return summary(result_of(s)); })
       .def("state", [](const Solved& s) { return packed(s.solution); });

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <ostream>
 #include <stdexcept>
 
 #include "report/file.hpp"
+#include "study/files/numpy.hpp"
 
 namespace extremal {
 
@@ -23,7 +25,17 @@ std::vector<Keyed> keyed_columns(const Samples& samples, const std::vector<std::
   for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({names[a], &samples.q[a]});
   for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({velocity_key(names[a]), &samples.v[a]});
   for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({momentum_key(names[a]), &samples.p[a]});
+  for (std::size_t k = 0; k < samples.constraint_forces.size(); ++k)
+    columns.push_back({fmt::format("constraint_forces[{}]", k + 1), &samples.constraint_forces[k]});
   return columns;
+}
+
+void check_finite(const Keyed& column) {
+  const auto bad = std::find_if_not(column.values->begin(), column.values->end(),
+                                    [](double x) { return std::isfinite(x); });
+  if (bad != column.values->end())
+    throw std::logic_error(
+        fmt::format("column {} is {} in row {}", column.key, *bad, bad - column.values->begin() + 1));
 }
 
 /// `prefix` begins each line, also that of the keys, which is left out where it is not wanted.
@@ -31,6 +43,7 @@ void write_rows(std::ostream& out, const Samples& samples, const std::vector<std
                 const std::string& heading, const std::string& prefix, bool with_keys) {
   check_shape(samples, names);
   const std::vector<Keyed> columns = keyed_columns(samples, names);
+  for (const Keyed& column : columns) check_finite(column);
   fmt::memory_buffer line;
   const auto end_line = [&] {
     line[line.size() - 1] = '\n';
@@ -45,16 +58,23 @@ void write_rows(std::ostream& out, const Samples& samples, const std::vector<std
   for (std::size_t row = 0; row < samples.count(); ++row) {
     fmt::format_to(std::back_inserter(line), "{}", prefix);
     for (const Keyed& column : columns) {
-      const double value = (*column.values)[row];
-      if (!std::isfinite(value))
-        throw std::logic_error(fmt::format("column {} is {} in row {}", column.key, value, row + 1));
-      fmt::format_to(std::back_inserter(line), "{},", value);
+      fmt::format_to(std::back_inserter(line), "{},", (*column.values)[row]);
     }
     end_line();
   }
 }
 
 }  // namespace
+
+std::string npz_text(const Samples& samples, const std::vector<std::string>& names) {
+  check_shape(samples, names);
+  std::vector<std::pair<std::string, std::span<const double>>> arrays;
+  for (const Keyed& column : keyed_columns(samples, names)) {
+    check_finite(column);
+    arrays.emplace_back(column.key, *column.values);
+  }
+  return npz(arrays);
+}
 
 void write_csv(std::ostream& out, const Samples& samples, const std::vector<std::string>& names) {
   write_rows(out, samples, names, "", "", true);

@@ -6,7 +6,7 @@
 
 #include "report/result.hpp"
 
-/// \file Samples as comma-separated values.
+/// \file Samples by columns: as comma-separated values, and as arrays of NumPy.
 
 namespace extremal {
 
@@ -18,6 +18,9 @@ void write_csv(std::ostream& out, const Samples& samples, const std::vector<std:
 /// Several solutions below each other, their numbers from 1 in a first column `solution`.
 void write_csv(std::ostream& out, const std::vector<Samples>& solutions,
                const std::vector<std::string>& names);
+
+/// The same columns as the bytes of a file .npz. Throws as write_csv() does.
+std::string npz_text(const Samples& samples, const std::vector<std::string>& names);
 
 /// The same into a file. Throws std::runtime_error with the path if it cannot be written; what was written
 /// in part is removed.

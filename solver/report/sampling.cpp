@@ -43,7 +43,8 @@ Samples sample(const Problem& problem, const Trajectory& trajectory, const std::
       samples.p[a][k] = p[a];
     }
     const std::vector<double> forces = constraint_forces(problem, q, v, times[k]);
-    samples.constraint_forces.resize(forces.size(), Column(times.size()));
+    if (samples.constraint_forces.size() != forces.size())
+      samples.constraint_forces.assign(forces.size(), Column(times.size()));
     for (std::size_t i = 0; i < forces.size(); ++i) samples.constraint_forces[i][k] = forces[i];
   }
   return samples;

@@ -133,6 +133,7 @@ GuessTable read_guess_table(const Document& document, const toml::table& table) 
     if (find_key("guess", entry.key->str())->key == "*")
       guess.formulas.push_back(assignment(document, entry));
   guess.file = text(document, table, "file");
+  guess.orbit = number(document, table, "orbit");
   if (const toml::table* state = table["state"].as_table()) guess.state = assignments(document, state);
   guess.duration = quantity(document, table, "duration");
   return guess;

@@ -84,6 +84,7 @@ struct GuessTable {
   Location at;
   std::vector<Assignment> formulas;
   std::optional<Text> file;
+  std::optional<Number> orbit;  ///< of a file with several
   std::optional<std::vector<Assignment>> state;
   std::optional<Quantity> duration;
 };

@@ -109,8 +109,11 @@ constexpr KeyRecord keys[] = {
      "Coordinate that is fixed there; its momentum may jump. At least one.", "x = 0.2"},
 
     {"guess", "file", Kind::text, "none",
-     "Result with samples, or CSV with the columns `t` and coordinates. Its times are scaled to [0, T].",
+     "Result with samples, CSV or `.npz` with `t` and coordinates; or a file of another program, see below. "
+     "Its times are scaled to [0, T].",
      R"(file = "earlier.json")"},
+    {"guess", "orbit", Kind::integer, "the only one",
+     "Which orbit of a `file` with several: the row, from 1, or AUTO's label.", "orbit = 12"},
     {"guess", "state", Kind::quantities, "none",
      "Initial positions and velocities; the motion from there is the guess. A name that is left out is zero.",
      R"(state = { x = 1.0, "y'" = 0.9 })", true},
@@ -228,6 +231,7 @@ constexpr Exclusion pairs[] = {
 constexpr Requirement needs[] = {
     {"solve.elements", "solve.scheme", "the number of elements alone does not fix a discretisation"},
     {"solve.steps", "solve.elements", "the times of the nodes are found for a given number of elements"},
+    {"guess.orbit", "guess.file", "it chooses an orbit of a file"},
     {"boundary.map", "boundary.periodic", "a map relates the ends of a periodic orbit"},
 };
 

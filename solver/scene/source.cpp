@@ -130,6 +130,33 @@ std::size_t skip_content(Cursor& cursor, bool escapes, bool long_string) {
   return code < 0x80 ? 1 : code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
 }
 
+/// The bytes of a file, at most so many.
+std::shared_ptr<Source> read_bytes(const std::string& path, std::size_t most) {
+  auto source = std::make_shared<Source>();
+  source->name = path;
+  const auto refuse = [&](const std::string& message) { throw SceneError({source, 0, 0}, message); };
+  if (path.empty()) {
+    source->name = "''";
+    refuse("the name of the file is empty");
+  }
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) refuse_missing(source);
+  if (!fs::exists(status)) refuse(fmt::format("cannot be found: {}", error.message()));
+  if (fs::is_directory(status)) refuse("is a directory; a file is needed");
+  if (!fs::is_regular_file(status)) refuse("is not a regular file");
+  const auto size = fs::file_size(path, error);
+  if (error) refuse(fmt::format("its size cannot be read: {}", error.message()));
+  if (size > most) refuse(fmt::format("has {} bytes; at most {} ({} MiB) are read", size, most, most >> 20));
+  if (size == 0) refuse("the file is empty");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(fmt::format("cannot be opened: {}", std::strerror(errno)));
+  source->text.resize(size);
+  if (!file.read(source->text.data(), static_cast<std::streamsize>(size)))
+    refuse("cannot be read to its end");
+  return source;
+}
+
 }  // namespace
 
 std::string to_string(const Location& location) {
@@ -155,31 +182,13 @@ Location position(const Text& text, std::size_t offset) {
 }
 
 std::shared_ptr<const Source> read_source(const std::string& path) {
-  auto source = std::make_shared<Source>();
-  source->name = path;
-  const auto refuse = [&](const std::string& message) { throw SceneError({source, 0, 0}, message); };
-  if (path.empty()) {
-    source->name = "''";
-    refuse("the name of the file is empty");
-  }
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) refuse_missing(source);
-  if (!fs::exists(status)) refuse(fmt::format("cannot be found: {}", error.message()));
-  if (fs::is_directory(status)) refuse("is a directory; a file is needed");
-  if (!fs::is_regular_file(status)) refuse("is not a regular file");
-  const auto size = fs::file_size(path, error);
-  if (error) refuse(fmt::format("its size cannot be read: {}", error.message()));
-  if (size > largest_file)
-    refuse(fmt::format("has {} bytes; at most {} (16 MiB) are read", size, largest_file));
-  if (size == 0) refuse("the file is empty");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(fmt::format("cannot be opened: {}", std::strerror(errno)));
-  source->text.resize(size);
-  if (!file.read(source->text.data(), static_cast<std::streamsize>(size)))
-    refuse("cannot be read to its end");
+  const std::shared_ptr<Source> source = read_bytes(path, largest_file);
   check_characters(source);
   return source;
+}
+
+std::shared_ptr<const Source> read_binary(const std::string& path) {
+  return read_bytes(path, largest_binary);
 }
 
 std::shared_ptr<const Source> text_source(const std::string& name, const std::string& text) {

@@ -57,12 +57,16 @@ struct Text {
 /// Where byte `offset` of a text's value stands in its source: quotes, escapes and line ends are walked over.
 Location position(const Text& text, std::size_t offset);
 
-inline constexpr std::size_t largest_file = std::size_t{16} << 20;  ///< bytes
+inline constexpr std::size_t largest_file = std::size_t{16} << 20;     ///< bytes
+inline constexpr std::size_t largest_binary = std::size_t{256} << 20;  ///< bytes
 
 /// Reads a text file. Throws UnknownName with the files beside it if it is missing, SceneError if it is
 /// unreadable, not a regular file, above `largest_file` (by its size, before reading), empty, or not UTF-8
 /// text.
 std::shared_ptr<const Source> read_source(const std::string& path);
+
+/// Reads a file of any bytes, up to `largest_binary`. Throws as read_source() does.
+std::shared_ptr<const Source> read_binary(const std::string& path);
 
 /// A text that is no file, under the name that errors show. Throws SceneError as read_source() does.
 std::shared_ptr<const Source> text_source(const std::string& name, const std::string& text);

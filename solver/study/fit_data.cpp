@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "study/csv_file.hpp"
+#include "study/files/csv_file.hpp"
 #include "study/guess.hpp"
 
 namespace extremal {

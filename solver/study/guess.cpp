@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "scene/schema.hpp"
+#include "study/files/guess_file.hpp"
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -64,14 +65,26 @@ void tabulate_formulas(const GuessTable& table, const System& system, Problem& p
 }
 
 /// Times scaled linearly onto [0, 1].
-void use_samples(SampledFile&& samples, Guess& guess) {
-  const double first = samples.t.front(), length = samples.t.back() - first;
-  for (const double t : samples.t) guess.tau.push_back((t - first) / length);
-  guess.q = std::move(samples.q);
+void use_path(GuessFile&& file, Guess& guess) {
+  const double first = file.t.front(), length = file.t.back() - first;
+  for (const double t : file.t) guess.tau.push_back((t - first) / length);
+  guess.q = std::move(file.q);
 }
 
-double guessed_duration(const GuessTable& table, const System& system, double of_file) {
-  if (!table.duration) return of_file;
+/// A state of a file, as a scene would write it.
+std::vector<Assignment> state_of(const GuessFile& file, const System& system, const Location& at) {
+  std::vector<Assignment> state;
+  for (std::size_t a = 0; a < system.names.size(); ++a) {
+    state.push_back({system.names[a], at, {{file.start_q[a], at}}, false, at});
+    state.push_back({system.names[a] + "'", at, {{file.start_v[a], at}}, false, at});
+  }
+  return state;
+}
+
+double guessed_duration(const GuessTable& table, const System& system, std::optional<double> of_file) {
+  if (!table.duration && !of_file)
+    throw SceneError(table.file->at, "this file does not tell a duration; give 'duration' in [guess]");
+  if (!table.duration) return *of_file;
   const double value = evaluate(*table.duration, system);
   if (!(value > 0))
     throw SceneError(table.duration->at, fmt::format("duration = {}; it must be positive", value));
@@ -88,13 +101,13 @@ void read_guess(const Scene& scene, const System& system, const Deadline& deadli
   const GuessTable& table = scene.guess;
   if (table.file) {
     if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
-    SampledFile samples = read_samples(beside(scene.path, table.file->value), system.names);
+    GuessFile file = read_guess_file(beside(scene.path, table.file->value), system.names, table.orbit);
     if (problem.duration.free || scene.boundary.infinite)
-      problem.duration.value = guessed_duration(table, system, samples.t.back() - samples.t.front());
-    use_samples(std::move(samples), problem.guess);
-    return;
+      problem.duration.value = guessed_duration(table, system, file.duration);
+    if (file.start_q.empty()) return use_path(std::move(file), problem.guess);
+    return integrate_state(state_of(file, system, table.file->at), system, table.file->at, deadline, problem);
   }
-  if (problem.duration.free || table.duration) problem.duration.value = guessed_duration(table, system, 0);
+  if (problem.duration.free || table.duration) problem.duration.value = guessed_duration(table, system, {});
   if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
   if (table.state) integrate_state(*table.state, system, table.at, deadline, problem);
 }

@@ -18,16 +18,6 @@ void read_guess(const Scene& scene, const System& system, const Deadline& deadli
 /// The path of a file that a scene names: it is looked up beside the scene.
 std::string beside(const std::string& scene, const std::string& file);
 
-/// q(t) as a file gives it, row by row: q[k*n + a].
-struct SampledFile {
-  std::vector<double> t;
-  std::vector<double> q;
-};
-
-/// A result in JSON with samples, or CSV with a column t and one for each coordinate. Throws SceneError, with
-/// line and column in a CSV.
-SampledFile read_samples(const std::string& path, const std::vector<std::string>& names);
-
 /// The motion from the state at t = 0 that `values` give ("x" and "x'"; zero where not named), over the
 /// problem's duration. Throws SceneError, at `at` where it cannot be integrated that far: until the deadline,
 /// in memory there is, and in as many steps as elements can follow.

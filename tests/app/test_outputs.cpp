@@ -32,6 +32,14 @@ class Outputs : public Command {
   }
 };
 
+TEST_F(Outputs, ArraysOfNumpyAreAGuess) {
+  const Outcome o = extremal({"solve", "scene.toml", "--npz", "path.npz", "--samples", "9"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  EXPECT_EQ(read_text(folder / "path.npz").rfind("PK\3\4", 0), 0u);
+  const Outcome again = extremal({"solve", "scene.toml", "--set", "guess.file=path.npz"});
+  EXPECT_EQ(again.exit, 0) << again.error;
+}
+
 TEST_F(Outputs, NeverReplaceWhatTheSceneIsReadFrom) {
   const std::string scene = read_text(folder / "scene.toml");
   const std::vector<std::pair<std::string, std::string>> cases = {{"scene.toml", "scene.toml"},

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -363,25 +362,12 @@ class Solution:
             times = self.t if samples is None else self._times(samples)
             assert times is not None
             if name.endswith(".npz"):
-                content = self._npz(times)
+                content = self._solved.npz(times)
             else:
                 content = (self._solved.csv if name.endswith(".csv") else self._solved.oem)(times).encode()
         else:
             raise ValueError(f"'{name}' ends neither in .json nor in .csv, .npz or .oem")
         _core.write(name, content)
-
-    def _npz(self, times: Array) -> bytes:
-        columns: dict[str, Array] = {"t": times}
-        for prefix, suffix, values in (
-            ("", "", self.q(times)),
-            ("", "'", self.v(times)),
-            ("p_", "", self.p(times)),
-        ):
-            for k, name in enumerate(self._solved.names):
-                columns[prefix + name + suffix] = values[:, k]
-        buffer = io.BytesIO()
-        np.savez(buffer, **columns)
-        return buffer.getvalue()
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Picture | None:
         """Draws the trajectory, of a search all of them, by gnuplot: into a file .svg, .png or .pdf, or as a

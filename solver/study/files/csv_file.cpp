@@ -1,4 +1,4 @@
-#include "study/csv_file.hpp"
+#include "study/files/csv_file.hpp"
 
 #include <fmt/format.h>
 

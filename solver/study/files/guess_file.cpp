@@ -1,0 +1,154 @@
+#include "study/files/guess_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "study/files/csv_file.hpp"
+#include "study/files/formats.hpp"
+#include "study/files/numpy.hpp"
+
+namespace extremal {
+namespace {
+
+using Json = nlohmann::json;
+using SourcePointer = std::shared_ptr<const Source>;
+
+/// A path by columns, the first the time.
+class Columns {
+ public:
+  explicit Columns(const Location& whole) : whole_(whole) {}
+
+  void add(const std::string& name, std::vector<double> values) {
+    columns_.push_back(std::move(values));
+    const std::size_t count = columns_.front().size(), found = columns_.back().size();
+    if (found != count)
+      throw SceneError(whole_,
+                       fmt::format("the samples have {} times and {} values of '{}'", count, found, name));
+  }
+
+  GuessFile path() const {
+    GuessFile path;
+    path.t = columns_.front();
+    for (std::size_t k = 0; k < path.t.size(); ++k)
+      for (std::size_t a = 1; a < columns_.size(); ++a) path.q.push_back(columns_[a][k]);
+    return path;
+  }
+
+ private:
+  Location whole_;
+  std::vector<std::vector<double>> columns_;
+};
+
+GuessFile read_csv_guess(const SourcePointer& source, const std::vector<std::string>& names,
+                         const std::optional<Number>& orbit) {
+  const CsvFile file = read_csv(source);
+  if (file.header.empty()) return {};
+  const auto find = [&](const std::string& name) {
+    return std::find_if(file.header.begin(), file.header.end(),
+                        [&](const CsvCell& c) { return c.text == name; });
+  };
+  if (find("t") == file.header.end() && !file.rows.empty())
+    return read_orbit_table(file, source, {names.begin() + 1, names.end()}, orbit);
+  GuessFile path;
+  std::vector<std::size_t> columns;
+  for (const std::string& name : names) {
+    if (find(name) == file.header.end())
+      throw SceneError(file.header.front().at, fmt::format("the file has no column '{}'", name));
+    columns.push_back(find(name) - file.header.begin());
+  }
+  for (const std::vector<CsvCell>& row : file.rows) {
+    path.t.push_back(number_in(row[columns[0]]));
+    for (std::size_t a = 1; a < columns.size(); ++a) path.q.push_back(number_in(row[columns[a]]));
+  }
+  return path;
+}
+
+GuessFile read_result(const SourcePointer& source, const std::vector<std::string>& names) {
+  const Location whole{source, 0, 0};
+  const Json root = Json::parse(source->text, nullptr, false);
+  if (root.is_discarded()) throw SceneError(whole, "this is not JSON");
+  const auto found = root.is_object() ? root.find("samples") : root.end();
+  if (!root.is_object() || found == root.end() || !found->is_object())
+    throw SceneError(whole, "this result has no samples; solve with --samples to write some");
+  Columns columns(whole);
+  for (const std::string& name : names) {
+    const auto column = found->find(name);
+    if (column == found->end()) throw SceneError(whole, fmt::format("the samples have no '{}'", name));
+    const bool numbers = column->is_array() && std::all_of(column->begin(), column->end(), [](const Json& x) {
+                           return x.is_number() && std::isfinite(x.get<double>());
+                         });
+    if (!numbers)
+      throw SceneError(whole, fmt::format("'{}' of the samples is not a list of finite numbers", name));
+    columns.add(name, column->get<std::vector<double>>());
+  }
+  return columns.path();
+}
+
+GuessFile read_arrays(const std::string& path, const std::vector<std::string>& names) {
+  const SourcePointer source = read_binary(path);
+  const Location whole{source, 0, 0};
+  std::map<std::string, NumpyArray> arrays;
+  try {
+    arrays = read_npz(source->text, largest_binary);
+  } catch (const std::runtime_error& e) {
+    throw SceneError(whole, e.what());
+  }
+  Columns columns(whole);
+  for (const std::string& name : names) {
+    const auto found = arrays.find(name);
+    if (found == arrays.end()) throw SceneError(whole, fmt::format("the file has no array '{}'", name));
+    std::vector<double>& values = found->second.values;
+    if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }))
+      throw SceneError(whole, fmt::format("'{}' has values that are not finite", name));
+    columns.add(name, std::move(values));
+  }
+  return columns.path();
+}
+
+GuessFile read_any(const std::string& path, const std::vector<std::string>& names,
+                   const std::optional<Number>& orbit, SourcePointer& source) {
+  std::vector<std::string> wanted{"t"};
+  wanted.insert(wanted.end(), names.begin(), names.end());
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == ".npz" || ending == ".npy") {
+    source = std::make_shared<Source>(Source{path, ""});
+    return ending == ".npz" ? read_arrays(path, wanted) : read_loops(path, names);
+  }
+  source = read_source(path);
+  const std::size_t first = source->text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && (source->text[first] == '{' || source->text[first] == '[')) {
+    std::optional<GuessFile> table = read_json_table(source, names, orbit);
+    return table ? *table : read_result(source, wanted);
+  }
+  return is_auto_file(source->text) ? read_auto_file(source, names, orbit)
+                                    : read_csv_guess(source, wanted, orbit);
+}
+
+}  // namespace
+
+GuessFile read_guess_file(const std::string& path, const std::vector<std::string>& names,
+                          const std::optional<Number>& orbit) {
+  SourcePointer source;
+  GuessFile guess = read_any(path, names, orbit, source);
+  const Location whole{source, 0, 0};
+  if (!guess.start_q.empty()) {
+    if (guess.duration && !(*guess.duration > 0))
+      throw SceneError(whole, fmt::format("the period is {}; it must be positive", *guess.duration));
+    return guess;
+  }
+  if (guess.t.size() < 2)
+    throw SceneError(whole, fmt::format("found {} samples; need at least 2", guess.t.size()));
+  for (std::size_t k = 1; k < guess.t.size(); ++k)
+    if (!(guess.t[k] > guess.t[k - 1]))
+      throw SceneError(whole,
+                       fmt::format("the times must increase; found {} after {}", guess.t[k], guess.t[k - 1]));
+  if (!guess.duration) guess.duration = guess.t.back() - guess.t.front();
+  return guess;
+}
+
+}  // namespace extremal
