@@ -88,9 +88,9 @@ std::vector<std::string> force_texts(const Study& study) {
   return texts;
 }
 
-std::vector<std::string> constraint_texts(const std::vector<Text>& constraints) {
+std::vector<std::string> as_written(const std::vector<Text>& formulas) {
   std::vector<std::string> texts;
-  for (const Text& constraint : constraints) texts.push_back(constraint.value);
+  for (const Text& formula : formulas) texts.push_back(formula.value);
   return texts;
 }
 
@@ -151,9 +151,12 @@ int check(const CheckArguments& arguments) {
   line("coordinates", coordinates_text(study.system));
   lines("parameters", parameter_texts(study.system));
   lines("forces", force_texts(study));
-  lines("constraints", constraint_texts(study.constraints));
+  lines("constraints", as_written(study.constraints));
   print_ends(study.problem);
   line("duration", duration_text(study.problem.duration));
+  lines("integrals", as_written(study.integrals));
+  lines("unknowns", found.unknowns);
+  lines("waypoints", found.waypoints);
   print_fit(study);
   print_structure(found);
   line("derivatives", fmt::format("against differences of sixth order at {} points, by {} of {} variables",

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +44,11 @@ class ConstrainedEnds {
     for (const bool at_end : {false, true})
       if (fixed(at_end)) meet(at_end);
     if (problem_.initial) return settle_initial();
-    if (problem_.periodic || suits()) return project_free();
+    if (problem_.periodic) return project_free();
+    if (suits()) {
+      if (!suits_nearby()) refuse_degenerate();
+      return project_free();
+    }
     pin_determined();
     if (!suits()) refuse_partly_free();
     project_free();
@@ -167,6 +172,32 @@ class ConstrainedEnds {
     both << z, across;
     const int tangent = free - rank_of(g * z), normal = free + rank_of(across) - rank_of(both);
     return tangent + normal == free;
+  }
+
+  /// The same beside these ends, moved in their free directions. On x² + y² + z² = 1 an end x = 0, y = 1 can
+  /// seem free in z, though it is a single point.
+  bool suits_nearby() {
+    const std::vector<double> start = near_.start, end = near_.end;
+    const MatrixXd z = directions();
+    double step = 0.01 * least_size();
+    for (Index k = 0; k < z.cols(); ++k) {
+      for (int e = 0; e < 2 * n_; ++e) point(e >= n_)[e % n_] += step * z(e, k);
+      step *= -0.9;  // no combination that is special
+    }
+    const bool suited = suits();
+    near_ = {start, end};
+    return suited;
+  }
+
+  [[noreturn]] void refuse_degenerate() const {
+    std::vector<std::string> names;
+    for (const int e : problem_.ends.home)
+      names.push_back(fmt::format("{}({})", problem_.names[e % n_], e < n_ ? "0" : "T"));
+    throw SceneError(
+        place_of(scene_.boundary, problem_.ends.home.front() >= n_),
+        fmt::format("the constraints determine what the ends leave out, but not near the default "
+                    "guess: give {}, or a guess that is nearer to the values that are meant",
+                    fmt::join(names, ", ")));
   }
 
   /// Moves the ends onto the manifold within their relation, and fixes what no virtual displacement moves.

@@ -1,8 +1,10 @@
 #include "study/inspection.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "action/scheme.hpp"
+#include "problem/extension.hpp"
 #include "scene/schema.hpp"
 #include "scene/systems.hpp"
 #include "study/suggestion.hpp"
@@ -24,6 +26,23 @@ std::vector<Inspection::Tape> tapes_of(const Lagrangian& lagrangian) {
   return tapes;
 }
 
+/// Constants to be found, and points in between.
+void read_extension(const Problem& problem, Inspection& found) {
+  if (!problem.extension) return;
+  const Extension& extension = *problem.extension;
+  for (int k = 0; k < extension.unknowns(); ++k)
+    found.unknowns.push_back(fmt::format("{} (from {:.6g})", extension.names[k], extension.guess[k]));
+  for (const WaypointCondition& point : extension.waypoints) {
+    std::vector<std::string> fixed;
+    for (const auto& [a, value] : point.fixed)
+      fixed.push_back(fmt::format("{} = {:.6g}", problem.names[a], value));
+    const std::string time = point.free
+                                 ? fmt::format("t free, from {:.6g}", point.time * problem.duration.value)
+                                 : fmt::format("t = {:.6g}", point.time);
+    found.waypoints.push_back(fmt::format("{}: {}", time, fmt::join(fixed, ", ")));
+  }
+}
+
 }  // namespace
 
 Inspection inspect(const Study& study) {
@@ -43,6 +62,7 @@ Inspection inspect(const Study& study) {
   const Lagrangian* hamiltonian = hamiltonian_of(*study.system.lagrangian);
   found.momenta_solved = hamiltonian != nullptr;
   found.tapes = tapes_of(hamiltonian ? *hamiltonian : *study.system.lagrangian);
+  read_extension(study.problem, found);
   found.derivatives = check_derivatives(study.problem, deadline_of(study));
   if (!study.problem.pair) return found;
   found.forces_autonomous = study.problem.copies->structure().autonomous;

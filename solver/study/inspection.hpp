@@ -28,6 +28,7 @@ struct Inspection {
   };
   std::vector<Tape> tapes;  ///< none for a Lagrangian that is not a tape
   DerivativeCheck derivatives;
+  std::vector<std::string> unknowns = {}, waypoints = {};  ///< of the problem, as text
   bool forces_autonomous = true;                    ///< forces, if there are any, do not depend on t
   std::optional<DerivativeCheck> with_forces = {};  ///< of the Lagrangian of two copies of the coordinates
 };

@@ -192,6 +192,7 @@ Study make_study(const Scene& scene, Purpose purpose) {
   check_parameters_used(scene);
   study.forces = scene.system.force;
   study.constraints = scene.system.constraints;
+  study.integrals = scene.boundary.integrals;
   check_forces(scene);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -243,7 +244,7 @@ class Resolver {
     known.insert(known.end(), {"sum", "pi"});
     const std::string nearest = nearest_name(name, known);
     std::string mend = nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
-    if (nearest.empty() && !call) mend = "; is it a parameter that is not declared?";
+    if (nearest.empty() && !call) mend = "; is it a parameter that is not declared?" + declared_parameters();
     if (nearest.empty() && call) {
       mend = "; known are sum";
       for (const Function& function : functions()) mend += fmt::format(" {}", function.name);
@@ -253,6 +254,16 @@ class Resolver {
     if (name == "t") mend = "; the time cannot stand here";
     if (name == "T") mend = "; T is the duration only in a guess, and in x(T) in a condition";
     stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80), mend));
+  }
+
+  /// The names of parameters, if they are few.
+  std::string declared_parameters() const {
+    constexpr std::size_t few = 8;
+    std::vector<std::string> names;
+    for (const auto& [name, known] : names_.table)
+      if (known.meaning == Meaning::parameter || known.meaning == Meaning::active) names.push_back(name);
+    if (names.empty() || names.size() > few) return {};
+    return fmt::format(" Declared: {}", fmt::join(names, ", "));
   }
 
   /// For p_x where it does not stand for a momentum, and p_y where there is no y.

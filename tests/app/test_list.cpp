@@ -84,6 +84,20 @@ TEST_F(Command, CheckPrintsTheStructure) {
   EXPECT_EQ(o.out.find("not fixed"), std::string::npos) << o.out;
 }
 
+TEST_F(Command, CheckTellsWhatIsAskedOfThePath) {
+  write("scene.toml",
+        "[system]\ncoordinates = ['x', 'y']\nparameters = { k = 1.0 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
+        "k*y^2/2\"\n"
+        "[boundary]\nstart = { x = 0, y = 0 }\nend = { y = 1 }\nduration = 2\nintegrals = ['x*y = "
+        "0.5']\n"
+        "unknowns = { k = 1.0 }\nwhere = ['x(T) = 1']\n[[waypoints]]\nat = 'free'\ny = 0.25\n");
+  const Outcome o = extremal({"check", "scene.toml"});
+  EXPECT_EQ(o.exit, 0) << o.error;
+  EXPECT_NE(o.out.find("integrals      x*y = 0.5\n"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("unknowns       k (from 1)\n"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("waypoints      t free, from "), std::string::npos) << o.out;
+}
+
 TEST_F(Command, ParametersAndNaturalEndsArePrinted) {
   const std::string scene =
       "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { mu = 2, m = [1, 0.5] }\n"

@@ -256,3 +256,20 @@ TEST_F(Scenes, ConstraintsThatDependOnEachOther) {
   EXPECT_EQ(plane("x^2 + y^2 = 4").substr(0, 84),
             "scene.toml:4:34: the gradient of the constraint 'x^2 + y^2 = 4' is made of those of ");
 }
+
+TEST_F(Scenes, AnEndThatConstraintsHoldInASinglePointIsAskedFor) {
+  const auto sphere = [](const std::string& end, const std::string& rest = "") {
+    return "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nconstraints = [\"x^2 + y^2 + z^2 = 1\"]\n"
+           "lagrangian = \"(x'^2 + y'^2 + z'^2)/2 - 9.81*z\"\n[boundary]\n"
+           "start = { x = 1, y = 0, z = 0 }\nend = { " +
+           end + " }\nduration = 0.7\n" + rest;
+  };
+  EXPECT_EQ(
+      message(sphere("x = 0, y = 1")),
+      "scene.toml:7:9: the constraints determine what the ends leave out, but not near the default guess: "
+      "give z(T), or a guess that is nearer to the values that are meant");
+  EXPECT_TRUE(run(study(sphere("x = 0, y = 1, z = 0"))).converged());
+  const Study s = study(sphere("x = 0, y = 0.8", "[guess]\nx = \"1 - t/T\"\ny = \"t/T\"\nz = -0.4\n"));
+  EXPECT_NEAR(s.problem.ends.offset[5], -0.6, 1e-12);
+  EXPECT_TRUE(run(s).converged());
+}

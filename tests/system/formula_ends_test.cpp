@@ -103,7 +103,8 @@ TEST(FormulaEnds, MapsAreAffineInTheCoordinates) {
             "map.x | 0");
   EXPECT_EQ(refused("x'"), "\"x'\" is a velocity; a map is made of coordinates | map.x | 0");
   EXPECT_EQ(refused("x(0)"), "'x' is a coordinate, not a function; write x*(…) to multiply | map.x | 0");
-  EXPECT_EQ(refused("y"), "unknown name 'y'; is it a parameter that is not declared? | map.x | 0");
+  EXPECT_EQ(refused("y"),
+            "unknown name 'y'; is it a parameter that is not declared? Declared: a, m | map.x | 0");
 }
 
 TEST(FormulaEnds, DefinitionsHaveValuesAtTheEnds) {

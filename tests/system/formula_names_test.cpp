@@ -97,7 +97,7 @@ TEST(FormulaNames, UnknownNamesAreMended) {
   };
   EXPECT_EQ(refused("kinetc - mu*x"), "unknown name 'kinetc'; did you mean 'kinetic'? | lagrangian | 0");
   EXPECT_EQ(refused("kinetic - m*x"),
-            "unknown name 'm'; is it a parameter that is not declared? | lagrangian | 10");
+            "unknown name 'm'; is it a parameter that is not declared? Declared: mu | lagrangian | 10");
   EXPECT_EQ(
       refused("x' + T"),
       "unknown name 'T'; T is the duration only in a guess, and in x(T) in a condition | lagrangian | 5");
@@ -147,9 +147,9 @@ TEST(FormulaNames, IndicesOfSumsAreChecked) {
   EXPECT_EQ(refused("sum(i, 1, x, q[i])"),
             "a bound of a sum is made of numbers, parameters and indices only | lagrangian | 10");
   EXPECT_EQ(refused("sum(i, 1, 4, q[i]) + i"),
-            "unknown name 'i'; is it a parameter that is not declared? | lagrangian | 21");
+            "unknown name 'i'; is it a parameter that is not declared? Declared: m | lagrangian | 21");
   EXPECT_EQ(refused("sum(i, 1, i, q[i])"),
-            "unknown name 'i'; is it a parameter that is not declared? | lagrangian | 10");
+            "unknown name 'i'; is it a parameter that is not declared? Declared: m | lagrangian | 10");
   EXPECT_EQ(refused("sum(i, 1, 4, q[i + 1]^2)"),
             "q[5] is out of range: 'q' has 4 elements, counted from 1 (at i = 4) | lagrangian | 13");
   EXPECT_EQ(refused("sum(i, 1, 2, sum(j, i, 2, q[i*j + i]'))"),

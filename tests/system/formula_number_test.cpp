@@ -107,7 +107,8 @@ TEST(FormulaNumber, MalformedFormulasAreRefusedWhereTheyBreak) {
 TEST(FormulaNumber, UnknownNamesAreMended) {
   EXPECT_EQ(refusal("1 + sn(a)"), "unknown function 'sn'; did you mean 'sin'? | duration | 4");
   EXPECT_EQ(refusal("sqr(a)"), "unknown function 'sqr'; did you mean 'sqrt'? | duration | 0");
-  EXPECT_EQ(refusal("q + 1"), "unknown name 'q'; is it a parameter that is not declared? | duration | 0");
+  EXPECT_EQ(refusal("q + 1"),
+            "unknown name 'q'; is it a parameter that is not declared? Declared: a, m, n | duration | 0");
   EXPECT_EQ(
       refusal("besselj(a)"),
       "unknown function 'besselj'; known are sum sin cos tan asin acos atan atan2 sinh cosh tanh exp log "
@@ -187,7 +188,8 @@ TEST(FormulaNumber, GuessesAreTabulated) {
   const auto refused = [&](const std::string& text, int index) {
     return error_of([&] { tabulate(text, parameters, 2, times, index, "guess.x"); });
   };
-  EXPECT_EQ(refused("i*t", 0), "unknown name 'i'; is it a parameter that is not declared? | guess.x | 0");
+  EXPECT_EQ(refused("i*t", 0),
+            "unknown name 'i'; is it a parameter that is not declared? Declared: a, m, n | guess.x | 0");
   EXPECT_EQ(refused("1/t", 0), "the guess is not finite at t = 0 | guess.x | 0");
   EXPECT_EQ(refused("m[i]", 5),
             "m[5] is out of range: 'm' has 4 elements, counted from 1 (at i = 5) | guess.x | 0");
