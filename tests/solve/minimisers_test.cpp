@@ -142,6 +142,17 @@ TEST(Minimisers, Layers) {
   EXPECT_NEAR(long_fall.momentum_start[0], fastest, 1e-6 * fastest);
 }
 
+/// Fastest fall over 10 from y to 5 metres below the level of rest: y = a(1 − cos θ), x = a(θ − sin θ) with
+/// a = 2.5860 takes the time √(a/g) Δθ. Near the level the slope is √(2a/y).
+TEST(Minimisers, FallsFromNearlyRest) {
+  for (const auto& [y, time] : {std::pair(1e-3, 1.7870175119174), std::pair(1e-4, 1.7967802611542)}) {
+    const Problem fall = fixed_ends(
+        trace(1, [](auto q, auto v, auto) { return sqrt((1.0 + v[0] * v[0]) / (2 * 9.81 * q[0])); }), {y},
+        {5}, 10);
+    expect_minimum(solve(fall, within(1e-8)), time, 1e-9);
+  }
+}
+
 /// A path of linear elements at the guess.
 struct Flow {
   explicit Flow(const Problem& given) : problem(given) {

@@ -58,6 +58,20 @@ inline constexpr double rest = 1e-3;
 
 }  // namespace distinct
 
+namespace from_other_ends {
+
+/// Of the way of the ends to their mean: where it begins, where it is as good as at the mean, and where the
+/// ends are as good as those wanted.
+inline constexpr double first_share = 0.5, largest_share = 0.95, least_share = 1e-12;
+/// Of that share, what is left after a step: at first, at least, and where it ends.
+inline constexpr double first_part = 0.5, smallest_part = 0.25, largest_part = 0.97;
+/// The ends wanted are tried where the share is less than so much of that at which they were tried before.
+inline constexpr double nearer_by = 0.25;
+/// Tolerance of paths between, and of the effort of a solve what one may take.
+inline constexpr double between = 1e-6, effort = 0.1;
+
+}  // namespace from_other_ends
+
 namespace from_motions {
 
 /// Of an integrator's step, relative: a guess need not be better.

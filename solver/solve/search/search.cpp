@@ -221,7 +221,7 @@ bool Search::from_other_guesses(GuessKind guess) {
     return true;
   if (by_descent(mesh_) || by_gradient_flow() || from_finer_elements()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
-  if (through_other_durations() || from_line()) return true;
+  if (through_other_durations() || from_line() || through_other_ends()) return true;
   begin();
   if (from_noise(most_noises)) return true;
   begin();
@@ -268,15 +268,16 @@ const Outcome& Search::run(Acceptance* acceptance) {
       result = Refinement::Result::converged;
     } else {
       outcome_.status = Status::iteration_limit;
-      outcome_.message =
-          fmt::format("{} Newton steps from the guess ({}){}{}{} found no extremal; try a better guess or {}",
-                      outcome_.iterations, failure,
-                      met_.contains(Met::other_durations) ? ", through other durations" : "",
-                      met_.contains(Met::noise) ? ", from smooth noise" : "",
-                      met_.contains(Met::motions) ? ", from motions that miss the end" : "",
-                      problem_.duration.energy ? "another one of the duration, or another energy"
-                      : problem_.duration.free ? "another one of the duration"
-                                               : "a shorter duration");
+      outcome_.message = fmt::format(
+          "{} Newton steps from the guess ({}){}{}{}{} found no extremal; try a better guess or {}",
+          outcome_.iterations, failure,
+          met_.contains(Met::other_durations) ? ", through other durations" : "",
+          met_.contains(Met::other_ends) ? ", through other ends" : "",
+          met_.contains(Met::noise) ? ", from smooth noise" : "",
+          met_.contains(Met::motions) ? ", from motions that miss the end" : "",
+          problem_.duration.energy ? "another one of the duration, or another energy"
+          : problem_.duration.free ? "another one of the duration"
+                                   : "a shorter duration");
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message = fmt::format(
