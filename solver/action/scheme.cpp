@@ -91,4 +91,9 @@ Scheme scheme(std::string_view name) {
   return family == "lobatto" ? lobatto(degree) : gauss(degree);
 }
 
+bool suits_phase_space(const Scheme& scheme) {
+  const bool rule = scheme.quadrature == Quadrature::gauss || scheme.quadrature == Quadrature::midpoint;
+  return rule && scheme.points == scheme.degree;
+}
+
 }  // namespace extremal

@@ -30,4 +30,8 @@ Scheme scheme(std::string_view name);
 Scheme lobatto(int degree);
 Scheme gauss(int degree);
 
+/// Whether a scheme is one of phase space too, whatever ∂²H/∂p∂p: Gauss's rule with as many points as
+/// degrees. With more points q' cannot equal ∂H/∂p at all of them; rectangles take q and p at different ends.
+bool suits_phase_space(const Scheme& scheme);
+
 }  // namespace extremal

@@ -130,8 +130,12 @@ const SchemeTables& SchemeTables::of_gauss(int degree) {
   return all.at(degree);
 }
 
+bool uses_gauss(const Lagrangian& lagrangian) {
+  return lagrangian.kinks() != nullptr || lagrangian.structure().first_order;
+}
+
 const SchemeTables& SchemeTables::of_order(int degree, const Lagrangian& lagrangian) {
-  return lagrangian.kinks() ? of_gauss(degree) : of_lobatto(degree);
+  return uses_gauss(lagrangian) ? of_gauss(degree) : of_lobatto(degree);
 }
 
 void ElementTables::bind(const SchemeTables& scheme, const Lagrangian& lagrangian) {

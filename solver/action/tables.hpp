@@ -23,6 +23,11 @@ struct PointTable {
   PointSums view() const { return {start.data(), point.data(), coefficient.data()}; }
 };
 
+/// Whether elements use Gauss's rule, not Lobatto's. Where L has kinks, as it has no point at an end: at a
+/// kink derivatives of L are those of the one side or the other. In phase space, as Hamilton's equations hold
+/// at its points.
+bool uses_gauss(const Lagrangian& lagrangian);
+
 /// Of one scheme with `points` quadrature points; independent of the system.
 struct SchemeTables {
   Scheme scheme;
@@ -42,8 +47,7 @@ struct SchemeTables {
   static const SchemeTables& of_lobatto(int degree);
   /// Of gauss(degree), likewise.
   static const SchemeTables& of_gauss(int degree);
-  /// The rule of order 2·degree for a Lagrangian: Lobatto's, or, where L has kinks, Gauss's, which has no
-  /// point at an end: at a kink derivatives of L are those of the one side or the other.
+  /// The rule of order 2·degree for a Lagrangian: Lobatto's, or Gauss's, see uses_gauss().
   static const SchemeTables& of_order(int degree, const Lagrangian& lagrangian);
 };
 

@@ -79,6 +79,43 @@ std::vector<Factor> factors(const SecondVariation& variation, const MatrixXd& ma
   return result;
 }
 
+/// The same in phase space. Along motions the momenta of the coordinates z = (q, p) are (p, 0), or (p, −q)/2
+/// in the symmetric form: Π z. So the flow takes z_a to z_b with Π z_a = −(A z_a + Bᵀz_b). Variables are
+/// q·unit and p/unit.
+std::vector<Factor> phase_factors(const SecondVariation& variation, const MatrixXd& map,
+                                  const PhaseWeights& weights) {
+  const int n = variation.coordinates() / 2;
+  const double unit = std::sqrt(std::sqrt(weights.velocity / weights.force));
+  MatrixXd momenta = MatrixXd::Zero(2 * n, 2 * n);
+  momenta.topRightCorner(n, n).diagonal().setConstant(weights.symmetric ? 0.5 : 1);
+  if (weights.symmetric) momenta.bottomLeftCorner(n, n).diagonal().setConstant(-0.5);
+  Eigen::VectorXd scale(2 * n);
+  scale << Eigen::VectorXd::Constant(n, unit), Eigen::VectorXd::Constant(n, 1 / unit);
+  const Eigen::VectorXd inverse = scale.cwiseInverse();
+  const auto shift = [&](int k) -> Eigen::VectorXd {
+    return scale.asDiagonal() * variation.shift(k).head(2 * n);
+  };
+  std::vector<Factor> result;
+  for (int k = 0; k < variation.count(); ++k) {
+    const Piece piece = variation.piece(k);
+    const MatrixXd flow = solved(-piece.b.transpose(), piece.a + momenta);
+    const MatrixXd next = scale.asDiagonal() * flow * inverse.asDiagonal();
+    if (result.empty() || result.back().flow.norm() > largest_factor) {
+      const Eigen::VectorXd field = shift(k);
+      if (k > 0) result.back().after = field;
+      result.push_back({next, field, {}});
+    } else {
+      result.back().flow = next * result.back().flow;
+    }
+  }
+  result.back().after = result.front().before;
+  if (map.size() > 0) {
+    const MatrixXd scaled = scale.asDiagonal() * map * inverse.asDiagonal();
+    result.back().flow = solved(scaled, result.back().flow);
+  }
+  return result;
+}
+
 /// On how many parts of the orbit its shift in time is what the flow makes of it: on none where it rests.
 /// Next to a point of rest the error of the orbit may be more than the shift.
 std::ptrdiff_t shifting(const std::vector<Factor>& factors) {
@@ -214,13 +251,15 @@ std::vector<double> doubling_tests(const Floquet& floquet) {
   return tests;
 }
 
-std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {
-  const std::vector<Factor> flow = factors(variation, orbit.map);
+namespace {
+
+/// By the flow of the fields of a motion with so many degrees of freedom.
+std::optional<Floquet> floquet_of(const std::vector<Factor>& flow, int degrees, const ClosedOrbit& orbit) {
   const std::ptrdiff_t parts_shifting = orbit.autonomous ? shifting(flow) : 0;
   const bool shifted = parts_shifting > 0;
   // Across a shift that is not known the flow is not known either. With one degree of freedom nothing is
   // across it.
-  if (shifted && parts_shifting < std::ssize(flow) && variation.coordinates() > 1) return std::nullopt;
+  if (shifted && parts_shifting < std::ssize(flow) && degrees > 1) return std::nullopt;
   std::vector<MatrixXd> parts;
   for (const Factor& factor : flow) parts.push_back(shifted ? factor.across_shift() : factor.flow);
   Collection found;
@@ -246,6 +285,17 @@ std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrb
       found.add_sum(pairs[k], k < trivial ? expected * accuracy : accuracy);
   }
   return found.ordered();
+}
+
+}  // namespace
+
+std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrbit& orbit) {
+  return floquet_of(factors(variation, orbit.map), variation.coordinates(), orbit);
+}
+
+std::optional<Floquet> floquet_in_phase_space(const SecondVariation& variation, const ClosedOrbit& orbit,
+                                              const PhaseWeights& weights) {
+  return floquet_of(phase_factors(variation, orbit.map, weights), variation.coordinates() / 2, orbit);
 }
 
 }  // namespace extremal

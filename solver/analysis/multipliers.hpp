@@ -5,6 +5,7 @@
 
 #include "analysis/variation.hpp"
 #include "solution/floquet.hpp"
+#include "system/phase_space.hpp"
 
 /// \file Floquet multipliers of a periodic orbit from its second variation.
 
@@ -28,6 +29,11 @@ std::optional<Floquet> floquet(const SecondVariation& variation, const ClosedOrb
 /// The same of a system with forces, by the second variation of two copies of its coordinates; `orbit` is of
 /// both. Each multiplier is as good, relative, as the flow along the orbit.
 std::optional<Floquet> floquet_with_forces(const SecondVariation& variation, const ClosedOrbit& orbit);
+
+/// The same in phase space, by the second variation of the Lagrangian of system/phase_space.hpp in the
+/// coordinates (q, p): those of the flow in (q, p) alone.
+std::optional<Floquet> floquet_in_phase_space(const SecondVariation& variation, const ClosedOrbit& orbit,
+                                              const PhaseWeights& weights);
 
 /// Largest modulus first; those of equal moduli by |argument|, the positive one first.
 void sort_multipliers(Floquet& floquet);

@@ -14,6 +14,7 @@
 #include "report/text.hpp"
 #include "study/annotation.hpp"
 #include "study/fitting.hpp"
+#include "study/phase.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
@@ -116,7 +117,7 @@ void check_ephemeris(const Study& study) {
     throw OptionError(fmt::format(
         "--oem: {} has no [units]; give length in km, time in s, frame, centre and epoch", study.scene));
   try {
-    check_oem(study.problem.names);
+    check_oem(coordinate_names(study.problem));
   } catch (const std::invalid_argument& e) {
     throw OptionError(fmt::format("--oem: {}", e.what()));
   }
@@ -156,7 +157,7 @@ int solve(const SolveArguments& a) {
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
   const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
 
-  Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
+  Result result{study.title, coordinate_names(study.problem), {}, study.seconds_read, std::nullopt};
   result.natural_conditions = natural_conditions(study.problem);
   {
     const ProgressLine progress(!a.quiet && a.repeat == 1);

@@ -9,6 +9,7 @@
 #include "report/plot.hpp"
 #include "report/text.hpp"
 #include "study/fitting.hpp"
+#include "study/phase.hpp"
 #include "study/study.hpp"
 
 namespace extremal::app {
@@ -17,7 +18,7 @@ int spectrum(const CompareArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
   Study study = load(a.scene, a.sets, Purpose::solution);
   outputs.keep(study.files);
-  Result result{study.title, study.problem.names, {}, study.seconds_read, std::nullopt};
+  Result result{study.title, coordinate_names(study.problem), {}, study.seconds_read, std::nullopt};
   result.natural_conditions = natural_conditions(study.problem);
   result.solution = study.fit ? run_fit(study).solution : run(study);
   const bool converged = result.solution.converged();

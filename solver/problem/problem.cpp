@@ -8,6 +8,7 @@
 
 #include "problem/copies.hpp"
 #include "problem/extension.hpp"
+#include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
 #include "problem/reduction.hpp"
 
@@ -120,6 +121,19 @@ Problem at_other_multipliers(const Problem& problem) {
   return result;
 }
 
+void check_phase_space(const Problem& problem) {
+  if (!problem.phase) return;
+  require(problem.coordinates() % 2 == 0, "{} coordinates in phase space; need an even number",
+          problem.coordinates());
+  require(!problem.infinite, "H_pp is singular: ends at infinity are not available in phase space");
+}
+
+/// In phase space: with the Lagrangian that symmetries leave unchanged.
+Problem without_squares(Problem problem) {
+  problem.lagrangian = problem.phase->bare;
+  return problem;
+}
+
 /// Those that leave both equilibria where they are.
 std::vector<Generator> symmetries_about_rest(const Problem& problem) {
   std::vector<Generator> found = continuous_symmetries(problem);
@@ -169,8 +183,11 @@ Problem make_problem(Problem problem) {
     if (problem.periodic) problem.symmetries = continuous_symmetries(other);
     return problem;
   }
-  check_recurrence(problem);
-  if (problem.periodic) problem.symmetries = continuous_symmetries(problem);
+  check_phase_space(problem);
+  const Problem invariant = problem.phase ? without_squares(problem) : problem;
+  check_recurrence(invariant);
+  if (problem.periodic)
+    problem.symmetries = problem.phase ? phase_symmetries(problem) : continuous_symmetries(problem);
   if (problem.infinite && problem.infinite->both()) problem.symmetries = symmetries_about_rest(problem);
   if (problem.paired)
     problem.symmetries = symmetries_of_copies(problem.symmetries);

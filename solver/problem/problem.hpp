@@ -98,6 +98,7 @@ struct InfiniteEnds {
 
 struct Reduction;
 struct Extension;
+struct PhaseSpace;
 
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
 struct Problem {
@@ -109,6 +110,9 @@ struct Problem {
   /// With constraints: their manifold. `lagrangian` is then L̃ of system/constraints.hpp. Null: there are
   /// none.
   std::shared_ptr<const Manifold> manifold;
+  /// In phase space: the coordinates are (q, p), and `lagrangian` is that of phase_space.hpp. Null: they are
+  /// not.
+  std::shared_ptr<const PhaseSpace> phase;
   std::vector<std::string> names;  ///< of the coordinates: "x", "q[1]"
   BoundaryRelation boundary;
   EndMap ends;                        ///< of `boundary`
@@ -126,6 +130,8 @@ struct Problem {
   std::optional<InfiniteEnds> infinite;
 
   int coordinates() const { return boundary.coordinates; }
+  /// Coordinates without momenta, which follow them in phase space.
+  int degrees_of_freedom() const { return phase ? coordinates() / 2 : coordinates(); }
   /// What the equations of motion are made of: they depend on t where this does.
   const Lagrangian& motion() const { return copies ? *copies : *lagrangian; }
   int motion_copies() const { return copies ? 2 : 1; }  ///< of the coordinates there

@@ -184,6 +184,9 @@ py::dict PyStudy::solve_many(const std::optional<Doubles>& start, const std::opt
                              const std::optional<Doubles>& duration, std::optional<double> tolerance,
                              int threads) const {
   const Problem& scene = study_->problem;
+  if (scene.phase)
+    throw std::invalid_argument(
+        "solve_many needs a Hamiltonian whose second derivative by the momenta is regular; solve one by one");
   const py::ssize_t n = scene.coordinates();
   const py::ssize_t m = static_cast<py::ssize_t>(rows_of(start, end, duration, scene.coordinates()));
   if (threads < 1) throw std::invalid_argument(fmt::format("threads = {}; need at least 1", threads));

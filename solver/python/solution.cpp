@@ -27,7 +27,8 @@ using Times = std::optional<Doubles>;
 std::vector<double> list(const Doubles& array) { return {array.data(), array.data() + array.size()}; }
 
 Result result_of(const Solved& s) {
-  Result result{s.study->title, s.study->problem.names, s.solution, s.study->seconds_read, std::nullopt};
+  Result result{s.study->title, coordinate_names(s.study->problem), s.solution, s.study->seconds_read,
+                std::nullopt};
   result.natural_conditions = natural_conditions(s.study->problem);
   return result;
 }
@@ -43,12 +44,14 @@ std::string json(const Solved& s, const Times& times) {
 }
 
 py::bytes npz(const Solved& s, const Doubles& times) {
-  return npz_text(sample(s.study->problem, s.solution.trajectory, list(times)), s.study->problem.names);
+  return npz_text(sample(s.study->problem, s.solution.trajectory, list(times)),
+                  coordinate_names(s.study->problem));
 }
 
 std::string csv(const Solved& s, const Doubles& times) {
   return text_of([&](std::ostream& out) {
-    write_csv(out, sample(s.study->problem, s.solution.trajectory, list(times)), s.study->problem.names);
+    write_csv(out, sample(s.study->problem, s.solution.trajectory, list(times)),
+              coordinate_names(s.study->problem));
   });
 }
 
@@ -56,7 +59,7 @@ std::string oem(const Solved& s, const Doubles& times) {
   const Study& study = *s.study;
   if (!study.units)
     throw std::invalid_argument("the problem has no units; give length, time, frame, centre and epoch");
-  return oem_text(*study.units, study.title, study.problem.names,
+  return oem_text(*study.units, study.title, coordinate_names(study.problem),
                   sample(study.problem, s.solution.trajectory, list(times)));
 }
 
@@ -84,16 +87,21 @@ enum class Quantity { position, velocity, momentum };
 
 /// (m, n) at m times.
 py::array_t<double> at(const Solved& s, const Doubles& times, Quantity quantity) {
-  const std::size_t n = s.study->problem.coordinates(), m = times.size();
+  const std::size_t n = s.study->problem.degrees_of_freedom(), m = times.size();
   py::array_t<double> values({m, n});
   double* const out = values.mutable_data();
   const double* const t = times.data();
   const py::gil_scoped_release unlocked;
-  std::vector<double> other(n), third(n);
+  std::vector<double> other(n), third(n), fourth(n);
   Scratch scratch;
   for (std::size_t k = 0; k < m; ++k) {
     const std::span<double> wanted(out + k * n, n);
-    if (quantity == Quantity::position)
+    if (s.study->problem.phase) {
+      const std::span<double> q = quantity == Quantity::position ? wanted : std::span<double>(other),
+                              v = quantity == Quantity::velocity ? wanted : std::span<double>(third),
+                              p = quantity == Quantity::momentum ? wanted : std::span<double>(fourth);
+      phase_point(s.study->problem, s.solution.trajectory, t[k], q, v, p, scratch);
+    } else if (quantity == Quantity::position)
       s.solution.trajectory.at(t[k], wanted, other);
     else if (quantity == Quantity::velocity)
       s.solution.trajectory.at(t[k], other, wanted);
@@ -168,7 +176,7 @@ void bind_solution(py::module_& module) {
       .def_property_readonly("converged", [](const Solved& s) { return s.solution.converged(); })
       .def_property_readonly("duration", [](const Solved& s) { return s.solution.duration(); })
       .def_property_readonly("elements", [](const Solved& s) { return s.solution.trajectory.elements(); })
-      .def_property_readonly("names", [](const Solved& s) { return s.study->problem.names; });
+      .def_property_readonly("names", [](const Solved& s) { return coordinate_names(s.study->problem); });
   value("message", &Solution::message);
   value("strategy", &Solution::strategy);
   value("action", &Solution::action);

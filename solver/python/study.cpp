@@ -10,6 +10,7 @@
 #include "python/run.hpp"
 #include "solution/extension_values.hpp"
 #include "study/continued.hpp"
+#include "study/phase.hpp"
 
 namespace extremal::python {
 
@@ -115,7 +116,7 @@ void bind_study(py::module_& module) {
       .def(py::init<const std::string&, const std::string&, bool>(), py::arg("text"), py::arg("name"),
            py::arg("family") = false)
       .def_property_readonly("title", [](const PyStudy& s) { return s.study().title; })
-      .def_property_readonly("names", [](const PyStudy& s) { return s.study().problem.names; })
+      .def_property_readonly("names", [](const PyStudy& s) { return coordinate_names(s.study().problem); })
       .def_property_readonly("coordinates",
                              [](const PyStudy& s) {
                                py::list list;

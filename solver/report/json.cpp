@@ -213,7 +213,8 @@ class Fields {
     std::vector<double> column(trajectory.times.size());
     for (std::size_t a = 0; a < n; ++a) {
       for (std::size_t k = 0; k < column.size(); ++k) column[k] = value(static_cast<int>(k), a);
-      list(result_.names[a], column);
+      const std::size_t names = result_.names.size();  // in phase space momenta follow
+      list(a < names ? result_.names[a] : momentum_key(result_.names[a - names]), column);
     }
     if (!result_.solution.element_energies.empty()) list("energy", result_.solution.element_energies);
     append(object_, "nodes", std::move(object));

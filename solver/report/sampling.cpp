@@ -30,7 +30,7 @@ std::vector<double> equal_times(int count, double duration) {
 }
 
 Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times) {
-  const std::size_t n = problem.coordinates();
+  const std::size_t n = problem.degrees_of_freedom();
   const std::vector<Column> columns(n, Column(times.size()));
   Samples samples{times, columns, columns, columns, {}};
   std::vector<double> q(n), v(n), p(n);

@@ -48,7 +48,7 @@ constexpr KeyRecord keys[] = {
      R"(lagrangian = "(x'^2 + y'^2)/2 + mu/r")"},
     {"system", "hamiltonian", Kind::text, "none",
      "Instead of `lagrangian`: formula of H in coordinates, momenta (`p_x`, `p_x[i]`), `t`, parameters and "
-     "definitions. ∂²H/∂p∂p must be regular.",
+     "definitions.",
      R"(hamiltonian = "(p_x^2 + p_y^2)/2 - mu/r")"},
     {"system", "force", Kind::quantities, "none",
      "Forces F that no Lagrangian has: d/dt ∂L/∂q' − ∂L/∂q = F. A formula of coordinates, velocities, `t`, "
@@ -122,7 +122,8 @@ constexpr KeyRecord keys[] = {
      "which the guess is given, from t = 0.",
      "duration = 2.4"},
     {"guess", "*", Kind::quantities, "the line between the ends",
-     "Formula of `t`, `T` and parameters; for an array one for each element, or one in the index `i`.",
+     "Formula of `t`, `T` and parameters; for an array one for each element, or one in the index `i`. With a "
+     "`hamiltonian` also of a momentum `p_x`.",
      "x = \"cos(2*pi*(t/T + i/3))\""},
 
     {"solve", "tolerance", Kind::number, "1e-9",

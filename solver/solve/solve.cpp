@@ -12,9 +12,11 @@
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
 #include "solve/bordered/bordered_solve.hpp"
+#include "solve/guessed_by.hpp"
 #include "solve/infinite_solve.hpp"
 #include "solve/march/initial_motion.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
+#include "solve/phase_space_solve.hpp"
 #include "solve/search/distinct.hpp"
 #include "solve/search/search.hpp"
 #include "solve/search/several.hpp"
@@ -27,25 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 /// Of the time there is, where what a search finds is then to be solved for with a scheme.
 constexpr double search_share = 0.7;
-
-/// The problem with a solution as its guess.
-Problem guessed_by(const Problem& problem, const Solution& solution) {
-  const Trajectory& trajectory = solution.trajectory;
-  const std::size_t n = problem.coordinates();
-  Problem result = problem;
-  result.duration.value = trajectory.duration();
-  result.guess = {};
-  result.reduction = nullptr;
-  std::vector<double> q(n), v(n);
-  const int points = trajectory.degree * trajectory.elements();
-  for (int k = 0; k <= points; ++k) {
-    const double tau = static_cast<double>(k) / points;
-    trajectory.at(tau * trajectory.duration(), q, v);
-    result.guess.tau.push_back(tau);
-    result.guess.q.insert(result.guess.q.end(), q.begin(), q.end());
-  }
-  return result;
-}
 
 /// Newton's method on the part of an orbit that its symmetries leave to be found, continued to the whole.
 Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Workspace& w) {
@@ -132,6 +115,24 @@ Solution solve_any(const Problem& problem, const SolveOptions& options, Workspac
                         });
 }
 
+/// In phase space; from the guess alone first, by the part of a symmetric orbit or the whole.
+Solution solve_phase_space(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  return solve_in_phase_space(problem, options,
+                              [&w](const Problem& given, const SolveOptions& how, bool near_guess) {
+                                if (!near_guess || given.initial || how.scheme)
+                                  return solve_once(given, how, w);
+                                int spent = 0;
+                                if (given.reduction) {
+                                  w.levels.bind(given.lagrangian);
+                                  if (auto solution = solve_by_part(given, how, w, Clock::now(), spent))
+                                    return *std::move(solution);
+                                }
+                                Solution solution = solve_finite(given, how, w, true);
+                                solution.iterations += spent;
+                                return solution;
+                              });
+}
+
 }  // namespace
 
 struct Solver::Memory {
@@ -153,15 +154,17 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.push_back(step);
     if (options.progress) options.progress(step);
   };
+  Workspace& w = memory_->workspace;
   Solution solution = problem.extension ? solve_bordered(problem, recording)
-                                        : solve_any(problem, recording, memory_->workspace);
+                      : problem.phase   ? solve_phase_space(problem, recording, w)
+                                        : solve_any(problem, recording, w);
   if (problem.manifold) move_onto_manifold(problem, solution);
   solution.history = std::move(history);
   return solution;
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
-  if (problem.initial || problem.extension) return {solve(problem, options)};
+  if (problem.initial || problem.extension || problem.phase) return {solve(problem, options)};
   if (problem.pair) {
     std::vector<Solution> found = solve_all(*problem.pair, options, most);
     for (Solution& solution : found)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "linear/dense.hpp"
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -54,6 +55,16 @@ EndEntries read_entries(const std::vector<Assignment>& table, const char* end, c
   return entries;
 }
 
+/// In phase space momenta are coordinates: those that are given stand beside what is given of q.
+EndEntries with_momenta(const EndEntries& entries) {
+  const std::size_t n = entries.size() / 2;
+  EndEntries result(entries.begin(), entries.begin() + static_cast<std::ptrdiff_t>(n));
+  for (std::size_t a = 0; a < n; ++a) result[a].momentum = entries[n + a].value;
+  for (std::size_t a = 0; a < n; ++a)
+    if (result[a].momentum) result[a].index = entries[n + a].index;
+  return result;
+}
+
 bool has_both(const EndEntry& e) { return e.value && e.momentum; }
 
 /// Every coordinate and every momentum at the start, which determine the motion.
@@ -94,7 +105,13 @@ void fix_end(const EndEntries& entries, bool at_end, const System& system, Place
       placed.rows.push_back(entry.value->at);
     }
     if (!entry.momentum) continue;
-    placed.relation.give_momentum(coordinate, at_end, evaluate(*entry.momentum, system, entry.index));
+    const double momentum = evaluate(*entry.momentum, system, entry.index);
+    placed.relation.give_momentum(coordinate, at_end, momentum);
+    if (system.hamiltonian) {
+      placed.relation.fix(static_cast<int>(entries.size() + k), at_end, momentum);
+      placed.rows.push_back(entry.momentum->at);
+      continue;
+    }
     placed.momentum_given.resize(2 * entries.size());
     placed.momentum_given[at_end ? entries.size() + k : k] = true;
   }
@@ -109,6 +126,15 @@ void read_initial_data(const EndEntries& start, const System& system, PlacedRela
     placed.relation.fix(static_cast<int>(k), false, placed.initial->q.back());
     placed.rows.push_back(entry.value->at);
   }
+  if (!system.hamiltonian) return;
+  // The coordinates are (q, p), and their momenta (p, 0).
+  InitialData& data = *placed.initial;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    placed.relation.fix(static_cast<int>(start.size() + k), false, data.p[k]);
+    placed.rows.push_back(start[k].momentum->at);
+  }
+  data.q.insert(data.q.end(), data.p.begin(), data.p.end());
+  data.p.resize(data.q.size());
 }
 
 void add_condition(const Text& text, const System& system, PlacedRelation& relation) {
@@ -117,6 +143,11 @@ void add_condition(const Text& text, const System& system, PlacedRelation& relat
   if (!equation.affine)  // at another value of a parameter
     throw SceneError(position(text, 0),
                      "a condition that is linear in the end values must stay so along a family");
+  const auto momenta = static_cast<int>(system.names.size() / 2);
+  for (const Triplet& entry : equation.coefficients)
+    if (system.hamiltonian && entry.column % (2 * momenta) >= momenta)
+      throw SceneError(position(text, 0),
+                       "conditions relate coordinates; momenta are given by 'start' and 'end' alone");
   const int row = relation.relation.add_row(-equation.constant);
   for (const Triplet& entry : equation.coefficients) relation.relation.add(row, entry.column, entry.value);
   relation.rows.push_back(position(text, 0));
@@ -140,6 +171,32 @@ AffineForm read_form(const Quantity& value, const System& system, int index) {
   return placed(text, [&](const std::string& s) { return affine_form(s, system, "map", index); });
 }
 
+/// p(T) = R⁻ᵀ p(0) where q(T) = R q(0) + c and the map names no momentum.
+void close_momenta(const BoundaryTable& boundary, const System& system, Closure& closure) {
+  const auto n = static_cast<int>(closure.size() / 2);
+  for (const Assignment& line : boundary.map)
+    if (range_of(line.name, line.name_at, system).first >= n) return;
+  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(n, n);
+  for (int a = 0; a < n; ++a)
+    for (const Triplet& entry : closure[a].coefficients) {
+      if (entry.column >= n)
+        throw SceneError(
+            boundary.map.front().name_at,
+            "the map takes momenta to coordinates; write what becomes of the momenta as well, as "
+            "p_x = \"-x\"");
+      map(a, entry.column) += entry.value;
+    }
+  if (map.isIdentity(0)) return;
+  const Eigen::MatrixXd inverse = solved(map.transpose(), Eigen::MatrixXd::Identity(n, n));
+  if (!inverse.allFinite())
+    throw SceneError(boundary.map.front().name_at, "the map is singular; it must be invertible");
+  for (int a = 0; a < n; ++a) {
+    closure[n + a] = {};
+    for (int b = 0; b < n; ++b)
+      if (inverse(a, b) != 0) closure[n + a].coefficients.push_back({0, n + b, inverse(a, b)});
+  }
+}
+
 }  // namespace
 
 Closure read_closure(const BoundaryTable& boundary, const System& system) {
@@ -149,6 +206,7 @@ Closure read_closure(const BoundaryTable& boundary, const System& system) {
     for_each_value(
         line, range_of(line.name, line.name_at, system),
         [&](int a, const Quantity& value, int index) { closure[a] = read_form(value, system, index); });
+  if (system.hamiltonian) close_momenta(boundary, system, closure);
   return closure;
 }
 
@@ -159,8 +217,12 @@ PlacedRelation read_relation(const BoundaryTable& boundary, const System& system
     add_closure(boundary, system, placed);
     return placed;
   }
-  const EndEntries start = read_entries(boundary.start, "start", system),
-                   end = read_entries(boundary.end, "end", system);
+  EndEntries start = read_entries(boundary.start, "start", system),
+             end = read_entries(boundary.end, "end", system);
+  if (system.hamiltonian) {
+    start = with_momenta(start);
+    end = with_momenta(end);
+  }
   if (are_initial_data(start, end, system)) {
     read_initial_data(start, system, placed);
     return placed;

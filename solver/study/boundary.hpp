@@ -15,7 +15,7 @@ namespace extremal {
 struct PlacedRelation {
   BoundaryRelation relation;
   std::vector<Location> rows;
-  std::vector<char> momentum_given;  ///< 2n: the momentum of the end is given, zero or not; or empty
+  std::vector<char> momentum_given;    ///< 2n: the momentum of the end is given, zero or not; or empty
   std::optional<InitialData> initial;  ///< the relation fixes q(0) then
 };
 

@@ -8,7 +8,6 @@
 #include "linear/dense.hpp"
 #include "machine/simd.hpp"
 #include "problem/nearby.hpp"
-#include "system/formula.hpp"
 #include "system/hamiltonian.hpp"
 
 namespace extremal {
@@ -81,13 +80,8 @@ bool is_length(const Problem& problem) {
                       problem.names[coordinate]));
 }
 
-[[noreturn]] void refuse_singular(const Problem& problem, int coordinate, const Location& at) {
-  const std::string momentum = "p_" + problem.names[coordinate];
-  throw SceneError(at, singular_hamiltonian({&momentum, 1}));
-}
-
-/// H_pp at points about the guess, with momenta of any size.
-void check_hamiltonian(const Problem& problem, const Lagrangian& hamiltonian, const Location& at) {
+/// Whether H_pp is regular, with one signature, at points about the guess, with momenta of any size.
+bool is_regular(const Problem& problem, const Lagrangian& hamiltonian) {
   constexpr double sizes[] = {1, 0.1, 10};
   const int n = problem.coordinates();
   NearbyPoints points(problem);
@@ -103,14 +97,51 @@ void check_hamiltonian(const Problem& problem, const Lagrangian& hamiltonian, co
     ++found;
     if (!(regularity(mass, weak) > singular)) continue;
     const auto negative = static_cast<int>((symmetric_eigenvalues(mass).array() < 0).count());
-    if (first >= 0 && negative != first)
-      throw SceneError(at, fmt::format("H_pp changes its signature: it has {} and {} negative eigenvalues at "
-                                       "two points near the guess, so that several momenta have the same "
-                                       "velocity; such Hamiltonians are not available yet",
-                                       std::min(first, negative), std::max(first, negative)));
+    if (first >= 0 && negative != first) return false;
     first = negative;
   }
-  if (found > 0 && first < 0) refuse_singular(problem, weak, at);
+  return found == 0 || first >= 0;
+}
+
+/// Whether H_pp is finite and singular where momenta vanish, as that of p^4 is, or at initial data: motions
+/// come there.
+bool is_singular_at_rest(const Problem& problem, const Lagrangian& hamiltonian) {
+  const int n = problem.coordinates();
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, p;
+  const auto singular_at = [&](const std::vector<double>& momenta, double t) {
+    int weak = 0;
+    const PointValues values = evaluate_at(hamiltonian, q, momenta, t, Order::hessian, scratch);
+    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
+    return mass.allFinite() && !(regularity(mass, weak) > singular);
+  };
+  if (problem.initial) {
+    q = problem.initial->q;
+    if (singular_at(problem.initial->p, 0)) return true;
+  }
+  const double t = points.next(q, p);
+  return singular_at(std::vector<double>(n, 0), t);
+}
+
+/// A coordinate whose velocity the momenta do not determine near the guess, or -1.
+int irregular(const Problem& problem) {
+  constexpr int needed = 3;
+  const int n = problem.coordinates(), without = massless(problem.lagrangian->structure());
+  if (without >= 0 || n > largest_dense) return without;
+  NearbyPoints points(problem);
+  Scratch scratch;
+  std::vector<double> q, v;
+  int found = 0, weak = 0;
+  for (int k = 0; k < tries && found < needed; ++k) {
+    const double t = points.next(q, v);
+    const PointValues values = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
+    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
+    if (!mass.allFinite()) continue;
+    if (regularity(mass, weak) > singular) return -1;
+    ++found;
+  }
+  return found == 0 ? -1 : weak;
 }
 
 std::string point_text(const Problem& problem, const double* q) {
@@ -187,28 +218,14 @@ void check_guess_finite(const Problem& problem, const Location& at) {
 }
 
 void check_regular(const Problem& problem, const SystemTable& system) {
-  constexpr int needed = 3;
-  const Location& at = system.law().at;
-  const int n = problem.coordinates(), without = massless(problem.lagrangian->structure());
-  if (without >= 0) refuse_irregular(problem, without, at);
-  if (n > largest_dense) return;
-  if (const Lagrangian* hamiltonian = hamiltonian_of(*problem.lagrangian))
-    return check_hamiltonian(problem, *hamiltonian, at);
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, v;
-  int found = 0, weak = 0;
-  for (int k = 0; k < tries && found < needed; ++k) {
-    const double t = points.next(q, v);
-    const PointValues values = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
-    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
-    if (!mass.allFinite()) continue;
-    if (regularity(mass, weak) > singular) return;
-    ++found;
-  }
-  if (found == 0) return;
-  if (system.hamiltonian) refuse_singular(problem, weak, at);
-  refuse_irregular(problem, weak, at);
+  if (system.hamiltonian) return;
+  if (const int found = irregular(problem); found >= 0) refuse_irregular(problem, found, system.law().at);
+}
+
+bool has_legendre_transform(const Problem& problem) {
+  const Lagrangian* hamiltonian = hamiltonian_of(*problem.lagrangian);
+  if (!hamiltonian || problem.coordinates() > largest_dense) return irregular(problem) < 0;
+  return is_regular(problem, *hamiltonian) && !is_singular_at_rest(problem, *hamiltonian);
 }
 
 void check_energy_at_ends(const Problem& problem, const Location& at) {
@@ -244,6 +261,10 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
 }
 
 void check_free_steps(const Problem& problem, const Location& at) {
+  if (problem.phase)
+    throw SceneError(at,
+                     "free steps need a Hamiltonian whose second derivative by the momenta is regular; leave "
+                     "'steps' out");
   if (!problem.lagrangian->structure().autonomous)
     throw SceneError(at,
                      "free steps give all elements the same energy, which is not conserved where L depends "

@@ -54,7 +54,8 @@ class Comparer {
     if (study_.problem.initial) return run_motions();
     std::vector<ShootingMethod> shooting(std::begin(shooting_methods), std::end(shooting_methods));
     std::erase_if(shooting, [this](const ShootingMethod& method) {
-      return study_.problem.coordinates() > method.most_coordinates;
+      // In phase space shooting would look for q' and p', which Hamilton's equations give.
+      return study_.problem.phase || study_.problem.coordinates() > method.most_coordinates;
     });
     int parties = 2 + static_cast<int>(shooting.size());
     share_among(parties--);

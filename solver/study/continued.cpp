@@ -9,6 +9,7 @@
 
 #include "problem/copies.hpp"
 #include "problem/manifold.hpp"
+#include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
 #include "solution/on_manifold.hpp"
 #include "study/boundary.hpp"
@@ -76,6 +77,7 @@ class VariedScene {
   VariedScene(const Scene& scene, Problem problem, std::string parameter)
       : scene_(scene),
         near_(end_points(problem)),
+        guess_(problem.guess),
         problem_(std::move(problem)),
         parameter_(std::move(parameter)) {
     problem_.guess = {};
@@ -83,9 +85,11 @@ class VariedScene {
 
   Problem at(double value) {
     find_parameter(scene_.system, parameter_)->values.front().value = value;
-    const System system = make_system(scene_.system);
+    const System system =
+        make_system(scene_.system, {}, problem_.phase ? Formulation::phase_space : Formulation::legendre);
     Problem problem = problem_;
     problem.lagrangian = system.lagrangian;
+    if (problem.phase) set_phase_space(*system.hamiltonian, problem, problem_.phase.get());
     problem.copies = system.copies;
     set_relation(scene_.boundary, system, problem);
     problem.duration = read_duration(scene_.boundary, system);
@@ -94,12 +98,23 @@ class VariedScene {
       EndPoints near = near_;
       settle_ends(scene_, near, problem);
     }
+    if (problem.phase && problem.periodic) find_symmetries(problem);
     return problem;
   }
 
  private:
+  /// Those of phase space may depend on the parameter.
+  void find_symmetries(Problem& problem) const {
+    Problem invariant = problem;
+    invariant.guess = guess_;
+    if (invariant.duration.free) invariant.duration.value = problem_.duration.value;
+    std::vector<Generator> found = phase_symmetries(invariant);
+    if (found.size() == problem_.symmetries.size()) problem.symmetries = std::move(found);
+  }
+
   Scene scene_;
   EndPoints near_;  ///< where the family begins
+  Guess guess_;
   Problem problem_;
   std::string parameter_;
 };
@@ -119,6 +134,7 @@ void check_recurrence_along(VariedScene& varied, const Problem& problem, const C
     at.guess = problem.guess;
     if (at.duration.free) at.duration.value = problem.duration.value;
     try {
+      if (at.phase) at.lagrangian = at.phase->bare;
       check_recurrence(at.copies ? pair_of(at) : at);
     } catch (const RecurrenceError& e) {
       throw SceneError(

@@ -7,6 +7,7 @@
 
 #include "scene/schema.hpp"
 #include "study/files/guess_file.hpp"
+#include "study/guess_momenta.hpp"
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -50,6 +51,28 @@ void fill_formula(const Quantity& quantity, int a, int index, const System& syst
   for (std::size_t k = 0; k < times.size(); ++k) guess.q[k * n + a] = values[k];
 }
 
+/// Whether "p_x" names the momentum of a coordinate.
+bool is_momentum(const std::string& name, const System& system) {
+  if (!name.starts_with("p_")) return false;
+  const auto named = [&](const std::string& stem) {
+    return std::ranges::any_of(system.coordinates, [&](const Coordinate& c) { return c.name == stem; });
+  };
+  const std::string stem = name.substr(0, name.find_first_of("['"));
+  return system.hamiltonian ? named(stem) : !named(stem) && named(stem.substr(2));
+}
+
+/// Of phase space: which momenta the guess gives.
+std::vector<char> given_momenta(const GuessTable& table, const System& system) {
+  const std::size_t n = system.names.size() / 2;
+  std::vector<char> given(n, 0);
+  for (const Assignment& a : table.formulas) {
+    if (!is_momentum(a.name, system)) continue;
+    const Range range = range_of(a.name, a.name_at, system);
+    std::fill_n(given.begin() + range.first - static_cast<int>(n), range.count, 1);
+  }
+  return given;
+}
+
 void tabulate_formulas(const GuessTable& table, const System& system, Problem& problem) {
   const int n = problem.coordinates();
   Guess& guess = problem.guess;
@@ -57,6 +80,7 @@ void tabulate_formulas(const GuessTable& table, const System& system, Problem& p
   guess.q.resize(guess.tau.size() * n);
   fill_default(problem.ends, guess);
   for (const Assignment& a : table.formulas) {
+    if (!system.hamiltonian && is_momentum(a.name, system)) continue;
     const Range range = range_of(a.name, a.name_at, system, keys_of("guess"));
     for_each_value(a, range, [&](int coordinate, const Quantity& q, int index) {
       fill_formula(q, coordinate, index, system, problem.duration.value, guess);
@@ -81,6 +105,32 @@ std::vector<Assignment> state_of(const GuessFile& file, const System& system, co
   return state;
 }
 
+/// In phase space a file may have coordinates alone: momenta are then zero, and to be completed.
+GuessFile read_states(const GuessTable& table, const std::string& path, const System& system,
+                      bool& incomplete) {
+  if (!system.hamiltonian) return read_guess_file(path, system.names, table.orbit);
+  const std::size_t n = system.names.size() / 2;
+  GuessFile file;
+  try {
+    file = read_guess_file(path, system.names, table.orbit);
+  } catch (const SceneError&) {
+    incomplete = true;
+    file = read_guess_file(path, {system.names.begin(), system.names.begin() + static_cast<int>(n)},
+                           table.orbit);
+  }
+  if (!file.start_q.empty())
+    throw SceneError(table.file->at,
+                     "this file gives a state by velocities, which do not determine the momenta of this "
+                     "Hamiltonian; give 'state' with momenta, or a path");
+  if (!incomplete) return file;
+  std::vector<double> states(file.t.size() * 2 * n, 0);
+  for (std::size_t k = 0; k < file.t.size(); ++k)
+    std::copy_n(file.q.begin() + static_cast<std::ptrdiff_t>(k * n), n,
+                states.begin() + static_cast<std::ptrdiff_t>(2 * k * n));
+  file.q = std::move(states);
+  return file;
+}
+
 double guessed_duration(const GuessTable& table, const System& system, std::optional<double> of_file) {
   if (!table.duration && !of_file)
     throw SceneError(table.file->at, "this file does not tell a duration; give 'duration' in [guess]");
@@ -93,6 +143,13 @@ double guessed_duration(const GuessTable& table, const System& system, std::opti
 
 }  // namespace
 
+bool names_momenta(const GuessTable& table, const System& system) {
+  const auto any = [&](const std::vector<Assignment>& values) {
+    return std::ranges::any_of(values, [&](const Assignment& a) { return is_momentum(a.name, system); });
+  };
+  return any(table.formulas) || (table.state && any(*table.state));
+}
+
 std::string beside(const std::string& scene, const std::string& file) {
   return (std::filesystem::path(scene).parent_path() / file).string();
 }
@@ -101,14 +158,22 @@ void read_guess(const Scene& scene, const System& system, const Deadline& deadli
   const GuessTable& table = scene.guess;
   if (table.file) {
     if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
-    GuessFile file = read_guess_file(beside(scene.path, table.file->value), system.names, table.orbit);
+    bool incomplete = false;
+    GuessFile file = read_states(table, beside(scene.path, table.file->value), system, incomplete);
     if (problem.duration.free || scene.boundary.infinite)
       problem.duration.value = guessed_duration(table, system, file.duration);
-    if (file.start_q.empty()) return use_path(std::move(file), problem.guess);
-    return integrate_state(state_of(file, system, table.file->at), system, table.file->at, deadline, problem);
+    if (!file.start_q.empty())
+      return integrate_state(state_of(file, system, table.file->at), system, table.file->at, deadline,
+                             problem);
+    use_path(std::move(file), problem.guess);
+    if (incomplete)
+      complete_momenta(*system.hamiltonian, std::vector<char>(system.names.size() / 2, 0), problem);
+    return;
   }
   if (problem.duration.free || table.duration) problem.duration.value = guessed_duration(table, system, {});
-  if (!table.formulas.empty()) tabulate_formulas(table, system, problem);
+  const bool paths = system.hamiltonian && !table.state && !problem.initial;
+  if (!table.formulas.empty() || paths) tabulate_formulas(table, system, problem);
+  if (paths) complete_momenta(*system.hamiltonian, given_momenta(table, system), problem);
   if (table.state) integrate_state(*table.state, system, table.at, deadline, problem);
 }
 

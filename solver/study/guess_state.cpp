@@ -10,6 +10,7 @@
 #include "motion/flow.hpp"
 #include "motion/sample.hpp"
 #include "problem/closing.hpp"
+#include "problem/phase_space.hpp"
 #include "solve/search/limits.hpp"
 #include "study/guess.hpp"
 #include "study/memory.hpp"
@@ -23,6 +24,18 @@ struct InitialState {
   std::vector<double> q, v;
 };
 
+/// In phase space: q' and p' follow from q and p.
+void set_rates(const std::vector<Assignment>& values, const System& system, InitialState& state) {
+  for (const Assignment& a : values)
+    if (a.name.ends_with('\''))
+      throw SceneError(a.name_at,
+                       fmt::format("the velocities do not determine the momenta of this Hamiltonian; "
+                                   "give momenta, as 'p_{}', instead of \"{}\"",
+                                   a.name.substr(0, a.name.size() - 1), a.name));
+  Scratch scratch;
+  hamilton_equations(*make_lagrangian(*system.hamiltonian), state.q, 0, state.v, scratch);
+}
+
 InitialState read_state(const std::vector<Assignment>& values, const System& system) {
   InitialState state{std::vector<double>(system.names.size(), 0),
                      std::vector<double>(system.names.size(), 0)};
@@ -33,6 +46,7 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
       (velocity ? state.v : state.q)[coordinate] = evaluate(q, system, index);
     });
   }
+  if (system.hamiltonian) set_rates(values, system, state);
   return state;
 }
 
@@ -165,9 +179,37 @@ class ExactMotion {
   bool followed_ = true;
 };
 
+/// Hamilton's equations for states z = (q, p), which have no momenta beside them.
+class StateFlow {
+ public:
+  StateFlow(const Lagrangian& hamiltonian, std::size_t size) : hamiltonian_(hamiltonian), size_(size) {}
+
+  bool momentum(std::span<const double> z, std::span<const double>, double t, std::span<double> unused) {
+    std::ranges::fill(unused, 0.0);
+    std::vector<double> rate(size_);
+    return rates(z, t, rate);
+  }
+  bool slope(double t, std::span<const double> y, std::span<double> slope) {
+    std::ranges::fill(slope, 0.0);
+    return rates(y.first(size_), t, slope.first(size_));
+  }
+
+ private:
+  bool rates(std::span<const double> z, double t, std::span<double> rate) {
+    hamilton_equations(hamiltonian_, z, t, rate, scratch_);
+    return std::ranges::all_of(rate, [](double x) { return std::isfinite(x); });
+  }
+
+  const Lagrangian& hamiltonian_;
+  std::size_t size_;
+  Scratch scratch_;
+};
+
 /// Where it takes many steps, with as many digits as L can be evaluated in.
-SampledMotion motion_from(const InitialState& state, double from, double to, const Bounds& bounds) {
+SampledMotion motion_from(const InitialState& state, double from, double to, const Bounds& bounds,
+                          const Lagrangian* hamiltonian) {
   const Problem& problem = bounds.problem;
+  if (hamiltonian) return sample<double>(StateFlow(*hamiltonian, state.q.size()), state, from, to, bounds);
   SampledMotion samples =
       sample<double>(Flow(problem.motion(), problem.motion_copies()), state, from, to, bounds);
   const Lagrangian& lagrangian = *problem.lagrangian;
@@ -208,14 +250,16 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
                      const Deadline& deadline, Problem& problem) {
   const Bounds bounds{problem, deadline, at};
   const InitialState state = read_state(values, system);
+  const std::shared_ptr<const Lagrangian> hamiltonian =
+      system.hamiltonian ? make_lagrangian(*system.hamiltonian) : nullptr;
   const double duration = problem.duration.value;
   if (problem.periodic) {
-    const SampledMotion first = motion_from(state, 0, duration / 2, bounds);
+    const SampledMotion first = motion_from(state, 0, duration / 2, bounds, hamiltonian.get());
     const SampledMotion second =
-        motion_from(closed(closing_map(problem), state), duration, duration / 2, bounds);
+        motion_from(closed(closing_map(problem), state), duration, duration / 2, bounds, hamiltonian.get());
     add_halves(first, second, problem.guess);
   } else {
-    SampledMotion samples = motion_from(state, 0, duration, bounds);
+    SampledMotion samples = motion_from(state, 0, duration, bounds, hamiltonian.get());
     problem.guess.tau = std::move(samples.tau);
     problem.guess.q = std::move(samples.q);
   }

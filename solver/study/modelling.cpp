@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "study/naming.hpp"
+#include "system/hamiltonian.hpp"
 
 namespace extremal {
 namespace {
@@ -86,15 +87,18 @@ SceneError at_its_place(const SystemTable& table, const FormulaError& e) {
   return {place == places.end() ? table.at : position(place->second, e.offset), e.what()};
 }
 
-System make_system(const SystemTable& table, const std::vector<std::string>& active) {
+System make_system(const SystemTable& table, const std::vector<std::string>& active,
+                   Formulation formulation) {
   try {
     SystemText text = system_text(table);
     text.active = active;
-    System system = compile(text);
+    System system = compile(text, formulation);
     if (!table.force.empty()) system.copies = compile_forces(text, forces_of(table, system));
     return system;
   } catch (const FormulaError& e) {
     throw at_its_place(table, e);
+  } catch (const SingularHamiltonian& e) {
+    throw NoLegendreTransform(table.law().at, e.what());
   } catch (const std::invalid_argument& e) {
     throw SceneError(table.law().at, e.what());
   }

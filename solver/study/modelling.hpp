@@ -14,9 +14,15 @@ namespace extremal {
 /// The texts of a system, with the values of its parameters. Throws FormulaError.
 SystemText system_text(const SystemTable& table);
 
+/// The second derivative of a Hamiltonian by the momenta is singular.
+struct NoLegendreTransform : SceneError {
+  using SceneError::SceneError;
+};
+
 /// Throws SceneError at the place in the scene or system file where a formula is wrong. `active`: parameters
-/// that derivatives are asked for.
-System make_system(const SystemTable& table, const std::vector<std::string>& active = {});
+/// that derivatives are asked for. A Hamiltonian may have no Legendre transform.
+System make_system(const SystemTable& table, const std::vector<std::string>& active = {},
+                   Formulation formulation = Formulation::legendre);
 
 /// The same with its constraints, as an expression. Throws SceneError likewise.
 ConstrainedGraph make_constrained(const SystemTable& table);

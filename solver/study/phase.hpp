@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "problem/problem.hpp"
@@ -10,7 +11,10 @@
 
 namespace extremal {
 
-/// q, q' and the canonical momenta p = ∂L/∂q' at time t in [0, T], n entries each.
+/// Names of the coordinates, in phase space without momenta.
+std::vector<std::string> coordinate_names(const Problem& problem);
+
+/// q, q' and the canonical momenta p = ∂L/∂q' at time t in [0, T], an entry for each degree of freedom.
 void phase_point(const Problem& problem, const Trajectory& trajectory, double t, std::span<double> q,
                  std::span<double> v, std::span<double> p, Scratch& scratch);
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
 #include "scene/scene.hpp"
 #include "solution/extension_values.hpp"
@@ -19,6 +20,8 @@
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
+#include "study/phase.hpp"
+#include "study/phase_space.hpp"
 #include "study/suggestion.hpp"
 #include "study/usage.hpp"
 
@@ -109,7 +112,9 @@ void read_constrained_guess(const Scene& scene, const System& system, const Dead
   settle_guess(scene, ends, problem);
 }
 
-Problem read_problem(const Scene& scene, const System& system, const Deadline& deadline, Purpose purpose) {
+/// Nothing where a Hamiltonian needs phase space and `system` is its Legendre transform.
+std::optional<Problem> read_problem(const Scene& scene, const System& system, const Deadline& deadline,
+                                    Purpose purpose) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
   problem.copies = system.copies;
@@ -119,6 +124,7 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   const ExtendedScene parts = split(scene, system);
   set_relation(parts.linear, system, problem);
   if (problem.initial) check_initial_data(scene, purpose);
+  if (system.hamiltonian) check_phase_space(scene, parts, purpose);
   problem.duration = read_duration(parts.linear, system);
   if (parts.extended) {
     if (problem.initial) refuse_initial_data(scene);
@@ -130,15 +136,19 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   const bool constrained = !scene.system.constraints.empty();
   if (scene.guess.state && system.lagrangian->structure().quadratic && !constrained)
     check_regular(problem, scene.system);
+  const bool legendre = scene.system.hamiltonian && !system.hamiltonian;
+  if (legendre && names_momenta(scene.guess, system) && !has_legendre_transform(problem)) return std::nullopt;
   std::optional<InfiniteEnds> infinite;
   if (scene.boundary.infinite) infinite = read_infinite_ends(scene, problem);
   if (constrained)
     read_constrained_guess(scene, system, deadline, problem);
   else
     read_guess(scene, system, deadline, problem);
+  if (legendre && !has_legendre_transform(problem)) return std::nullopt;
   if (parts.extended) read_extension(scene, parts, system, problem);
   if (infinite) leave_infinite_ends(scene, *std::move(infinite), problem);
   try {
+    if (system.hamiltonian) set_phase_space(*system.hamiltonian, problem);
     problem = make_problem(std::move(problem));
   } catch (const RecurrenceError& e) {
     throw SceneError(recurrence_location(scene.boundary), e.what());
@@ -149,6 +159,23 @@ Problem read_problem(const Scene& scene, const System& system, const Deadline& d
   if (scene.boundary.energy && !problem.extension) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
   return problem;
+}
+
+/// System and problem. A Hamiltonian has its Legendre transform where there is one, else it is in phase
+/// space.
+void read_law(const Scene& scene, Purpose purpose, Study& study) {
+  const Deadline deadline(study.budget);
+  const auto read = [&](Formulation formulation) {
+    study.system = make_system(scene.system, {}, formulation);
+    std::optional<Problem> problem = read_problem(scene, study.system, deadline, purpose);
+    if (problem) study.problem = *std::move(problem);
+    return problem.has_value();
+  };
+  try {
+    if (read(Formulation::legendre)) return;
+  } catch (const NoLegendreTransform&) {
+  }
+  read(Formulation::phase_space);
 }
 
 /// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
@@ -188,7 +215,6 @@ Study make_study(const Scene& scene, Purpose purpose) {
     study.files.push_back(beside(scene.path, scene.spectrum->against->value));
   if (scene.fit) study.files.push_back(beside(scene.path, scene.fit->data.value));
   study.title = scene.title;
-  study.system = make_system(scene.system);
   check_parameters_used(scene);
   study.forces = scene.system.force;
   study.constraints = scene.system.constraints;
@@ -199,11 +225,12 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.options = read_options(scene.solve);
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
-  study.problem = read_problem(scene, study.system, Deadline(study.budget), purpose);
+  read_law(scene, purpose, study);
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.units) study.units = read_units(*scene.units);
-  if (scene.spectrum) study.spectrum = read_spectrum(*scene.spectrum, scene.path, study.problem.names);
+  if (scene.spectrum)
+    study.spectrum = read_spectrum(*scene.spectrum, scene.path, coordinate_names(study.problem));
   if (scene.fit) study.fit = read_fit(scene, study);
   if (scene.continuation && purpose == Purpose::family && study.problem.infinite)
     throw SceneError(scene.continuation->at,
@@ -268,6 +295,12 @@ int natural_conditions(const Problem& problem) {
   const auto zeros = std::count(given.begin(), given.end(), 0.0);
   if (problem.periodic || problem.initial) return 0;
   int free = problem.ends.free - static_cast<int>(given.size() - zeros);
+  if (problem.phase) {  // of coordinates alone: momenta are free where these are fixed
+    const std::vector<char>& fixed = problem.ends.fixed;
+    const std::size_t n = problem.degrees_of_freedom();
+    free = 0;
+    for (std::size_t e = 0; e < fixed.size(); ++e) free += e % (2 * n) < n && !fixed[e] && !fixed[e + n];
+  }
   if (problem.infinite)
     for (const std::vector<double>* end : {&problem.infinite->start, &problem.infinite->end})
       if (!end->empty()) free -= problem.coordinates();

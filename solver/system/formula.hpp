@@ -19,6 +19,7 @@
 namespace extremal {
 
 struct ConstrainedGraph;
+struct LagrangianGraph;
 
 /// A formula that does not parse or names what does not exist. `where` says which text (see
 /// SystemText), `offset` is the position in it, in bytes.
@@ -79,8 +80,14 @@ struct SystemText {
   std::vector<std::string> active{};         ///< scalar parameters that derivatives are asked for
 };
 
+/// Of a Hamiltonian: by its Legendre transform, or in phase space, where momenta are coordinates.
+enum class Formulation { legendre, phase_space };
+
 struct System : Vocabulary {
   std::vector<std::string> names;  ///< of the coordinates, one an element: "x", "q[1]"
+  /// In phase space H, with momenta for velocities: coordinates and names are then those of q and after them
+  /// those of p ("p_x", "p_q[1]"), and the Lagrangian is that of phase_space.hpp in units of one. Else null.
+  std::shared_ptr<const LagrangianGraph> hamiltonian;
   std::shared_ptr<const Lagrangian> lagrangian;
   std::shared_ptr<const Lagrangian> copies;  ///< with forces: see two_copies(). Null: there are none
 };
@@ -105,12 +112,9 @@ struct ConstraintText {
 /// not smooth.
 ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints);
 
-/// Parses, differentiates and compiles. Throws FormulaError, also where the second derivative of a
-/// Hamiltonian by the momenta is singular.
-System compile(const SystemText& text);
-
-/// Why a Hamiltonian whose H_pp is singular is refused.
-std::string singular_hamiltonian(std::span<const std::string> momenta);
+/// Parses, differentiates and compiles. Throws FormulaError, and SingularHamiltonian (hamiltonian.hpp) where
+/// the Legendre transform is asked for and the second derivative by the momenta is singular.
+System compile(const SystemText& text, Formulation formulation = Formulation::legendre);
 
 /// A number written as a formula of parameters and of definitions that are numbers ("2*pi/omega") and, for an
 /// element of an array, the index i = `index` >= 1 (0: there is none). `where` names the text in errors.

@@ -1,42 +1,53 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "system/constraints.hpp"
 #include "system/copies.hpp"
 #include "system/formula_graph.hpp"
 #include "system/hamiltonian.hpp"
+#include "system/phase_space.hpp"
 
 namespace extremal {
 
 namespace {
 
+/// By the Legendre transform. Momenta that it does not determine are named.
 std::shared_ptr<const Lagrangian> compile_hamiltonian(formula::Names& names, const SystemText& text,
                                                       std::span<const std::string> coordinates) {
-  const LagrangianGraph hamiltonian = formula::graph_of(names, *text.hamiltonian, "hamiltonian");
   try {
-    return make_lagrangian_of(hamiltonian);
+    return make_lagrangian_of(formula::graph_of(names, *text.hamiltonian, "hamiltonian"));
   } catch (const SingularHamiltonian& e) {
     constexpr std::size_t most = 6;
     std::vector<std::string> momenta;
     for (const int a : e.momenta) momenta.push_back("p_" + coordinates[a]);
     if (momenta.size() > most) momenta[most] = "…";
     momenta.resize(std::min(momenta.size(), most + 1));
-    throw FormulaError(singular_hamiltonian(momenta), "hamiltonian", 0);
+    throw SingularHamiltonian(
+        fmt::format("H_pp is singular: the velocities do not determine {}; the second derivative of the "
+                    "Hamiltonian by the momenta must be regular",
+                    fmt::join(momenta, ", ")),
+        e.momenta);
+  }
+}
+
+/// Behind the coordinates.
+void add_momenta(System& system) {
+  const int n = static_cast<int>(system.names.size());
+  for (int a = 0; a < n; ++a) system.names.push_back("p_" + system.names[a]);
+  const std::vector<Coordinate> coordinates = system.coordinates;
+  for (Coordinate momentum : coordinates) {
+    momentum.name = "p_" + momentum.name;
+    momentum.first += n;
+    system.coordinates.push_back(std::move(momentum));
   }
 }
 
 }  // namespace
 
-std::string singular_hamiltonian(std::span<const std::string> momenta) {
-  return fmt::format(
-      "H_pp is singular: the velocities do not determine {}; the second derivative of the Hamiltonian by the "
-      "momenta must be regular",
-      fmt::join(momenta, ", "));
-}
-
-System compile(const SystemText& text) {
+System compile(const SystemText& text, Formulation formulation) {
   formula::Names names = formula::names_of(text);
   System system;
   system.parameters = text.parameters;
@@ -46,10 +57,17 @@ System compile(const SystemText& text) {
     for (int i = 1; coordinate.array && i <= coordinate.count; ++i)
       system.names.push_back(fmt::format("{}[{}]", coordinate.name, i));
   }
+  system.coordinates = names.coordinates;
+  if (text.hamiltonian && formulation == Formulation::phase_space) {
+    add_momenta(system);
+    system.hamiltonian =
+        std::make_shared<const LagrangianGraph>(formula::graph_of(names, *text.hamiltonian, "hamiltonian"));
+    system.lagrangian = phase_lagrangian(*system.hamiltonian, {});
+    return system;
+  }
   system.lagrangian = text.hamiltonian
                           ? compile_hamiltonian(names, text, system.names)
                           : make_lagrangian(formula::graph_of(names, text.lagrangian, "lagrangian"));
-  system.coordinates = std::move(names.coordinates);
   return system;
 }
 

@@ -41,6 +41,7 @@ struct Structure {
   std::vector<Triplet> gyroscopic;    ///< C(row of q', column of q)
   std::vector<double> linear;         ///< a, or empty
   bool velocity_free = false;         ///< the remainder does not depend on q'
+  bool first_order = false;           ///< of a system in phase space, see phase_space.hpp
   std::vector<int> gradient;          ///< indices z with a gradient row of the remainder, ascending
   std::vector<HessianEntry> hessian;  ///< entries with a Hessian row, sorted by (row, column), unique
 };

@@ -188,6 +188,7 @@ Analysis analyse(const LagrangianGraph& l) {
   Structure& s = result.structure;
   s.coordinates = l.coordinates;
   s.parameters = l.parameters;
+  s.first_order = l.first_order;
 
   const std::vector<Group> groups = group_terms(l);
   for (const Group& group : groups) result.kernels.push_back(differentiate(l.graph, group, false));

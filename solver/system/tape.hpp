@@ -32,7 +32,8 @@ struct LagrangianGraph {
   Graph graph;
   std::vector<Term> terms;
   std::vector<double> uniforms;
-  int parameters = 0;  ///< active ones: the first uniforms
+  int parameters = 0;        ///< active ones: the first uniforms
+  bool first_order = false;  ///< of a system in phase space, see phase_space.hpp
 };
 
 /// Reads off the structure, differentiates, compiles. The result is a TapeLagrangian.

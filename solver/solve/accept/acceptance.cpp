@@ -220,10 +220,11 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
   const Examined examined = examine_all(problem, options, found, w, better, check, solution);
   const Path& path = better ? *better : found.path;
   if (solution.converged()) {
-    const double distance =
-        problem.paired ? INFINITY : read_minimality(problem, options, w.variation, solution);
-    if (problem.paired && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers)
-      w.variation.assemble(problem.lagrangian, solution.trajectory, {}, nullptr, Definite::paired);
+    const bool indefinite = problem.paired || problem.phase;  // nothing is minimal
+    const double distance = indefinite ? INFINITY : read_minimality(problem, options, w.variation, solution);
+    if (indefinite && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers)
+      w.variation.assemble(problem.lagrangian, solution.trajectory, {}, nullptr,
+                           problem.paired ? Definite::paired : Definite::none);
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
     if (found.shifts_held)
       tell_soft_shift(solution);

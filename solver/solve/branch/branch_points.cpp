@@ -1,7 +1,9 @@
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "problem/phase_space.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/branch/root.hpp"
@@ -159,6 +161,41 @@ double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& 
   return NAN;
 }
 
+/// A δz_a + Bᵀδz_b + Π δz_a of the first element: by how much the momenta of z = (q, p) change otherwise than
+/// they do along motions. `size`: of its terms.
+Eigen::VectorXd beside_motions(const DiscreteAction& action, const PhaseWeights& weights, const Move& move,
+                               double& size) {
+  const int all = action.tables().coordinates(), n = all / 2;
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(all);
+  size = 0;
+  for (int i = 0; i < all; ++i) {
+    for (int j = 0; j < all; ++j) {
+      const double here = action.condensed(0, std::max(i, j), std::min(i, j)) * move.step.nodes[j],
+                   next = action.condensed(0, all + j, i) * move.step.nodes[all + j];
+      change[i] += here + next;
+      size = std::max({size, std::abs(here), std::abs(next)});
+    }
+    if (i < n) change[i] += (weights.symmetric ? 0.5 : 1) * move.step.nodes[n + i];
+    if (i >= n && weights.symmetric) change[i] -= 0.5 * move.step.nodes[i - n];
+  }
+  return change;
+}
+
+/// Whether the equations in phase space are singular at the tracker's path for their squares alone, and not
+/// those of motions: see system/phase_space.hpp. The direction may have a part along the branch.
+bool of_squares_alone(Tracker& tracker, const Move& direction) {
+  const Problem& problem = tracker.branch().problem();
+  Move response;
+  if (!problem.phase || !tracker.respond(response)) return false;
+  const DiscreteAction& action = tracker.workspace().iteration.action();
+  double size = 0, size_along = 0;
+  Eigen::VectorXd change = beside_motions(action, problem.phase->weights, direction, size);
+  const Eigen::VectorXd along =
+      beside_motions(action, problem.phase->weights, tracker.state.tangent, size_along);
+  if (along.norm() > beside_motion * size_along) change -= along.dot(change) / along.squaredNorm() * along;
+  return change.norm() > beside_motion * size;
+}
+
 /// A branch point, and the directions along which the equations are singular there.
 struct Located {
   double at = NAN;
@@ -215,9 +252,10 @@ Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const 
       found.leaps = true;
       return found;
     }
-    found.events.push_back(
-        {first.at,
-         {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at)}});
+    if (!of_squares_alone(tracker, point.singular.front()))
+      found.events.push_back(
+          {first.at,
+           {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at)}});
     low = first.at + beyond_it * length;
     if (!(low < length) || !tracker.reach(from, low, true)) return found;
     before = tracker.state;

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "problem/copies.hpp"
+#include "solution/in_phase_space.hpp"
 #include "solution/one_copy.hpp"
+#include "solve/guess/hamilton_path.hpp"
 #include "solve/periodic/doubled_orbit.hpp"
 
 namespace extremal {
@@ -68,6 +70,11 @@ Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
     with_forces_ = by_parameter(std::move(family_));
     family_ = family_of_pairs(*with_forces_);
   }
+  if (family_.problem.phase)
+    if (std::optional<Problem> near = near_hamilton_path(family_.problem, options_.solve.deadline)) {
+      near->reduction = family_.problem.reduction;
+      family_.problem = *std::move(near);
+    }
   current_.emplace(family_, options_);
   branches_.emplace_back();
 }
@@ -82,6 +89,11 @@ bool Diagram::advance() {
   if (with_forces_)
     if (const std::optional<Problem> one = with_forces_->at(point_.parameter))
       point_.solution = one_copy(*one, std::move(point_.solution), nullptr);
+  if (family_.problem.phase) {
+    const bool other = family_.varied == Varied::parameter;
+    const std::optional<Problem> there = other ? family_.at(point_.parameter) : std::nullopt;
+    observe_in_phase_space(there ? *there : family_.problem, point_.solution);
+  }
   point_.branch = static_cast<int>(branches_.size()) - 1;
   ++branches_.back().points;
   if (const std::optional<BranchStart>& start = current_->start()) {

@@ -37,6 +37,8 @@ inline constexpr double beside[] = {0, 1e-7, 1e-5, 1e-4};
 inline constexpr double momentum_tolerances = 10, least_momentum = 1e-8;
 /// A second direction is singular if its response is so many times the one far from the branch point.
 inline constexpr double grown = 10;
+/// Changes of momenta, relative to their terms, that are none of motions in phase space: well above errors.
+inline constexpr double beside_motion = 1e-4;
 
 }  // namespace branch_points
 

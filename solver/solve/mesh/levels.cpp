@@ -4,8 +4,7 @@ namespace extremal {
 
 void Levels::bind(std::shared_ptr<const Lagrangian> lagrangian) {
   if (lagrangian == lagrangian_) return;
-  // The rules of smooth Lagrangians and of others differ.
-  if (lagrangian_ && (lagrangian_->kinks() != nullptr) != (lagrangian->kinks() != nullptr))
+  if (lagrangian_ && uses_gauss(*lagrangian_) != uses_gauss(*lagrangian))
     for (auto& level : levels_) level.reset();
   lagrangian_ = std::move(lagrangian);
   for (Ladder* ladder : {&levels_, &finer_})

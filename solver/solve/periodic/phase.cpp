@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "machine/simd.hpp"
@@ -28,17 +29,28 @@ void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* dir
 
 namespace {
 
-void add_motion(const Path& path, const Generator& generator, double* direction) {
+/// Whether the generator moves the path, by more than roundoff of what it is summed of: a rotation leaves a
+/// centre of mass at the origin where it is.
+bool add_motion(const Path& path, const Generator& generator, double* direction) {
+  constexpr double roundoff = 1e-9;
+  double most = 0, terms = 0;
   const int n = path.coordinates(), elements = path.elements();
   const std::span<const double> mesh = path.mesh();
   for (int k = 0; k <= elements; ++k) {
     const double weight = 0.5 * (mesh[std::min(k + 1, elements)] - mesh[std::max(k - 1, 0)]);
     for (int a = 0; a < n; ++a) {
-      double value = generator.shift[a];
-      for (int b = 0; b < n; ++b) value += generator.matrix[a * n + b] * path.node(k)[b];
+      double value = generator.shift[a], sum = std::abs(value);
+      for (int b = 0; b < n; ++b) {
+        const double term = generator.matrix[a * n + b] * path.node(k)[b];
+        value += term;
+        sum += std::abs(term);
+      }
       direction[k * n + a] = weight * value;
+      most = std::max(most, std::abs(value));
+      terms = std::max(terms, sum);
     }
   }
+  return most > roundoff * terms;
 }
 
 /// Of two copies what moves both alike is a null direction of the linearised equations, and a force along it
@@ -86,7 +98,11 @@ void measure_phases(const Problem& problem, const Path& path, const SchemeTables
   double* direction = phases.directions.data();
   if (shifts) add_shift_of_time(path, scheme, std::exchange(direction, direction + size));
   for (const Generator& generator : problem.symmetries)
-    add_motion(path, generator, std::exchange(direction, direction + size));
+    if (add_motion(path, generator, direction) || problem.paired)
+      direction += size;
+    else
+      --phases.count;
+  phases.directions.resize(phases.count * size);
   if (problem.paired) phases = of_copies(phases, path.coordinates(), shifts, problem.duration.free);
 }
 

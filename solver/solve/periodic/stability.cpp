@@ -9,6 +9,7 @@
 #include "analysis/orbit_form.hpp"
 #include "linear/dense.hpp"
 #include "problem/closing.hpp"
+#include "problem/phase_space.hpp"
 #include "solve/periodic/repetition.hpp"
 
 namespace extremal {
@@ -96,6 +97,7 @@ ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, d
 
 std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariation& variation,
                                       const ClosedOrbit& orbit) {
+  if (problem.phase) return floquet_in_phase_space(variation, orbit, problem.phase->weights);
   return problem.paired ? floquet_with_forces(variation, orbit) : floquet(variation, orbit);
 }
 
@@ -107,8 +109,9 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     if (const int parts = repetitions(solution.trajectory, map, 1, distinct); parts > 0)
       solution.minimal_period = solution.duration() / parts;
   if (problem.coordinates() > most_coordinates_for_multipliers) {
-    solution.message += fmt::format("; multipliers are only found for up to {} coordinates",
-                                    most_coordinates_for_multipliers / (problem.paired ? 2 : 1));
+    solution.message +=
+        fmt::format("; multipliers are only found for up to {} coordinates",
+                    most_coordinates_for_multipliers / (problem.paired || problem.phase ? 2 : 1));
   } else if (variation.count() == 0) {
     solution.message += "; multipliers are not found";
   } else {
@@ -124,7 +127,8 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
           "; a multiplier beside that of the shift in time is 1: the orbit is one of a family, near the "
           "guess, "
           "and its period is not isolated";
-    if (solution.floquet && vectors && !problem.paired) add_vectors(variation, orbit, *solution.floquet);
+    if (solution.floquet && vectors && !problem.paired && !problem.phase)
+      add_vectors(variation, orbit, *solution.floquet);
   }
 }
 

@@ -1,0 +1,140 @@
+#include "solve/phase_space_solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "action/scheme.hpp"
+#include "problem/phase_space.hpp"
+#include "problem/reduction.hpp"
+#include "solution/in_phase_space.hpp"
+#include "solve/guess/hamilton_path.hpp"
+#include "solve/guessed_by.hpp"
+#include "solve/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::phase_space;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+bool is_rectangle(const Scheme& scheme) {
+  return scheme.quadrature == Quadrature::left || scheme.quadrature == Quadrature::right;
+}
+
+class PhaseSpaceSolve {
+ public:
+  PhaseSpaceSolve(const Problem& problem, const SolveOptions& options, const PhaseSpaceSolver& solve)
+      : problem_(problem), options_(options), solve_(solve) {}
+
+  Solution run() {
+    if (options_.scheme && is_rectangle(*options_.scheme)) return run_rectangle();
+    Solution solution = first();
+    if (solution.converged() && options_.elements == 0) solution = with_exact_momenta(std::move(solution));
+    observe_in_phase_space(problem_, solution);
+    return solution;
+  }
+
+ private:
+  /// By the midpoint rule with shifted points. Its error is told by the motion itself, as finer elements
+  /// would have the same shift.
+  Solution run_rectangle() {
+    const double half = 0.5 * problem_.duration.value / options_.elements;
+    const Problem shifted =
+        with_shift(problem_, options_.scheme->quadrature == Quadrature::left ? half : -half);
+    SolveOptions midpoint = options_;
+    midpoint.scheme = scheme("midpoint");
+    Solution solution = PhaseSpaceSolve(shifted, midpoint, solve_).first();
+    if (!solution.converged()) return solution;
+    SolveOptions adaptive = options_;
+    adaptive.scheme.reset();
+    adaptive.elements = 0;
+    const Problem near = problem_.initial ? problem_ : guessed_by(problem_, solution);
+    const Solution motion = PhaseSpaceSolve(near, adaptive, solve_).first();
+    if (!motion.converged()) {
+      Solution refused;
+      refused.message =
+          "the error of the rectangles is not known, because without a scheme: " + motion.message;
+      return after(solution, std::move(refused));
+    }
+    solution.error_estimate =
+        largest_difference(solution.trajectory, motion.trajectory) + motion.error_estimate;
+    solution.element_energies = shifted_energies(shifted, solution.trajectory);
+    observe_in_phase_space(problem_, solution);
+    return after(motion, std::move(solution));
+  }
+
+  Solution solved(const Problem& problem, const SolveOptions& options, bool near_guess) {
+    Solution solution = solve_(problem, options, near_guess);
+    if (!solution.converged()) return solution;
+    const double defect = phase_defect(problem, solution.trajectory, solution.degree);
+    const double allowed = std::max(least_defect, defect_tolerances * options.tolerance);
+    if (defect <= allowed) return solution;
+    Solution refused;
+    refused.status = Status::no_solution_near;
+    refused.message = fmt::format(
+        "Hamilton's equations do not hold on the path found: q' and p' differ from them by {:.1e} of the "
+        "range in "
+        "the duration; the conditions at the ends may contradict each other, else try another guess",
+        defect);
+    refused.strategy = solution.strategy;
+    refused.iterations = solution.iterations;
+    refused.seconds_solve = solution.seconds_solve;
+    refused.seconds_analyse = solution.seconds_analyse;
+    return refused;
+  }
+
+  Solution first() {
+    Solution solution = solved(problem_, options_, !problem_.initial);
+    if (problem_.initial || solution.converged() || options_.deadline.passed()) return solution;
+    const auto start = Clock::now();
+    std::optional<Problem> near = near_hamilton_path(problem_, options_.deadline);
+    if (near) near->reduction = reduction_of(*near);
+    solution.seconds_solve += std::chrono::duration<double>(Clock::now() - start).count();
+    if (near) solution = after(solution, solved(*near, options_, false));
+    // A named scheme has searched already.
+    if (solution.converged() || options_.scheme || options_.deadline.passed()) return solution;
+    return after(solution, solved(problem_, options_, false));
+  }
+
+  /// The tolerance is one of the largest range of any coordinate; the range of q may be smaller, or that of
+  /// p.
+  Solution with_exact_momenta(Solution solution) {
+    const PhaseRanges ranges = phase_ranges(solution.trajectory);
+    const double allowed = options_.tolerance * std::min(ranges.q, momentum_tolerances * ranges.p);
+    const double most = std::max(ranges.q, ranges.p);
+    if (!(allowed > 0) || solution.error_estimate <= allowed || problem_.initial) return solution;
+    SolveOptions tighter = options_;
+    tighter.tolerance = std::max(allowed / most, tightest_for_momenta);
+    Solution better = solved(guessed_by(problem_, solution), tighter, true);
+    if (!better.converged()) return solution;
+    better.strategy = solution.strategy;
+    return after(solution, std::move(better));
+  }
+
+  /// With the work of the one before.
+  static Solution after(const Solution& before, Solution solution) {
+    solution.iterations += before.iterations;
+    solution.seconds_solve += before.seconds_solve;
+    solution.seconds_analyse += before.seconds_analyse;
+    return solution;
+  }
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  const PhaseSpaceSolver& solve_;
+};
+
+}  // namespace
+
+Solution solve_in_phase_space(const Problem& problem, const SolveOptions& options,
+                              const PhaseSpaceSolver& solve) {
+  return PhaseSpaceSolve(problem, options, solve).run();
+}
+
+}  // namespace extremal
