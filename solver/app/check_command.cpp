@@ -152,6 +152,7 @@ int check(const CheckArguments& arguments) {
   lines("parameters", parameter_texts(study.system));
   lines("forces", force_texts(study));
   lines("constraints", as_written(study.constraints));
+  lines("along the path", as_written(study.inequalities));
   print_ends(study.problem);
   line("duration", duration_text(study.problem.duration));
   lines("integrals", as_written(study.integrals));

@@ -31,11 +31,10 @@ std::string progress_text(const Iteration& i) {
 /// Samples for --samples or --at; none where neither is given.
 std::optional<Samples> wanted_samples(const SolveArguments& a, const std::vector<double>& at,
                                       const Study& study, const Solution& solution) {
-  if (a.samples)
-    return sample(study.problem, solution.trajectory, equal_times(a.samples, solution.duration()));
+  if (a.samples) return sample(study.problem, solution, equal_times(a.samples, solution.duration()));
   if (at.empty()) return std::nullopt;
   check_times(at, solution.duration());
-  return sample(study.problem, solution.trajectory, at);
+  return sample(study.problem, solution, at);
 }
 
 /// One result for each solution of a search; the outer one has the fields of the first.
@@ -92,7 +91,7 @@ Fitted fitted_of(const FitRequest& request, const FitResult& fit) {
 }
 
 Samples sampled(const Study& study, const Result& result, int count) {
-  return sample(study.problem, result.solution.trajectory, equal_times(count, result.solution.duration()));
+  return sample(study.problem, result.solution, equal_times(count, result.solution.duration()));
 }
 
 std::string csv_of(const Study& study, const Result& result) {

@@ -30,6 +30,7 @@ class Manifold {
   };
   explicit Manifold(Parts parts) : parts_(std::move(parts)) {}
 
+  const Parts& parts() const { return parts_; }
   int coordinates() const { return parts_.lagrangian->structure().coordinates; }
   int constraints() const { return parts_.forms->structure().coordinates - coordinates() - 1; }
   const Lagrangian& lagrangian() const { return *parts_.lagrangian; }

@@ -98,6 +98,7 @@ struct InfiniteEnds {
 
 struct Reduction;
 struct Extension;
+struct Inequalities;
 struct PhaseSpace;
 
 /// q(T) = R q(0) + c, with R and c in EndMap; kept to tell a periodic problem from other coupled ends.
@@ -128,6 +129,8 @@ struct Problem {
   /// then L + Σ g_j, the constants at their guesses; what closes the duration is part of the extension.
   std::shared_ptr<const Extension> extension;
   std::optional<InfiniteEnds> infinite;
+  /// What holds along the path; null: nothing. Sought is a local minimiser of the action.
+  std::shared_ptr<const Inequalities> inequalities;
 
   int coordinates() const { return boundary.coordinates; }
   /// Coordinates without momenta, which follow them in phase space.

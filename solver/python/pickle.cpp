@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "solution/extension_values.hpp"
+#include "solution/path_contacts.hpp"
 
 namespace extremal::python {
 namespace py = pybind11;
@@ -47,15 +48,31 @@ auto members(ExtensionValues& s) {
   return std::tie(constants, integral_multipliers, waypoints);
 }
 
+auto members(Contact& s) {
+  auto& [constraint, from, to] = s;
+  return std::tie(constraint, from, to);
+}
+
+/// But for the manifold, which the study has.
+auto members(PathContacts::Arc& s) {
+  auto& [from, to, held, manifold] = s;
+  return std::tie(from, to, held);
+}
+
+auto members(PathContacts& s) {
+  auto& [constraints, contacts, arcs] = s;
+  return std::tie(constraints, contacts, arcs);
+}
+
 auto members(Solution& s) {
   auto& [status, message, strategy, trajectory, action, energy, drift, work, error, residual, index, nullity,
          minimizing, windows, conjugate, conjugate_known, certificate, floquet, period, rates, momentum_start,
-         momentum_end, extension, pinned, energies, degree, unknowns, iterations, history, seconds_solve,
-         seconds_analyse] = s;
+         momentum_end, extension, contacts, pinned, energies, degree, unknowns, iterations, history,
+         seconds_solve, seconds_analyse] = s;
   return std::tie(status, message, strategy, trajectory, action, energy, drift, work, error, residual, index,
                   nullity, minimizing, windows, conjugate, conjugate_known, certificate, floquet, period,
-                  rates, momentum_start, momentum_end, extension, pinned, energies, degree, unknowns,
-                  iterations, history, seconds_solve, seconds_analyse);
+                  rates, momentum_start, momentum_end, extension, contacts, pinned, energies, degree,
+                  unknowns, iterations, history, seconds_solve, seconds_analyse);
 }
 
 template <class T>

@@ -37,21 +37,19 @@ Result result_of(const Solved& s) {
 std::string json(const Solved& s, const Times& times) {
   Result result = result_of(s);
   if (s.solution.converged()) {
-    if (times) result.samples = sample(s.study->problem, s.solution.trajectory, list(*times));
+    if (times) result.samples = sample(s.study->problem, s.solution, list(*times));
     if (s.study->spectrum) result.spectrum = spectrum_of(*s.study, *s.study->spectrum, s.solution);
   }
   return text_of([&](std::ostream& out) { write_json(out, result); });
 }
 
 py::bytes npz(const Solved& s, const Doubles& times) {
-  return npz_text(sample(s.study->problem, s.solution.trajectory, list(times)),
-                  coordinate_names(s.study->problem));
+  return npz_text(sample(s.study->problem, s.solution, list(times)), coordinate_names(s.study->problem));
 }
 
 std::string csv(const Solved& s, const Doubles& times) {
   return text_of([&](std::ostream& out) {
-    write_csv(out, sample(s.study->problem, s.solution.trajectory, list(times)),
-              coordinate_names(s.study->problem));
+    write_csv(out, sample(s.study->problem, s.solution, list(times)), coordinate_names(s.study->problem));
   });
 }
 
@@ -60,7 +58,7 @@ std::string oem(const Solved& s, const Doubles& times) {
   if (!study.units)
     throw std::invalid_argument("the problem has no units; give length, time, frame, centre and epoch");
   return oem_text(*study.units, study.title, coordinate_names(study.problem),
-                  sample(study.problem, s.solution.trajectory, list(times)));
+                  sample(study.problem, s.solution, list(times)));
 }
 
 /// The bytes of a picture in the format that the path ends with; of several solutions of one study all.

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "problem/extension.hpp"
+#include "problem/inequalities.hpp"
 #include "python/run.hpp"
 #include "solution/extension_values.hpp"
+#include "solution/path_contacts.hpp"
 #include "study/continued.hpp"
 #include "study/phase.hpp"
 
@@ -41,6 +43,13 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
     Study own = *study;
     use_constants(solution, own);
     study = std::make_shared<const Study>(std::move(own));
+  }
+  if (solution.contacts && study->problem.inequalities) {
+    PathContacts contacts = *solution.contacts;
+    for (PathContacts::Arc& arc : contacts.arcs)
+      if (!arc.held.empty() && !arc.manifold)
+        arc.manifold = study->problem.inequalities->hold(arc.held).manifold;
+    solution.contacts = std::make_shared<const PathContacts>(std::move(contacts));
   }
   return std::make_shared<Solved>(Solved{std::move(study), std::move(solution)});
 }

@@ -27,6 +27,8 @@ std::vector<Keyed> keyed_columns(const Samples& samples, const std::vector<std::
   for (std::size_t a = 0; a < names.size(); ++a) columns.push_back({momentum_key(names[a]), &samples.p[a]});
   for (std::size_t k = 0; k < samples.constraint_forces.size(); ++k)
     columns.push_back({fmt::format("constraint_forces[{}]", k + 1), &samples.constraint_forces[k]});
+  for (std::size_t k = 0; k < samples.path_forces.size(); ++k)
+    columns.push_back({fmt::format("path_forces[{}]", k + 1), &samples.path_forces[k]});
   return columns;
 }
 

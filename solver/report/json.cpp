@@ -11,6 +11,7 @@
 
 #include "report/file.hpp"
 #include "solution/extension_values.hpp"
+#include "solution/path_contacts.hpp"
 
 namespace extremal {
 
@@ -42,6 +43,7 @@ class Fields {
     append(object_, "momentum_end", momentum("momentum_end", result.solution.momentum_end));
     multipliers();
     if (converged_ && result.solution.extension) extension(*result.solution.extension);
+    if (converged_ && result.solution.contacts) contacts(*result.solution.contacts);
     if (converged_ && result.spectrum) spectrum(*result.spectrum);
     if (converged_ && result.fit) fit(*result.fit);
     counts();
@@ -87,9 +89,9 @@ class Fields {
     const auto count = [](const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); };
     append(object_, "morse_index", count(result_.solution.morse_index));
     append(object_, "nullity", count(result_.solution.nullity));
-    // Without an index nothing is known of it.
-    append(object_, "minimizing",
-           converged_ && !result_.solution.morse_index ? Json(nullptr) : Json(result_.solution.minimizing));
+    // Without an index it is known of paths under inequalities alone, all of which are minimisers.
+    const bool known = !converged_ || result_.solution.morse_index || result_.solution.contacts;
+    append(object_, "minimizing", known ? Json(result_.solution.minimizing) : Json(nullptr));
     windows();
   }
 
@@ -142,6 +144,18 @@ class Fields {
       waypoints.push_back(std::move(object));
     }
     append(object_, "waypoints", std::move(waypoints));
+  }
+
+  void contacts(const PathContacts& found) {
+    Json list = Json::array();
+    for (const Contact& contact : found.contacts) {
+      Json object = Json::object();
+      append(object, "constraint", contact.constraint);
+      append(object, "from", number("contacts.from", contact.from));
+      append(object, "to", number("contacts.to", contact.to));
+      list.push_back(std::move(object));
+    }
+    append(object_, "contacts", std::move(list));
   }
 
   void spectrum(const SolutionSpectrum& spectrum) {
@@ -282,16 +296,17 @@ void write_column(std::ostream& out, const std::string& indent, const std::strin
 }
 
 /// A list of columns, one for each constraint; nothing without constraints.
-void write_forces(std::ostream& out, const std::string& indent, const std::vector<Column>& forces) {
+void write_forces(std::ostream& out, const std::string& indent, const char* key,
+                  const std::vector<Column>& forces) {
   if (forces.empty()) return;
   Json lists = Json::array();
   for (const Column& column : forces) {
     if (const auto bad = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
         bad != column.end())
-      refuse(fmt::format("samples.constraint_forces[{}]", bad - column.begin()), *bad);
+      refuse(fmt::format("samples.{}[{}]", key, bad - column.begin()), *bad);
     lists.push_back(column);
   }
-  out << ",\n" << indent << "\"constraint_forces\": " << dumped(lists);
+  out << ",\n" << indent << dumped(key) << ": " << dumped(lists);
 }
 
 /// Column by column: a tree of all the samples would cost several times their memory.
@@ -310,7 +325,8 @@ void write_samples(std::ostream& out, const std::string& indent, const Samples& 
   write_columns(samples.q, [](const std::string& coordinate) { return coordinate; });
   write_columns(samples.v, velocity_key);
   write_columns(samples.p, momentum_key);
-  write_forces(out, inner, samples.constraint_forces);
+  write_forces(out, inner, "constraint_forces", samples.constraint_forces);
+  write_forces(out, inner, "path_forces", samples.path_forces);
   out << "\n" << indent << "}";
 }
 

@@ -161,14 +161,34 @@ Figure path_figure(const Picture& picture, const Bodies& bodies) {
   return figure;
 }
 
-}  // namespace
+/// Boundaries of obstacles and, thick, where the path is in contact: below the path.
+void add_obstacles(const Picture& picture, Panel& panel) {
+  constexpr Colour obstacle_colour = 0x5A606B;
+  constexpr double thick = 5;
+  std::vector<Curve> curves;
+  for (const PlaneCurve& obstacle : picture.obstacles)
+    curves.push_back({obstacle.x, obstacle.y, obstacle_colour});
+  const Samples& samples = picture.samples;
+  const Column& across = samples.q.size() == 1 ? samples.t : samples.q[0];
+  const Column& up = samples.q.size() == 1 ? samples.q[0] : samples.q[1];
+  for (const Contact& contact : picture.contacts) {
+    Curve curve{{}, {}, second_colour, thick};
+    for (std::size_t k = 0; k < samples.count(); ++k)
+      if (samples.t[k] >= contact.from && samples.t[k] <= contact.to) {
+        curve.x.push_back(across[k]);
+        curve.y.push_back(up[k]);
+      }
+    if (curve.x.size() > 1) curves.push_back(std::move(curve));
+  }
+  panel.curves.insert(panel.curves.begin(), curves.begin(), curves.end());
+}
 
-Figure layout(const Picture& picture) {
+Figure layout_of(const Picture& picture) {
   const std::size_t count = picture.names.size();
   if (count == 1) return lone_figure(picture);
   if (const std::optional<Bodies> found = bodies(picture.names)) {
     const std::optional<Picture> flat = flattened(picture, *found);
-    return flat ? layout(*flat) : path_figure(picture, *found);
+    return flat ? layout_of(*flat) : path_figure(picture, *found);
   }
   const std::vector<Family> groups = families(picture.names);
   if (groups.size() == 1 && count > most_curves) {
@@ -180,6 +200,16 @@ Figure layout(const Picture& picture) {
     return map_figure(picture, {}, "coordinate", all);
   }
   return picture.others.empty() ? time_figure(picture, groups) : coordinate_figure(picture);
+}
+
+}  // namespace
+
+Figure layout(const Picture& picture) {
+  Figure figure = layout_of(picture);
+  const bool plane = picture.names.size() <= 2 && figure.panels.front().caption.empty();
+  if (plane && (!picture.obstacles.empty() || !picture.contacts.empty()))
+    add_obstacles(picture, figure.panels.front());
+  return figure;
 }
 
 }  // namespace extremal

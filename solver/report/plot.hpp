@@ -5,7 +5,9 @@
 
 #include "report/file.hpp"
 #include "report/result.hpp"
+#include "solution/path_contacts.hpp"
 #include "study/annotation.hpp"
+#include "study/obstacles.hpp"
 
 /// \file Samples as a picture.
 
@@ -21,6 +23,9 @@ struct Picture {
   Column actions = {};                    ///< of all solutions, if there are several
   Annotation annotation = {};             ///< of the system: units of axes, centres of force
   std::vector<std::string> remarks = {};  ///< below the title
+  /// What inequalities along the path forbid, in the first panel, and when they are equalities.
+  std::vector<PlaneCurve> obstacles = {};
+  std::vector<Contact> contacts = {};
 };
 
 /// Refuses a path that does not end in .svg, .png or .pdf with std::invalid_argument. To be called before

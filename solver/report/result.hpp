@@ -23,6 +23,8 @@ struct Samples {
   std::vector<Column> p;  ///< canonical momenta ∂L/∂q'
   /// With constraints: λ_k(t) of each, d/dt ∂L/∂q' − ∂L/∂q = Σ λ_k ∂g_k/∂q.
   std::vector<Column> constraint_forces = {};
+  /// With inequalities g_k >= 0 along the path: μ_k(t) >= 0, ∂L/∂q − d/dt ∂L/∂q' = Σ μ_k ∂g_k/∂q.
+  std::vector<Column> path_forces = {};
 
   std::size_t count() const { return t.size(); }
   std::size_t coordinates() const { return q.size(); }
@@ -55,7 +57,7 @@ struct Result {
   std::optional<std::vector<Result>> solutions = {};
   std::optional<SolutionSpectrum> spectrum = {};  ///< where it was asked for
   std::optional<Fitted> fit = {};                 ///< likewise
-  int natural_conditions = 0;  ///< at the ends, of a problem that is not periodic
+  int natural_conditions = 0;                     ///< at the ends, of a problem that is not periodic
 };
 
 /// Keys in JSON and CSV: "x[1]'" and "p_x[1]".

@@ -14,7 +14,7 @@ namespace extremal {
 std::vector<double> equal_times(int count, double duration);
 
 /// Throws std::invalid_argument for times outside of the trajectory's.
-Samples sample(const Problem& problem, const Trajectory& trajectory, const std::vector<double>& times);
+Samples sample(const Problem& problem, const Solution& solution, const std::vector<double>& times);
 
 /// What a plot of a converged result shows, with those of a search beside it. Each path has equal steps, and
 /// more in each element, which is short where the motion is fast.

@@ -164,6 +164,13 @@ SearchTable read_search_table(const Document& document, const toml::table& table
   return {*solutions};
 }
 
+PathTable read_path_table(const Document& document, const toml::table& table) {
+  PathTable path{document.at(table), texts(document, table, "constraints")};
+  if (path.constraints.empty())
+    throw SceneError(path.at, "[path] has no 'constraints'; list inequalities, as in [\"x^2 + y^2 >= 1\"]");
+  return path;
+}
+
 SpectrumTable read_spectrum_table(const Document& document, const toml::table& table) {
   return {number(document, table, "lines"), text(document, table, "against")};
 }

@@ -13,6 +13,7 @@ BoundaryTable read_boundary_table(const Document& document, const toml::table& t
 std::vector<WaypointTable> read_waypoint_tables(const Document& document, const toml::array& tables);
 GuessTable read_guess_table(const Document& document, const toml::table& table);
 SolveTable read_solve_table(const Document& document, const toml::table& table);
+PathTable read_path_table(const Document& document, const toml::table& table);
 SearchTable read_search_table(const Document& document, const toml::table& table);
 UnitsTable read_units_table(const Document& document, const toml::table& table);
 FitTable read_fit_table(const Document& document, const toml::table& table);

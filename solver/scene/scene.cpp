@@ -229,6 +229,8 @@ Scene read_scene(const std::shared_ptr<const Source>& text, const std::vector<st
   scene.boundary = read_boundary_table(document, *table(document, "boundary", true));
   if (const toml::array* waypoints = document.root["waypoints"].as_array())
     scene.waypoints = read_waypoint_tables(document, *waypoints);
+  if (const auto* path_table = table(document, "path", false))
+    scene.inequalities = read_path_table(document, *path_table);
   if (const auto* guess = table(document, "guess", false)) scene.guess = read_guess_table(document, *guess);
   if (const auto* solve = table(document, "solve", false)) scene.solve = read_solve_table(document, *solve);
   if (const auto* search = table(document, "search", false))

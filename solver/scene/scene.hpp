@@ -79,6 +79,12 @@ struct WaypointTable {
   std::vector<Assignment> values;
 };
 
+/// [path]: inequalities along the whole path.
+struct PathTable {
+  Location at;
+  std::vector<Text> constraints;
+};
+
 /// [guess]: formulas, a file or a state; empty for the default guess.
 struct GuessTable {
   Location at;
@@ -140,6 +146,7 @@ struct Scene {
   SystemTable system;
   BoundaryTable boundary;
   std::vector<WaypointTable> waypoints;
+  std::optional<PathTable> inequalities;  ///< of [path]
   GuessTable guess;
   SolveTable solve;
   std::optional<SearchTable> search;

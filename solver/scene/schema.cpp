@@ -26,7 +26,8 @@ constexpr KeyRecord keys[] = {
      "units.length = 384400.0"},
     {"", "fit", Kind::table, "none", "Parameters and open ends by observations, for `extremal solve`.",
      R"(fit = { data = "observed.csv", parameters = ["mu"] })"},
-    {"", "path", Kind::table, "", "", "", false, false},
+    {"", "path", Kind::table, "none", "Inequalities along the whole path.",
+     "path.constraints = [\"x^2 + y^2 >= 1\"]"},
 
     {"system", "use", Kind::text, "none",
      "Name of a system file. The parameters and definitions of the scene add to those of the file or replace "
@@ -102,6 +103,11 @@ constexpr KeyRecord keys[] = {
     {"boundary", "unknowns", Kind::number, "none",
      "Parameters that are to be found, with guesses; `where` has as many equations.",
      "unknowns = { k = 1.0 }", true},
+
+    {"path", "constraints", Kind::texts, "required",
+     "Inequalities `left >= right` or `left <= right` between coordinates, `t`, parameters and definitions. "
+     "They hold at all times; sought is a local minimiser of the action among the paths that keep them.",
+     "constraints = [\"x^2 + y^2 >= 1\"]"},
 
     {"waypoints", "at", Kind::quantity, "no default",
      R"(Time between 0 and T, or `"free"`: the action is stationary in the time too.)", "at = 1.5"},

@@ -17,6 +17,7 @@ namespace extremal {
 
 class Path;
 struct ExtensionValues;
+struct PathContacts;
 
 enum class Status {
   converged,
@@ -104,6 +105,8 @@ struct Solution {
 
   /// Constants, multipliers and impulses of a problem that asks for them.
   std::shared_ptr<const ExtensionValues> extension;
+  /// With inequalities along the path: where they are equalities, and the forces there; else null.
+  std::shared_ptr<const PathContacts> contacts;
 
   bool pinned = false;  ///< the scheme of its elements was asked for
   /// Of those elements: the discrete energy −∂L_d/∂h of each. Empty as element_energies() (observe.hpp) is.

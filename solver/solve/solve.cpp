@@ -12,6 +12,7 @@
 #include "solve/accept/acceptance.hpp"
 #include "solve/adapt/pinned.hpp"
 #include "solve/bordered/bordered_solve.hpp"
+#include "solve/contact/contact_solve.hpp"
 #include "solve/guessed_by.hpp"
 #include "solve/infinite_solve.hpp"
 #include "solve/march/initial_motion.hpp"
@@ -133,6 +134,17 @@ Solution solve_phase_space(const Problem& problem, const SolveOptions& options, 
                               });
 }
 
+/// Parts of paths under inequalities, each from its guess.
+ArcSolve arc_solve(Workspace& w) {
+  return [&w](const Problem& part, const SolveOptions& how) {
+    SolveOptions quiet = how;
+    quiet.progress = nullptr;
+    Solution solution = solve_finite(part, quiet, w, true);
+    if (part.manifold) move_onto_manifold(part, solution);
+    return solution;
+  };
+}
+
 }  // namespace
 
 struct Solver::Memory {
@@ -155,9 +167,10 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     if (options.progress) options.progress(step);
   };
   Workspace& w = memory_->workspace;
-  Solution solution = problem.extension ? solve_bordered(problem, recording)
-                      : problem.phase   ? solve_phase_space(problem, recording, w)
-                                        : solve_any(problem, recording, w);
+  Solution solution = problem.extension      ? solve_bordered(problem, recording)
+                      : problem.phase        ? solve_phase_space(problem, recording, w)
+                      : problem.inequalities ? solve_with_inequalities(problem, recording, arc_solve(w))
+                                             : solve_any(problem, recording, w);
   if (problem.manifold) move_onto_manifold(problem, solution);
   solution.history = std::move(history);
   return solution;
@@ -173,6 +186,7 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
     return found;
   }
   Workspace& w = memory_->workspace;
+  if (problem.inequalities) return minimisers(problem, options, most, arc_solve(w));
   w.levels.bind(problem.lagrangian);
   SolveOptions adaptive = options;
   adaptive.scheme.reset();

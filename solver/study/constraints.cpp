@@ -55,18 +55,11 @@ MatrixXd metric_of(const Lagrangian& lagrangian, const Problem& problem) {
   return MatrixXd::Identity(n, n) / mean_mass(lagrangian, problem);
 }
 
-void put_constraints(const SystemTable& table, const System& system, MatrixXd metric, double rate,
+void put_constraints(const SystemTable& table, const System& system, const MatrixXd& metric, double rate,
                      Problem& problem) {
-  const ConstrainedGraph graph = make_constrained(table);
-  NormalMotion normal{{}, rate};
-  for (Index a = 0; a < metric.rows(); ++a)
-    for (Index b = 0; b < metric.cols(); ++b)
-      if (metric(a, b) != 0)
-        normal.metric.push_back({static_cast<int>(a), static_cast<int>(b), metric(a, b)});
-  problem.lagrangian = make_lagrangian(projected(graph, normal));
-  problem.manifold = std::make_shared<const Manifold>(
-      Manifold::Parts{system.lagrangian, make_lagrangian(with_time_as_coordinate(graph)),
-                      make_lagrangian(multiplier_form(graph)), std::move(metric), rate});
+  ConstrainedSystem constrained = constrained_system(make_constrained(table), system, metric, rate);
+  problem.lagrangian = std::move(constrained.lagrangian);
+  problem.manifold = std::move(constrained.manifold);
 }
 
 void check_counts(const SystemTable& table, const System& system) {
@@ -81,6 +74,31 @@ void check_counts(const SystemTable& table, const System& system) {
 }
 
 }  // namespace
+
+MatrixXd metric_of_motion(const System& system, const Problem& problem) {
+  return metric_of(*system.lagrangian, problem);
+}
+
+std::shared_ptr<const Manifold> constrained_values(const ConstrainedGraph& graph, const System& system,
+                                                   const MatrixXd& metric, double rate) {
+  return std::make_shared<const Manifold>(
+      Manifold::Parts{system.lagrangian, make_lagrangian(with_time_as_coordinate(graph)),
+                      make_lagrangian(multiplier_form(graph)), metric, rate});
+}
+
+ConstrainedSystem constrained_system(const ConstrainedGraph& graph, const System& system,
+                                     const MatrixXd& metric, double rate) {
+  NormalMotion normal{{}, rate};
+  for (Index a = 0; a < metric.rows(); ++a)
+    for (Index b = 0; b < metric.cols(); ++b)
+      if (metric(a, b) != 0)
+        normal.metric.push_back({static_cast<int>(a), static_cast<int>(b), metric(a, b)});
+  ConstrainedSystem result;
+  if (graph.constraints.size() < system.names.size())
+    result.lagrangian = make_lagrangian(projected(graph, normal));
+  result.manifold = constrained_values(graph, system, metric, rate);
+  return result;
+}
 
 void constrain(const SystemTable& table, const System& system, double time, Problem& problem) {
   if (table.constraints.empty()) return;

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "problem/problem.hpp"
 #include "scene/scene.hpp"
+#include "system/constraints.hpp"
 #include "system/formula.hpp"
 
 /// \file Constraints of a system in a problem.
@@ -21,6 +24,23 @@ void constrain(const SystemTable& table, const System& system, double time, Prob
 
 /// The same with the metric and ω of another problem of the family.
 void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem);
+
+/// L̃ and the manifold of constraints.
+struct ConstrainedSystem {
+  std::shared_ptr<const Lagrangian> lagrangian;  ///< null where there are as many constraints as coordinates
+  std::shared_ptr<const Manifold> manifold;
+};
+
+/// The metric of the motions near the guess of a problem.
+Eigen::MatrixXd metric_of_motion(const System& system, const Problem& problem);
+
+/// Of all constraints of a graph, for their values and derivatives: there may be more than coordinates.
+std::shared_ptr<const Manifold> constrained_values(const ConstrainedGraph& graph, const System& system,
+                                                   const Eigen::MatrixXd& metric, double rate = 0);
+
+/// Of a motion with this metric and rate ω.
+ConstrainedSystem constrained_system(const ConstrainedGraph& graph, const System& system,
+                                     const Eigen::MatrixXd& metric, double rate);
 
 /// The ends of the guess, or near those that the relation fixes.
 EndPoints end_points(const Problem& problem);

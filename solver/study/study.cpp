@@ -20,6 +20,7 @@
 #include "study/memory.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
+#include "study/path_constraints.hpp"
 #include "study/phase.hpp"
 #include "study/phase_space.hpp"
 #include "study/suggestion.hpp"
@@ -158,6 +159,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   check_regular(problem, scene.system);
   if (scene.boundary.energy && !problem.extension) check_energy_at_ends(problem, scene.boundary.energy->at);
   check_guess_finite(problem, scene.guess.at);
+  put_inequalities(scene, system, problem);
   return problem;
 }
 
@@ -219,7 +221,9 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.forces = scene.system.force;
   study.constraints = scene.system.constraints;
   study.integrals = scene.boundary.integrals;
+  if (scene.inequalities) study.inequalities = scene.inequalities->constraints;
   check_forces(scene);
+  check_inequalities(scene, purpose);
   study.axes = scene.system.axes;
   study.centres = scene.system.centres;
   study.options = read_options(scene.solve);

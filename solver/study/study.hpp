@@ -35,6 +35,7 @@ struct Study {
   std::vector<Assignment> forces;   ///< as written; none: the problem has none
   std::vector<Text> constraints;    ///< likewise
   std::vector<Text> integrals;      ///< likewise
+  std::vector<Text> inequalities;   ///< along the path, likewise
   std::vector<Text> axes, centres;  ///< of the system's [about], see annotation()
   std::optional<SpectrumRequest> spectrum;
   std::optional<Units> units;

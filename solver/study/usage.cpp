@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <set>
 
 #include "system/formula.hpp"
@@ -18,6 +19,7 @@ class NamesUsed {
     add(scene.boundary);
     add(scene.waypoints);
     add(scene.guess);
+    if (scene.inequalities) add_inequalities(scene.inequalities->constraints);
     if (scene.fit) add(scene.fit->observe);
     if (scene.continuation) names_.insert(scene.continuation->parameter.value);
   }
@@ -38,6 +40,14 @@ class NamesUsed {
   template <class Part>
   void add(const std::optional<Part>& part) {
     if (part) add(*part);
+  }
+  /// No formula has < and >.
+  void add_inequalities(const std::vector<Text>& inequalities) {
+    for (Text text : inequalities) {
+      std::ranges::replace(text.value, '<', ' ');
+      std::ranges::replace(text.value, '>', ' ');
+      add(text);
+    }
   }
   void add(const SystemTable& system) {
     add(system.coordinates);

@@ -8,6 +8,7 @@
 #include "scene/document.hpp"
 #include "scene/schema.hpp"
 #include "solve/external/curve_fit.hpp"
+#include "solve/external/method.hpp"
 #include "solve/solve.hpp"
 #include "study/continued.hpp"
 #include "system/formula_names.hpp"
@@ -29,6 +30,7 @@ const std::vector<TableOfKeys> tables = {{"", "### Top of a scene"},
                                          {"system", "### system"},
                                          {"boundary", "### boundary"},
                                          {"waypoints", "### waypoints"},
+                                         {"path", "### path"},
                                          {"guess", "### guess"},
                                          {"solve", "### solve"},
                                          {"search", "### search"},
@@ -260,6 +262,12 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
              "unknowns = { k = 1 }, where = [\"k = 0.5\"] }\n"
              "waypoints = [{ at = 1, x = 0.4 }]\n",
              fields);
+  if (extremal::available(extremal::Method::ipopt))
+    add_fields("solve",
+               "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2 + 8*x\" }\n"
+               "boundary = { start = { x = 0 }, end = { x = 0 }, duration = 2 }\n"
+               "path = { constraints = [\"x >= -1\"] }\n",
+               fields, {"--samples", "2"});
   write("data.csv", "t,x\n0,1\n1,0.5\n1.5,0.1\n2,-0.4\n");
   add_fields(
       "solve",

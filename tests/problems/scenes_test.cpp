@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cctype>
@@ -7,6 +8,7 @@
 
 #include "problems/reference.hpp"
 #include "solution/extension_values.hpp"
+#include "solve/external/method.hpp"
 #include "study/study.hpp"
 
 using namespace extremal;
@@ -54,6 +56,9 @@ class Scenes : public testing::TestWithParam<Reference> {};
 
 TEST_P(Scenes, GiveTheKnownValue) {
   const Reference& reference = GetParam();
+  const std::string path = problems::root + "/problems/scenes/" + reference.scene + ".toml";
+  if (!available(Method::ipopt) && toml::parse_file(path).contains("path"))
+    GTEST_SKIP() << "this build has no Ipopt, which inequalities need";
   const Study study = study_of(reference);
   const Solution solution = run(study);
   ASSERT_TRUE(solution.converged()) << solution.message;

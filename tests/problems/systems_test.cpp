@@ -8,6 +8,7 @@
 
 #include "problems/reference.hpp"
 #include "solve/external/curve_fit.hpp"
+#include "solve/external/method.hpp"
 #include "study/annotation.hpp"
 #include "study/inspection.hpp"
 #include "study/study.hpp"
@@ -64,6 +65,8 @@ class EveryScene : public testing::TestWithParam<std::string> {
   void SetUp() override {
     if (!can_fit() && toml::parse_file(scene_path(GetParam())).contains("fit"))
       GTEST_SKIP() << "this build has no Ceres, which fits need";
+    if (!available(Method::ipopt) && toml::parse_file(scene_path(GetParam())).contains("path"))
+      GTEST_SKIP() << "this build has no Ipopt, which inequalities need";
   }
 };
 

@@ -206,7 +206,7 @@ TEST_F(SceneFiles, ContinuationIsRead) {
             "scene.toml:11:1: unknown key 'step' in [continuation]");
 }
 
-TEST_F(SceneFiles, WhatIsNotAvailableYet) {
-  EXPECT_EQ(message(pendulum + "[path]\nx = 1\n"), "scene.toml:8:2: [path] is not available yet");
+TEST_F(SceneFiles, PathsAndMethods) {
+  EXPECT_EQ(message(pendulum + "[path]\nx = 1\n"), "scene.toml:9:1: unknown key 'x' in [path]");
   EXPECT_EQ(message(pendulum + "[solve]\nmethod = \"newtom\"\n"), "scene.toml:9:11: unknown method 'newtom'");
 }

@@ -1,0 +1,210 @@
+#include "solve/contact/arcs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "action/rule.hpp"
+#include "problem/shift.hpp"
+#include "solve/contact/limits.hpp"
+
+namespace extremal {
+
+namespace {
+
+using namespace limits::contact;
+using Eigen::VectorXd;
+
+std::vector<double> values_of(const VectorXd& v) { return {v.begin(), v.end()}; }
+
+VectorXd vector_of(const std::vector<double>& v) {
+  return Eigen::Map<const VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+/// A guess whose ends are moved to those of the arc, all of it in proportion.
+Guess fitted(const PathArc& arc) {
+  const std::size_t n = arc.start.size();
+  Guess guess = arc.guess;
+  if (!guess.given()) {
+    guess.tau = {0, 1};
+    guess.q = values_of(arc.start);
+    guess.q.insert(guess.q.end(), arc.end.begin(), arc.end.end());
+    return guess;
+  }
+  std::vector<double> first(n), last(n);
+  guess.at(0, first);
+  guess.at(1, last);
+  for (std::size_t k = 0; k < guess.tau.size(); ++k)
+    for (std::size_t a = 0; a < n; ++a)
+      guess.q[k * n + a] +=
+          (1 - guess.tau[k]) * (arc.start[a] - first[a]) + guess.tau[k] * (arc.end[a] - last[a]);
+  return guess;
+}
+
+}  // namespace
+
+Guess guess_of(const Trajectory& trajectory) {
+  const std::size_t n = trajectory.coordinates;
+  Guess guess;
+  std::vector<double> q(n), v(n);
+  const int points = std::max(8, trajectory.degree * trajectory.elements());
+  for (int k = 0; k <= points; ++k) {
+    const double tau = static_cast<double>(k) / points;
+    trajectory.at(tau * trajectory.duration(), q, v);
+    guess.tau.push_back(tau);
+    guess.q.insert(guess.q.end(), q.begin(), q.end());
+  }
+  return guess;
+}
+
+Arcs::Arcs(const Problem& problem, const SolveOptions& options, const ArcSolve& solve)
+    : problem_(problem), options_(options), solve_(solve) {
+  systems_[{}] = {problem.lagrangian, nullptr};
+}
+
+const HeldSystem& Arcs::system(const std::vector<int>& held) {
+  const auto found = systems_.find(held);
+  return found != systems_.end() ? found->second
+                                 : systems_.emplace(held, problem_.inequalities->hold(held)).first->second;
+}
+
+bool Arcs::project(const std::vector<int>& held, double t, VectorXd& q) {
+  const std::shared_ptr<const Manifold> onto = manifold(held);
+  return !onto || onto->project({q.data(), static_cast<std::size_t>(q.size())}, t);
+}
+
+SolvedArc Arcs::solve(const PathArc& arc) {
+  if (!(arc.to > arc.from)) {
+    SolvedArc none;
+    none.message = "an arc has no length";
+    return none;
+  }
+  if (arc.held.size() == static_cast<std::size_t>(problem_.coordinates())) return follow_constraints(arc);
+  SolvedArc solved = solve_extremal(
+      arc, std::max(arc_share * options_.tolerance, std::min(least_arc_tolerance, options_.tolerance)));
+  if (!solved.found) solved = solve_extremal(arc, arc_share_again * options_.tolerance);
+  if (!solved.found && arc.held.empty()) {  // what is left of a path that rests may be no guess
+    PathArc line = arc;
+    line.guess = {};
+    solved = solve_extremal(line, arc_share_again * options_.tolerance);
+  }
+  return solved;
+}
+
+SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
+  const HeldSystem& system = this->system(arc.held);
+  const int n = problem_.coordinates();
+  Problem problem;
+  problem.lagrangian = shift_time(system.lagrangian, arc.from);
+  if (system.manifold) problem.manifold = shift_time(system.manifold, arc.from);
+  problem.names = problem_.names;
+  problem.boundary.coordinates = n;
+  for (int a = 0; a < n; ++a) problem.boundary.fix(a, false, arc.start[a]);
+  for (int a = 0; a < n; ++a) problem.boundary.fix(a, true, arc.end[a]);
+  problem.duration.value = arc.to - arc.from;
+  problem.guess = fitted(arc);
+  if (problem.manifold)
+    for (std::size_t k = 0; k < problem.guess.tau.size(); ++k)
+      problem.manifold->project({problem.guess.q.data() + k * n, static_cast<std::size_t>(n)},
+                                problem.guess.tau[k] * problem.duration.value);
+  SolveOptions options = options_;
+  options.tolerance = tolerance;
+  options.method = Method::newton;
+  SolvedArc result;
+  try {
+    problem = make_problem(std::move(problem));
+  } catch (const std::exception& e) {
+    result.message = e.what();
+    return result;
+  }
+  Solution solution = solve_(problem, options);
+  iterations_ += solution.iterations;
+  result.found = solution.converged();
+  result.message = std::move(solution.message);
+  if (!result.found) return result;
+  result.trajectory = std::move(solution.trajectory);
+  result.action = solution.action;
+  result.error = solution.error_estimate;
+  result.residual = solution.residual;
+  result.iterations = solution.iterations;
+  result.degree = solution.degree;
+  result.minimizing = !solution.morse_index || *solution.morse_index == 0;
+  measure(arc, result);
+  result.p_start = vector_of(solution.momentum_start);
+  result.p_end = vector_of(solution.momentum_end);
+  return result;
+}
+
+/// Velocities at the ends, and momenta by them.
+void Arcs::measure(const PathArc& arc, SolvedArc& solved) {
+  const int n = problem_.coordinates();
+  const std::shared_ptr<const Manifold> onto = manifold(arc.held);
+  Scratch scratch;
+  for (const bool at_end : {false, true}) {
+    std::vector<double> q(n), v(n);
+    const double t = at_end ? arc.to : arc.from;
+    solved.trajectory.at(at_end ? solved.trajectory.duration() : 0, q, v);
+    if (onto) onto->make_tangent(q, t, v);
+    const PointValues l = evaluate_at(*problem_.lagrangian, q, v, t, Order::gradient, scratch);
+    (at_end ? solved.v_end : solved.v_start) = vector_of(v);
+    (at_end ? solved.p_end : solved.p_start) = vector_of(l.dv);
+  }
+}
+
+/// As many constraints as coordinates: they alone determine the path.
+SolvedArc Arcs::follow_constraints(const PathArc& arc) {
+  const std::size_t n = problem_.coordinates();
+  const std::shared_ptr<const Manifold> onto = manifold(arc.held);
+  const double duration = arc.to - arc.from;
+  const Guess guess = fitted(arc);
+  SolvedArc result;
+  const auto state = [&](double tau, std::span<double> q, std::span<double> v) {
+    guess.at(tau, q);
+    std::ranges::fill(v, 0.0);
+    if (!onto->project(q, arc.from + tau * duration)) return false;
+    onto->make_tangent(q, arc.from + tau * duration, v);
+    return true;
+  };
+  const std::size_t s = held_degree;
+  const Basis& basis = lobatto_nodal_basis(held_degree);
+  const Rule rule = gauss_rule(held_degree + 2);
+  std::vector<double> q(n), v(n), between(n), slope(n);
+  Scratch scratch;
+  for (int elements = 1; elements <= most_held_elements; elements *= 2) {
+    Trajectory path{static_cast<int>(n), held_degree, {}, {}};
+    for (int k = 0; k <= elements; ++k)
+      path.times.push_back(k == elements ? duration : duration * k / elements);
+    double size = 0, error = 0;
+    for (int k = 0; k < elements; ++k)
+      for (std::size_t j = 0; j <= s; ++j) {
+        if (!state((path.times[k] + basis.points[j] * path.length(k)) / duration, q, v)) {
+          result.message = "the inequalities that are held do not determine the path";
+          return result;
+        }
+        path.nodes.insert(path.nodes.end(), q.begin(), q.end());
+        path.slopes.insert(path.slopes.end(), v.begin(), v.end());
+        for (const double x : q) size = std::max(size, std::abs(x));
+      }
+    result.action = 0;
+    for (int k = 0; k < elements; ++k)
+      for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+        const double t = path.times[k] + rule.nodes[i] * path.length(k);
+        if (!state(t / duration, q, v)) return result;
+        path.in_element(k, rule.nodes[i], between, slope);
+        for (std::size_t a = 0; a < n; ++a)
+          error = std::max({error, std::abs(q[a] - between[a]), 0.1 * duration * std::abs(v[a] - slope[a])});
+        result.action += rule.weights[i] * path.length(k) *
+                         evaluate_at(*problem_.lagrangian, q, v, arc.from + t, Order::value, scratch).value;
+      }
+    result.error = error;
+    result.trajectory = std::move(path);
+    if (error <= std::max(arc_share * options_.tolerance, least_arc_tolerance) * size) break;
+  }
+  result.degree = held_degree;
+  result.found = std::isfinite(result.action);
+  measure(arc, result);
+  return result;
+}
+
+}  // namespace extremal

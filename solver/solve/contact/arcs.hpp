@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "problem/inequalities.hpp"
+#include "problem/problem.hpp"
+#include "solution/solution.hpp"
+#include "solve/adapt/options.hpp"
+
+/// \file Parts of a path along which the same inequalities are equalities: each is an extremal of its own.
+
+namespace extremal {
+
+/// How an arc is solved for between fixed ends, from its guess alone.
+using ArcSolve = std::function<Solution(const Problem&, const SolveOptions&)>;
+
+/// A part of a path.
+struct PathArc {
+  std::vector<int> held;    ///< ascending; empty: free
+  double from = 0, to = 0;  ///< times
+  Eigen::VectorXd start, end;
+  Guess guess;  ///< by t − from over to − from
+};
+
+/// An arc that has been solved for.
+struct SolvedArc {
+  bool found = false;
+  std::string message;    ///< where it was not found
+  Trajectory trajectory;  ///< from time 0
+  Eigen::VectorXd p_start, p_end, v_start, v_end;
+  double action = 0, error = 0, residual = 0;
+  int iterations = 0, degree = 0;
+  bool minimizing = true;
+};
+
+/// Solves arcs of one problem.
+class Arcs {
+ public:
+  /// Keeps references.
+  Arcs(const Problem& problem, const SolveOptions& options, const ArcSolve& solve);
+
+  SolvedArc solve(const PathArc& arc);
+  /// The manifold of inequalities as equations; null of none.
+  std::shared_ptr<const Manifold> manifold(const std::vector<int>& held) { return system(held).manifold; }
+  /// Moves a point to where these inequalities are equalities. False if the iteration does not converge.
+  bool project(const std::vector<int>& held, double t, Eigen::VectorXd& q);
+  int iterations() const { return iterations_; }
+  const Problem& problem() const { return problem_; }
+  const SolveOptions& options() const { return options_; }
+
+ private:
+  const HeldSystem& system(const std::vector<int>& held);
+  SolvedArc solve_extremal(const PathArc& arc, double tolerance);
+  SolvedArc follow_constraints(const PathArc& arc);
+  void measure(const PathArc& arc, SolvedArc& solved);
+
+  const Problem& problem_;
+  const SolveOptions& options_;
+  const ArcSolve& solve_;
+  std::map<std::vector<int>, HeldSystem> systems_;
+  int iterations_ = 0;
+};
+
+/// The path of an arc as a guess for the same with other ends.
+Guess guess_of(const Trajectory& trajectory);
+
+}  // namespace extremal

@@ -1,0 +1,176 @@
+#include "solve/contact/contact_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/contact/coarse_action.hpp"
+#include "solve/contact/limits.hpp"
+
+namespace extremal {
+
+namespace {
+
+using namespace limits::contact;
+
+/// A quantity of one inequality along one arc; it must not be negative.
+struct Sampled {
+  std::vector<double> t, values;
+};
+
+/// The stretch about the least value in which values are negative; times at its ends.
+Violation stretch(const Sampled& sampled, std::size_t least, int constraint, bool forbidden) {
+  std::size_t first = least, last = least;
+  while (first > 0 && sampled.values[first - 1] < 0) --first;
+  while (last + 1 < sampled.values.size() && sampled.values[last + 1] < 0) ++last;
+  if (forbidden && first > 0) --first;
+  if (forbidden && last + 1 < sampled.t.size()) ++last;
+  return {constraint, forbidden, sampled.t[first], sampled.t[last], -sampled.values[least]};
+}
+
+/// Points in each element, ends included.
+std::vector<double> times_of(const Trajectory& path) {
+  std::vector<double> times;
+  for (int k = 0; k < path.elements(); ++k)
+    for (int i = 0; i < points; ++i) times.push_back(path.times[k] + path.length(k) * i / points);
+  times.push_back(path.duration());
+  return times;
+}
+
+/// The least value between two times, by golden sections.
+template <class Function>
+double least_between(double a, double b, const Function& f) {
+  constexpr double part = 0.381966011250105;
+  double x = a + part * (b - a), y = b - part * (b - a), fx = f(x), fy = f(y);
+  for (int k = 0; k < 24; ++k) {
+    if (fx < fy) {
+      b = y;
+      y = x;
+      fy = fx;
+      x = a + part * (b - a);
+      fx = f(x);
+    } else {
+      a = x;
+      x = y;
+      fx = fy;
+      y = b - part * (b - a);
+      fy = f(y);
+    }
+  }
+  return std::min(fx, fy);
+}
+
+class LawCheck {
+ public:
+  LawCheck(Arcs& arcs, const Junctions& path)
+      : arcs_(arcs),
+        path_(path),
+        inequalities_(*arcs.problem().inequalities),
+        n_(arcs.problem().coordinates()),
+        q_(n_),
+        v_(n_) {}
+
+  std::optional<Violation> run() {
+    for (std::size_t i = 0; i < path_.arcs().size(); ++i) check_distances(i);
+    if (worst_) return worst_;
+    for (std::size_t i = 0; i < path_.arcs().size(); ++i)
+      if (!path_.arcs()[i].held.empty()) check_forces(i);
+    return worst_;
+  }
+
+ private:
+  /// g_k as a distance, at a time of an arc.
+  double distance(std::size_t arc, int constraint, double t) {
+    path_.solved()[arc].trajectory.at(t, q_, v_);
+    const ConstraintValues values = inequalities_.all->at(q_, path_.arcs()[arc].from + t);
+    const double slope = values.slopes.row(constraint).norm();
+    return values.g[constraint] / (slope > 0 ? slope : 1);
+  }
+
+  void check_distances(std::size_t i) {
+    const PathArc& arc = path_.arcs()[i];
+    const Trajectory& trajectory = path_.solved()[i].trajectory;
+    const double tolerance = arcs_.options().tolerance * path_.size();
+    Sampled sampled{times_of(trajectory), {}};
+    for (int k = 0; k < inequalities_.count(); ++k) {
+      sampled.values.clear();
+      for (const double t : sampled.t) sampled.values.push_back(distance(i, k, t) + tolerance);
+      const std::size_t least = std::ranges::min_element(sampled.values) - sampled.values.begin();
+      const double a = sampled.t[least > 0 ? least - 1 : 0],
+                   b = sampled.t[std::min(least + 1, sampled.t.size() - 1)];
+      double& value = sampled.values[least];
+      value = std::min(value, least_between(a, b, [&](double t) { return distance(i, k, t) + tolerance; }));
+      if (!(value < 0)) continue;
+      keep(stretch(sampled, least, k, true), arc.from);
+    }
+  }
+
+  void check_forces(std::size_t i) {
+    const PathArc& arc = path_.arcs()[i];
+    const Trajectory& trajectory = path_.solved()[i].trajectory;
+    const std::shared_ptr<const Manifold> manifold = arcs_.manifold(arc.held);
+    std::vector<Sampled> sampled(arc.held.size(), {times_of(trajectory), {}});
+    double largest = 0;
+    for (const double t : sampled.front().t) {
+      trajectory.at(t, q_, v_);
+      manifold->project(q_, arc.from + t);
+      manifold->make_tangent(q_, arc.from + t, v_);
+      const std::vector<double> forces = manifold->multipliers(q_, arc.from + t, v_);
+      for (std::size_t h = 0; h < forces.size(); ++h) {
+        sampled[h].values.push_back(-forces[h]);
+        largest = std::max(largest, std::abs(forces[h]));
+      }
+    }
+    for (std::size_t h = 0; h < sampled.size(); ++h) {
+      for (double& force : sampled[h].values) force += negative_force * largest;
+      const std::size_t least = std::ranges::min_element(sampled[h].values) - sampled[h].values.begin();
+      if (sampled[h].values[least] < 0) keep(stretch(sampled[h], least, arc.held[h], false), arc.from);
+    }
+  }
+
+  void keep(Violation violation, double from) {
+    if (worst_ && worst_->amount >= violation.amount) return;
+    violation.from += from;
+    violation.to += from;
+    worst_ = violation;
+  }
+
+  Arcs& arcs_;
+  const Junctions& path_;
+  const Inequalities& inequalities_;
+  std::size_t n_;
+  std::vector<double> q_, v_;
+  std::optional<Violation> worst_;
+};
+
+}  // namespace
+
+std::optional<Violation> worst_violation(Arcs& arcs, const Junctions& path) {
+  return LawCheck(arcs, path).run();
+}
+
+bool is_minimum(Arcs& arcs, const Junctions& path) {
+  const Problem& problem = arcs.problem();
+  const std::size_t n = problem.coordinates();
+  const CoarseAction action(problem, std::min<int>(variation_elements, most_unknowns / static_cast<int>(n)));
+  std::vector<double> z((action.elements() + 1) * n), v(n);
+  std::vector<std::vector<int>> held(action.elements() + 1);
+  std::vector<std::vector<double>> forces(held.size(), std::vector<double>(problem.inequalities->count()));
+  std::size_t i = 0;
+  for (int k = 0; k <= action.elements(); ++k) {
+    const double t = action.time(k);
+    while (i + 1 < path.arcs().size() && t >= path.arcs()[i].to) ++i;
+    const PathArc& arc = path.arcs()[i];
+    const std::span<double> q(z.data() + k * n, n);
+    const Trajectory& trajectory = path.solved()[i].trajectory;
+    trajectory.at(std::clamp(t - arc.from, 0.0, trajectory.duration()), q, v);
+    held[k] = arc.held;
+    if (arc.held.empty()) continue;
+    const std::shared_ptr<const Manifold> manifold = arcs.manifold(arc.held);
+    manifold->make_tangent(q, t, v);
+    const std::vector<double> found = manifold->multipliers(q, t, v);
+    for (std::size_t h = 0; h < found.size(); ++h) forces[k][arc.held[h]] = -found[h];
+  }
+  return action.positive(z, held, forces);
+}
+
+}  // namespace extremal

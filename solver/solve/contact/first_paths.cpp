@@ -1,0 +1,145 @@
+#include "solve/contact/first_paths.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <random>
+
+#include "solve/contact/limits.hpp"
+#include "solve/guess/starting_ends.hpp"
+
+namespace extremal {
+
+namespace {
+
+using namespace limits::contact;
+using Eigen::VectorXd;
+
+using Nodes = std::vector<double>;
+
+Nodes unbent(const Problem& problem, const CoarseAction& action) {
+  const std::size_t n = problem.coordinates();
+  const std::vector<double> ends = starting_ends(problem);
+  Nodes z((action.elements() + 1) * n);
+  for (int k = 0; k <= action.elements(); ++k) {
+    const double tau = static_cast<double>(k) / action.elements();
+    if (problem.guess.given() && k > 0 && k < action.elements()) {
+      problem.guess.at(tau, {z.data() + k * n, n});
+      continue;
+    }
+    for (std::size_t a = 0; a < n; ++a) z[k * n + a] = (1 - tau) * ends[a] + tau * ends[n + a];
+  }
+  return z;
+}
+
+/// The extent of the path and of what it must keep clear of, roughly.
+double size_of(const Nodes& z, int n) {
+  double size = 0, least = 0;
+  for (int a = 0; a < n; ++a) {
+    double low = z[a], high = z[a];
+    for (std::size_t i = a; i < z.size(); i += n) {
+      low = std::min(low, z[i]);
+      high = std::max(high, z[i]);
+    }
+    size = std::max(size, high - low);
+    least = std::max({least, std::abs(low), std::abs(high)});
+  }
+  return size > 0 ? size : least > 0 ? least : 1;
+}
+
+/// Moves the nodes to where all inequalities hold; false where that fails.
+bool push(const Problem& problem, const CoarseAction& action, Nodes& z) {
+  const Inequalities& inequalities = *problem.inequalities;
+  const std::size_t n = problem.coordinates();
+  for (std::size_t place = 0; place < action.places().size(); place += inequalities.count()) {
+    const int node = action.places()[place].node;
+    const std::span<double> q(z.data() + node * n, n);
+    bool kept = false;
+    for (int pass = 0; pass < most_pushes && !kept; ++pass) {
+      const ConstraintValues values = inequalities.all->at(q, action.time(node));
+      Eigen::Index worst = 0;
+      const double least = values.g.minCoeff(&worst);
+      kept = least >= 0;
+      if (kept) break;
+      const VectorXd slope = values.slopes.row(worst), across = inequalities.all->metric() * slope;
+      const double square = slope.dot(across);
+      if (!(square > 0)) return false;
+      // A step slightly beyond, so that rounding does not keep the node outside.
+      const VectorXd step = -(1 + 1e-6) * least / square * across;
+      for (std::size_t a = 0; a < n; ++a) q[a] += step[a];
+    }
+  }
+  return true;
+}
+
+bool jumps(const Nodes& z, std::size_t n) {
+  double length = 0, longest = 0;
+  for (std::size_t k = n; k < z.size(); k += n) {
+    double step = 0;
+    for (std::size_t a = 0; a < n; ++a) step += std::pow(z[k + a] - z[k + a - n], 2);
+    length += std::sqrt(step);
+    longest = std::max(longest, std::sqrt(step));
+  }
+  return longest > jump * length && length > 0;
+}
+
+/// A direction across the line between the ends; the same at every call.
+VectorXd aside(const Nodes& z, int n, unsigned number) {
+  std::minstd_rand random{7 + 13 * number};
+  VectorXd direction(n), chord(n);
+  for (int a = 0; a < n; ++a) {
+    direction[a] = 2.0 * random() / std::minstd_rand::max() - 1;
+    chord[a] = z[z.size() - n + a] - z[a];
+  }
+  const double length = chord.norm();
+  if (n > 1 && length > 0) direction -= direction.dot(chord) / (length * length) * chord;
+  return direction.normalized();
+}
+
+void bend(Nodes& z, const VectorXd& direction, double size, int wave) {
+  const auto n = static_cast<std::size_t>(direction.size());
+  const double nodes = static_cast<double>(z.size()) / static_cast<double>(n) - 1;
+  for (std::size_t k = 0; k < z.size() / n; ++k)
+    for (std::size_t a = 0; a < n; ++a)
+      z[k * n + a] +=
+          size * direction[a] * std::sin(wave * std::numbers::pi * static_cast<double>(k) / nodes);
+}
+
+constexpr int signs = 2, sizes = static_cast<int>(std::size(wave_sizes));
+
+/// Directions of the bends of a search.
+int directions(int n) { return n == 1 ? 1 : n == 2 ? 1 : n; }
+
+}  // namespace
+
+std::vector<double> first_path(const Problem& problem, const CoarseAction& action) {
+  const int n = problem.coordinates();
+  const Nodes line = unbent(problem, action);
+  const double size = size_of(line, n);
+  Nodes pushed = line;
+  push(problem, action, pushed);
+  for (const double part : bends) {
+    Nodes z = line;
+    bend(z, aside(line, n, 0), part * size, 1);
+    if (push(problem, action, z) && !jumps(z, n)) return z;
+  }
+  return pushed;
+}
+
+int bent_paths(const Problem& problem) { return signs * sizes * waves * directions(problem.coordinates()); }
+
+/// Small waves first; of each size half a wave, then more.
+std::optional<std::vector<double>> bent_path(const Problem& problem, const CoarseAction& action, int number) {
+  const int n = problem.coordinates();
+  const int sign = number % signs, direction = number / signs % directions(n),
+            wave = number / signs / directions(n) % waves, size = number / signs / directions(n) / waves;
+  Nodes z = unbent(problem, action);
+  const double extent = size_of(z, n);
+  bend(z, aside(z, n, direction), (sign == 0 ? 1 : -1) * wave_sizes[size] * extent, wave + 1);
+  if (!push(problem, action, z) || jumps(z, n)) return std::nullopt;
+  return z;
+}
+
+}  // namespace extremal

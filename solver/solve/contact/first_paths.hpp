@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solve/contact/coarse_action.hpp"
+
+/// \file Paths from which a minimum under inequalities is looked for.
+
+namespace extremal {
+
+/// The guess, or the line between the ends, at the nodes of a coarse path; nodes where an inequality does not
+/// hold are moved to where it does. Where that makes the path jump, as past the middle of an obstacle, it is
+/// bent aside first, the less the better.
+std::vector<double> first_path(const Problem& problem, const CoarseAction& action);
+
+/// The same bent by waves, for the `number`-th start of a search; nothing if it jumps.
+std::optional<std::vector<double>> bent_path(const Problem& problem, const CoarseAction& action, int number);
+
+/// Starts of a search that differ.
+int bent_paths(const Problem& problem);
+
+}  // namespace extremal

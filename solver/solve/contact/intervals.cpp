@@ -1,0 +1,188 @@
+#include "solve/contact/intervals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "linear/dense.hpp"
+#include "solve/contact/limits.hpp"
+
+namespace extremal {
+
+namespace {
+
+using namespace limits::contact;
+
+/// Gradients whose part across the others is smaller, relative, depend on them.
+constexpr double dependence = 1e-6;
+
+/// At a node; of inequalities whose gradients depend on each other, those pressed most.
+struct Pressed {
+  int constraint;
+  double force;
+};
+
+std::vector<int> independent(std::vector<Pressed> pressed, const ConstraintValues& values) {
+  std::ranges::stable_sort(pressed, [](const Pressed& a, const Pressed& b) { return a.force > b.force; });
+  Eigen::MatrixXd basis(values.slopes.cols(), 0);
+  std::vector<int> held;
+  for (const Pressed& each : pressed) {
+    Eigen::VectorXd row = values.slopes.row(each.constraint);
+    const double size = row.norm();
+    for (int pass = 0; pass < 2; ++pass) row -= basis * (basis.transpose() * row).eval();
+    if (!(row.norm() > dependence * size)) continue;
+    basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
+    basis.rightCols(1) = row.normalized();
+    held.push_back(each.constraint);
+  }
+  std::ranges::sort(held);
+  return held;
+}
+
+/// Where several inequalities are held on few elements, beside the ends of the path, a path passes a corner
+/// rather than resting in it: it leaves one surface before it comes to another. One that the neighbours do
+/// not hold is held there alone, or none; what is missing then is found as a violation.
+void pass_corners(std::vector<Interval>& intervals, double longest) {
+  std::vector<Interval> passed;
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const Interval& interval = intervals[i];
+    const double length = interval.to - interval.from;
+    if (i == 0 || i + 1 == intervals.size() || length > longest || interval.held.size() < 2) {
+      passed.push_back(interval);
+      continue;
+    }
+    const std::vector<int>&before = intervals[i - 1].held, &after = intervals[i + 1].held;
+    std::vector<int> alone;
+    for (const int k : interval.held)
+      if (alone.empty() && !std::ranges::binary_search(before, k) && !std::ranges::binary_search(after, k))
+        alone = {k};
+    passed.push_back({{}, interval.from, interval.from + length / 3});
+    passed.push_back({alone, interval.from + length / 3, interval.to - length / 3});
+    passed.push_back({{}, interval.to - length / 3, interval.to});
+  }
+  intervals = std::move(passed);
+}
+
+bool includes(const std::vector<int>& a, const std::vector<int>& b) { return std::ranges::includes(a, b); }
+
+}  // namespace
+
+std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& action,
+                                   std::span<const double> z, std::span<const double> multipliers) {
+  const Inequalities& inequalities = *problem.inequalities;
+  const std::size_t n = problem.coordinates(), m = inequalities.count();
+  const int elements = action.elements();
+  const double duration = problem.duration.value, h = duration / elements;
+  const double force = action.force(z);
+  double size = 0;
+  for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t i = a; i < z.size(); i += n) size = std::max(size, std::abs(z[i] - z[a]));
+  if (!(size > 0)) size = 1;
+  std::vector<std::vector<int>> held(elements + 1);
+  for (std::size_t place = 0; place < action.places().size(); place += m) {
+    const int node = action.places()[place].node;
+    const ConstraintValues values = inequalities.all->at(z.subspan(node * n, n), action.time(node));
+    std::vector<Pressed> pressed;
+    for (std::size_t c = 0; c < m; ++c) {
+      // The product of both is the small barrier parameter; in contact the force is the larger one.
+      const double slope = values.slopes.row(c).norm(), pressure = multipliers[place + c] * slope / h;
+      if (pressure * slope * size > std::abs(values.g[c]) * force)
+        pressed.push_back({static_cast<int>(c), pressure});
+    }
+    held[node] = independent(std::move(pressed), values);
+  }
+  // An end that is given belongs to a contact that lasts until there.
+  for (const int node : {0, elements}) {
+    const int next = node == 0 ? 1 : elements - 1;
+    if (!action.places().empty() &&
+        (node == 0 ? action.places().front().node == 0 : action.places().back().node == elements))
+      continue;
+    const ConstraintValues values = inequalities.all->at(z.subspan(node * n, n), action.time(node));
+    for (const int c : held[next])
+      if (std::abs(values.g[c]) <= 1e-7 * values.slopes.row(c).norm() * size) held[node].push_back(c);
+  }
+  std::vector<Interval> intervals;
+  for (int k = 0; k <= elements; ++k) {
+    const double from = k == 0 ? 0 : (k - 0.5) * h, to = k == elements ? duration : (k + 0.5) * h;
+    if (!intervals.empty() && intervals.back().held == held[k]) {
+      intervals.back().to = to;
+      continue;
+    }
+    // Between contacts neither of which includes the other, only what both hold is held for a moment.
+    if (!intervals.empty() && !includes(intervals.back().held, held[k]) &&
+        !includes(held[k], intervals.back().held)) {
+      std::vector<int> both;
+      std::ranges::set_intersection(intervals.back().held, held[k], std::back_inserter(both));
+      intervals.back().to = from - 0.25 * h;
+      intervals.push_back({std::move(both), from - 0.25 * h, from + 0.25 * h});
+      intervals.push_back({held[k], from + 0.25 * h, to});
+      continue;
+    }
+    intervals.push_back({held[k], from, to});
+  }
+  pass_corners(intervals, corner_elements * h);
+  return intervals;
+}
+
+void tidy(std::vector<Interval>& intervals, double duration) {
+  std::vector<Interval> kept;
+  for (Interval& interval : intervals) {
+    if (!(interval.to - interval.from > shortest_arc * duration)) continue;
+    if (!kept.empty() && kept.back().held == interval.held && interval.touched < 0)
+      kept.back().to = interval.to;
+    else
+      kept.push_back(std::move(interval));
+  }
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (i > 0) kept[i].from = kept[i - 1].to;
+  }
+  kept.front().from = 0;
+  kept.back().to = duration;
+  intervals = std::move(kept);
+}
+
+void leave_out(std::vector<Interval>& intervals, int number, double duration) {
+  if (intervals.size() < 2) return;
+  const Interval gone = intervals[number];
+  const std::size_t next = number;
+  const bool inner = next > 0 && next + 1 < intervals.size();
+  if (inner && intervals[next - 1].held == intervals[next + 1].held && gone.touched < 0 &&
+      intervals[next + 1].touched < 0 && gone.held.size() == intervals[next - 1].held.size() + 1) {
+    std::vector<int> only;
+    std::ranges::set_difference(gone.held, intervals[next - 1].held, std::back_inserter(only));
+    intervals[next + 1].touched = only.front();
+  }
+  intervals.erase(intervals.begin() + number);
+  if (next == 0)
+    intervals.front().from = gone.from;
+  else if (next == intervals.size())
+    intervals.back().to = gone.to;
+  else
+    intervals[next - 1].to = intervals[next].from = (gone.from + gone.to) / 2;
+  if (next == 0) intervals.front().touched = -1;
+  tidy(intervals, duration);
+}
+
+void change(std::vector<Interval>& intervals, int constraint, bool held, double from, double to,
+            double duration) {
+  std::vector<Interval> changed;
+  for (const Interval& interval : intervals) {
+    const double a = std::clamp(from, interval.from, interval.to),
+                 b = std::clamp(to, interval.from, interval.to);
+    Interval middle = interval;
+    const auto found = std::ranges::find(middle.held, constraint);
+    if (held && found == middle.held.end()) {
+      middle.held.push_back(constraint);
+      std::ranges::sort(middle.held);
+    } else if (!held && found != middle.held.end()) {
+      middle.held.erase(found);
+    }
+    changed.push_back({interval.held, interval.from, a, interval.touched});
+    changed.push_back({middle.held, a, b});
+    changed.push_back({interval.held, b, interval.to});
+  }
+  intervals = std::move(changed);
+  tidy(intervals, duration);
+}
+
+}  // namespace extremal

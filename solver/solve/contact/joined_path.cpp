@@ -1,0 +1,95 @@
+#include "solve/contact/joined_path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "action/rule.hpp"
+#include "problem/inequalities.hpp"
+#include "solution/observe.hpp"
+#include "solution/path_contacts.hpp"
+#include "solve/contact/limits.hpp"
+
+namespace extremal {
+
+namespace {
+
+/// Adds the elements of an arc that begins at `from`, raised to the degree of the path.
+void append(const Trajectory& arc, double from, double to, Trajectory& path) {
+  const std::size_t n = arc.coordinates;
+  const Basis& basis = lobatto_nodal_basis(path.degree);
+  std::vector<double> q(n), v(n);
+  for (int k = 0; k < arc.elements(); ++k) {
+    for (std::size_t j = 0; j < basis.points.size(); ++j) {
+      arc.in_element(k, basis.points[j], q, v);
+      path.nodes.insert(path.nodes.end(), q.begin(), q.end());
+      path.slopes.insert(path.slopes.end(), v.begin(), v.end());
+    }
+    path.times.push_back(k + 1 == arc.elements() ? to : from + arc.times[k + 1]);
+    path.lengths.push_back(arc.length(k));
+  }
+}
+
+std::shared_ptr<const PathContacts> contacts_of(Arcs& arcs, const Junctions& path) {
+  const std::vector<PathArc>& parts = path.arcs();
+  auto found = std::make_shared<PathContacts>();
+  found->constraints = arcs.problem().inequalities->count();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PathArc& arc = parts[i];
+    if (i > 0 && path.touched()[i - 1] >= 0)
+      found->contacts.push_back({path.touched()[i - 1], arc.from, arc.from});
+    found->arcs.push_back({arc.from, arc.to, arc.held, arcs.manifold(arc.held)});
+    for (const int k : arc.held) {
+      const auto lasting = std::ranges::find_if(
+          found->contacts, [&](const Contact& c) { return c.constraint == k && c.to == arc.from; });
+      if (lasting != found->contacts.end())
+        lasting->to = arc.to;
+      else
+        found->contacts.push_back({k, arc.from, arc.to});
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+Solution joined_path(Arcs& arcs, const Junctions& path) {
+  const Problem& problem = arcs.problem();
+  Solution solution;
+  Trajectory& trajectory = solution.trajectory;
+  trajectory.coordinates = problem.coordinates();
+  trajectory.times = {0};
+  for (const SolvedArc& arc : path.solved())
+    trajectory.degree = std::max(trajectory.degree, arc.trajectory.degree);
+  solution.degree = trajectory.degree;
+  solution.residual = path.mismatch();
+  solution.unknowns = path.unknowns();
+  for (std::size_t i = 0; i < path.arcs().size(); ++i) {
+    const PathArc& arc = path.arcs()[i];
+    const SolvedArc& solved = path.solved()[i];
+    append(solved.trajectory, arc.from, arc.to, trajectory);
+    solution.action += solved.action;
+    solution.error_estimate = std::max(solution.error_estimate, solved.error);
+    solution.residual = std::max(solution.residual, solved.residual);
+    solution.unknowns += (solved.degree * solved.trajectory.elements() - 1) * problem.coordinates();
+  }
+  solution.error_estimate = solution.error_estimate * (1 + path.amplification()) + path.movement();
+  for (std::size_t j = 0; j < path.touched().size(); ++j)
+    if (path.touched()[j] >= 0)  // in place of an arc that is shorter
+      solution.error_estimate += (path.solved()[j].v_end - path.solved()[j + 1].v_start).norm() *
+                                 limits::contact::shortest_arc * problem.duration.value;
+  solution.momentum_start = {path.solved().front().p_start.begin(), path.solved().front().p_start.end()};
+  solution.momentum_end = {path.solved().back().p_end.begin(), path.solved().back().p_end.end()};
+  solution.contacts = contacts_of(arcs, path);
+  solution.iterations = arcs.iterations();
+  if (problem.inequalities->all->autonomous()) observe_energy(*problem.lagrangian, solution);
+  solution.minimizing = true;
+  solution.status = Status::converged;
+  const std::size_t count = solution.contacts->contacts.size();
+  solution.message = fmt::format("local minimiser with {} contact{}", count, count == 1 ? "" : "s");
+  solution.strategy = "contacts by an interior point method, then arcs that meet without a kink";
+  return solution;
+}
+
+}  // namespace extremal

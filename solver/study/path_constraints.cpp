@@ -1,0 +1,204 @@
+#include "study/path_constraints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "problem/inequalities.hpp"
+#include "solve/external/method.hpp"
+#include "study/constraints.hpp"
+#include "study/limits.hpp"
+#include "study/modelling.hpp"
+#include "system/constraints.hpp"
+#include "system/kinks.hpp"
+
+namespace extremal {
+namespace {
+
+using namespace limits::constraints;
+
+/// "left >= right" as "left  = right", of the same length; whether g = right − left.
+struct Equation {
+  Text text;
+  bool negated = false;
+};
+
+Equation equation_of(const Text& inequality) {
+  Equation equation{inequality};
+  std::string& text = equation.text.value;
+  const std::size_t sign = text.find_first_of("<>=");
+  const auto refuse = [&](std::size_t offset, const char* what) {
+    throw SceneError(position(inequality, offset), what);
+  };
+  if (sign == std::string::npos || text[sign] == '=')
+    refuse(sign == std::string::npos ? 0 : sign,
+           "an inequality along the path is 'left >= right' or 'left <= right', as in \"x^2 + y^2 >= 1\"; "
+           "equations belong to 'constraints' in [system]");
+  if (sign + 1 == text.size() || text[sign + 1] != '=')
+    refuse(sign, "a path may touch what an inequality excludes: write >= or <=");
+  if (const std::size_t other = text.find_first_of("<>=", sign + 2); other != std::string::npos)
+    refuse(other, "one inequality has one sign; write two inequalities");
+  equation.negated = text[sign] == '<';
+  text[sign] = ' ';
+  return equation;
+}
+
+/// A system with inequalities in place of its constraints.
+struct InequalityTable {
+  SystemTable table;
+  std::vector<char> negated;
+
+  explicit InequalityTable(const Scene& scene) : table(scene.system) {
+    for (const Text& inequality : scene.inequalities->constraints) {
+      Equation equation = equation_of(inequality);
+      table.constraints.push_back(std::move(equation.text));
+      negated.push_back(equation.negated);
+    }
+  }
+
+  /// Of the inequalities with these numbers.
+  ConstrainedGraph graph(const std::vector<int>& numbers) const {
+    SystemTable part = table;
+    part.constraints.clear();
+    for (const int k : numbers) part.constraints.push_back(table.constraints[k]);
+    ConstrainedGraph graph = make_constrained(part);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (negated[numbers[i]]) graph.constraints[i] = graph.graph.unary(Op::neg, graph.constraints[i]);
+    return graph;
+  }
+};
+
+/// Each of them alone, so that an error names its own.
+void check_formulas(const InequalityTable& inequalities) {
+  constexpr std::string_view velocities = "stands for velocities";
+  for (std::size_t k = 0; k < inequalities.table.constraints.size(); ++k) try {
+      inequalities.graph({static_cast<int>(k)});
+    } catch (const SceneError& e) {
+      const std::string what = e.what();
+      const std::size_t found = what.find(velocities);
+      if (found == std::string::npos) throw;
+      const std::size_t begin = what.rfind(": ", found);
+      throw SceneError(e.at,
+                       what.substr(begin == std::string::npos ? 0 : begin + 2,
+                                   found + velocities.size() - (begin == std::string::npos ? 0 : begin + 2)) +
+                           "; an inequality along the path holds between coordinates: where a velocity is "
+                           "at its bound, the motion is that of a system without inertia, whose switches "
+                           "this method does not find. Write it between coordinates");
+    }
+}
+
+const Location& place_of(const BoundaryTable& boundary, bool at_end) {
+  const std::vector<Assignment>& table = at_end ? boundary.end : boundary.start;
+  if (!table.empty()) return table.front().name_at;
+  return boundary.conditions.empty() ? boundary.at : boundary.conditions.front().at;
+}
+
+bool fixed(const Problem& problem, bool at_end) {
+  const int n = problem.coordinates();
+  const auto begin = problem.ends.fixed.begin() + (at_end ? n : 0);
+  return std::all_of(begin, begin + n, [](char f) { return f; });
+}
+
+void check_end(const Scene& scene, const Inequalities& inequalities, bool at_end, const Problem& problem) {
+  if (!fixed(problem, at_end)) return;
+  const int n = problem.coordinates();
+  const auto begin = problem.ends.offset.begin() + (at_end ? n : 0);
+  const std::vector<double> q(begin, begin + n);
+  double size = 0;
+  for (const double x : problem.ends.offset) size = std::max(size, std::abs(x));
+  const ConstraintValues values = inequalities.all->at(q, at_end ? problem.duration.value : 0);
+  for (int k = 0; k < inequalities.count(); ++k) {
+    if (!std::isfinite(values.g[k]))
+      throw SceneError(place_of(scene.boundary, at_end),
+                       fmt::format("the inequality '{}' is not finite at the {}; give another point",
+                                   inequalities.texts[k], at_end ? "end" : "start"));
+    if (values.g[k] >= -end_distance * std::max(size, 1e-300) * values.slopes.row(k).norm()) continue;
+    throw SceneError(place_of(scene.boundary, at_end),
+                     fmt::format("the {} does not keep the inequality '{}': it is missed by {:.6g} there; "
+                                 "give values that keep it",
+                                 at_end ? "end" : "start", inequalities.texts[k], -values.g[k]));
+  }
+}
+
+}  // namespace
+
+void check_inequalities(const Scene& scene, Purpose purpose) {
+  if (!scene.inequalities) return;
+  const auto refuse = [](const Location& at, const std::string& what) {
+    throw SceneError(at, "with inequalities along the path " + what);
+  };
+  const BoundaryTable& boundary = scene.boundary;
+  if (!available(Method::ipopt))
+    throw SceneError(scene.inequalities->at,
+                     "[path] needs Ipopt, which is not part of this build; build with -DEXTREMAL_IPOPT=ON");
+  if (scene.system.hamiltonian)
+    refuse(scene.inequalities->at, "the system must have a 'lagrangian', whose action is minimised");
+  if (!scene.system.force.empty())
+    refuse(scene.system.force.front().name_at, "there must be an action; forces have none: leave them out");
+  if (!scene.system.constraints.empty())
+    refuse(position(scene.system.constraints.front(), 0),
+           "constraints are not available; use coordinates that satisfy them, or leave [path] out");
+  if (boundary.periodic)
+    refuse(boundary.at, "periodic orbits are not available; fix both ends, or leave [path] out");
+  if (boundary.free || boundary.infinite)
+    refuse(boundary.duration.at, "the duration must be a number; write one, or leave [path] out");
+  if (!boundary.integrals.empty())
+    refuse(position(boundary.integrals.front(), 0),
+           "integrals are not available; leave one or the other out");
+  if (!boundary.unknowns.empty())
+    refuse(boundary.unknowns.front().name_at, "unknowns are not available; leave one or the other out");
+  if (!scene.waypoints.empty())
+    refuse(scene.waypoints.front().at, "waypoints are not available; leave one or the other out");
+  if (scene.fit) refuse(scene.fit->at, "a fit is not available; leave one or the other out");
+  if (scene.continuation && purpose == Purpose::family)
+    refuse(scene.continuation->at,
+           "families are not continued; solve for each value with --set instead, without [continuation]");
+  if (purpose == Purpose::comparison)
+    refuse(scene.inequalities->at, "shooting is not available to compare with; write 'solve' instead");
+  if (scene.solve.scheme)
+    refuse(position(*scene.solve.scheme, 0),
+           "elements end where contacts begin and end, and follow the tolerance; leave 'scheme' out");
+  if (scene.solve.method && scene.solve.method->value == name(Method::ceres))
+    refuse(position(*scene.solve.method, 0), "the method is \"ipopt\"; write that, or leave 'method' out");
+}
+
+void put_inequalities(const Scene& scene, const System& system, Problem& problem) {
+  if (!scene.inequalities) return;
+  const InequalityTable table(scene);
+  check_formulas(table);
+  if (problem.initial)
+    throw SceneError(scene.inequalities->at,
+                     "'start' gives initial data, and their motion is no minimiser; leave [path] out, or fix "
+                     "the end instead of momenta");
+  if (problem.extension)
+    throw SceneError(scene.boundary.at,
+                     "with inequalities along the path nonlinear conditions of the ends are not available; "
+                     "leave one or the other out");
+  if (problem.lagrangian->kinks())
+    throw SceneError(position(scene.system.law(), 0),
+                     "with inequalities along the path the Lagrangian must be smooth, without abs, min, max "
+                     "and step");
+  if (system.names.size() > most_coordinates)
+    throw SceneError(scene.inequalities->at, fmt::format("inequalities of {} coordinates; {} are the most",
+                                                         system.names.size(), most_coordinates));
+  auto inequalities = std::make_shared<Inequalities>();
+  std::vector<int> numbers;
+  for (const Text& text : scene.inequalities->constraints) {
+    numbers.push_back(static_cast<int>(numbers.size()));
+    inequalities->texts.push_back(text.value);
+  }
+  const Eigen::MatrixXd metric = metric_of_motion(system, problem);
+  const double rate = growth / problem.duration.value;
+  inequalities->all = constrained_values(table.graph(numbers), system, metric);
+  inequalities->hold = [table, system, metric, rate](const std::vector<int>& held) -> HeldSystem {
+    ConstrainedSystem found = constrained_system(table.graph(held), system, metric, rate);
+    return {std::move(found.lagrangian), std::move(found.manifold)};
+  };
+  for (const bool at_end : {false, true}) check_end(scene, *inequalities, at_end, problem);
+  problem.inequalities = std::move(inequalities);
+}
+
+}  // namespace extremal

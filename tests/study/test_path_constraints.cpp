@@ -1,0 +1,300 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "problem/inequalities.hpp"
+#include "scenes.hpp"
+#include "solution/path_contacts.hpp"
+#include "solve/external/method.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+namespace {
+
+const double half_turn = std::numbers::pi;
+
+/// A free particle in the plane or in space.
+std::string particle(const std::string& constraints, const std::string& start, const std::string& end,
+                     double duration = 1, bool space = false) {
+  return fmt::format(
+      "[system]\ncoordinates = [\"x\", \"y\"{}]\nlagrangian = \"(x'^2 + y'^2{})/2\"\n[path]\n"
+      "constraints = [{}]\n[boundary]\nstart = {{ {} }}\nend = {{ {} }}\nduration = {}\n",
+      space ? ", \"z\"" : "", space ? " + z'^2" : "", constraints, start, end, duration);
+}
+
+std::string height(const std::string& lagrangian, const std::string& constraints, double start, double end,
+                   double duration) {
+  return fmt::format(
+      "[system]\ncoordinates = [\"y\"]\nlagrangian = \"{}\"\n[path]\nconstraints = [{}]\n[boundary]\n"
+      "start = {{ y = {} }}\nend = {{ y = {} }}\nduration = {}\n",
+      lagrangian, constraints, start, end, duration);
+}
+
+/// Round the unit circle from a point to another, both outside and on opposite sides: tangents and arc.
+double length_round_disc(double a, double b, double angle) {
+  return std::sqrt(a * a - 1) + std::sqrt(b * b - 1) + angle - std::acos(1 / a) - std::acos(1 / b);
+}
+
+/// Least value of all inequalities along the path, at many times, as a distance.
+double least_distance(const Study& s, const Solution& solution) {
+  const std::size_t n = s.problem.coordinates();
+  std::vector<double> q(n), v(n);
+  double least = INFINITY;
+  for (int k = 0; k <= 5000; ++k) {
+    const double t = k == 5000 ? solution.duration() : solution.duration() * k / 5000;
+    solution.trajectory.at(t, q, v);
+    const ConstraintValues values = s.problem.inequalities->all->at(q, t);
+    for (Eigen::Index c = 0; c < values.g.size(); ++c)
+      least = std::min(least, values.g[c] / values.slopes.row(c).norm());
+  }
+  return least;
+}
+
+std::vector<double> forces_at(const Solution& solution, double t) {
+  std::vector<double> q(solution.trajectory.coordinates), v(q);
+  solution.trajectory.at(t, q, v);
+  return solution.contacts->forces(q, v, t);
+}
+
+const char* const disc = "\"x^2 + y^2 >= 1\"";
+
+}  // namespace
+
+/// Needs Ipopt.
+class PathConstraints : public Scenes {
+ protected:
+  void SetUp() override {
+    if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
+    Scenes::SetUp();
+  }
+};
+
+TEST_F(PathConstraints, TheShortestWayRoundADisc) {
+  const Study s = study(particle(disc, "x = -2.0, y = 0.0", "x = 2.0, y = 0.0"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double length = length_round_disc(2, 2, half_turn);
+  EXPECT_NEAR(length, 4.5112991663, 1e-9);
+  EXPECT_NEAR(found.action, length * length / 2, 1e-9);
+  EXPECT_TRUE(found.minimizing);
+  EXPECT_FALSE(found.morse_index);
+  ASSERT_EQ(found.contacts->contacts.size(), 1u);
+  const Contact& contact = found.contacts->contacts.front();
+  EXPECT_NEAR(contact.from, std::sqrt(3) / length, 1e-9);
+  EXPECT_NEAR(contact.to, 1 - std::sqrt(3) / length, 1e-9);
+  EXPECT_GT(least_distance(s, found), -1e-9 * 4);
+  // The centripetal force is μ ∂g/∂q, |∂g/∂q| = 2.
+  EXPECT_NEAR(forces_at(found, 0.5).front(), length * length / 2, 1e-7);
+  EXPECT_EQ(forces_at(found, 0.1).front(), 0);
+}
+
+TEST_F(PathConstraints, AnEllipseIsPassedOutside) {
+  const Study s = study(particle("\"x^2/4 + y^2 >= 1\"", "x = -3.0, y = 0.3", "x = 3.0, y = -0.1"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_LT(*found.energy_drift, 1e-8 * *found.energy);
+  EXPECT_GT(least_distance(s, found), -1e-8);
+}
+
+TEST_F(PathConstraints, AnObstacleBelowAMembrane) {
+  // Tangents from (0, 0) and (1, 0) to the parabola 1/2 − 4 (t − 1/2)².
+  const Study s = study(height("y'^2/2", "\"y >= 0.5 - 4*(t - 0.5)^2\"", 0, 0, 1));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  ASSERT_EQ(found.contacts->contacts.size(), 1u);
+  const double from = found.contacts->contacts.front().from;
+  // psi(from) = from psi'(from)
+  EXPECT_NEAR(0.5 - 4 * (from - 0.5) * (from - 0.5), from * -8 * (from - 0.5), 1e-8);
+  const double slope = -8 * (from - 0.5), inner = 0.5 - from;
+  EXPECT_NEAR(found.action, slope * slope * from + 64 * inner * inner * inner / 3, 1e-9);
+  EXPECT_NEAR(forces_at(found, 0.5).front(), 8, 1e-7);  // −psi''
+}
+
+TEST_F(PathConstraints, AWeightThatRestsOnTheGround) {
+  // y'' = 8 down to −0.3, where y' = 0: t² = 0.3/4.
+  const Study s = study(height("y'^2/2 + 8*y", "\"y >= -0.3\"", 0, 0, 1));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double touch = std::sqrt(0.3 / 4);
+  ASSERT_EQ(found.contacts->contacts.size(), 1u);
+  EXPECT_NEAR(found.contacts->contacts.front().from, touch, 1e-8);
+  EXPECT_NEAR(found.contacts->contacts.front().to, 1 - touch, 1e-8);
+  EXPECT_NEAR(forces_at(found, 0.5).front(), 8, 1e-8);
+  // ∫ y'²/2 + 8 y over both falls: 64 t³/3 + 8 (4 t³/3 − 0.3 t)·…, by the energy.
+  const double fall = 64 * touch * touch * touch / 6 + 8 * (4 * touch * touch * touch / 3 - 0.3 * touch);
+  EXPECT_NEAR(found.action, 2 * fall - 8 * 0.3 * (1 - 2 * touch), 1e-9);
+}
+
+TEST_F(PathConstraints, ABoundFromAboveActsDownwards) {
+  const Study s = study(height("y'^2/2 - 8*y", "\"y <= 0.3\"", 0, 0, 1));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(forces_at(found, 0.5).front(), 8, 1e-8);
+}
+
+TEST_F(PathConstraints, AFreePathTouchesNothing) {
+  const Study s = study(particle(disc, "x = -2.0, y = 1.5", "x = 2.0, y = 1.5"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_TRUE(found.contacts->contacts.empty());
+  EXPECT_EQ(found.morse_index, 0);
+  EXPECT_NEAR(found.action, 8, 1e-9);
+}
+
+TEST_F(PathConstraints, AContactThatLastsFromTheStart) {
+  const Study s = study(particle(disc, "x = 0.0, y = 1.0", "x = 1.0, y = -2.0"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double r = std::sqrt(5), angle = half_turn - std::atan2(1, 2);
+  const double length = std::sqrt(r * r - 1) + angle - std::acos(1 / r);
+  EXPECT_NEAR(found.action, length * length / 2, 1e-9);
+  ASSERT_EQ(found.contacts->contacts.size(), 1u);
+  EXPECT_EQ(found.contacts->contacts.front().from, 0);
+}
+
+TEST_F(PathConstraints, ASphereIsPassedAlongAGeodesic) {
+  const Study s = study(particle("\"x^2 + y^2 + z^2 >= 1\"", "x = -2.0, y = 0.1, z = 0.2",
+                                 "x = 2.0, y = 0.3, z = -0.1", 1, true));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double a = std::sqrt(4.05), b = std::sqrt(4.1);
+  const double length = length_round_disc(a, b, std::acos((-4 + 0.03 - 0.02) / (a * b)));
+  EXPECT_NEAR(found.action, length * length / 2, 1e-8);
+}
+
+TEST_F(PathConstraints, OfAContinuumOneIsFound) {
+  // Between opposite points of a sphere there is a shortest way on each side.
+  const Study s = study(particle("\"x^2 + y^2 + z^2 >= 1\"", "x = -2.0, y = 0.0, z = 0.0",
+                                 "x = 2.0, y = 0.0, z = 0.0", 1, true) +
+                        "[search]\nsolutions = 2\n");
+  const std::vector<Solution> found = run_all(s);
+  ASSERT_EQ(found.size(), 1u);
+  ASSERT_TRUE(found[0].converged()) << found[0].message;
+  const double length = length_round_disc(2, 2, half_turn);
+  EXPECT_NEAR(found[0].action, length * length / 2, 1e-8);
+}
+
+TEST_F(PathConstraints, TwoDiscsArePassedOnEachSide) {
+  const Study s = study(particle("\"(x + 1.5)^2 + y^2 >= 1\", \"(x - 1.5)^2 + y^2 >= 1\"",
+                                 "x = -4.0, y = 0.0", "x = 4.0, y = 0.0") +
+                        "[search]\nsolutions = 4\n");
+  const std::vector<Solution> found = run_all(s);
+  ASSERT_EQ(found.size(), 4u) << found.front().message;
+  for (const Solution& solution : found) {
+    ASSERT_TRUE(solution.converged());
+    EXPECT_EQ(solution.contacts->contacts.size(), 2u);
+  }
+  EXPECT_NEAR(found[0].action, found[1].action, 1e-8);
+  EXPECT_NEAR(found[2].action, found[3].action, 1e-8);
+  EXPECT_GT(found[2].action, found[0].action + 1e-3);
+}
+
+TEST_F(PathConstraints, InACornerBothForcesHold) {
+  const Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 + 6*x + 9*y\"\n[path]\n"
+      "constraints = [\"x >= 0\", \"y >= 0\"]\n[boundary]\nstart = { x = 1.0, y = 1.0 }\n"
+      "end = { x = 1.0, y = 0.5 }\nduration = 2.0\n");
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const std::vector<double> forces = forces_at(found, 1);
+  EXPECT_NEAR(forces[0], 6, 1e-7);
+  EXPECT_NEAR(forces[1], 9, 1e-7);
+  ASSERT_EQ(found.contacts->contacts.size(), 2u);
+  for (const Contact& contact : found.contacts->contacts)
+    EXPECT_NEAR(contact.from, std::sqrt(2 / (contact.constraint == 0 ? 6.0 : 9.0)), 1e-8);
+}
+
+TEST_F(PathConstraints, AnObstacleThatMoves) {
+  const Study s = study(
+      particle("\"(x - 0.3*t)^2 + (y - 0.2*sin(3*t))^2 >= 1\"", "x = -2.0, y = 0.3", "x = 2.0, y = 0.0", 2));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_FALSE(found.energy);
+  EXPECT_GT(least_distance(s, found), -1e-8);
+  const Contact& contact = found.contacts->contacts.front();
+  EXPECT_GT(forces_at(found, (contact.from + contact.to) / 2).front(), 0);
+}
+
+TEST_F(PathConstraints, ATouchIsAContactWithoutLength) {
+  const Study s = study(particle(disc, "x = -2.0, y = 0.9999999", "x = 2.0, y = 0.9999999"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  ASSERT_EQ(found.contacts->contacts.size(), 1u);
+  EXPECT_NEAR(found.contacts->contacts.front().from, 0.5, 1e-6);
+  EXPECT_NEAR(found.contacts->contacts.front().to, 0.5, 1e-6);
+  EXPECT_GT(least_distance(s, found), -1e-9 * 4);
+}
+
+TEST_F(PathConstraints, AShortContactHasItsLength) {
+  const Study s = study(particle(disc, "x = -2.0, y = 0.9999", "x = 2.0, y = 0.9999"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double r = std::hypot(2, 0.9999);
+  const double length = length_round_disc(r, r, half_turn - 2 * std::atan2(0.9999, 2));
+  ASSERT_EQ(found.contacts->contacts.size(), 1u);
+  const Contact& contact = found.contacts->contacts.front();
+  EXPECT_NEAR((contact.to - contact.from) * length, length - 2 * std::sqrt(r * r - 1), 1e-9);
+}
+
+TEST_F(PathConstraints, AFreeEndHasItsNaturalCondition) {
+  const Study s = study(particle(disc, "x = -2.0, y = 0.1", "x = 2.0"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  // A tangent, an arc to the top (0, 1), and straight on.
+  const double r = std::hypot(2, 0.1), angle = half_turn / 2 - std::atan2(0.1, 2) - std::acos(1 / r);
+  const double length = std::sqrt(r * r - 1) + angle + 2;
+  EXPECT_NEAR(found.action, length * length / 2, 1e-9);
+  EXPECT_NEAR(found.momentum_end[1], 0, 1e-8);
+}
+
+TEST_F(PathConstraints, CoordinatesMayHaveAMassThatVaries) {
+  const Study polar = study(
+      "[system]\ncoordinates = [\"r\", \"a\"]\nlagrangian = \"(r'^2 + r^2*a'^2)/2\"\n[path]\n"
+      "constraints = [\"r >= 1\"]\n[boundary]\nstart = { r = 2.0, a = 0.0 }\nend = { r = 1.5, a = 3.0 }\n"
+      "duration = 1.0\n");
+  const Solution found = run(polar);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double length = length_round_disc(2, 1.5, 3);
+  EXPECT_NEAR(found.action, length * length / 2, 1e-8);
+}
+
+TEST_F(PathConstraints, AMinimumBesideASaddleIsFound) {
+  // Rest at the bottom is longer than a window; walls bound the way out.
+  const Study s = study(height("y'^2/2 + 4*cos(y)", "\"y <= 1.2\", \"y >= -1.2\"", 0, 0, 3));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.contacts->contacts.size(), 1u);
+  EXPECT_LT(found.action, 12);
+}
+
+TEST_F(PathConstraints, NoMinimiserIsReportedWhereThereIsNone) {
+  const Study s = study(height("y'^2/2 - 2*y^2", "\"y >= -1\"", 0, 0.5, 4));
+  const Solution found = run(s);
+  EXPECT_FALSE(found.converged());
+  EXPECT_NE(found.message.find("window"), std::string::npos) << found.message;
+}
+
+TEST_F(PathConstraints, RefusesWhatItCannotSolve) {
+  const std::string start = "x = -2.0, y = 0.0", end = "x = 2.0, y = 0.0";
+  const auto refused = [&](const std::string& scene, const std::string& what) {
+    const std::string text = message(scene);
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  refused(particle(disc, "x = -0.5, y = 0.0", end),
+          "the start does not keep the inequality 'x^2 + y^2 >= 1': it is missed by 0.75 there");
+  refused(particle("\"x'^2 <= 1\"", start, end), "stands for velocities; an inequality along the path");
+  refused(particle("\"x^2 + y^2 = 1\"", start, end), "'left >= right' or 'left <= right'");
+  refused(particle("\"x^2 + y^2 > 1\"", start, end), "write >= or <=");
+  refused(particle("\"0 <= y <= 1\"", start, end), "one inequality has one sign");
+  refused(particle("\"abs(y) <= 1\"", start, end), "must be smooth");
+  refused(particle(disc, start, end) + "[solve]\nscheme = \"midpoint\"\n", "leave 'scheme' out");
+  refused(particle(disc, start, end) + "[continuation]\nparameter = \"duration\"\nto = 2.0\n",
+          "families are not continued");
+  refused(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[path]\n[boundary]\nstart = { x = 0.0 }\n"
+      "end = { x = 1.0 }\nduration = 1.0\n",
+      "[path] has no 'constraints'");
+}
