@@ -3,7 +3,7 @@ SCENE = problems/scenes/cr3bp.toml
 # Where `make install` installs; the program looks for system files there.
 PREFIX = /usr/local
 
-.PHONY: configure build demo test python test-python bench debug asan ubsan sanitize fuzz gallery reference format install \
+.PHONY: configure build demo test python test-python test-viewer viewer-picture bench debug asan ubsan sanitize fuzz gallery reference format install \
 	package packages clean
 
 configure: packages
@@ -39,6 +39,26 @@ test-python: python
 	@build/python/bin/python -m pytest -q -p no:cacheprovider tests/python
 	@build/python/bin/python -m mypy --strict --cache-dir build/mypy build/release/python/extremal
 	@build/python/bin/python -m mypy.stubtest --allowlist tests/python/stubs.txt --ignore-unused-allowlist extremal._core
+
+# Pages in Debian's Chromium, by node and npm.
+test-viewer: viewer-modules
+	@VIEWER_MODULES=build/viewer-tests node --test tests/viewer/
+
+# The picture of a page in README.md.
+viewer-picture: viewer-modules
+	@mkdir -p out
+	@build/release/extremal continue problems/scenes/halo-family.toml --quiet --plot out/halos.html
+	@VIEWER_MODULES=build/viewer-tests node tests/viewer/screenshot.mjs out/halos.html problems/pictures/viewer.png \
+	  'pause&solution=22&time=0.36' 1280 745
+
+.PHONY: viewer-modules
+viewer-modules: configure
+	@command -v npm >/dev/null || { echo "Pages are tested by npm and node; install Node.js" >&2; exit 1; }
+	@cmake --build --preset release --target extremal_app
+	@.ci/packages .ci/viewer.txt
+	@mkdir -p build/viewer-tests
+	@cp tests/viewer/package.json tests/viewer/package-lock.json tests/viewer/.npmrc build/viewer-tests
+	@cd build/viewer-tests && { npm ci --ignore-scripts --prefer-offline >npm.log 2>&1 || { cat npm.log; exit 1; }; }
 
 # Each is a build of its own with all tests.
 debug asan ubsan sanitize: packages

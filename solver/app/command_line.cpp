@@ -39,6 +39,7 @@ class CommandLine {
   void add_check();
   void add_list();
   void add_init();
+  void add_view();
   void add_help();
   void add_pages();
 
@@ -56,6 +57,7 @@ class CommandLine {
   CompareArguments spectrum_;
   CheckArguments check_;
   InitArguments init_;
+  ViewArguments view_;
   std::string system_, command_, shell_;
 };
 
@@ -76,7 +78,7 @@ void add_csv(CLI::App& command, std::string& path, const char* help) {
 }
 
 void add_plot(CLI::App& command, std::string& path, const char* help) {
-  command.add_option("--plot", path, help)->type_name("FILE.svg|.png|.pdf")->check(plot_refusal);
+  command.add_option("--plot", path, help)->type_name("FILE.svg|.png|.pdf|.html")->check(plot_refusal);
 }
 
 void add_quiet(CLI::App& command, bool& quiet) {
@@ -102,7 +104,7 @@ CommandLine::CommandLine() {
   app_.get_formatter()->label("OPTIONS", "options");
   app_.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app_.get_formatter()->label("REQUIRED", "(required)");
-  app_.get_formatter()->column_width(34);
+  app_.get_formatter()->column_width(36);
   add_solve();
   add_continue();
   add_compare();
@@ -110,6 +112,7 @@ CommandLine::CommandLine() {
   add_check();
   add_list();
   add_init();
+  add_view();
   add_help();
   add_pages();
   app_.footer(fmt::format("{}solve {}\nHelp of a command: extremal help solve", example_before,
@@ -215,6 +218,18 @@ void CommandLine::add_init() {
   command.add_option("SYSTEM", a.system, "a name of `extremal list`")->required()->type_name("");
   command.add_option("--output", a.output, "the file, SYSTEM.toml without it; - is standard output")
       ->type_name("FILE.toml")
+      ->check(output_refusal);
+}
+
+void CommandLine::add_view() {
+  ViewArguments& a = view_;
+  CLI::App& command = add("view", "write an interactive page of a saved result, and print its name",
+                          "view kepler.json", [&a] { return view(a); });
+  command.add_option("RESULT", a.result, "a file that --output has written, with --samples for its motion")
+      ->required()
+      ->type_name("");
+  command.add_option("--output", a.output, "the page, RESULT.html without it; - is standard output")
+      ->type_name("FILE.html")
       ->check(output_refusal);
 }
 

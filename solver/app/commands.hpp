@@ -67,6 +67,13 @@ struct InitArguments {
 /// Writes a commented scene of a system; a file that is there already is refused.
 int init(const InitArguments& arguments);
 
+struct ViewArguments {
+  std::string result;
+  std::string output;  ///< empty: the name of the result with ".html", beside it
+};
+/// Writes the page of a saved result and prints its name.
+int view(const ViewArguments& arguments);
+
 /// All systems, schemes and methods, or one system where it is named.
 int list(const std::string& system);
 

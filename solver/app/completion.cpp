@@ -66,6 +66,9 @@ _{0}() {{
     SCENE)
       compopt -o filenames 2>/dev/null
       mapfile -t COMPREPLY < <(compgen -f -X '!*.toml' -- "$word"; compgen -d -- "$word") ;;
+    RESULT)
+      compopt -o filenames 2>/dev/null
+      mapfile -t COMPREPLY < <(compgen -f -X '!*.json' -- "$word"; compgen -d -- "$word") ;;
     SYSTEM) mapfile -t COMPREPLY < <(compgen -W "$("$1" completion systems)" -- "$word") ;;
     COMMAND) mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$word") ;;
   esac
@@ -102,6 +105,7 @@ std::string zsh_text(const std::string& text, std::string_view special) {
 std::string zsh_values(const OptionRecord& option) {
   if (is_file(option)) return "_files";
   if (option.name == "SCENE") return "_files -g \"*.toml\"";
+  if (option.name == "RESULT") return "_files -g \"*.json\"";
   if (option.name == "SYSTEM") return "($($program completion systems))";
   if (option.name == "COMMAND") return "(($commands))";
   return "";

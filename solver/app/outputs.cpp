@@ -11,6 +11,7 @@
 
 #include "app/commands.hpp"
 #include "report/gnuplot.hpp"
+#include "report/page.hpp"
 #include "report/plot.hpp"
 #include "report/text.hpp"
 
@@ -44,7 +45,7 @@ std::string output_refusal(const std::string& path) {
 std::string plot_refusal(const std::string& path) {
   try {
     check_plot_path(path);
-    require_gnuplot();
+    if (!is_page(path)) require_gnuplot();
   } catch (const std::exception& e) {
     return e.what();
   }

@@ -13,7 +13,7 @@ namespace extremal::app {
 /// is written, so the nearest folder that exists counts.
 std::string output_refusal(const std::string& path);
 
-/// The same for a plot, whose suffix must be one that gnuplot can draw, and gnuplot be there.
+/// The same for a plot: a page, or one whose suffix gnuplot can draw, and gnuplot must be there.
 std::string plot_refusal(const std::string& path);
 
 /// An option that names a file, and the path; empty where it is not wanted.

@@ -9,6 +9,7 @@
 #include "report/csv.hpp"
 #include "report/json.hpp"
 #include "report/oem.hpp"
+#include "report/page.hpp"
 #include "report/plot.hpp"
 #include "report/sampling.hpp"
 #include "report/text.hpp"
@@ -127,6 +128,13 @@ std::string ephemeris_of(const Study& study, const Result& result) {
   return oem_text(*study.units, result.title, result.names, samples);
 }
 
+std::string plot_of(const std::string& path, const Study& study, const Result& result,
+                    const Annotation& annotation) {
+  if (is_page(path)) return page(result, picture_of(study.problem, result, annotation));
+  if (result.fit) return fit_image(path, result, sampled(study, result, fit_samples), annotation);
+  return plot_image(path, picture_of(study.problem, result, annotation));
+}
+
 void write_outputs(const SolveArguments& a, const Study& study, const Result& result,
                    const Annotation& annotation) {
   std::vector<FileContent> files;
@@ -136,10 +144,7 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
   if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
   if (converged && !a.npz.empty()) files.push_back({a.npz, npz_of(study, result)});
   if (converged && !a.oem.empty()) files.push_back({a.oem, ephemeris_of(study, result)});
-  if (converged && !a.plot.empty())
-    files.push_back({a.plot, result.fit
-                                 ? fit_image(a.plot, result, sampled(study, result, fit_samples), annotation)
-                                 : plot_image(a.plot, picture_of(study.problem, result, annotation))});
+  if (converged && !a.plot.empty()) files.push_back({a.plot, plot_of(a.plot, study, result, annotation)});
   Outputs::write(std::move(files));
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "machine/aligned.hpp"
-
 namespace extremal {
 
 namespace {
@@ -20,11 +18,11 @@ class Shifted final : public Lagrangian {
   }
 
   void evaluate(const Points& points, Order order, double* out, Scratch& scratch) const override {
-    AlignedDoubles moved;
+    Scratch moved;
     lagrangian_->evaluate(shifted(points, moved), order, out, scratch);
   }
   void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const override {
-    AlignedDoubles moved;
+    Scratch moved;
     lagrangian_->sensitivity(shifted(points, moved), parameter, out, scratch);
   }
   bool evaluate_extended(const Extended* q, const Extended* v, const Extended& t, Extended* out,
@@ -39,19 +37,20 @@ class Shifted final : public Lagrangian {
 
  private:
   /// Points with the input increased in `moved`.
-  Points shifted(const Points& points, AlignedDoubles& moved) const {
+  Points shifted(const Points& points, Scratch& moved) const {
     Points result = points;
     if (input_ == time) {
       if (!points.t) return result;
-      moved.assign(points.t, points.t + points.count);
-      for (double& t : moved) t += by_;
-      result.t = moved.data();
+      double* const t = moved.reserve(points.count);
+      for (int i = 0; i < points.count; ++i) t[i] = points.t[i] + by_;
+      result.t = t;
       return result;
     }
-    const std::ptrdiff_t rows = structure_.coordinates;
-    moved.assign(points.q, points.q + (rows - 1) * points.stride + points.count);
-    for (int i = 0; i < points.count; ++i) moved[input_ * points.stride + i] += by_;
-    result.q = moved.data();
+    const std::ptrdiff_t size = (structure_.coordinates - 1) * points.stride + points.count;
+    double* const q = moved.reserve(size);
+    std::copy_n(points.q, size, q);
+    for (int i = 0; i < points.count; ++i) q[input_ * points.stride + i] += by_;
+    result.q = q;
     return result;
   }
 

@@ -13,6 +13,7 @@
 #include "report/csv.hpp"
 #include "report/json.hpp"
 #include "report/oem.hpp"
+#include "report/page.hpp"
 #include "report/plot.hpp"
 #include "report/sampling.hpp"
 #include "report/text.hpp"
@@ -76,7 +77,8 @@ py::bytes plot(const std::string& path, const std::vector<std::shared_ptr<Solved
   std::string image;
   {
     const py::gil_scoped_release unlocked;
-    image = plot_image(path, picture_of(study.problem, result, annotation(study)));
+    const Picture picture = picture_of(study.problem, result, annotation(study));
+    image = is_page(path) ? page(result, picture) : plot_image(path, picture);
   }
   return image;
 }

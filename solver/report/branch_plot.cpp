@@ -8,6 +8,7 @@
 #include "report/branch.hpp"
 #include "report/branch_orbits.hpp"
 #include "report/layout.hpp"
+#include "report/page.hpp"
 #include "report/smooth.hpp"
 
 namespace extremal {
@@ -114,10 +115,24 @@ void add_marks(const BranchPicture& picture, const Kinds& kinds, Panel& panel,
     }
 }
 
-Panel diagram_panel(const BranchPicture& picture, std::vector<LegendEntry>& legend) {
+Kinds kinds_of(const FollowedBranch& branch) {
+  return {std::any_of(branch.points.begin(), branch.points.end(),
+                      [](const BranchPoint& p) { return p.solution.floquet.has_value(); })};
+}
+
+}  // namespace
+
+std::vector<Colour> branch_colours(const FollowedBranch& branch) {
+  const Kinds kinds = kinds_of(branch);
+  std::vector<Colour> colours;
+  for (const BranchPoint& point : branch.points) colours.push_back(kinds.colour(point));
+  return colours;
+}
+
+Panel branch_diagram(const BranchPicture& picture, std::vector<LegendEntry>& legend) {
   const FollowedBranch& branch = picture.branch;
-  const Kinds kinds{std::any_of(branch.points.begin(), branch.points.end(),
-                                [](const BranchPoint& p) { return p.solution.floquet.has_value(); })};
+  if (branch.points.empty()) throw std::invalid_argument("cannot plot a branch without points");
+  const Kinds kinds = kinds_of(branch);
   Column x, y;
   for (std::size_t k = 0; k < branch.points.size(); ++k) {
     if (!std::isfinite(picture.quantity.values[k])) continue;
@@ -150,12 +165,9 @@ Panel diagram_panel(const BranchPicture& picture, std::vector<LegendEntry>& lege
   return panel;
 }
 
-}  // namespace
-
 Figure layout(const BranchPicture& picture) {
-  if (picture.branch.points.empty()) throw std::invalid_argument("cannot plot a branch without points");
   std::vector<LegendEntry> legend;
-  Panel diagram = diagram_panel(picture, legend);
+  Panel diagram = branch_diagram(picture, legend);
   const Orbits orbits(picture.branch, picture.annotation);
   Figure figure = headed_figure(picture.branch.title, legend, orbits.remarks());
   const double top = top_of_panels(figure);
@@ -171,6 +183,7 @@ Figure layout(const BranchPicture& picture) {
 }
 
 std::string plot_image(const std::string& path, const BranchPicture& picture) {
+  if (is_page(path)) return page(picture);
   return plot_image(path, layout(picture));
 }
 

@@ -6,6 +6,7 @@
 
 #include "report/comparison.hpp"
 #include "report/layout.hpp"
+#include "report/page.hpp"
 
 namespace extremal {
 
@@ -82,6 +83,7 @@ Figure layout(const Comparison& comparison) {
 }
 
 std::string plot_image(const std::string& path, const Comparison& comparison) {
+  if (is_page(path)) return page(comparison);
   return plot_image(path, layout(comparison));
 }
 

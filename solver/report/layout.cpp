@@ -7,6 +7,29 @@
 
 namespace extremal {
 
+std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies) {
+  const std::vector<Colour> colours = distinct_colours(bodies.places.size());
+  std::vector<BodyPath> paths;
+  for (std::size_t i = 0; i < bodies.places.size(); ++i) {
+    paths.push_back({.axes = {},
+                     .name = bodies.names[i].empty() ? "" : "body " + bodies.names[i],
+                     .colour = colours[i],
+                     .t = &samples.t});
+    for (const std::size_t a : bodies.places[i]) paths.back().axes.push_back(&samples.q[a]);
+  }
+  return paths;
+}
+
+bool returns(const Samples& samples, const Bodies& bodies) {
+  for (const std::vector<std::size_t>& place : bodies.places)
+    for (const std::size_t a : place) {
+      const Column& q = samples.q[a];
+      const Extent range = extent({&q}, 0);
+      if (!range.constant && std::abs(q.back() - q.front()) > 1e-3 * range.size()) return false;
+    }
+  return true;
+}
+
 namespace {
 
 constexpr std::size_t most_curves = 8;      ///< of one array in a time plot; a longer one is a map
@@ -74,30 +97,6 @@ Figure time_figure(const Picture& picture, const std::vector<Family>& groups) {
   const double panel_height = groups.size() == 1 ? 380 : 150;
   return time_panel_figure(picture, {}, contents,
                            static_cast<double>(groups.size()) * (panel_height + 40) - 40);
-}
-
-/// The bodies of one solution.
-std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies) {
-  const std::vector<Colour> colours = distinct_colours(bodies.places.size());
-  std::vector<BodyPath> paths;
-  for (std::size_t i = 0; i < bodies.places.size(); ++i) {
-    paths.push_back({.axes = {},
-                     .name = bodies.names[i].empty() ? "" : "body " + bodies.names[i],
-                     .colour = colours[i],
-                     .t = &samples.t});
-    for (const std::size_t a : bodies.places[i]) paths.back().axes.push_back(&samples.q[a]);
-  }
-  return paths;
-}
-
-bool returns(const Samples& samples, const Bodies& bodies) {
-  for (const std::vector<std::size_t>& place : bodies.places)
-    for (const std::size_t a : place) {
-      const Column& q = samples.q[a];
-      const Extent range = extent({&q}, 0);
-      if (!range.constant && std::abs(q.back() - q.front()) > 1e-3 * range.size()) return false;
-    }
-  return true;
 }
 
 /// Of bodies, and of the ends of paths where those are marked apart.
@@ -184,25 +183,35 @@ void add_obstacles(const Picture& picture, Panel& panel) {
 }
 
 Figure layout_of(const Picture& picture) {
-  const std::size_t count = picture.names.size();
-  if (count == 1) return lone_figure(picture);
-  if (const std::optional<Bodies> found = bodies(picture.names)) {
-    const std::optional<Picture> flat = flattened(picture, *found);
-    return flat ? layout_of(*flat) : path_figure(picture, *found);
+  const Form form = form_of(picture);
+  if (form == Form::lone) return lone_figure(picture);
+  if (form == Form::paths) {
+    const Bodies found = *bodies(picture.names);
+    const std::optional<Picture> flat = flattened(picture, found);
+    return flat ? layout_of(*flat) : path_figure(picture, found);
   }
   const std::vector<Family> groups = families(picture.names);
-  if (groups.size() == 1 && count > most_curves) {
+  if (form == Form::map && groups.size() == 1)
     return map_figure(picture, axis_name(picture.annotation, groups[0].name), "index", groups[0].members);
-  }
-  if (groups.size() > most_panels || (!picture.others.empty() && count > most_panels)) {
-    std::vector<std::size_t> all(count);
-    for (std::size_t a = 0; a < count; ++a) all[a] = a;
+  if (form == Form::map) {
+    std::vector<std::size_t> all(picture.names.size());
+    for (std::size_t a = 0; a < all.size(); ++a) all[a] = a;
     return map_figure(picture, {}, "coordinate", all);
   }
   return picture.others.empty() ? time_figure(picture, groups) : coordinate_figure(picture);
 }
 
 }  // namespace
+
+Form form_of(const Picture& picture) {
+  const std::size_t count = picture.names.size();
+  if (count == 1) return Form::lone;
+  if (bodies(picture.names)) return Form::paths;
+  const std::size_t groups = families(picture.names).size();
+  if (groups == 1 && count > most_curves) return Form::map;
+  if (groups > most_panels || (!picture.others.empty() && count > most_panels)) return Form::map;
+  return Form::curves;
+}
 
 Figure layout(const Picture& picture) {
   Figure figure = layout_of(picture);

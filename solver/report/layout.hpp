@@ -46,7 +46,14 @@ Figure layout(const Comparison& comparison);
 /// A branch and orbits on it. Throws std::invalid_argument without points, or where the quantity is finite at
 /// none.
 struct BranchPicture;
+struct FollowedBranch;
 Figure layout(const BranchPicture& picture);
+
+/// The panel of the diagram alone, its left upper corner at the top, and what its colours and marks stand
+/// for. Throws likewise.
+Panel branch_diagram(const BranchPicture& picture, std::vector<LegendEntry>& legend);
+/// Of each point, by its stability or its index: as curves and dots of the diagram have it.
+std::vector<Colour> branch_colours(const FollowedBranch& branch);
 
 /// Amplitudes, powers of ten, against frequencies: a panel for each of the first coordinates. Throws
 /// std::invalid_argument without any line.

@@ -8,6 +8,7 @@
 
 #include "report/gnuplot.hpp"
 #include "report/layout.hpp"
+#include "report/page.hpp"
 
 namespace extremal {
 
@@ -18,7 +19,7 @@ Format format_of(const std::string& path) {
   if (path.ends_with(".png")) return Format::png;
   if (path.ends_with(".pdf")) return Format::pdf;
   throw std::invalid_argument(
-      fmt::format("cannot plot into {}: the name must end in .svg, .png or .pdf", path));
+      fmt::format("cannot plot into {}: the name must end in .svg, .png, .pdf or .html", path));
 }
 
 void check_finite(const std::string& key, const Column& column) {
@@ -55,7 +56,20 @@ void check(const Picture& picture, const Samples& samples) {
 
 }  // namespace
 
-void check_plot_path(const std::string& path) { format_of(path); }
+void check_plot_path(const std::string& path) {
+  if (is_page(path))
+    require_pages();
+  else
+    format_of(path);
+}
+
+void check_picture(const Picture& picture) {
+  check(picture, picture.samples);
+  for (const Samples& other : picture.others) check(picture, other);
+  if (!picture.others.empty() && picture.actions.size() != picture.others.size() + 1)
+    throw std::invalid_argument(fmt::format("cannot plot {} solutions with {} actions",
+                                            picture.others.size() + 1, picture.actions.size()));
+}
 
 std::string plot_image(const std::string& path, const Figure& figure) {
   return draw(figure, format_of(path));
@@ -63,11 +77,7 @@ std::string plot_image(const std::string& path, const Figure& figure) {
 
 std::string plot_image(const std::string& path, const Picture& picture) {
   format_of(path);
-  check(picture, picture.samples);
-  for (const Samples& other : picture.others) check(picture, other);
-  if (!picture.others.empty() && picture.actions.size() != picture.others.size() + 1)
-    throw std::invalid_argument(fmt::format("cannot plot {} solutions with {} actions",
-                                            picture.others.size() + 1, picture.actions.size()));
+  check_picture(picture);
   return plot_image(path, layout(picture));
 }
 

@@ -28,9 +28,13 @@ struct Picture {
   std::vector<Contact> contacts = {};
 };
 
-/// Refuses a path that does not end in .svg, .png or .pdf with std::invalid_argument. To be called before
-/// work is begun whose result would be plotted.
+/// Refuses a path that does not end in .svg, .png, .pdf or .html with std::invalid_argument, and .html in a
+/// build without pages. To be called before work is begun whose result would be plotted.
 void check_plot_path(const std::string& path);
+
+/// Throws std::invalid_argument for columns that do not fit the names, times that do not increase and values
+/// that are not finite.
+void check_picture(const Picture& picture);
 
 /// The bytes of a file drawn with gnuplot, SVG, PNG or PDF by the suffix of the path. What is drawn follows
 /// from the names:

@@ -13,6 +13,16 @@ namespace extremal {
 /// All solutions, the first one first.
 std::vector<const Samples*> solutions_of(const Picture& picture);
 
+/// The paths of the bodies of one solution, in distinct colours.
+std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies);
+/// Whether every body ends where it began.
+bool returns(const Samples& samples, const Bodies& bodies);
+
+/// What is drawn of a picture: a lone coordinate with its velocity, paths of bodies, maps, or coordinates
+/// against time.
+enum class Form { lone, paths, map, curves };
+Form form_of(const Picture& picture);
+
 /// "S = 1.235" with as many digits as tell neighbours apart, but no more than eight.
 std::vector<std::string> action_texts(const Column& actions);
 

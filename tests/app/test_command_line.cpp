@@ -117,7 +117,7 @@ TEST_F(CommandLine, VersionAndHelp) {
   const Outcome help = extremal({"help"});
   EXPECT_EQ(help.exit, 0);
   EXPECT_EQ(help.out, extremal({"--help"}).out);
-  for (const char* command : {"solve", "continue", "compare", "check", "list", "help"}) {
+  for (const char* command : {"solve", "continue", "compare", "check", "list", "view", "help"}) {
     EXPECT_NE(help.out.find(fmt::format("\n  {} ", command)), std::string::npos) << command;
     const Outcome page = extremal({"help", command});
     EXPECT_EQ(page.exit, 0);
@@ -132,7 +132,7 @@ TEST_F(CommandLine, VersionAndHelp) {
 TEST_F(CommandLine, HelpNamesOptionsTypesAndDefaults) {
   const std::string help = extremal({"solve", "--help"}).out;
   for (const char* option :
-       {"--output FILE.json ", "--csv FILE.csv ", "--plot FILE.svg|.png|.pdf ", "--samples N ",
+       {"--output FILE.json ", "--csv FILE.csv ", "--plot FILE.svg|.png|.pdf|.html ", "--samples N ",
         "--at T1,T2,... ", "--set KEY=VALUE ", "--repeat N=1 ", "--quiet ", "SCENE (required) "})
     EXPECT_NE(help.find(option), std::string::npos) << option << "\n" << help;
 }
@@ -190,8 +190,8 @@ TEST_F(CommandLine, OutputsThatCannotBeWrittenAreRefusedBeforeSolving) {
   refused("--csv", "scene.toml/r.csv", "'scene.toml' is not a folder");
   refused("--csv", "", "the name of the file is empty");
   refused("--plot", "scene.toml/p.svg", "'scene.toml' is not a folder");
-  refused("--plot", "p.gif", "cannot plot into p.gif: the name must end in .svg, .png or .pdf");
-  refused("--plot", "-", "cannot plot into -: the name must end in .svg, .png or .pdf");
+  refused("--plot", "p.gif", "cannot plot into p.gif: the name must end in .svg, .png, .pdf or .html");
+  refused("--plot", "-", "cannot plot into -: the name must end in .svg, .png, .pdf or .html");
   EXPECT_EQ(extremal({"solve", "scene.toml", "--output", "/dev/full"}).exit, 2);
 }
 

@@ -35,7 +35,7 @@ TEST_F(Pages, BashCompletesCommandsOptionsScenesAndSystems) {
   write("result.json", "{}");
   fs::create_directory(folder / "sub");
   EXPECT_EQ(completed({"so"}), "solve");
-  EXPECT_EQ(completed({""}), "solve continue compare spectrum check list init help --help --version");
+  EXPECT_EQ(completed({""}), "solve continue compare spectrum check list init view help --help --version");
   EXPECT_EQ(completed({"solve", ""}), "scene.toml sub");
   EXPECT_EQ(completed({"solve", "--s"}), "--set --samples");
   EXPECT_EQ(completed({"compare", "--s"}), "--set");

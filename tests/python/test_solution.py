@@ -145,6 +145,17 @@ def test_pictures(arc, tmp_path):
         s.plot(tmp_path / "s.bmp")
 
 
+def test_pages(arc, tmp_path):
+    s = arc.solve()
+    try:
+        s.plot(tmp_path / "s.html")
+    except ValueError as e:  # a build without npm
+        assert "built" in str(e)
+        return
+    page = (tmp_path / "s.html").read_text()
+    assert page.startswith("<!doctype html>") and repr(s.action) in page
+
+
 def test_the_table_is_that_of_the_command(arc):
     lines = repr(arc.solve()).splitlines()
     assert lines[0] == "status          converged" and lines[-1].startswith("time")

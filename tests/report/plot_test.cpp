@@ -244,7 +244,7 @@ TEST(Plot, RefusesOtherSuffixes) {
   EXPECT_NO_THROW(check_plot_path("b.png"));
   EXPECT_NO_THROW(check_plot_path("b.pdf"));
   EXPECT_EQ(refusal<std::invalid_argument>("p.gif", arc("", {"x"})),
-            "cannot plot into p.gif: the name must end in .svg, .png or .pdf");
+            "cannot plot into p.gif: the name must end in .svg, .png, .pdf or .html");
 }
 
 TEST(Plot, APathThatCannotBeWrittenIsNamed) {

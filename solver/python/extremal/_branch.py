@@ -163,7 +163,8 @@ class Branch:
         _core.write(name, text.encode())
 
     def plot(self, path: str | os.PathLike[str] | None = None, *, quantity: str = "") -> Picture | None:
-        """Draws the diagram by gnuplot: into a file .svg, .png or .pdf, or as a picture for a notebook.
+        """Draws the diagram: by gnuplot into a file .svg, .png or .pdf, or as a picture for a notebook; into a
+        file .html as an interactive page, with the orbits.
         `quantity` is a formula of what is drawn upwards, as "x(0)"."""
         return drawn(lambda name: self._followed.plot(self._study, name, quantity), path)
 

@@ -370,8 +370,8 @@ class Solution:
         _core.write(name, content)
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Picture | None:
-        """Draws the trajectory, of a search all of them, by gnuplot: into a file .svg, .png or .pdf, or as a
-        picture for a notebook."""
+        """Draws the trajectory, of a search all of them: by gnuplot into a file .svg, .png or .pdf, or as a
+        picture for a notebook; into a file .html as an interactive page."""
         solved = [solution._solved for solution in self.solutions]
         return drawn(lambda name: _core.plot(name, solved), path)
 

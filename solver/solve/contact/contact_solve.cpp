@@ -153,7 +153,7 @@ class ContactSearch {
                              (violation.from + violation.to) / 2);
   }
 
-  std::optional<Solution> accept(const Junctions& path) {
+  std::optional<Solution> accept(Junctions& path) {
     if (path.arcs().size() == 1 && path.arcs().front().held.empty()) return accept_free(path);
     if (!is_minimum(arcs_, path)) {
       saddle_ = true;

@@ -138,8 +138,9 @@ double Junctions::impulse(int junction) const {
   return across.dot(solved_[junction].p_end - solved_[junction + 1].p_start) / slope.dot(across);
 }
 
-bool Junctions::singular() const {
-  if (unknowns() == 0) return false;
+/// By derivatives where the path is now.
+bool Junctions::singular() {
+  if (unknowns() == 0 || !differentiate()) return false;
   const SingularValues svd = singular_value_decomposition(slopes_);
   return svd.values[svd.values.size() - 1] < singular_rank * svd.values[0];
 }

@@ -49,7 +49,7 @@ class Junctions {
   /// Displacements of junctions by relative errors of momenta, in relative units; whether some directions do
   /// not change the momenta.
   double amplification() const { return amplification_; }
-  bool singular() const;
+  bool singular();
   /// What is touched where each arc but the first begins; −1: nothing.
   const std::vector<int>& touched() const { return touched_; }
   /// ∫ μ dt of the touch at a junction.
