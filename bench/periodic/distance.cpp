@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "study/guess.hpp"
+#include "study/files/guess_file.hpp"
 
 namespace bench {
 namespace {
@@ -14,7 +14,8 @@ using Eigen::VectorXd;
 VectorXd first_state(const std::string& csv, const std::vector<std::string>& names) {
   std::vector<std::string> primed;
   for (const std::string& name : names) primed.push_back(name + "'");
-  const auto q = extremal::read_samples(csv, names).q, v = extremal::read_samples(csv, primed).q;
+  const auto q = extremal::read_guess_file(csv, names, {}).q,
+             v = extremal::read_guess_file(csv, primed, {}).q;
   const auto n = static_cast<Eigen::Index>(names.size());
   VectorXd state(2 * n);
   state << Eigen::Map<const VectorXd>(q.data(), n), Eigen::Map<const VectorXd>(v.data(), n);

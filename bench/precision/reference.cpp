@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "study/guess.hpp"
+#include "study/files/guess_file.hpp"
 
 namespace bench {
 namespace {
@@ -34,11 +34,11 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
 Reference read_reference(const std::string& path, const std::vector<std::string>& names) {
   std::vector<std::string> primed;
   for (const std::string& name : names) primed.push_back(name + "'");
-  extremal::SampledFile positions = extremal::read_samples(path, names);
+  extremal::GuessFile positions = extremal::read_guess_file(path, names, {});
   Reference reference;
   reference.t = std::move(positions.t);
   reference.q = std::move(positions.q);
-  reference.v = extremal::read_samples(path, primed).q;
+  reference.v = extremal::read_guess_file(path, primed, {}).q;
   reference.range = largest_range(reference.q, names.size());
   reference.velocity_range = largest_range(reference.v, names.size());
   for (double q : reference.q) reference.rounding = std::max(reference.rounding, 0x1p-53 * std::abs(q));
