@@ -3,8 +3,8 @@ SCENE = problems/scenes/cr3bp.toml
 # Where `make install` installs; the program looks for system files there.
 PREFIX = /usr/local
 
-.PHONY: configure build demo test python test-python test-viewer viewer-picture bench debug asan ubsan sanitize fuzz gallery reference format install \
-	package packages clean
+.PHONY: configure build demo test python test-python test-viewer viewer-picture bench debug asan ubsan sanitize fuzz \
+	gallery reference format install package packages clean
 
 configure: packages
 	@cmake --preset release -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) -DEXTREMAL_PYTHON=ON >build/configure.log 2>&1 || { \

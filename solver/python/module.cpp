@@ -49,7 +49,7 @@ void translate(std::exception_ptr pointer) {
 py::list keys() {
   py::list list;
   for (const KeyRecord& record : key_records())
-    if (record.available && record.table != "system file")
+    if (record.table != "system file")
       list.append(py::make_tuple(record.table, record.key, record.kind == Kind::table));
   return list;
 }

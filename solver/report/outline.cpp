@@ -116,10 +116,10 @@ class Commented {
   std::string others() const {
     std::string result;
     for (const KeyRecord& table : key_records()) {
-      if (table.table != "" || table.kind != Kind::table || !table.available) continue;
+      if (table.table != "" || table.kind != Kind::table) continue;
       std::string keys;
       for (const KeyRecord& key : key_records())
-        if (key.table == table.key && key.available && key.key != "*" && !seen_.count({table.key, key.key}))
+        if (key.table == table.key && key.key != "*" && !seen_.count({table.key, key.key}))
           keys += comment(std::string(key.meaning)) + fmt::format("#   {}\n", key.example);
       const bool present = seen_.count({"", table.key});
       if (!keys.empty())

@@ -117,7 +117,6 @@ struct Checker {
       const std::string label = top && record->kind == Kind::table
                                     ? fmt::format("[{}]", key->str())
                                     : fmt::format("'{}'{}", key->str(), within);
-      if (!record->available) throw SceneError(document.at(key->source()), label + " is not available yet");
       const bool has_keys = record->by_name || record->kind == Kind::table;
       if (has_keys && !value->is_table())
         refuse(*value, fmt::format("{} must be a table, found {}", label, type_name(*value)));

@@ -41,8 +41,8 @@ Document parse_document(const std::shared_ptr<const Source>& source);
 /// no table.
 void set_value(Document& document, const std::string& argument);
 
-/// Throws SceneError at the first key that is unknown, of the wrong type or not available in this version,
-/// in `table`, whose keys the schema holds under `name`, and in the tables below.
+/// Throws SceneError at the first key that is unknown or of the wrong type in `table`, whose keys the schema
+/// holds under `name`, and in the tables below.
 void check_keys(const Document& document, const toml::table& table, std::string_view name);
 
 /// Throws SceneError where two keys exclude each other or one lacks another.

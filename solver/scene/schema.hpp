@@ -35,7 +35,6 @@ struct KeyRecord {
   std::string_view meaning = {};
   std::string_view example = {};  ///< as TOML within its table
   bool by_name = false;           ///< a table of such values, under names of the user's
-  bool available = true;          ///< in this version
 };
 
 /// All keys, table by table.

@@ -71,7 +71,8 @@ std::vector<Case> cases() {
       {"Brackets", "x = " + std::string(1'000'000, '['), "scene.toml:1:"},
       {"HugeArray", with("\"q\"", "\"q[1000000000000]\""), "scene.toml:3:"},
       {"HugeSum", with("cos(q)", "sum(i, 1, 1000000000000, q*i)"), "scene.toml:4:"},
-      {"FeatureOfTheFuture", pendulum + "[path]\nto = 5\n", "scene.toml:9:2: [path] is not available yet\n"},
+      {"UnknownKeyOfATable", pendulum + "[path]\nto = 5\n",
+       "scene.toml:10:1: unknown key 'to' in [path]\n"},
       {"NoSolutionsWanted", pendulum + "[search]\nsolutions = 0\n",
        "scene.toml:10:13: solutions = 0; need 1 to 1000\n"},
   };
