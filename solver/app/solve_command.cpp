@@ -7,6 +7,7 @@
 #include "app/sampling.hpp"
 #include "app/terminal.hpp"
 #include "report/csv.hpp"
+#include "report/fitted.hpp"
 #include "report/json.hpp"
 #include "report/oem.hpp"
 #include "report/page.hpp"
@@ -60,35 +61,6 @@ Result search_result(Result result, const std::vector<Solution>& solutions, cons
 std::string fit_progress_text(const FitStep& step) {
   return fmt::format("fit, {} elements of degree {}: iteration {}, chi squared {:.6g}", step.elements,
                      step.degree, step.iteration, step.chi_squared);
-}
-
-/// What a fit found, for its result.
-Fitted fitted_of(const FitRequest& request, const FitResult& fit) {
-  const Observations& data = request.task.data;
-  Fitted fitted{.parameters = request.parameters,
-                .open_ends = request.open_ends,
-                .values = fit.values,
-                .covariance = {},
-                .scaled = fit.scaled,
-                .chi_squared = fit.chi_squared,
-                .freedom = data.count() - static_cast<int>(fit.values.size()),
-                .t = data.t,
-                .columns = {}};
-  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i)
-    fitted.covariance.emplace_back(fit.covariance.row(i).begin(), fit.covariance.row(i).end());
-  for (std::size_t c = 0; c < data.columns.size(); ++c) {
-    const ObservedColumn& column = data.columns[c];
-    Fitted::Column& to = fitted.columns.emplace_back();
-    to.name = column.name;
-    for (auto* part : {&to.observed, &to.residual, &to.sigma}) part->resize(data.t.size());
-    for (std::size_t k = 0; k < column.values.size(); ++k) {
-      const ObservedValue& value = column.values[k];
-      to.observed[value.row] = value.value;
-      to.residual[value.row] = fit.residuals[c][k];
-      if (data.sigmas) to.sigma[value.row] = value.sigma;
-    }
-  }
-  return fitted;
 }
 
 Samples sampled(const Study& study, const Result& result, int count) {

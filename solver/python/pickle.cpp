@@ -75,6 +75,16 @@ auto members(Solution& s) {
                   unknowns, iterations, history, seconds_solve, seconds_analyse);
 }
 
+auto members(Fitted::Column& s) {
+  auto& [name, observed, residual, sigma] = s;
+  return std::tie(name, observed, residual, sigma);
+}
+
+auto members(Fitted& s) {
+  auto& [parameters, open_ends, values, covariance, scaled, chi_squared, freedom, t, columns] = s;
+  return std::tie(parameters, open_ends, values, covariance, scaled, chi_squared, freedom, t, columns);
+}
+
 template <class T>
 concept HasMembers = requires(T& value) {
   members(value);
@@ -163,6 +173,17 @@ void unpack(const py::handle& packed, T& value) {
 py::tuple packed(const Solution& solution) {
   Solution copy = solution;
   return pack(copy);
+}
+
+py::object packed(const std::shared_ptr<const Fitted>& fit) {
+  std::shared_ptr<const Fitted> copy = fit;
+  return pack(copy);
+}
+
+std::shared_ptr<const Fitted> unpacked_fit(const py::handle& state) {
+  std::shared_ptr<const Fitted> fit;
+  unpack(state, fit);
+  return fit;
 }
 
 Solution unpacked(const py::tuple& state) {

@@ -2,9 +2,12 @@
 
 #include <pybind11/pybind11.h>
 
+#include <memory>
+
+#include "report/result.hpp"
 #include "solution/solution.hpp"
 
-/// \file A solution as a tuple of Python, to the last digit.
+/// \file Solutions and fits as tuples of Python, to the last digit.
 
 namespace extremal::python {
 
@@ -12,5 +15,9 @@ pybind11::tuple packed(const Solution& solution);
 
 /// Throws a Python exception for what packed() did not make.
 Solution unpacked(const pybind11::tuple& state);
+
+/// The same of what a fit found, or None.
+pybind11::object packed(const std::shared_ptr<const Fitted>& fit);
+std::shared_ptr<const Fitted> unpacked_fit(const pybind11::handle& state);
 
 }  // namespace extremal::python

@@ -31,6 +31,7 @@ Result result_of(const Solved& s) {
   Result result{s.study->title, coordinate_names(s.study->problem), s.solution, s.study->seconds_read,
                 std::nullopt};
   result.natural_conditions = natural_conditions(s.study->problem);
+  if (s.fit) result.fit = *s.fit;
   return result;
 }
 
@@ -77,8 +78,11 @@ py::bytes plot(const std::string& path, const std::vector<std::shared_ptr<Solved
   std::string image;
   {
     const py::gil_scoped_release unlocked;
-    const Picture picture = picture_of(study.problem, result, annotation(study));
-    image = is_page(path) ? page(result, picture) : plot_image(path, picture);
+    const Annotation labels = annotation(study);
+    const Picture picture = picture_of(study.problem, result, labels);
+    image = is_page(path) ? page(result, picture)
+            : result.fit  ? fit_image(path, result, picture.samples, labels)
+                          : plot_image(path, picture);
   }
   return image;
 }
@@ -163,6 +167,34 @@ py::object krein(const py::object& self) {
   return s.floquet && s.floquet->paired ? py::object(view(s.floquet->krein, self)) : py::none();
 }
 
+/// Times and residuals of a column, where it was observed: (2, m).
+py::array_t<double> residuals(const Fitted& fit, const Fitted::Column& column) {
+  std::vector<double> t, left;
+  for (std::size_t k = 0; k < fit.t.size(); ++k)
+    if (column.residual[k]) {
+      t.push_back(fit.t[k]);
+      left.push_back(*column.residual[k]);
+    }
+  py::array_t<double> both({std::size_t{2}, t.size()});
+  std::copy(t.begin(), t.end(), both.mutable_data());
+  std::copy(left.begin(), left.end(), both.mutable_data() + t.size());
+  return read_only(std::move(both));
+}
+
+/// Names, values, covariance, χ², degrees of freedom and residuals of a fit; None without one.
+py::object fit_of(const Solved& s) {
+  if (!s.fit) return py::none();
+  const Fitted& fit = *s.fit;
+  const std::size_t count = fit.values.size();
+  py::array_t<double> covariance({count, count});
+  for (std::size_t k = 0; k < count; ++k)
+    std::copy(fit.covariance[k].begin(), fit.covariance[k].end(), covariance.mutable_data(k, 0));
+  py::dict left;
+  for (const Fitted::Column& column : fit.columns) left[py::str(column.name)] = residuals(fit, column);
+  return py::make_tuple(fit.parameters, fit.open_ends, fit.values, read_only(std::move(covariance)),
+                        fit.chi_squared, fit.freedom, left);
+}
+
 }  // namespace
 
 void bind_solution(py::module_& module) {
@@ -215,9 +247,12 @@ void bind_solution(py::module_& module) {
       .def("npz", npz)
       .def("oem", oem)
       .def("summary", [](const Solved& s) { return summary(result_of(s)); })
-      .def("state", [](const Solved& s) { return packed(s.solution); });
+      .def_property_readonly("fit", fit_of)
+      .def("state", [](const Solved& s) { return py::make_tuple(packed(s.solution), packed(s.fit)); });
   module.def("restored", [](const PyStudy& study, const py::tuple& state) {
-    return solved_by(study.shared(), unpacked(state));
+    auto solved = solved_by(study.shared(), unpacked(state[0]));
+    solved->fit = unpacked_fit(state[1]);
+    return solved;
   });
   module.def("plot", plot, py::arg("path"), py::arg("solutions"));
 }

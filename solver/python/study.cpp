@@ -9,9 +9,11 @@
 #include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
 #include "python/run.hpp"
+#include "report/fitted.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/path_contacts.hpp"
 #include "study/continued.hpp"
+#include "study/fitting.hpp"
 #include "study/phase.hpp"
 
 namespace extremal::python {
@@ -56,10 +58,9 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
 
 namespace {
 
-/// Of one call. Throws std::invalid_argument for a fit.
+/// Of one call.
 SolveOptions options_of(const Study& study, Interruptible& work, std::optional<double> tolerance,
                         const py::object& progress) {
-  if (study.fit) throw std::invalid_argument("fits are not available in Python; use `extremal solve`");
   SolveOptions options = study.options;
   options.deadline = work.deadline(study.budget);
   options.progress = work.callback<Iteration>(progress);
@@ -76,7 +77,23 @@ PyStudy::PyStudy(const std::string& text, const std::string& name, bool family)
       load(text_source(name, text), {}, family ? Purpose::family : Purpose::solution));
 }
 
+std::shared_ptr<Solved> PyStudy::fit(std::optional<double> tolerance, const py::object& progress) const {
+  Interruptible work;
+  Study study = *study_;
+  study.options = options_of(*study_, work, tolerance, py::none());
+  const auto callback = work.callback<FitStep>(progress);
+  return work.run([&] {
+    FitResult found = run_fit(study, 1, callback);
+    const bool converged = found.solution.converged();
+    auto fitted = converged ? std::make_shared<const Fitted>(fitted_of(*study.fit, found)) : nullptr;
+    auto solved = solved_by(study_, std::move(found.solution));
+    solved->fit = std::move(fitted);
+    return solved;
+  });
+}
+
 std::shared_ptr<Solved> PyStudy::solve(std::optional<double> tolerance, const py::object& progress) const {
+  if (study_->fit) return fit(tolerance, progress);
   Interruptible work;
   const SolveOptions options = options_of(*study_, work, tolerance, progress);
   return work.run([&] {
@@ -114,6 +131,11 @@ void bind_study(py::module_& module) {
   for (int k = 0; k <= static_cast<int>(Status::iteration_limit); ++k) statuses.append(name(Status{k}));
   module.attr("STATUSES") = statuses;
 
+  py::class_<FitStep>(module, "FitStep")
+      .def_readonly("iteration", &FitStep::iteration)
+      .def_readonly("elements", &FitStep::elements)
+      .def_readonly("degree", &FitStep::degree)
+      .def_readonly("chi_squared", &FitStep::chi_squared);
   py::class_<Iteration>(module, "Iteration")
       .def_readonly("elements", &Iteration::elements)
       .def_readonly("degree", &Iteration::degree)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "python/arrays.hpp"
+#include "report/result.hpp"
 #include "study/study.hpp"
 
 /// \file A scene made ready, as Python holds it. Immutable but for memory; several threads may solve at once.
@@ -19,6 +20,7 @@ namespace extremal::python {
 struct Solved {
   std::shared_ptr<const Study> study;
   Solution solution;
+  std::shared_ptr<const Fitted> fit = {};  ///< or null
 };
 
 /// Constants that the solution found become those of its study; a solution that was pickled has no
@@ -43,7 +45,8 @@ class PyStudy {
 
   const Study& study() const { return *study_; }
 
-  /// With another tolerance where one is given. `progress` is called with an Iteration, or None.
+  /// With another tolerance where one is given. `progress` is called with an Iteration, of a fit with a
+  /// FitStep, or None.
   std::shared_ptr<Solved> solve(std::optional<double> tolerance, const py::object& progress) const;
   /// Up to `most` extremals.
   std::vector<std::shared_ptr<Solved>> search(int most, std::optional<double> tolerance,
@@ -60,6 +63,8 @@ class PyStudy {
   std::shared_ptr<const Study> shared() const { return study_; }
 
  private:
+  std::shared_ptr<Solved> fit(std::optional<double> tolerance, const py::object& progress) const;
+
   std::shared_ptr<const Study> study_;
   std::shared_ptr<Solvers> solvers_;
 };

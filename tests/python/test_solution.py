@@ -114,6 +114,28 @@ def test_periodic_orbits_have_multipliers():
     assert [list(map(complex, s.multipliers))] == [[complex(*z) for z in s.to_dict()["multipliers"]]]
 
 
+def test_fits(tmp_path):
+    steps = []
+    s = ex.load(SCENES / "damped-pendulum-fit.toml").solve(progress=steps.append)
+    assert s.converged and s.fit is not None
+    assert len(steps) > 1 and isinstance(steps[0], ex.FitStep) and steps[-1].chi_squared > 0
+    written = s.to_dict()
+    assert dict(s.fit.parameters) == written["parameters"]
+    np.testing.assert_array_equal(s.fit.covariance, written["covariance"])
+    assert np.all(np.linalg.eigvalsh(s.fit.covariance) > 0)
+    assert s.fit.chi_squared == written["chi_squared"]
+    for name, (t, left) in s.fit.residuals.items():
+        assert len(t) == len(left) > s.fit.freedom / 10 and abs(left.mean()) < left.std(), name
+    with pytest.raises(ValueError):
+        s.fit.covariance[0, 0] = 1
+    again = pickle.loads(pickle.dumps(s))
+    assert dict(again.fit.parameters) == dict(s.fit.parameters) and again.fit.freedom == s.fit.freedom
+    np.testing.assert_array_equal(again.fit.covariance, s.fit.covariance)
+    s.plot(tmp_path / "fit.svg")
+    assert (tmp_path / "fit.svg").stat().st_size > 1000
+    assert ex.load(SCENES / "pendulum.toml").solve().fit is None
+
+
 def test_files(arc, tmp_path):
     s = arc.solve()
     s.save(tmp_path / "s.csv", samples=5)

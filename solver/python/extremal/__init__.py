@@ -8,15 +8,17 @@
 """
 
 from ._branch import Branch
-from ._core import BranchPoint, Iteration, __version__
+from ._core import BranchPoint, FitStep, Iteration, __version__
 from ._errors import NotConverged, SceneError
 from ._many import Solutions
 from ._problem import Problem, load
-from ._solution import Named, Picture, Solution
+from ._solution import Fit, Named, Picture, Solution
 
 __all__ = [
     "Branch",
     "BranchPoint",
+    "Fit",
+    "FitStep",
     "Iteration",
     "Named",
     "NotConverged",
@@ -30,5 +32,5 @@ __all__ = [
 ]
 
 for _name in __all__:
-    if not _name.startswith("_") and _name not in ("BranchPoint", "Iteration"):
+    if not _name.startswith("_") and _name not in ("BranchPoint", "FitStep", "Iteration"):
         globals()[_name].__module__ = __name__

@@ -19,7 +19,7 @@ from ._errors import NotConverged
 from ._many import Solutions
 from ._solution import Solution
 
-Progress = Callable[[_core.Iteration], object]
+Progress = Callable[[Any], object]
 Law = str | Callable[..., Any]
 
 # A key that several tables have belongs to the first of them.
@@ -301,7 +301,8 @@ class Problem:
                 neither this nor the problem says.
             solutions: look for up to so many extremals; they come as a list, by their actions.
             raise_on_failure: raise NotConverged instead of returning a solution that says why there is none.
-            progress: called with each step of the iteration; an exception that it raises ends the solve.
+            progress: called with each step of the iteration, of a fit with each of its own; an exception that
+                it raises ends the solve.
             changes: as for replace().
 
         Returns:

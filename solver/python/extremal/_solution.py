@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -45,6 +47,24 @@ class Named(Mapping[str, float]):
 
     def __repr__(self) -> str:
         return repr(dict(self))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What observations determine.
+
+    parameters, open_ends: what was fitted, by name.
+    covariance: of the parameters in their order, then of the open ends, (k, k).
+    chi_squared, freedom: the sum that is least, and values observed less unknowns.
+    residuals: of each observed column its times and observed − computed, (2, m).
+    """
+
+    parameters: Named
+    open_ends: Named
+    covariance: Array
+    chi_squared: float
+    freedom: int
+    residuals: Mapping[str, Array]
 
 
 class Picture:
@@ -220,6 +240,25 @@ class Solution:
     def krein(self) -> npt.NDArray[np.intc] | None:
         """Krein signs beside the multipliers."""
         return self._solved.krein
+
+    @property
+    def fit(self) -> Fit | None:
+        """What the observations of a table [fit] determine; None without one."""
+        found = self._solved.fit
+        if found is None:
+            return None
+        parameters, open_ends, values, covariance, chi_squared, freedom, residuals = found
+        numbers = np.array(values)
+        numbers.setflags(write=False)
+        count = len(parameters)
+        return Fit(
+            Named(parameters, numbers[:count]),
+            Named(open_ends, numbers[count:]),
+            covariance,
+            chi_squared,
+            freedom,
+            MappingProxyType(residuals),
+        )
 
     @property
     def minimal_period(self) -> float | None:
