@@ -141,7 +141,10 @@ int solve(const SolveArguments& a) {
     if (study.fit) {
       FitResult fit = run_fit(study, a.repeat, progress.callback<FitStep>(fit_progress_text));
       result.solution = std::move(fit.solution);
-      if (result.solution.converged()) result.fit = fitted_of(*study.fit, fit);
+      if (result.solution.converged()) {
+        result.fit = fitted_of(*study.fit, fit);
+        use_fitted(fit.values, study);
+      }
     } else if (study.solutions == 0)
       result.solution = run(study, a.repeat);
     else

@@ -34,7 +34,13 @@ int spectrum(const CompareArguments& a) {
   const Annotation annotation = is_page(a.plot) ? extremal::annotation(study) : Annotation{};
   Result result{study.title, coordinate_names(study.problem), {}, study.seconds_read, std::nullopt};
   result.natural_conditions = natural_conditions(study.problem);
-  result.solution = study.fit ? run_fit(study).solution : run(study);
+  if (study.fit) {
+    FitResult fit = run_fit(study);
+    result.solution = std::move(fit.solution);
+    if (result.solution.converged()) use_fitted(fit.values, study);
+  } else {
+    result.solution = run(study);
+  }
   const bool converged = result.solution.converged();
   use_constants(result.solution, study);
   if (converged)

@@ -250,9 +250,7 @@ void bind_solution(py::module_& module) {
       .def_property_readonly("fit", fit_of)
       .def("state", [](const Solved& s) { return py::make_tuple(packed(s.solution), packed(s.fit)); });
   module.def("restored", [](const PyStudy& study, const py::tuple& state) {
-    auto solved = solved_by(study.shared(), unpacked(state[0]));
-    solved->fit = unpacked_fit(state[1]);
-    return solved;
+    return solved_by(study.shared(), unpacked(state[0]), unpacked_fit(state[1]));
   });
   module.def("plot", plot, py::arg("path"), py::arg("solutions"));
 }

@@ -31,7 +31,13 @@ void Solvers::give_back(Solver solver) {
   waiting_.push_back(std::move(solver));
 }
 
-std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution solution) {
+std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution solution,
+                                  std::shared_ptr<const Fitted> fit) {
+  if (fit) {
+    Study own = *study;
+    use_fitted(fit->values, own);
+    study = std::make_shared<const Study>(std::move(own));
+  }
   if (solution.extension) {
     ExtensionValues values = *solution.extension;
     if (!values.lagrangian) {
@@ -53,7 +59,7 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
         arc.manifold = study->problem.inequalities->hold(arc.held).manifold;
     solution.contacts = std::make_shared<const PathContacts>(std::move(contacts));
   }
-  return std::make_shared<Solved>(Solved{std::move(study), std::move(solution)});
+  return std::make_shared<Solved>(Solved{std::move(study), std::move(solution), std::move(fit)});
 }
 
 namespace {
@@ -86,9 +92,7 @@ std::shared_ptr<Solved> PyStudy::fit(std::optional<double> tolerance, const py::
     FitResult found = run_fit(study, 1, callback);
     const bool converged = found.solution.converged();
     auto fitted = converged ? std::make_shared<const Fitted>(fitted_of(*study.fit, found)) : nullptr;
-    auto solved = solved_by(study_, std::move(found.solution));
-    solved->fit = std::move(fitted);
-    return solved;
+    return solved_by(study_, std::move(found.solution), std::move(fitted));
   });
 }
 

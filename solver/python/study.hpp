@@ -23,9 +23,10 @@ struct Solved {
   std::shared_ptr<const Fitted> fit = {};  ///< or null
 };
 
-/// Constants that the solution found become those of its study; a solution that was pickled has no
+/// Constants that the solution found, or a fit, become those of its study; a solution that was pickled has no
 /// Lagrangian.
-std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution solution);
+std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution solution,
+                                  std::shared_ptr<const Fitted> fit = {});
 
 /// Solvers that are not in use, with their memory.
 class Solvers {

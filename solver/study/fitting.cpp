@@ -194,4 +194,14 @@ FitResult run_fit(const Study& study, int repeat, const std::function<void(const
   return result;
 }
 
+void use_fitted(std::span<const double> values, Study& study) {
+  if (!study.fit || values.empty()) return;
+  const FitTask& task = study.fit->task;
+  std::optional<Problem> fitted = task.problem(values, task.guess, task.duration);
+  if (!fitted) return;
+  study.problem.lagrangian = std::move(fitted->lagrangian);
+  study.problem.copies = std::move(fitted->copies);
+  study.problem.pair = std::move(fitted->pair);
+}
+
 }  // namespace extremal

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,9 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
 /// without a [fit].
 FitResult run_fit(const Study& study, int repeat = 1,
                   const std::function<void(const FitStep&)>& progress = {});
+
+/// The Lagrangian of the study becomes that with these values of the unknowns: momenta are read off with it.
+/// Does nothing without a [fit].
+void use_fitted(std::span<const double> values, Study& study);
 
 }  // namespace extremal

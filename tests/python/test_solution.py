@@ -131,6 +131,8 @@ def test_fits(tmp_path):
     again = pickle.loads(pickle.dumps(s))
     assert dict(again.fit.parameters) == dict(s.fit.parameters) and again.fit.freedom == s.fit.freedom
     np.testing.assert_array_equal(again.fit.covariance, s.fit.covariance)
+    np.testing.assert_allclose(again.p([0, 3])[1], s.p([0, 3])[1])
+    np.testing.assert_allclose(s.p(s.duration), list(s.momentum_end.values()), rtol=1e-9)
     s.plot(tmp_path / "fit.svg")
     assert (tmp_path / "fit.svg").stat().st_size > 1000
     assert ex.load(SCENES / "pendulum.toml").solve().fit is None

@@ -8,6 +8,7 @@
 
 #include "solve/fit/fitted_path.hpp"
 #include "study/fit_data.hpp"
+#include "study/phase.hpp"
 #include "study/scenes.hpp"
 
 /// \file Fits beside the values that data were made with, the scatter of repeated fits, and published orbits.
@@ -389,6 +390,26 @@ TEST_F(Fits, RefuseBadInput) {
             std::string::npos);
   EXPECT_NE(message(rod_motion + "[fit]\ndata = \"data.csv\"\nparameters = [\"l\"]\n").find("initial data"),
             std::string::npos);
+}
+
+/// With the mass that was found, not with its guess.
+TEST_F(Fits, MomentaAreThoseOfTheFittedLagrangian) {
+  std::string text = "t,x\n";
+  for (int k = 0; k <= 40; ++k)
+    text += fmt::format("{},{:.17g}\n", 0.1 * k, std::cos(std::sqrt(1.6) * 0.1 * k));
+  write("data.csv", text);
+  Study read = study(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { m = 1.5 }\nlagrangian = \"m*x'^2/2 - 2*x^2\"\n"
+      "[boundary]\nduration = 4.0\n[fit]\ndata = \"data.csv\"\nparameters = [\"m\"]\n");
+  const FitResult result = run_fit(read);
+  ASSERT_TRUE(result.solution.converged()) << result.solution.message;
+  ASSERT_NEAR(result.values[0], 2.5, 1e-9);
+  use_fitted(result.values, read);
+  std::vector<double> q(1), v(1), p(1);
+  Scratch scratch;
+  phase_point(read.problem, result.solution.trajectory, 4.0, q, v, p, scratch);
+  EXPECT_NEAR(p[0], 2.5 * v[0], 1e-9);
+  EXPECT_NEAR(p[0], result.solution.momentum_end[0], 1e-9);
 }
 
 TEST_F(Fits, AnglesAreTakenWithoutWholeTurns) {
