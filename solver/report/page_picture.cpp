@@ -100,6 +100,9 @@ class Views {
       centres.push_back({{"name", centre.name}, {"at", centre.at}});
     for (const AxisName& each : around.axes) axes.push_back(page_axis(each));
     const bool one_body = found.places.size() == 1;
+    PageData obstacles = PageData::array();
+    if (found.axes.size() == 2)
+      for (const PlaneCurve& curve : seen.obstacles) obstacles.push_back({{"x", curve.x}, {"y", curve.y}});
     views_.push_back({{"kind", "path"},
                       {"axes", std::move(axes)},
                       {"equal", around.lengths && comparable(extents)},
@@ -108,6 +111,7 @@ class Views {
                       {"range", range_data(extents)},
                       {"ranges", std::move(ranges)},
                       {"bodies", std::move(list)},
+                      {"obstacles", std::move(obstacles)},
                       {"centres", std::move(centres)}});
   }
 

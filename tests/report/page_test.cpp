@@ -96,6 +96,16 @@ TEST_F(Page, ColumnsAreTheSamples) {
   EXPECT_EQ(picture.at("panels").size(), 2u);
 }
 
+TEST_F(Page, BoundariesOfObstaclesAreThoseOfThePicture) {
+  const Result result = transfer_result();
+  Picture picture = picture_of_samples(result);
+  picture.obstacles.push_back({{0.0, 0.5, 1.0}, {1.0, 1.25, 1.0}});
+  const Json view = data_in(page(result, picture)).at("picture").at("views").at(0);
+  ASSERT_EQ(view.at("obstacles").size(), 1u);
+  EXPECT_EQ(view["obstacles"][0]["x"], picture.obstacles[0].x);
+  EXPECT_EQ(view["obstacles"][0]["y"], picture.obstacles[0].y);
+}
+
 TEST_F(Page, ManySamplesAreThinned) {
   Result result = transfer_result();
   const std::size_t count = 200'000;

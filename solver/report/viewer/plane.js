@@ -59,6 +59,7 @@ export class PlaneView {
     if (!this.small && !this.space) this.drawAxes(context, width, height);
     if (!this.small && this.space) this.drawRoom(context);
     if (this.view.kind === "profile") return;
+    this.drawObstacles(context);
     for (const other of this.behind) this.drawPaths(context, other, 0.3, 1.1, tone(other.colour));
     this.drawPaths(context, this.front, 0.55, this.small ? 1.3 : 1.8, null);
     if (!this.small) this.drawEnds(context);
@@ -148,6 +149,17 @@ export class PlaneView {
         for (let k = from; k <= to; ++k) context.lineTo(...paths[i][k]);
         context.stroke();
       });
+  }
+
+  /** Boundaries of what inequalities along the path forbid. */
+  drawObstacles(context) {
+    context.strokeStyle = themeColour("muted");
+    context.lineWidth = this.small ? 0.8 : 1.4;
+    for (const { x, y } of this.view.obstacles ?? []) {
+      context.beginPath();
+      x.forEach((across, k) => context.lineTo(...this.project.at([across, y[k]])));
+      context.stroke();
+    }
   }
 
   place(trajectory, body, time) {
