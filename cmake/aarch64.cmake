@@ -11,7 +11,6 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(CMAKE_CXX_FLAGS_INIT "-isystem ${EXTREMAL_ARM_ROOT}/usr/include -isystem ${EXTREMAL_ARM_ROOT}/usr/include/aarch64-linux-gnu")
 set(libraries ${EXTREMAL_ARM_ROOT}/usr/lib/aarch64-linux-gnu)
-string(CONCAT CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,${libraries}"
-       ":${libraries}/blas:${libraries}/lapack")
-set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L /usr/aarch64-linux-gnu
-    -E LD_LIBRARY_PATH=${libraries}:${libraries}/blas:${libraries}/lapack)
+string(JOIN ":" folders ${libraries} ${libraries}/blas ${libraries}/lapack ${EXTREMAL_ARM_ROOT}/lib/aarch64-linux-gnu)
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-rpath-link,${folders}")
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64 -L /usr/aarch64-linux-gnu -E LD_LIBRARY_PATH=${folders})
