@@ -195,8 +195,8 @@ class ConstrainedEnds {
       names.push_back(fmt::format("{}({})", problem_.names[e % n_], e < n_ ? "0" : "T"));
     throw SceneError(
         place_of(scene_.boundary, problem_.ends.home.front() >= n_),
-        fmt::format("the constraints determine what the ends leave out, but not near the default "
-                    "guess: give {}, or a guess that is nearer to the values that are meant",
+        fmt::format("the constraints determine {}, but not near the guess; write the value in [boundary], "
+                    "or give a guess that is nearer to it",
                     fmt::join(names, ", ")));
   }
 

@@ -58,4 +58,11 @@ inline const std::string masses =
 
 inline const std::string ends = "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 2\n";
 
+/// A coordinate of the guess at τ = t/T.
+inline double guessed(const Study& study, double tau, int coordinate) {
+  std::vector<double> q(study.problem.coordinates());
+  study.problem.guess.at(tau, q);
+  return q[coordinate];
+}
+
 }  // namespace extremal::test

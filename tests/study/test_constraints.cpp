@@ -264,10 +264,9 @@ TEST_F(Scenes, AnEndThatConstraintsHoldInASinglePointIsAskedFor) {
            "start = { x = 1, y = 0, z = 0 }\nend = { " +
            end + " }\nduration = 0.7\n" + rest;
   };
-  EXPECT_EQ(
-      message(sphere("x = 0, y = 1")),
-      "scene.toml:7:9: the constraints determine what the ends leave out, but not near the default guess: "
-      "give z(T), or a guess that is nearer to the values that are meant");
+  EXPECT_EQ(message(sphere("x = 0, y = 1")),
+            "scene.toml:7:9: the constraints determine z(T), but not near the guess; write the value in "
+            "[boundary], or give a guess that is nearer to it");
   EXPECT_TRUE(run(study(sphere("x = 0, y = 1, z = 0"))).converged());
   const Study s = study(sphere("x = 0, y = 0.8", "[guess]\nx = \"1 - t/T\"\ny = \"t/T\"\nz = -0.4\n"));
   EXPECT_NEAR(s.problem.ends.offset[5], -0.6, 1e-12);

@@ -5,21 +5,11 @@
 using namespace extremal;
 using namespace extremal::test;
 
-namespace {
-
-double at(const Study& study, double tau, int coordinate) {
-  std::vector<double> q(study.problem.coordinates());
-  study.problem.guess.at(tau, q);
-  return q[coordinate];
-}
-
-}  // namespace
-
 TEST_F(Scenes, GuessFormulas) {
   const Study s = study(masses + ends + "[guess]\nx = \"k*sin(pi*t/T)\"\nq = \"i*t\"\n");
   for (const double tau : {0.0, 0.1234, 0.5, 0.99, 1.0}) {
-    EXPECT_NEAR(at(s, tau, 0), 4 * std::sin(M_PI * tau), 1e-9);
-    for (int i = 1; i <= 3; ++i) EXPECT_NEAR(at(s, tau, i), i * 2 * tau, 1e-14);
+    EXPECT_NEAR(guessed(s, tau, 0), 4 * std::sin(M_PI * tau), 1e-9);
+    for (int i = 1; i <= 3; ++i) EXPECT_NEAR(guessed(s, tau, i), i * 2 * tau, 1e-14);
   }
 }
 
@@ -27,14 +17,14 @@ TEST_F(Scenes, GuessListsElementsAndWhatIsLeftOut) {
   const Study s = study(masses +
                         "[boundary]\nstart = { q = [1, 1, 1] }\nend = { x = 3, \"q[3]\" = 5 }\nduration = 2\n"
                         "[guess]\n\"q[1]\" = \"t^2\"\n");
-  EXPECT_NEAR(at(s, 0.5, 1), 1.0, 1e-14);
-  EXPECT_EQ(at(s, 0.5, 0), 3.0);  // one end fixed
-  EXPECT_EQ(at(s, 0.5, 2), 1.0);
-  EXPECT_EQ(at(s, 0.5, 3), 3.0);  // the line
+  EXPECT_NEAR(guessed(s, 0.5, 1), 1.0, 1e-14);
+  EXPECT_EQ(guessed(s, 0.5, 0), 3.0);  // one end fixed
+  EXPECT_EQ(guessed(s, 0.5, 2), 1.0);
+  EXPECT_EQ(guessed(s, 0.5, 3), 3.0);  // the line
   const Study list = study(masses + ends + "[guess]\nq = [\"t\", 2, \"T\"]\n");
-  EXPECT_NEAR(at(list, 0.25, 1), 0.5, 1e-15);
-  EXPECT_EQ(at(list, 0.25, 2), 2.0);
-  EXPECT_EQ(at(list, 0.25, 3), 2.0);
+  EXPECT_NEAR(guessed(list, 0.25, 1), 0.5, 1e-15);
+  EXPECT_EQ(guessed(list, 0.25, 2), 2.0);
+  EXPECT_EQ(guessed(list, 0.25, 3), 2.0);
 }
 
 TEST_F(Scenes, GuessFormulasThatAreWrong) {
@@ -63,8 +53,8 @@ TEST_F(Scenes, GuessFromCsv) {
   write("g.csv", "# observed\n t , \"q[1]\",x,q[2],q[3]\n1,10,0,1,2\n2,11,1,1,2\r\n\n5,14,4,1,2\n");
   const Study s = study(masses + ends + "[guess]\nfile = \"g.csv\"\n");
   ASSERT_EQ(s.problem.guess.tau, (std::vector<double>{0, 0.25, 1}));
-  EXPECT_NEAR(at(s, 0.5, 0), 2.0, 1e-14);
-  EXPECT_NEAR(at(s, 0.5, 1), 12.0, 1e-13);
+  EXPECT_NEAR(guessed(s, 0.5, 0), 2.0, 1e-14);
+  EXPECT_NEAR(guessed(s, 0.5, 1), 12.0, 1e-13);
   EXPECT_EQ(s.problem.duration.value, 2.0);
 }
 
@@ -80,7 +70,7 @@ TEST_F(Scenes, GuessFromAResult) {
   write("r.json", R"({"status": "converged", "samples": {"t": [0, 1, 2], "x": [0, 1, 4], "x'": [0, 0, 0],
                       "q[1]": [1, 2, 3], "q[2]": [0, 0, 0], "q[3]": [1, 1, 1]}})");
   const Study s = study(masses + ends + "[guess]\nfile = \"r.json\"\n");
-  EXPECT_NEAR(at(s, 0.75, 0), 2.25, 1e-14);  // a parabola through three samples
+  EXPECT_NEAR(guessed(s, 0.75, 0), 2.25, 1e-14);  // a parabola through three samples
   write("r.json", "{\"status\": \"converged\"}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
             "r.json: this result has no samples; solve with --samples to write some");
@@ -114,9 +104,9 @@ TEST_F(Scenes, GuessFromAState) {
       study(masses + ends + "[guess.state]\nx = 1\n\"x'\" = \"k/2\"\nq = [0, 1, 2]\n\"q[1]'\" = 3\n");
   const double w = std::sqrt(2.0);  // m[2] x'' = -k x
   for (const double t : {0.0, 0.3, 1.1, 2.0}) {
-    EXPECT_NEAR(at(s, t / 2, 0), std::cos(w * t) + 2 / w * std::sin(w * t), 1e-6);
-    EXPECT_NEAR(at(s, t / 2, 1), 3 * std::sin(t), 1e-6);
-    EXPECT_NEAR(at(s, t / 2, 3), 2 * std::cos(t), 1e-6);
+    EXPECT_NEAR(guessed(s, t / 2, 0), std::cos(w * t) + 2 / w * std::sin(w * t), 1e-6);
+    EXPECT_NEAR(guessed(s, t / 2, 1), 3 * std::sin(t), 1e-6);
+    EXPECT_NEAR(guessed(s, t / 2, 3), 2 * std::cos(t), 1e-6);
   }
   EXPECT_EQ(message(masses + ends + "[guess.state]\nq = [0, 1]\n"),
             "scene.toml:11:5: 'q' has 3 elements; found 2 values");

@@ -46,12 +46,6 @@ std::string npy(const std::string& type, const std::string& order, const std::st
   return bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
 }
 
-double guessed(const Study& study, double tau, int coordinate) {
-  std::vector<double> q(study.problem.coordinates());
-  study.problem.guess.at(tau, q);
-  return q[coordinate];
-}
-
 }  // namespace
 
 TEST_F(Scenes, GuessFromAnOrbitOfJplInJson) {
@@ -165,6 +159,11 @@ TEST_F(Scenes, GuessFromLoopsOfBodies) {
     EXPECT_NEAR(guessed(s, t, 4), y(t - 1.0 / 3), 1e-12);
     EXPECT_NEAR(guessed(s, t, 5), x(0.25 - t), 1e-12);
   }
+  write(
+      "eight.json",
+      R"({"nbody": 1, "Targets": [[0]], "TimeRevsUn": [[1]], "TimeShiftNumUn": [[1]], "TimeShiftDenUn": [[0]],
+            "SpaceRotsUn": [[[[1, 0], [0, 1]]]]})");
+  EXPECT_NE(message(scene).find("a shift in time is not finite"), std::string::npos) << message(scene);
   write("eight.json", "{\"nbody\": 3}");
   EXPECT_EQ(message(scene).rfind("eight.json: this does not describe loops of bodies", 0), 0u);
   write("three.npy", npy<double>("<f8", "False", "(3, 2, 2)", std::vector<double>(12, 1.0)));
@@ -219,6 +218,10 @@ TEST(Numpy, ReadsWhatItIsGiven) {
             "it has 16 bytes of values, which its shape contradicts");
   EXPECT_EQ(refusal(npy<double>("<c16", "False", "(1,)", {1, 2})),
             "it has values of type '<c16'; save real numbers of 8 bytes, as array.astype('<f8') gives");
+  EXPECT_EQ(refusal(npy<double>("<f8", "False", "2", {1, 2})), "its shape is damaged");
+  const std::string text = "{'fortran_order': False, 'shape': (1,), 'descr':";
+  const std::string before = std::string("\x93NUMPY\1\0", 8) + static_cast<char>(text.size()) + '\0';
+  EXPECT_EQ(refusal(before + text + std::string(8, '0')), "it has values that are no plain numbers");
   const std::string whole = npy<double>("<f8", "False", "(2,)", {1, 2});
   for (std::size_t size = 0; size < whole.size(); ++size)
     EXPECT_NE(refusal(whole.substr(0, size)), "") << size;

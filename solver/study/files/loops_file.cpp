@@ -21,6 +21,12 @@ struct Body {
   double shift = 0;
 };
 
+/// The part of a shift beside whole turns.
+double turns(double shift) {
+  if (!std::isfinite(shift)) throw std::invalid_argument("a shift in time is not finite");
+  return shift - std::floor(shift);
+}
+
 /// A loop for each body, or as choreo's description of the loops says.
 std::vector<Body> bodies_of(const std::filesystem::path& description, std::size_t loops) {
   std::vector<Body> bodies;
@@ -39,7 +45,7 @@ std::vector<Body> bodies_of(const std::filesystem::path& description, std::size_
                      denominator = root.at("TimeShiftDenUn").at(l).at(k);
         bodies.at(targets[l][k].get<std::size_t>()) = {
             l, root.at("SpaceRotsUn").at(l).at(k).get<std::vector<std::vector<double>>>(),
-            root.at("TimeRevsUn").at(l).at(k).get<int>(), numerator / denominator};
+            root.at("TimeRevsUn").at(l).at(k).get<int>(), turns(numerator / denominator)};
       }
   } catch (const std::exception& e) {
     throw SceneError({source, 0, 0}, fmt::format("this does not describe loops of bodies: {}", e.what()));

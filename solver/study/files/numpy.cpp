@@ -29,6 +29,7 @@ std::string_view entry(std::string_view header, std::string_view key) {
 }
 
 std::vector<std::size_t> shape_of(std::string_view text) {
+  if (!text.starts_with('(')) throw std::runtime_error("its shape is damaged");
   std::vector<std::size_t> shape;
   const std::string_view inside = text.substr(1, text.find(')') - 1);
   for (std::size_t at = 0; at < inside.size();) {
@@ -97,6 +98,7 @@ NumpyArray read_npy(std::string_view bytes) {
   NumpyArray array;
   array.shape = shape_of(entry(header, "shape"));
   const std::string_view quoted = entry(header, "descr");
+  if (!quoted.starts_with('\'')) throw std::runtime_error("it has values that are no plain numbers");
   const std::string type(quoted.substr(1, quoted.find('\'', 1) - 1));
   const bool known = type == "<f8" || type == "<f4" || type == "<i8" || type == "<i4";
   if (!known)
