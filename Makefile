@@ -83,7 +83,7 @@ bench: build
 	@for name in $(filter-out never_wrong data,$(notdir $(patsubst %/,%,$(wildcard bench/*/)))); do \
 	  OPENBLAS_NUM_THREADS=1 build/release/bench/bench_$$name || exit 1; done
 
-# Pictures of all scenes and the page that shows them.
+# Pictures and interactive pages of all scenes, and the page that shows them.
 gallery: configure
 	@cmake --build --preset release --target extremal_app
 	@problems/gallery build/release/extremal

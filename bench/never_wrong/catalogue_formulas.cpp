@@ -63,7 +63,7 @@ std::vector<Recipe> driven() {
 /// Forces that jump, and their slopes.
 std::vector<Recipe> kinked() {
   return {
-      {.system = "bounce",
+      {.system = "wedge",
        .parameters = {{"k", 0.3, 3}},
        .positions = {{"x", -1, 1}},
        .velocities = {{"x", -1, 1}},

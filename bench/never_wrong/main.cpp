@@ -11,6 +11,7 @@
 
 #include "study/inspection.hpp"
 #include "study/study.hpp"
+#include "system/lagrangian.hpp"
 #include "tally.hpp"
 #include "workers.hpp"
 
@@ -50,12 +51,21 @@ void add_log(const std::string& path, Tally& tally) {
 }
 
 /// Random states are off the manifold of constraints.
-bool constrained(const fs::path& file) { return !extremal::describe(file.stem()).system.constraints.empty(); }
+bool constrained(const fs::path& file) {
+  return !extremal::describe(file.stem(), "bench_never_wrong").system.constraints.empty();
+}
 
-/// Random states have velocities, which do not determine the momenta where H_pp is singular.
-bool in_phase_space(const fs::path& file) {
+/// Random states have velocities, which do not determine the momenta where H_pp is singular, nor the motion
+/// where the mass vanishes at the start.
+bool without_motions(const fs::path& file) {
   const auto scene = fs::path(EXTREMAL_SOURCE_DIR) / "problems/scenes" / (file.stem().string() + ".toml");
-  return fs::exists(scene) && extremal::load(scene.string()).problem.phase != nullptr;
+  if (!fs::exists(scene)) return false;
+  const extremal::Problem problem = extremal::load(scene.string()).problem;
+  if (problem.phase) return true;
+  const std::vector<double> one(problem.coordinates(), 1);
+  extremal::Scratch scratch;
+  const auto at = extremal::evaluate_at(*problem.lagrangian, one, one, 0, extremal::Order::hessian, scratch);
+  return std::all_of(at.vv.begin(), at.vv.end(), [](double m) { return m == 0; });
 }
 
 /// A system of a file without a recipe would never be tried.
@@ -64,7 +74,7 @@ void check_catalogue() {
     const std::string system = file.path().stem();
     const auto named = [&](const Recipe& recipe) { return recipe.system == system; };
     const bool tried = std::any_of(catalogue().begin(), catalogue().end(), named);
-    if (!tried && !constrained(file.path()) && !in_phase_space(file.path()))
+    if (!tried && !constrained(file.path()) && !without_motions(file.path()))
       throw std::runtime_error(fmt::format("the system {} has no recipe in the catalogue", system));
   }
 }

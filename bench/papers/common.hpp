@@ -45,6 +45,8 @@ Figure convergence_of_spectra();
 Figure convergence_of_velocities();
 /// Lemmas 2.1, 4.2 and 5.3, and what happens where T reaches a conjugate point of the scheme.
 Figure windows();
+/// Chen, Guo and Wu, 3.2 to 3.6: energies of elements with equal steps and with times as unknowns.
+Figure free_times();
 /// Discrete frequencies of marched wave trains, and the growth of their errors.
 Figure wave_trains();
 

@@ -6,7 +6,8 @@
 #include "common.hpp"
 #include "report/plot.hpp"
 
-/// \file Figures of what Müller and Ortiz prove, written to bench/papers or the folder that is named.
+/// \file Figures of what Müller and Ortiz prove and of times as Chen, Guo and Wu have them, written to
+/// bench/papers or the folder that is named.
 
 int main(int argc, char** argv) {
   using namespace extremal;
@@ -18,6 +19,7 @@ int main(int argc, char** argv) {
                                                             {"spectra", papers::convergence_of_spectra},
                                                             {"velocities", papers::convergence_of_velocities},
                                                             {"windows", papers::windows},
+                                                            {"free_times", papers::free_times},
                                                             {"wave_trains", papers::wave_trains}};
     for (const auto& [name, figure] : figures) {
       const std::string path = (folder / name).string() + ".svg";

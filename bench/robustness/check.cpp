@@ -13,7 +13,6 @@ namespace {
 
 /// What is doubtful is looked at again with an integrator so much more precise.
 constexpr double more_precise = 1e-3;
-constexpr double action_error = 1e-8;
 
 }  // namespace
 
@@ -31,13 +30,6 @@ std::string disproof(const extremal::Problem& problem, const extremal::Solution&
   if (solution.error_estimate >= 0.01 * error(more_precise)) return {};
   return fmt::format("error estimate {:.1e}, distance from the extremal {:.1e}", solution.error_estimate,
                      error(more_precise));
-}
-
-std::string disproof_by_action(const extremal::Solution& solution, double action) {
-  const double off = std::abs(solution.action - action);
-  return off <= action_error * std::max(1.0, std::abs(action))
-             ? ""
-             : fmt::format("the action is off by {:.1e}", off);
 }
 
 double range_of(const extremal::Trajectory& trajectory) {

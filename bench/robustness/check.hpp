@@ -10,9 +10,6 @@ namespace bench {
 /// Largest range (max − min) of a coordinate.
 double range_of(const extremal::Trajectory& trajectory);
 
-/// By how much the action differs from the exact one, if that is more than 1e-8 of it; else empty.
-std::string disproof_by_action(const extremal::Solution& solution, double action);
-
 /// What shows that a solution is none, or that its error estimate is below a hundredth of its error; empty
 /// where nothing does. By integration from piece to piece, which shares nothing with the discrete action.
 std::string disproof(const extremal::Problem& problem, const extremal::Solution& solution, double tolerance);

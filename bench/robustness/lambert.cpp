@@ -13,7 +13,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr int most_revolutions = 2, grid = 20000;
-/// Two arcs whose energies differ less are told apart by no result.
+/// Two arcs whose energies differ less, relative to the largest, are told apart by no result.
 constexpr double same_energy = 1e-6;
 
 /// Lagrange's equation for the duration (Izzo, Revisiting Lambert's problem, Celest. Mech. Dyn. Astron. 121,
@@ -46,6 +46,15 @@ struct Lambert {
 
 }  // namespace
 
+std::vector<double> lambert_energies(double r, double angle, double duration, int revolutions) {
+  const double chord = std::sqrt(1 + r * r - 2 * r * std::cos(angle)), s = (1 + r + chord) / 2;
+  std::vector<double> energies;
+  for (int k = 0; k <= revolutions; ++k)
+    for (const double side : {1.0, -1.0})
+      Lambert{s, side * std::sqrt(1 - chord / s), duration, k}.add_energies(energies);
+  return energies;
+}
+
 std::vector<LambertProblem> lambert_problems(int count) {
   const auto kepler = system("kepler");
   Random random(5);
@@ -53,22 +62,20 @@ std::vector<LambertProblem> lambert_problems(int count) {
   for (int k = 0; k < count; ++k) {
     const double r = random.between(0.5, 2), angle = random.between(0.3, 2 * pi - 0.3),
                  duration = random.between(3, 25);
-    const double chord = std::sqrt(1 + r * r - 2 * r * std::cos(angle)), s = (1 + r + chord) / 2;
-    LambertProblem problem{fixed_ends(kepler, {1, 0}, {r * std::cos(angle), r * std::sin(angle)}, duration),
-                           {}};
-    for (int revolutions = 0; revolutions <= most_revolutions; ++revolutions)
-      for (const double side : {1.0, -1.0})
-        Lambert{s, side * std::sqrt(1 - chord / s), duration, revolutions}.add_energies(problem.energies);
-    result.push_back(std::move(problem));
+    result.push_back({fixed_ends(kepler, {1, 0}, {r * std::cos(angle), r * std::sin(angle)}, duration),
+                      lambert_energies(r, angle, duration, most_revolutions)});
   }
   return result;
 }
 
 int arcs_found(const std::vector<double>& wanted, std::vector<double> found) {
   int count = 0;
+  double largest = 0;
+  for (double energy : wanted) largest = std::max(largest, std::abs(energy));
   for (double energy : wanted) {
-    const auto it = std::find_if(found.begin(), found.end(),
-                                 [&](double other) { return std::abs(other - energy) < same_energy; });
+    const auto it = std::find_if(found.begin(), found.end(), [&](double other) {
+      return std::abs(other - energy) < same_energy * largest;
+    });
     if (it == found.end()) continue;
     found.erase(it);
     ++count;

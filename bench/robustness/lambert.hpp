@@ -14,6 +14,10 @@ struct LambertProblem {
   std::vector<double> energies;
 };
 
+/// Energies of all ellipses between points at distances 1 and r from a centre of strength 1, `angle` apart,
+/// that take `duration` with up to so many revolutions, both ways round.
+std::vector<double> lambert_energies(double r, double angle, double duration, int revolutions);
+
 std::vector<LambertProblem> lambert_problems(int count);
 
 /// How many of the energies are among those found.

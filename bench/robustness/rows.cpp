@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "kepler.hpp"
-#include "minimisers.hpp"
 #include "random.hpp"
 #include "rivals/shooting.hpp"
 #include "systems.hpp"
@@ -61,7 +60,7 @@ std::vector<Case> flights(const std::shared_ptr<const Lagrangian>& lagrangian, c
     const std::size_t n = state.q.size();
     Problem problem = fixed_ends(lagrangian, state.q, {flight.q.end() - n, flight.q.end()}, duration);
     if (noise >= 0) guess_with_noise(flight, noise, random, problem);
-    cases.push_back({make_problem(std::move(problem)), {}});
+    cases.push_back({make_problem(std::move(problem))});
   }
   return cases;
 }
@@ -154,7 +153,6 @@ std::vector<Row> all_rows() {
   add_further(rows, "pendulum that turns over", system("pendulum", {{"g", 1}}), draw_fast_pendulum, {20, 80});
   add_further(rows, "Müller-Brown", system("mueller-brown"), draw_mueller_brown, {0.1, 0.2, 0.3, 1});
   add_further(rows, "FPU chain of 8", system("fpu-chain", {{"n", 8}}), draw_chain, {5, 10});
-  add_minimisers(rows);
   return rows;
 }
 

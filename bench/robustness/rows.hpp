@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +16,6 @@ struct Case {
   extremal::Problem problem;
   /// Whether a solution is the one that was asked for; empty where any will do.
   std::function<bool(const extremal::Trajectory&)> intended = {};
-  /// The exact action, where neighbouring motions separate too fast for a check by integration.
-  std::optional<double> action = {};
 };
 
 /// Cases that differ in their numbers alone.

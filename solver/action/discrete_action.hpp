@@ -77,6 +77,8 @@ class DiscreteAction {
   void put_change(const Path& path, const PathChange& change);
   void put_gradient(const Path& path);
   bool extended() const { return extended_ready_; }
+  /// Where it is: the last gradient itself.
+  const ExtendedGradient::Values& extended_gradient() const { return extended_.values(); }
   /// S_h, gradient, Hessian, condensed afresh.
   void evaluate(const Path& path);
   /// Value and gradient only, nothing condensed.

@@ -13,11 +13,6 @@ namespace {
 /// and are linear as far.
 constexpr double small_part = 0x1p-56;
 
-DoubleDouble wide(Real x) {
-  const double high = static_cast<double>(x);
-  return {high, static_cast<double>(x - high)};
-}
-
 double largest(std::span<const double> x) {
   double most = 0;
   for (double a : x) most = std::max(most, std::abs(a));
@@ -26,39 +21,15 @@ double largest(std::span<const double> x) {
 
 }  // namespace
 
-/// Tables of the rule and the basis; those there are stay.
-bool ExtendedGradient::bind(const SchemeTables& scheme) {
-  const bool gauss = scheme.scheme.quadrature == Quadrature::gauss;
-  if (!gauss && !scheme.nodal) return false;
-  if (degree_ == scheme.degree && points_ == scheme.points && quadrature_ == scheme.scheme.quadrature)
-    return true;
-  degree_ = scheme.degree;
-  points_ = scheme.points;
-  quadrature_ = scheme.scheme.quadrature;
-  rule_ = gauss ? real_gauss(points_) : real_lobatto(points_);
-  const RealElement& element = real_element(degree_);
-  std::vector<Real> value(degree_ + 1), slope(degree_ + 1);
-  value_.clear();
-  slope_.clear();
-  for (const Abscissa& at : rule_.nodes) {
-    const int node = node_at(element, at);
-    values_at(element, at, node, value);
-    derivatives_at(element, at, node, value, slope);
-    std::transform(value.begin(), value.end(), std::back_inserter(value_), wide);
-    std::transform(slope.begin(), slope.end(), std::back_inserter(slope_), wide);
-  }
-  return true;
-}
-
 /// One element of a path, or of that path changed by `part` of a change.
 struct ExtendedGradient::Element {
-  Element(const ExtendedGradient& rules, const Lagrangian& lagrangian, const Path& path,
+  Element(const ExtendedBasis& basis, const Lagrangian& lagrangian, const Path& path,
           const PathChange* change = nullptr, double part = 0);
 
   bool known() { return lagrangian.evaluate_extended(q.data(), v.data(), t, rows.data(), scratch); }
   void evaluate(int k);
 
-  const ExtendedGradient& rules;
+  const ExtendedBasis& basis;
   const Lagrangian& lagrangian;
   const Path& path;
   const PathChange* change;
@@ -78,9 +49,9 @@ struct ExtendedGradient::Element {
   PointScratch<DoubleDouble> scratch;
 };
 
-ExtendedGradient::Element::Element(const ExtendedGradient& rules, const Lagrangian& lagrangian,
-                                   const Path& path, const PathChange* change, double part)
-    : rules(rules),
+ExtendedGradient::Element::Element(const ExtendedBasis& basis, const Lagrangian& lagrangian, const Path& path,
+                                   const PathChange* change, double part)
+    : basis(basis),
       lagrangian(lagrangian),
       path(path),
       change(change),
@@ -124,8 +95,8 @@ void ExtendedGradient::Element::load(int k) {
 /// q, q' and t at point i of element k.
 void ExtendedGradient::Element::place(int k, int i) {
   const std::size_t row = static_cast<std::size_t>(i) * (degree + 1);
-  const DoubleDouble *value = rules.value_.data() + row, *slope = rules.slope_.data() + row,
-                     tau = wide(rules.rule_.nodes[i].left);
+  const DoubleDouble *value = basis.value.data() + row, *slope = basis.slope.data() + row,
+                     tau = basis.node(i);
   for (int a = 0; a < n; ++a) {
     DoubleDouble chord = tau * delta[a], rate = delta[a];
     for (int j = 1; j < degree; ++j) {
@@ -170,12 +141,11 @@ void ExtendedGradient::Element::evaluate(int k) {
   std::fill(inner.begin(), inner.end(), 0.0);
   std::fill(ends.begin(), ends.end(), 0.0);
   action = slope_duration = 0.0;
-  for (int i = 0; i < rules.points_; ++i) {
+  for (int i = 0; i < basis.points; ++i) {
     place(k, i);
     known();
-    const Abscissa at = rules.rule_.nodes[i];
-    const DoubleDouble value = differentiate(), weight = wide(rules.rule_.weights[i]), left = wide(at.left),
-                       right = wide(at.right);
+    const DoubleDouble value = differentiate(), weight = basis.weight(i), left = basis.node(i),
+                       right = basis.before_end(i);
     DoubleDouble work = 0.0;
     for (int a = 0; a < n; ++a) {
       const DoubleDouble impulse = weight * h * force[a], part = weight * momentum[a];
@@ -184,7 +154,7 @@ void ExtendedGradient::Element::evaluate(int k) {
       ends[n + a] += left * impulse + part;
       for (int j = 1; j < degree; ++j) {
         const std::size_t entry = static_cast<std::size_t>(i) * (degree + 1) + j;
-        inner[(j - 1) * n + a] += rules.value_[entry] * impulse + rules.slope_[entry] * part;
+        inner[(j - 1) * n + a] += basis.value[entry] * impulse + basis.slope[entry] * part;
       }
     }
     action += weight * h * value;
@@ -213,8 +183,8 @@ void ExtendedGradient::evaluate(Element& element, Values& values) {
 }
 
 bool ExtendedGradient::evaluate(const Lagrangian& lagrangian, const ElementTables& tables, const Path& path) {
-  if (!bind(tables.scheme())) return false;
-  Element element(*this, lagrangian, path);
+  if (!basis_.bind(tables.scheme())) return false;
+  Element element(basis_, lagrangian, path);
   if (!element.known()) return false;
   evaluate(element, values_);
   return true;
@@ -224,7 +194,7 @@ void ExtendedGradient::evaluate_change(const Lagrangian& lagrangian, const Path&
                                        const PathChange& change) {
   const double size = std::max({largest(change.nodes), largest(change.inner), std::abs(change.duration)});
   const double part = size > 0 ? small_part * std::max(largest(path.nodes()), 0x1p-500) / size : 1;
-  Element element(*this, lagrangian, path, &change, part);
+  Element element(basis_, lagrangian, path, &change, part);
   evaluate(element, change_);
   const auto relative = [part](const DoubleDouble& after, const DoubleDouble& before) {
     return (after - before) / part;

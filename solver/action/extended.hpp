@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "action/extended_basis.hpp"
 #include "action/path.hpp"
-#include "action/real_rule.hpp"
 #include "machine/aligned.hpp"
 #include "system/lagrangian.hpp"
 
@@ -47,12 +47,8 @@ class ExtendedGradient {
  private:
   struct Element;
   static void evaluate(Element& element, Values& values);
-  bool bind(const SchemeTables& scheme);
 
-  Quadrature quadrature_ = Quadrature::lobatto;
-  int degree_ = 0, points_ = 0;
-  RealRule rule_;
-  std::vector<DoubleDouble> value_, slope_;  ///< points × (s + 1): φ_j(c_i), φ_j'(c_i), Lagrange polynomials
+  ExtendedBasis basis_;
   Values values_, change_;
 };
 

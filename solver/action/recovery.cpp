@@ -50,9 +50,7 @@ const Shapes& raised_shapes(int degree) {
 
 }  // namespace
 
-bool Recovery::suits(const SchemeTables& scheme) {
-  return scheme.nodal && scheme.degree >= 2 && scheme.degree + raised_by <= max_degree;
-}
+bool Recovery::suits(const SchemeTables& scheme) { return scheme.degree + raised_by <= max_degree; }
 
 bool Recovery::measure(const Lagrangian& lagrangian, DiscreteAction& action, const Path& path) {
   action.evaluate_plain(path);
@@ -63,6 +61,7 @@ bool Recovery::measure(const Lagrangian& lagrangian, DiscreteAction& action, con
   t_.resize(both_);
   if (!structure.quadratic) rows_.resize(static_cast<std::size_t>(lagrangian.rows(Order::hessian)) * both_);
   coefficients_.resize(static_cast<std::size_t>(path.batches()) * n_ * 3 * lanes_);
+  singular_ = false;
   mass_.setZero(n_, n_);
   for (const Triplet& m : structure.mass) mass_(m.row, m.column) += m.value;
   diagonal_ = structure.quadratic && mass_.isDiagonal(0);
@@ -71,9 +70,10 @@ bool Recovery::measure(const Lagrangian& lagrangian, DiscreteAction& action, con
     find_slopes(action.tables().scheme(), path, b);
     find_defects(lagrangian, action.end_gradients(b));
     structure.quadratic ? solve_with_mass(defects_) : find_velocities(lagrangian, action.end_gradients(b));
-    keep(structure, path, b);
+    keep(structure, action.tables().scheme(), path, b);
   }
-  return std::all_of(coefficients_.begin(), coefficients_.end(), [](double x) { return std::isfinite(x); });
+  return !singular_ &&
+         std::all_of(coefficients_.begin(), coefficients_.end(), [](double x) { return std::isfinite(x); });
 }
 
 /// q, q' and t at the ends of the elements of a batch.
@@ -167,11 +167,13 @@ void Recovery::divide(const Lagrangian& lagrangian) {
       mass_(row, column) = mass_(column, row) = rows_[(1 + s.gradient.size() + e) * both_ + k];
     }
     factors_.compute(mass_);
+    // Velocities there have no momentum, and what is left of it is roundoff or nothing.
+    singular_ = singular_ || (factors_.matrixLU().diagonal().array() == 0).any();
     solve_column(k, defects_);
   }
 }
 
-void Recovery::keep(const Structure& structure, const Path& path, int b) {
+void Recovery::keep(const Structure& structure, const SchemeTables& scheme, const Path& path, int b) {
   const int s = path.degree();
   const double sign = s % 2 == 0 ? 1 : -1;
   const double* const h = path.h(b);
@@ -190,11 +192,13 @@ void Recovery::keep(const Structure& structure, const Path& path, int b) {
       turned_[c.row * both_ + lane] -= c.value * coefficients(b, c.column)[lane];
     }
   if (!structure.gyroscopic.empty()) solve_with_mass(turned_);
+  // With degree 1 there is no d_0 to be missed, and other rules do not misplace d_{s+1}.
+  const double misplaced = scheme.nodal && s > 1 ? (s + 1.0) / s : 0;
   for (int a = 0; a < n_; ++a) {
     double *sum = coefficients(b, a) + lanes_, *missed = sum + lanes_;
     for (int lane = 0; lane < lanes_; ++lane) {
-      const double turned = 0.5 * h[lane] * turned_[a * both_ + lane] / (2 * s + 1);
-      const double further = (sum[lane] + turned) * s / (2 * s + 1);
+      const double turned = s > 1 ? 0.5 * h[lane] * turned_[a * both_ + lane] / (2 * s + 1) : 0;
+      const double further = (sum[lane] + turned) / (1 + misplaced);
       missed[lane] = sum[lane] - further;
       sum[lane] = further;
     }

@@ -19,7 +19,8 @@ namespace extremal {
 /// Let e_0 and e_1 be by how much the velocities that momenta have exceed the slopes at the ends. They tell
 ///   d_s = h/4 (e_1 + (−1)^s e_0),    d_{s+1} + m = h/4 (e_1 − (−1)^s e_0),
 /// and so q_h + d_s B_s + d_{s+1} B_{s+1} + m B_{s−1}. Where the mass is constant this leaves out L_{s+3} and
-/// what follows, with gyroscopic forces a little of L_{s+2}; elsewhere parts of L_{s+2}.
+/// what follows, with gyroscopic forces a little of L_{s+2}; elsewhere parts of L_{s+2}. Of other rules m is
+/// what G makes, and with s = 1 it is Hermite's cubic.
 class Recovery {
  public:
   static constexpr int raised_by = 2;
@@ -45,7 +46,7 @@ class Recovery {
   void divide(const Lagrangian& lagrangian);
   void solve_with_mass(AlignedDoubles& x);
   void solve_column(int k, AlignedDoubles& x);
-  void keep(const Structure& structure, const Path& path, int batch);
+  void keep(const Structure& structure, const SchemeTables& scheme, const Path& path, int batch);
   double* coefficients(int batch, int a) {
     return coefficients_.data() + (std::size_t(batch) * n_ + a) * 3 * lanes_;
   }
@@ -55,7 +56,7 @@ class Recovery {
 
   int lanes_ = simd_lanes(), both_ = 2 * lanes_;  ///< entries of a row for one end of the elements, for both
   int n_ = 0;
-  bool diagonal_ = false;
+  bool diagonal_ = false, singular_ = false;  ///< the mass, if it is constant; at a node
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
   Eigen::MatrixXd mass_;
   Eigen::VectorXd column_;

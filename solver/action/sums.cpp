@@ -54,7 +54,8 @@ void DiscreteAction::take_extended(int b, double* gradient) {
   std::fill_n(slope, lanes_, 0.0);
   const std::size_t width = static_cast<std::size_t>(inner_);
   const DoubleDouble* const nodes = taken().nodes.data();
-  for (int k = b * lanes_, lane = 0; lane < lanes_ && k < elements_; ++k, ++lane) {
+  for (int lane = 0; lane < lanes_; ++lane) {
+    const int k = std::min(b * lanes_ + lane, elements_ - 1);  // idle lanes copy the last element
     const DoubleDouble *inner = taken().inner.data() + k * width,
                        *left = nodes + static_cast<std::size_t>(k) * n_;
     for (int u = 0; u < inner_; ++u) gradient[u * lanes_ + lane] = inner[u].x[0];

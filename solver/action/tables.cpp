@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "action/by_degree.hpp"
+#include "system/open_ends.hpp"
 
 namespace extremal {
 
@@ -131,7 +132,8 @@ const SchemeTables& SchemeTables::of_gauss(int degree) {
 }
 
 bool uses_gauss(const Lagrangian& lagrangian) {
-  return lagrangian.kinks() != nullptr || lagrangian.structure().first_order;
+  return lagrangian.kinks() != nullptr || lagrangian.structure().first_order ||
+         dynamic_cast<const OpenEnds*>(&lagrangian) != nullptr;
 }
 
 const SchemeTables& SchemeTables::of_order(int degree, const Lagrangian& lagrangian) {

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/units.hpp"
+#include "analysis/falling_form.hpp"
+#include "analysis/limits.hpp"
 #include "linear/dense.hpp"
+#include "linear/equilibration.hpp"
 
 namespace extremal {
 
 namespace {
 
+using namespace limits::jacobi;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -68,11 +71,17 @@ double zero(F f, double a, double fa, double b, double fb, double tolerance) {
 
 /// The fields are those with x_a = I (x_b = I) where `tau` is nearer the end (start), and so far from zero.
 void JacobiFields::begin(SecondVariation& variation, int k, double tau) {
+  variation.hold(k);
   const Piece piece = variation.piece(k);
   vanishing_ = 0;
   normalised_ = tau < 0.5;
   if (tau == 0) {
     p_ = piece.d;
+    return;
+  }
+  if (variation.coordinates() >= least_large && !variation.has_kinks()) {
+    normalised_ = true;
+    p_ = variation.end_form(k, tau);
     return;
   }
   variation.fields(k, tau, from_start_, from_end_);
@@ -85,8 +94,13 @@ void JacobiFields::begin(SecondVariation& variation, int k, double tau) {
 }
 
 const std::vector<double>& JacobiFields::advance(SecondVariation& variation, int k, bool first_only) {
+  variation.hold(k);
   const Piece piece = variation.piece(k);
   times_.clear();
+  if (normalised_ && piece.a.rows() >= least_large) {
+    if (advance_large(variation, k, first_only)) return times_;
+    variation.hold(k);
+  }
   if (normalised_ && step(piece)) return times_;
   split(piece);
   whole_ = form(variation, k, 1);
@@ -116,6 +130,81 @@ bool JacobiFields::step(const Piece& piece) {
   return true;
 }
 
+/// As step(), also past conjugate times in the piece: W + A has as many negative eigenvalues. False if its
+/// pivots lose digits, as where one is near the end of the piece.
+bool JacobiFields::advance_large(SecondVariation& variation, int k, bool first_only) {
+  if (!elimination_) elimination_.emplace();
+  const Piece piece = variation.piece(k);
+  const int n = static_cast<int>(piece.a.rows());
+  whole_ = p_ + piece.a;
+  elimination_->resize(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = i; j < n; ++j) {
+      elimination_->pivot_row(i)[j] = whole_(j, i);
+      elimination_->rest_row(i)[j] = piece.d(j, i);
+    }
+    for (int j = 0; j < n; ++j) elimination_->coupled_row(i)[j] = piece.b(j, i);
+  }
+  if (!elimination_->eliminate()) return false;
+  MatrixXd next(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = i; j < n; ++j) next(i, j) = next(j, i) = elimination_->rest_row(i)[j];
+  if (const int count = elimination_->inertia().negative; count > 0) {
+    work_left_ -= first_only ? 0 : double(count) * n * n * n;
+    if (given_up()) return true;
+    const VectorXd inverse = units(piece).cwiseInverse();
+    const auto in_units = [&](const MatrixXd& m) -> MatrixXd {
+      return inverse.asDiagonal() * m * inverse.asDiagonal();
+    };
+    const MatrixXd last = in_units(whole_);
+    std::vector<MatrixXd> samples = variation.start_forms(k, FallingForm::points());
+    for (MatrixXd& sample : samples) sample = in_units(p_ + sample);
+    const std::optional<FallingForm> form = FallingForm::of(0, 1, 0, std::move(samples), last);
+    std::optional<std::vector<double>> zeros;
+    if (form) zeros = form->zeros(count, first_only);
+    if (!zeros) return false;
+    times_ = *std::move(zeros);
+  }
+  p_ = std::move(next);
+  return true;
+}
+
+/// As distance(), by the eigenvalues of W + A(tau) nearest zero; nothing where one is zero.
+std::optional<double> JacobiFields::distance_large(SecondVariation& variation, int k, double step) {
+  if (!elimination_) elimination_.emplace();
+  const Piece piece = variation.piece(k);
+  const int n = static_cast<int>(piece.a.rows());
+  const VectorXd inverse = units(piece).cwiseInverse();
+  const auto in_units = [&](const MatrixXd& m) -> MatrixXd {
+    return inverse.asDiagonal() * m * inverse.asDiagonal();
+  };
+  const MatrixXd last = in_units(p_ + piece.a);
+  MatrixXd space(n, end_vectors);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < end_vectors; ++j) space(i, j) = std::cos(1 + 2.4 * i + 1.3 * i * j);
+  for (int iteration = 0; iteration < end_steps; ++iteration) {
+    elimination_->resize(n, end_vectors);
+    for (int i = 0; i < n; ++i) {
+      for (int j = i; j < n; ++j) elimination_->pivot_row(i)[j] = last(j, i);
+      for (int j = 0; j < end_vectors; ++j) elimination_->coupled_row(i)[j] = space(i, j);
+    }
+    if (!elimination_->eliminate()) return std::nullopt;
+    elimination_->substitute();
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < end_vectors; ++j) space(i, j) = elimination_->coupled_row(i)[j];
+    space = extremal::orthonormal(space);
+  }
+  const double before = 1 - step;
+  const MatrixXd earlier = in_units(p_ + variation.start_forms(k, {&before, 1})[0]);
+  const SymmetricEigen ends = symmetric_eigen(space.transpose() * last * space);
+  double nearest = INFINITY;
+  for (int j = 0; j < end_vectors; ++j) {
+    const VectorXd x = space * ends.vectors.col(j);
+    nearest = std::min(nearest, std::abs(step * ends.values[j] / (x.dot(earlier * x) - ends.values[j])));
+  }
+  return nearest;
+}
+
 /// An orthonormal basis of the span, X above P, with coordinates in `unit`.
 MatrixXd JacobiFields::orthonormal(const VectorXd& unit) const {
   const auto n = unit.size();
@@ -128,7 +217,11 @@ MatrixXd JacobiFields::orthonormal(const VectorXd& unit) const {
 
 double JacobiFields::distance(SecondVariation& variation, int k) {
   constexpr double step = 0.01, far = 0.05;
-  if (normalised_) {
+  variation.hold(k);
+  if (normalised_ && variation.coordinates() >= least_large) {
+    if (const std::optional<double> nearest = distance_large(variation, k, step)) return *nearest;
+    variation.hold(k);
+  } else if (normalised_) {
     const Piece piece = variation.piece(k);
     const VectorXd inverse = units(piece).cwiseInverse();
     const MatrixXd scaled = inverse.asDiagonal() * (p_ + piece.a) * inverse.asDiagonal();

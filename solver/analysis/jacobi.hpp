@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "analysis/variation.hpp"
+#include "linear/symmetric_elimination.hpp"
 
 /// \file Jacobi fields carried along a trajectory, and the times conjugate to where they vanish.
 
@@ -29,6 +32,11 @@ class JacobiFields {
   /// first.
   const std::vector<double>& advance(SecondVariation& variation, int k, bool first_only = false);
 
+  /// From now on conjugate times are searched for in a piece only while their number times the cube of the
+  /// coordinates, summed up, is at most this; where it is more, they are given up.
+  void allow(double work) { work_left_ = work; }
+  bool given_up() const { return work_left_ < 0; }
+
   /// From the end of piece k, which follows the last one passed, to the nearest conjugate time before or
   /// after it, as a fraction of the piece: by extrapolation, so good where it is small; infinite where it
   /// surely is not.
@@ -36,6 +44,8 @@ class JacobiFields {
 
  private:
   bool step(const Piece& piece);
+  bool advance_large(SecondVariation& variation, int k, bool first_only);
+  std::optional<double> distance_large(SecondVariation& variation, int k, double step);
   void split(const Piece& piece);
   Eigen::MatrixXd orthonormal(const Eigen::VectorXd& unit) const;
   Eigen::MatrixXd form(SecondVariation& variation, int k, double tau);
@@ -43,6 +53,7 @@ class JacobiFields {
   double time_of_zero(SecondVariation& variation, int k, int index);
   void carry(const Piece& piece);
 
+  double work_left_ = std::numeric_limits<double>::infinity();
   bool normalised_ = false;
   Eigen::MatrixXd x_, p_;  // normalised: p_ is W and x_ is not used
   int vanishing_ = 0;      // directions in which X counts as zero
@@ -57,6 +68,7 @@ class JacobiFields {
   Eigen::VectorXd unit_, eigenvalues_;
   Eigen::MatrixXd range_, share_, whole_, next_, from_start_, from_end_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  std::optional<SymmetricElimination> elimination_;
 };
 
 }  // namespace extremal

@@ -230,7 +230,8 @@ void Fit::leave(const std::vector<Wave>& waves) {
 SpectralLine spectral_line(const Wave& wave, double middle) {
   const double sign = std::copysign(1.0, wave.frequency);
   const double phase = std::atan2(-sign * wave.b, wave.a) - std::abs(wave.frequency) * middle;
-  return {std::abs(wave.frequency), wave.amplitude(), std::remainder(phase, 2 * pi)};
+  const double turned = std::remainder(phase, 2 * pi);
+  return {std::abs(wave.frequency), wave.amplitude(), turned > -pi ? turned : pi};
 }
 
 Spectrum sorted(std::vector<SpectralLine> lines, double residual) {

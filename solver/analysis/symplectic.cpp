@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/units.hpp"
 #include "linear/dense.hpp"
+#include "linear/equilibration.hpp"
 
 namespace extremal {
 

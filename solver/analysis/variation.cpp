@@ -1,12 +1,10 @@
 #include "analysis/variation.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "action/rule.hpp"
+#include "analysis/limits.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -55,9 +53,6 @@ int degree_for(int n, int trajectory_degree) {
 
 bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
                                const Condensed& condensed, const ClosingMap* closed, Definite definite) {
-  if (trajectory.coordinates > most_coordinates)
-    throw std::invalid_argument(fmt::format("second variation of {} coordinates; at most {} are possible",
-                                            trajectory.coordinates, most_coordinates));
   const bool bound = lagrangian_ == lagrangian;
   lagrangian_ = std::move(lagrangian);
   trajectory_ = &trajectory;
@@ -68,7 +63,10 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
   pieces_.clear();
   forms_.clear();
+  forms_from_ = 0;
   too_many_ = false;
+  too_large_ = double(tables_.condensation().fronts.groups()) * simd_lanes() > limits::variation::most_batch;
+  if (too_large_) return false;
   definite_ = definite;
   const bool taken = condensed.action && take(condensed), regular = taken || cut();
   if (!regular) pieces_.clear();
@@ -83,14 +81,16 @@ void SecondVariation::add_corners(const ClosingMap* closed) {
   const std::size_t size = static_cast<std::size_t>(coordinates()) * coordinates();
   const Polynomials path{coordinates(), trajectory_->degree, trajectory_->times, trajectory_->nodes};
   for (const Corner& corner : corners_of(*lagrangian_->kinks(), path, closed))
-    for (std::size_t k = 0; k < pieces_.size(); ++k)
-      if (pieces_[k].part.element == corner.node - 1 && pieces_[k].part.tau1 == 1)
+    for (std::size_t k = 0; k < forms_.size() / (3 * size); ++k) {
+      const Part& part = pieces_[forms_from_ + k].part;
+      if (part.element == corner.node - 1 && part.tau1 == 1)
         add_stiffness(corner, forms_.data() + (3 * k + 2) * size);
+    }
 }
 
 Piece SecondVariation::piece(int k) const {
   const int n = coordinates();
-  const double* forms = forms_.data() + static_cast<std::size_t>(k) * 3 * n * n;
+  const double* forms = forms_.data() + static_cast<std::size_t>(k - forms_from_) * 3 * n * n;
   return {
       pieces_[k].start, pieces_[k].length, {forms, n, n}, {forms + n * n, n, n}, {forms + 2 * n * n, n, n}};
 }
@@ -216,10 +216,24 @@ bool SecondVariation::resolved(const DiscreteAction& action, int count, double a
 }
 
 void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> parts) {
-  const int n = coordinates(), first = count(), lanes = simd_lanes();
-  for (int k = 0; k < static_cast<int>(parts.size()); ++k) {
+  const int first = count(), lanes = simd_lanes(), kept = static_cast<int>(parts.size());
+  for (int k = 0; k < kept; ++k)
     pieces_.push_back({parts[k], start(parts[k]), length(parts[k]), first + k / lanes * lanes});
-    const std::size_t size = static_cast<std::size_t>(n) * n, at = forms_.size();
+  const std::size_t size = 3 * static_cast<std::size_t>(coordinates()) * coordinates();
+  if (double(forms_.size() + kept * size) > limits::variation::most_forms && kept <= lanes &&
+      !lagrangian_->kinks()) {
+    forms_.clear();
+    forms_from_ = first;
+  }
+  keep_forms(action, kept);
+}
+
+/// Appends the forms of the elements that were evaluated last.
+void SecondVariation::keep_forms(const DiscreteAction& action, int count) {
+  const int n = coordinates();
+  const std::size_t size = static_cast<std::size_t>(n) * n;
+  for (int k = 0; k < count; ++k) {
+    const std::size_t at = forms_.size();
     forms_.resize(at + 3 * size);
     double *const a = forms_.data() + at, *const b = a + size, *const d = b + size;
     for (int i = 0; i < n; ++i)
@@ -231,17 +245,63 @@ void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> p
   }
 }
 
+/// The pieces that were evaluated together with piece k.
+void SecondVariation::evaluate_group(int k) {
+  if (evaluated_ == pieces_[k].first) return;
+  batch_.clear();
+  for (int i = pieces_[k].first; i < count() && pieces_[i].first == pieces_[k].first; ++i)
+    batch_.push_back(pieces_[i].part);
+  evaluate(batch_);
+  evaluated_ = pieces_[k].first;
+}
+
+void SecondVariation::hold(int k) {
+  const int n = coordinates(), kept = static_cast<int>(forms_.size() / (3 * static_cast<std::size_t>(n) * n));
+  if (k >= forms_from_ && k < forms_from_ + kept) return;
+  evaluate_group(k);
+  forms_.clear();
+  forms_from_ = pieces_[k].first;
+  keep_forms(action_, static_cast<int>(batch_.size()));
+}
+
+std::vector<Eigen::MatrixXd> SecondVariation::start_forms(int k, std::span<const double> tau) {
+  const Part whole = pieces_[k].part;
+  const int n = coordinates();
+  const std::size_t lanes = simd_lanes();
+  std::vector<Eigen::MatrixXd> forms;
+  evaluated_ = -1;
+  for (std::size_t first = 0; first < tau.size(); first += lanes) {
+    const std::size_t batch = std::min(lanes, tau.size() - first);
+    batch_.clear();
+    for (std::size_t j = first; j < first + batch; ++j)
+      batch_.push_back({whole.element, whole.tau0, whole.tau0 + tau[j] * (whole.tau1 - whole.tau0)});
+    evaluate(batch_);
+    for (std::size_t j = 0; j < batch; ++j) {
+      Eigen::MatrixXd& a = forms.emplace_back(n, n);
+      for (int i = 0; i < n; ++i)
+        for (int l = 0; l <= i; ++l) a(i, l) = a(l, i) = action_.condensed(static_cast<int>(j), i, l);
+    }
+  }
+  return forms;
+}
+
+Eigen::MatrixXd SecondVariation::end_form(int k, double tau) {
+  const Part whole = pieces_[k].part;
+  const int n = coordinates();
+  const Part rest{whole.element, whole.tau0 + tau * (whole.tau1 - whole.tau0), whole.tau1};
+  evaluated_ = -1;
+  evaluate({&rest, 1});
+  Eigen::MatrixXd d(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) d(i, j) = d(j, i) = action_.condensed(0, n + i, n + j);
+  return d;
+}
+
 /// Makes the inner fields of piece k, from the factor that eliminated the inner unknowns.
 const Eigen::MatrixXd& SecondVariation::inner_by_ends(int k) {
   Eigen::MatrixXd& fields = inner_by_ends_[k];
   if (fields.size() > 0) return fields;
-  if (evaluated_ != pieces_[k].first) {
-    batch_.clear();
-    for (int i = pieces_[k].first; i < count() && pieces_[i].first == pieces_[k].first; ++i)
-      batch_.push_back(pieces_[i].part);
-    evaluate(batch_);
-    evaluated_ = pieces_[k].first;
-  }
+  evaluate_group(k);
   const int inner = tables_.inner(), n = coordinates(), element = k - pieces_[k].first;
   if (kept_ + inner * 2 * n > most_kept) forget();
   kept_ += inner * 2 * n;

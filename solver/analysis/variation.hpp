@@ -36,27 +36,26 @@ enum class Definite { positive, paired, none };
 /// Jacobi fields: the elements of the trajectory, halved as often as that takes. Keeps memory.
 class SecondVariation {
  public:
-  /// Beyond this many coordinates the forms are not made.
-  static constexpr int most_coordinates = 256;
-  /// Beyond this many there are too many conjugate times, each too much work, to find them all.
-  static constexpr int most_to_find_all = 128;
-
   /// The trajectory must outlive it. False where no piece is short enough: L_vv is not positive definite
   /// somewhere (Legendre's condition), or the second derivatives of L are not finite; or where it takes too
-  /// many, since elements do not resolve the fields by far. There are no pieces then. Throws
-  /// std::invalid_argument for more than most_coordinates.
-  /// Elements that another condensed are the pieces if they resolve the fields well enough for it.
-  /// Beyond T a path that is `closed` goes on; null: it ends there. Pieces have the squares that `definite`
-  /// says.
+  /// many, since elements do not resolve the fields by far, or the elements too much memory. There are no
+  /// pieces then. Elements that another condensed are the pieces if they resolve the fields well enough for
+  /// it. Beyond T a path that is `closed` goes on; null: it ends there. Pieces have the squares that
+  /// `definite` says.
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
                 const Condensed& condensed = {}, const ClosingMap* closed = nullptr,
                 Definite definite = Definite::positive);
-  /// Whether assemble() failed because there would be too many pieces.
+  /// Whether assemble() failed because there would be too many pieces, or because they are too large.
   bool too_many() const { return too_many_; }
+  bool too_large() const { return too_large_; }
 
   int coordinates() const { return trajectory_->coordinates; }
+  bool has_kinks() const { return lagrangian_->kinks() != nullptr; }
   int count() const { return static_cast<int>(pieces_.size()); }
+  /// If there are too many pieces to keep all, only after hold(k).
   Piece piece(int k) const;
+  /// Evaluates the forms of piece k if they are not kept.
+  void hold(int k);
   double end(int k) const { return pieces_[k].start + pieces_[k].length; }
   /// The first piece that ends after t, or the last.
   int piece_at(double t) const;
@@ -67,6 +66,11 @@ class SecondVariation {
   /// The Jacobi fields of piece k at start + tau·length, n × n: those with x_a = I, x_b = 0 and with x_a = 0,
   /// x_b = I.
   void fields(int k, double tau, Eigen::MatrixXd& from_start, Eigen::MatrixXd& from_end);
+
+  /// The form A of the part of piece k from its start to start + tau·length, for each tau in (0, 1].
+  std::vector<Eigen::MatrixXd> start_forms(int k, std::span<const double> tau);
+  /// The form D of the part from start + tau·length, tau in [0, 1), to its end.
+  Eigen::MatrixXd end_form(int k, double tau);
 
  private:
   /// A part of an element, from tau0 to tau1.
@@ -89,6 +93,8 @@ class SecondVariation {
   void evaluate(std::span<const Part> parts);
   bool resolved(const DiscreteAction& action, int count, double allowed);
   void keep(const DiscreteAction& action, std::span<const Part> parts);
+  void keep_forms(const DiscreteAction& action, int count);
+  void evaluate_group(int k);
   bool take(const Condensed& condensed);
   const Eigen::MatrixXd& inner_by_ends(int k);
   void forget();
@@ -99,10 +105,11 @@ class SecondVariation {
   const SchemeTables* scheme_ = nullptr;
   ElementTables tables_;
 
-  bool too_many_ = false;
+  bool too_many_ = false, too_large_ = false;
   Definite definite_ = Definite::positive;
   std::vector<Kept> pieces_;
-  std::vector<double> forms_;  ///< A, B, D of each piece
+  std::vector<double> forms_;  ///< A, B, D of each piece, or of those evaluated last
+  int forms_from_ = 0;         ///< the first of these pieces
 
   // What was evaluated last.
   DiscreteAction action_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/limits.hpp"
+
 namespace extremal {
 
 namespace {
@@ -19,12 +21,14 @@ void find_conjugate_times(SecondVariation& variation, Minimality& result) {
   const int last = variation.count() - 1;
   std::vector<double>& times = result.conjugate_times.emplace();
   fields.begin(variation, 0, 0);
+  if (variation.coordinates() > limits::windows::always_found) fields.allow(limits::windows::most_work);
   for (int k = 1; k <= last; ++k) {
-    const Piece piece = variation.piece(k);
+    const double start = variation.end(k - 1), length = variation.end(k) - start;
     const double distance = k == last ? fields.distance(variation, k) : INFINITY;
-    if (distance < near_piece) result.distance = distance * piece.length;
+    if (distance < near_piece) result.distance = distance * length;
     for (double tau : fields.advance(variation, k))
-      if (k < last || tau < 1) times.push_back(piece.start + tau * piece.length);
+      if (k < last || tau < 1) times.push_back(start + tau * length);
+    if (fields.given_up()) return result.conjugate_times.reset();
   }
 }
 
@@ -32,11 +36,13 @@ void find_conjugate_times(SecondVariation& variation, Minimality& result) {
 double next_conjugate_time(SecondVariation& variation, double start) {
   int k = variation.piece_at(start);
   JacobiFields fields;
-  const Piece piece = variation.piece(k);
-  fields.begin(variation, k, std::max(0.0, (start - piece.start) / piece.length));
+  const double from = k > 0 ? variation.end(k - 1) : 0;
+  fields.begin(variation, k, std::max(0.0, (start - from) / (variation.end(k) - from)));
   for (++k; k < variation.count(); ++k) {
     const std::vector<double>& found = fields.advance(variation, k, true);
-    if (!found.empty()) return variation.piece(k).start + found.front() * variation.piece(k).length;
+    if (found.empty()) continue;
+    const double before = variation.end(k - 1);
+    return before + found.front() * (variation.end(k) - before);
   }
   return std::numeric_limits<double>::infinity();
 }
@@ -45,7 +51,7 @@ double next_conjugate_time(SecondVariation& variation, double start) {
 
 Minimality minimality(SecondVariation& variation, double longest) {
   Minimality result;
-  if (variation.coordinates() <= SecondVariation::most_to_find_all) find_conjugate_times(variation, result);
+  find_conjugate_times(variation, result);
   const double duration = variation.end(variation.count() - 1);
   for (double start = 0; start < duration;) {
     const bool known = start == 0 && result.conjugate_times && !result.conjugate_times->empty();

@@ -24,8 +24,8 @@ struct Minimality {
 
 /// Windows are the longest there are from the left, less one part in a million: in each the second variation
 /// is positive definite, and in the union of two neighbours it is not. `longest`: windows are also shorter
-/// than this, and the union of two neighbours is not. Conjugate times are found for up to
-/// SecondVariation::most_to_find_all coordinates.
+/// than this, and the union of two neighbours is not. Conjugate times of many
+/// coordinates are given up where they are so many that they would take too long.
 Minimality minimality(SecondVariation& variation, double longest = std::numeric_limits<double>::infinity());
 
 }  // namespace extremal

@@ -172,6 +172,12 @@ void CommandLine::add_continue() {
           "what the plot shows: a formula of x(0), x'(T), parameters, duration, energy, action, amplitude")
       ->type_name("FORMULA")
       ->option_text("FORMULA");
+  command
+      .add_option("--samples", a.samples,
+                  "N equally spaced samples of each orbit in --output, which `view` draws")
+      ->type_name("N")
+      ->option_text("N")
+      ->check(whole_number(2, most_samples));
   add_quiet(command, a.quiet);
 }
 

@@ -47,6 +47,7 @@ struct ContinueArguments {
   std::vector<std::string> sets;
   std::string output, csv, plot;
   std::string quantity;  ///< formula of what the plot shows; may be empty
+  int samples = 0;       ///< of each orbit in the output; 0: none
   bool quiet = false;
 };
 int follow(const ContinueArguments& arguments);

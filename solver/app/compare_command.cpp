@@ -32,7 +32,7 @@ int compare(const CompareArguments& a) {
   const Comparison found = compared(study, a.quiet);
   std::vector<FileContent> files;
   if (!a.output.empty())
-    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, found); })});
+    files.push_back({.path = a.output, .write = [&](std::ostream& out) { write_json(out, found); }});
   if (!a.plot.empty() && found.any()) files.push_back({a.plot, plot_image(a.plot, found)});
   Outputs::write(std::move(files));
   if (!outputs.on_standard_output() && !a.quiet) print(summary(found));

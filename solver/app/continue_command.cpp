@@ -28,10 +28,12 @@ void write_outputs(const ContinueArguments& a, const Study& study, const Followe
                    const Annotation& annotation) {
   std::vector<FileContent> files;
   if (!a.output.empty())
-    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, branch); })});
+    files.push_back({.path = a.output, .write = [&](std::ostream& out) {
+                       write_json(out, branch, {a.samples, annotation});
+                     }});
   const bool any = !branch.points.empty();
   if (any && !a.csv.empty())
-    files.push_back({a.csv, text_of([&](std::ostream& out) { write_csv(out, branch); })});
+    files.push_back({.path = a.csv, .write = [&](std::ostream& out) { write_csv(out, branch); }});
   if (any && !a.plot.empty())
     files.push_back(
         {a.plot, plot_image(a.plot, BranchPicture{branch, quantity(study, branch, a.quantity), annotation})});
@@ -54,7 +56,9 @@ int follow(const ContinueArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--csv", a.csv}, {"--plot", a.plot}});
   const Study study = load(a.scene, a.sets);
   outputs.keep(study.files);
-  const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
+  if (a.samples > 0 && a.output.empty()) throw OptionError("--samples are those of --output; give it a file");
+  const bool annotated = !a.plot.empty() || a.samples > 0;
+  const Annotation annotation = annotated ? extremal::annotation(study) : Annotation{};
   if (!a.quantity.empty()) check_shown(a, study);
   const FollowedBranch branch = followed(study, a.quiet);
   write_outputs(a, study, branch, annotation);

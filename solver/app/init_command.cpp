@@ -11,7 +11,7 @@
 namespace extremal::app {
 
 int init(const InitArguments& a) {
-  const SystemDescription system = describe(a.system);
+  const SystemDescription system = describe(a.system, "extremal init");
   const std::string path = a.output.empty() ? system.name + ".toml" : a.output;
   std::error_code error;
   if (path != "-" && std::filesystem::exists(path, error))

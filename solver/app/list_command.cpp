@@ -51,7 +51,7 @@ void print_formulas(const SystemTable& system) {
 
 int list(const std::string& system) {
   if (system.empty()) return list_all();
-  const SystemDescription found = describe(system);
+  const SystemDescription found = describe(system, "extremal list");
   line("system", found.name);
   for (const AboutEntry& note : found.about) lines(note.name, note.texts);
   print_formulas(found.system);

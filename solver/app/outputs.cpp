@@ -81,7 +81,10 @@ void Outputs::keep(const std::vector<std::string>& files) const {
 
 void Outputs::write(std::vector<FileContent> files) {
   for (FileContent& file : files)
-    if (file.path == standard_output) file.content = visible(file.content, true);
+    if (file.path == standard_output) {
+      if (file.write) file.content += text_of(std::exchange(file.write, {}));
+      file.content = visible(file.content, true);
+    }
   write_files(files);
 }
 

@@ -49,12 +49,13 @@ Result search_result(Result result, const std::vector<Solution>& solutions, cons
   for (const Solution& solution : solutions) {
     Result each = empty;
     each.solution = solution;
-    if (study.spectrum) each.spectrum = spectrum_of(study, *study.spectrum, solution);
+    if (study.spectrum) add_spectrum(study, *study.spectrum, each);
     each.samples = wanted_samples(a, at, study, solution);
     result.solutions->push_back(std::move(each));
   }
   result.samples = result.solutions->front().samples;
   result.spectrum = result.solutions->front().spectrum;
+  result.solution.message = result.solutions->front().solution.message;
   return result;
 }
 
@@ -67,20 +68,23 @@ Samples sampled(const Study& study, const Result& result, int count) {
   return sample(study.problem, result.solution, equal_times(count, result.solution.duration()));
 }
 
-std::string csv_of(const Study& study, const Result& result) {
-  const auto samples = [&](const Result& each) {
-    return each.samples ? *each.samples : sampled(study, each, csv_samples);
-  };
-  return text_of([&](std::ostream& out) {
-    if (!result.solutions) return write_csv(out, samples(result), result.names);
-    std::vector<Samples> all;
-    for (const Result& each : *result.solutions) all.push_back(samples(each));
-    write_csv(out, all, result.names);
-  });
+/// Those of --samples and --at, else some; `kept` holds them then.
+const Samples& file_samples(const Study& study, const Result& result, std::optional<Samples>& kept) {
+  if (result.samples) return *result.samples;
+  return kept.emplace(sampled(study, result, csv_samples));
+}
+
+void write_csv(std::ostream& out, const Study& study, const Result& result) {
+  std::optional<Samples> kept;
+  if (!result.solutions) return extremal::write_csv(out, file_samples(study, result, kept), result.names);
+  std::vector<Samples> all;
+  for (const Result& each : *result.solutions) all.push_back(file_samples(study, each, kept));
+  extremal::write_csv(out, all, result.names);
 }
 
 std::string npz_of(const Study& study, const Result& result) {
-  return npz_text(result.samples ? *result.samples : sampled(study, result, csv_samples), result.names);
+  std::optional<Samples> kept;
+  return npz_text(file_samples(study, result, kept), result.names);
 }
 
 /// Before anything is computed.
@@ -96,13 +100,13 @@ void check_ephemeris(const Study& study) {
 }
 
 std::string ephemeris_of(const Study& study, const Result& result) {
-  const Samples samples = result.samples ? *result.samples : sampled(study, result, csv_samples);
-  return oem_text(*study.units, result.title, result.names, samples);
+  std::optional<Samples> kept;
+  return oem_text(*study.units, result.title, result.names, file_samples(study, result, kept));
 }
 
 std::string plot_of(const std::string& path, const Study& study, const Result& result,
                     const Annotation& annotation) {
-  if (is_page(path)) return page(result, picture_of(study.problem, result, annotation));
+  if (is_page(path)) return page(result, picture_of(study.problem, result, annotation, true));
   if (result.fit) return fit_image(path, result, sampled(study, result, fit_samples), annotation);
   return plot_image(path, picture_of(study.problem, result, annotation));
 }
@@ -111,9 +115,10 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
                    const Annotation& annotation) {
   std::vector<FileContent> files;
   if (!a.output.empty())
-    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
+    files.push_back({.path = a.output, .write = [&](std::ostream& out) { write_json(out, result); }});
   const bool converged = result.solution.converged();
-  if (converged && !a.csv.empty()) files.push_back({a.csv, csv_of(study, result)});
+  if (converged && !a.csv.empty())
+    files.push_back({.path = a.csv, .write = [&](std::ostream& out) { write_csv(out, study, result); }});
   if (converged && !a.npz.empty()) files.push_back({a.npz, npz_of(study, result)});
   if (converged && !a.oem.empty()) files.push_back({a.oem, ephemeris_of(study, result)});
   if (converged && !a.plot.empty()) files.push_back({a.plot, plot_of(a.plot, study, result, annotation)});
@@ -131,7 +136,8 @@ int solve(const SolveArguments& a) {
   outputs.keep(study.files);
   if (!a.oem.empty()) check_ephemeris(study);
   if (!study.problem.duration.free) check_times(at, study.problem.duration.value);
-  const Annotation annotation = a.plot.empty() ? Annotation{} : extremal::annotation(study);
+  const bool annotated = !a.plot.empty() || !a.output.empty();
+  const Annotation annotation = annotated ? extremal::annotation(study) : Annotation{};
 
   Result result{study.title, coordinate_names(study.problem), {}, study.seconds_read, std::nullopt};
   result.natural_conditions = natural_conditions(study.problem);
@@ -154,8 +160,9 @@ int solve(const SolveArguments& a) {
   use_constants(result.solution, study);
   if (converged && study.solutions == 0) {
     result.samples = wanted_samples(a, at, study, result.solution);
-    if (study.spectrum) result.spectrum = spectrum_of(study, *study.spectrum, result.solution);
+    if (study.spectrum) add_spectrum(study, *study.spectrum, result);
   }
+  if (!a.output.empty()) add_surroundings(study, result);
   write_outputs(a, study, result, annotation);
   if (table) print(summary(result));
   if (!converged)

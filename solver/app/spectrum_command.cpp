@@ -43,11 +43,10 @@ int spectrum(const CompareArguments& a) {
   }
   const bool converged = result.solution.converged();
   use_constants(result.solution, study);
-  if (converged)
-    result.spectrum = spectrum_of(study, study.spectrum.value_or(SpectrumRequest{}), result.solution);
+  if (converged) add_spectrum(study, study.spectrum.value_or(SpectrumRequest{}), result);
   std::vector<FileContent> files;
   if (!a.output.empty())
-    files.push_back({a.output, text_of([&](std::ostream& out) { write_json(out, result); })});
+    files.push_back({.path = a.output, .write = [&](std::ostream& out) { write_json(out, result); }});
   if (converged && !a.plot.empty())
     files.push_back({a.plot, spectrum_plot(a.plot, study, result, annotation)});
   Outputs::write(std::move(files));

@@ -42,6 +42,12 @@ SingularValues singular_value_decomposition(const MatrixXd& m) {
 
 VectorXd singular_values(const MatrixXd& m) { return Eigen::BDCSVD<MatrixXd>(m).singularValues(); }
 
+int numerical_rank(const MatrixXd& m, double relative) {
+  if (m.size() == 0) return 0;
+  const VectorXd values = singular_values(m);
+  return static_cast<int>((values.array() > relative * values[0]).count());
+}
+
 VectorXcd null_vector(const MatrixXcd& m) {
   return Eigen::JacobiSVD<MatrixXcd>(m, Eigen::ComputeFullV).matrixV().rightCols(1);
 }

@@ -67,6 +67,8 @@ struct SingularValues {
 };
 SingularValues singular_value_decomposition(const Eigen::MatrixXd& m);
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& m);
+/// Singular values larger than `relative` times the largest.
+int numerical_rank(const Eigen::MatrixXd& m, double relative);
 
 /// The right singular vector of the smallest singular value.
 Eigen::VectorXcd null_vector(const Eigen::MatrixXcd& m);

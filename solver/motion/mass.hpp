@@ -11,7 +11,8 @@
 
 namespace extremal {
 
-/// Dense for few coordinates, sparse for many.
+/// Dense for few coordinates, sparse for many; of very few the inverse, which is as exact and needs no
+/// memory.
 class MassMatrix {
  public:
   explicit MassMatrix(int size);
@@ -23,10 +24,10 @@ class MassMatrix {
 
  private:
   bool dense() const { return size_ <= dense_limit; }
-  static constexpr int dense_limit = 64;
+  static constexpr int dense_limit = 64, most_inverted = 3;
   int size_;
   double largest_ = 0;
-  Eigen::MatrixXd matrix_;
+  Eigen::MatrixXd matrix_, inverse_;
   Eigen::PartialPivLU<Eigen::MatrixXd> dense_;
   Eigen::SparseMatrix<double> sparse_matrix_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_;

@@ -30,15 +30,13 @@ using Anchor = std::function<bool(Real t, std::span<Real> y)>;
 /// though steps end elsewhere. False where it cannot be followed: the samples end there, and there are none
 /// if L is not finite at (q, v).
 template <class Real, class AnyFlow>
-bool sample_motion(AnyFlow&& flow, std::span<const double> q, std::span<const double> v, double from,
-                   double to, const MotionSampling& options, SampledMotion& samples,
-                   const Anchor<Real>& anchor = {}) {
+bool sample_motion(AnyFlow&& flow, std::span<const Real> q, std::span<const Real> v, double from, double to,
+                   const MotionSampling& options, SampledMotion& samples, const Anchor<Real>& anchor = {}) {
   const std::size_t n = q.size();
   std::vector<Real> y(q.begin(), q.end()), between(n);
-  const std::vector<Real> velocity(v.begin(), v.end());
   y.resize(2 * n);
   samples = {};
-  if (!flow.momentum(std::span(y).first(n), velocity, from, std::span(y).subspan(n))) return false;
+  if (!flow.momentum(std::span(y).first(n), v, from, std::span(y).subspan(n))) return false;
   DormandPrince<Real> method(
       [&flow](Real t, std::span<const Real> x, std::span<Real> slope) { return flow.slope(t, x, slope); },
       static_cast<int>(2 * n));

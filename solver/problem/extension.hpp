@@ -14,6 +14,14 @@
 
 namespace extremal {
 
+class Manifold;
+
+/// A condition that follows from constraints and other conditions, which is not imposed.
+struct ImpliedCondition {
+  EndCondition condition;
+  std::string text;
+};
+
 /// A point in between: coordinates that are fixed at a time.
 struct WaypointCondition {
   double time = 0;                            ///< in (0, T); where it is free, t/T of its guess
@@ -41,6 +49,9 @@ struct Extension {
   std::vector<WaypointCondition> waypoints;      ///< in order of their times
   /// L + Σ ν_j g_j of n coordinates for given values of k and ν.
   std::function<std::shared_ptr<const Lagrangian>(const std::vector<double>& constants)> at;
+  /// With constraints: their manifold for these values. Empty: there are none.
+  std::function<std::shared_ptr<const Manifold>(const std::vector<double>& constants)> manifold_at{};
+  std::vector<ImpliedCondition> implied{};  ///< over the ends of all coordinates
 
   int unknowns() const { return static_cast<int>(names.size()); }
   int multipliers() const { return static_cast<int>(integrals.size()); }

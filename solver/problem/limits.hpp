@@ -25,4 +25,37 @@ inline constexpr std::size_t most_named = 6;
 
 }  // namespace infinite_ends
 
+namespace minimal {
+
+/// Points of the guess that a chart gives back within this part of their size are those it was given.
+inline constexpr double same_point = 1e-7;
+/// Coefficients of relations that vanish but for this part.
+inline constexpr double roundoff = 1e-12;
+
+}  // namespace minimal
+
+namespace singular_ends {
+
+/// The exponent of the speed is read at distances of this part of the way, and so many times nearer each
+/// time: next to the level it is a power, farther from it the energy loses fewer digits.
+inline constexpr double first_distance = 1e-3, nearer = 0.1;
+inline constexpr int distances = 5;
+inline constexpr int bisections = 60;
+/// Of an exponent, between two distances.
+inline constexpr double settled = 4e-3;
+/// Beyond the largest one the integral of L is infinite; below the least one L is nearly finite.
+inline constexpr double least_exponent = 0.02, largest_exponent = 0.98;
+/// Denominators of fractions; the error of an exponent that is measured, and that of arithmetic.
+inline constexpr int largest_power = 8;
+inline constexpr double whole = 3e-4, roundoff = 1e-12;
+inline constexpr int most_coordinates = 16;
+/// Samples of a guess in the new variables; sizes of it, by powers of two of the duration to both sides.
+inline constexpr int guess_samples = 256, scanned_sizes = 24;
+/// Where the rise of a guess is measured, by the duration.
+inline constexpr double beside = 0.01;
+/// Doublings of a speed that is looked for, in pairs.
+inline constexpr int most_quadruplings = 40;
+
+}  // namespace singular_ends
+
 }  // namespace extremal::limits

@@ -107,22 +107,44 @@ std::vector<double> Manifold::projected_momentum(std::span<const double> q, doub
   return values_of(vector(p) - values.slopes.transpose() * normal);
 }
 
+namespace {
+
+/// (x, λ) of M x − Gᵀ λ = a, G x = b. M and the rows of G, whose units differ, are divided by their sizes.
+struct SaddlePoint {
+  VectorXd x, multipliers;
+};
+
+SaddlePoint saddle_point(const MatrixXd& mass, const MatrixXd& slopes, const VectorXd& a, const VectorXd& b) {
+  const Index n = mass.rows(), m = slopes.rows();
+  const auto unit = [](double size) { return size > 0 ? size : 1; };
+  const double heavy = unit(mass.lpNorm<Eigen::Infinity>());
+  VectorXd steep(m);
+  for (Index k = 0; k < m; ++k) steep[k] = unit(slopes.row(k).norm());
+  const MatrixXd scaled = steep.cwiseInverse().asDiagonal() * slopes;
+  MatrixXd matrix(n + m, n + m);
+  matrix << mass / heavy, -scaled.transpose(), scaled, MatrixXd::Zero(m, m);
+  VectorXd right(n + m);
+  right << a / heavy, b.cwiseQuotient(steep);
+  const VectorXd found = matrix.completeOrthogonalDecomposition().solve(right);
+  return {found.head(n), heavy * found.tail(m).cwiseQuotient(steep)};
+}
+
+}  // namespace
+
 /// Newton's method for L_v(v) = projection + Gᵀ μ, G v + ∂g/∂t = 0.
 std::vector<double> Manifold::momentum(std::span<const double> q, double t,
                                        std::span<const double> projection, std::span<double> v) const {
   constexpr int most = 20;
-  const Index n = coordinates(), m = constraints();
+  const Index n = coordinates();
   const ConstraintValues values = at(q, t);
   Eigen::Map<VectorXd> velocity(v.data(), n);
   Scratch scratch;
   double before = INFINITY;
   for (int k = 0; k < most; ++k) {
     const PointValues l = evaluate_at(*parts_.lagrangian, q, v, t, Order::hessian, scratch);
-    MatrixXd matrix = MatrixXd::Zero(n + m, n + m);
-    matrix << square(l.vv, n), values.slopes.transpose(), values.slopes, MatrixXd::Zero(m, m);
-    VectorXd right(n + m);
-    right << vector(projection) - vector(l.dv), -(values.slopes * velocity + values.rates);
-    const VectorXd step = matrix.completeOrthogonalDecomposition().solve(right).head(n);
+    const VectorXd step = saddle_point(square(l.vv, n), values.slopes, vector(projection) - vector(l.dv),
+                                       -(values.slopes * velocity + values.rates))
+                              .x;
     const double length = step.norm();
     if (!(length < before)) break;
     velocity += step;
@@ -143,7 +165,20 @@ double Manifold::energy(std::span<const double> q, double t, std::span<const dou
   return vector(l.dv).dot(vector(v)) - l.value;
 }
 
-/// M q'' − Gᵀ λ = L_q − L_vq q' − L_vt and G q'' = −(second derivative of g along the motion without q'').
+/// ∂L/∂q + F: what two copies that agree have by the first of them.
+VectorXd Manifold::force(std::span<const double> q, double t, std::span<const double> v) const {
+  const Lagrangian& lagrangian = parts_.copies ? *parts_.copies : *parts_.lagrangian;
+  std::vector<double> both_q(q.begin(), q.end()), both_v(v.begin(), v.end());
+  if (parts_.copies) {
+    both_q.insert(both_q.end(), q.begin(), q.end());
+    both_v.insert(both_v.end(), v.begin(), v.end());
+  }
+  Scratch scratch;
+  return vector(evaluate_at(lagrangian, both_q, both_v, t, Order::gradient, scratch).dq).head(coordinates());
+}
+
+/// M q'' − Gᵀ λ = L_q + F − L_vq q' − L_vt and G q'' = −(second derivative of g along the motion without
+/// q'').
 std::vector<double> Manifold::multipliers(std::span<const double> q, double t,
                                           std::span<const double> v) const {
   const Index n = coordinates(), m = constraints(), all = n + 1 + m;
@@ -155,18 +190,16 @@ std::vector<double> Manifold::multipliers(std::span<const double> q, double t,
   // Of (q', q), row-major.
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> vq(
       l.vq.data(), n + 1, n + 1);
-  MatrixXd matrix = MatrixXd::Zero(n + m, n + m);
-  matrix << square(l.vv, n + 1).topLeftCorner(n, n), -values.slopes.transpose(), values.slopes,
-      MatrixXd::Zero(m, m);
-  VectorXd right(n + m);
-  right.head(n) = vector(l.dq).head(n) - (vq * vector(motion)).head(n);
+  const VectorXd acting = force(q, t, v) - (vq * vector(motion)).head(n);
+  VectorXd curvature(m);
   for (Index k = 0; k < m; ++k) {
     const std::vector<double> point = extended(q, t, static_cast<int>(m), static_cast<int>(k));
     const PointValues form = evaluate_at(*parts_.forms, point, rest, 0, Order::hessian, scratch);
     const MatrixXd second = square(form.qq, all).topLeftCorner(n + 1, n + 1);
-    right[n + k] = -vector(motion).dot(second * vector(motion));
+    curvature[k] = -vector(motion).dot(second * vector(motion));
   }
-  return values_of(matrix.completeOrthogonalDecomposition().solve(right).tail(m));
+  return values_of(
+      saddle_point(square(l.vv, n + 1).topLeftCorner(n, n), values.slopes, acting, curvature).multipliers);
 }
 
 }  // namespace extremal

@@ -11,6 +11,8 @@
 
 namespace extremal {
 
+struct MinimalProblem;
+
 /// Constraints and their derivatives at a point.
 struct ConstraintValues {
   Eigen::VectorXd g;       ///< m
@@ -27,6 +29,11 @@ class Manifold {
     std::shared_ptr<const Lagrangian> forms;       ///< Σ μ_k g_k in (q, t, μ)
     Eigen::MatrixXd metric;                        ///< W, n × n
     double rate = 0;                               ///< ω
+    /// With forces: of two copies of L (system/copies.hpp). Null: there are none.
+    std::shared_ptr<const Lagrangian> copies = nullptr;
+    /// The problem in minimal coordinates; null where it has none.
+    std::shared_ptr<const MinimalProblem> minimal = nullptr;
+    bool only_minimal = false;  ///< L̃ has other natural conditions
   };
   explicit Manifold(Parts parts) : parts_(std::move(parts)) {}
 
@@ -61,10 +68,11 @@ class Manifold {
   /// p·q' − L.
   double energy(std::span<const double> q, double t, std::span<const double> v) const;
 
-  /// λ of d/dt ∂L/∂q' − ∂L/∂q = Gᵀ λ along the motion with this state.
+  /// λ of d/dt ∂L/∂q' − ∂L/∂q = F + Gᵀ λ along the motion with this state.
   std::vector<double> multipliers(std::span<const double> q, double t, std::span<const double> v) const;
 
  private:
+  Eigen::VectorXd force(std::span<const double> q, double t, std::span<const double> v) const;
   Eigen::VectorXd normal_step(const ConstraintValues& values, const Eigen::VectorXd& g) const;
 
   Parts parts_;

@@ -16,6 +16,8 @@ using Eigen::VectorXd;
 
 /// Singular values below this, relative, are zero: entries are good to roundoff.
 constexpr double null = 1e-9;
+/// Conditions at a path that is known to a tolerance are kept within this.
+constexpr double kept = 1e-6;
 /// Entries of a symmetry below this are zero: where it leaves a path as it is, roundoff would move it.
 constexpr double negligible = 1e-12;
 /// Points beyond as many as there are unknowns (twice as many where they are at several places), and how many
@@ -161,6 +163,26 @@ std::vector<Generator> continuous_symmetries(const Problem& problem, const Symme
   if (!equations.add_invariance(problem, cloud)) return {};
   equations.add_ends(problem, cloud.extent());
   return equations.solutions(cloud.extent());
+}
+
+std::vector<Generator> symmetries_that_keep(const MatrixXd& values,
+                                            const std::vector<Generator>& symmetries) {
+  if (values.rows() == 0 || symmetries.empty()) return symmetries;
+  const Eigen::JacobiSVD<MatrixXd> svd(values, Eigen::ComputeFullV);
+  const VectorXd& sizes = svd.singularValues();
+  const Eigen::Index rank = (sizes.array() > kept * std::max(1.0, sizes[0])).count();
+  std::vector<Generator> result;
+  for (Eigen::Index j = rank; j < values.cols(); ++j) {
+    Generator sum{std::vector<double>(symmetries[0].matrix.size()),
+                  std::vector<double>(symmetries[0].shift.size())};
+    for (std::size_t s = 0; s < symmetries.size(); ++s) {
+      const double factor = svd.matrixV()(static_cast<Eigen::Index>(s), j);
+      for (std::size_t k = 0; k < sum.matrix.size(); ++k) sum.matrix[k] += factor * symmetries[s].matrix[k];
+      for (std::size_t k = 0; k < sum.shift.size(); ++k) sum.shift[k] += factor * symmetries[s].shift[k];
+    }
+    result.push_back(std::move(sum));
+  }
+  return result;
 }
 
 }  // namespace extremal

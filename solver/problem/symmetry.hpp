@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 /// \file Continuous symmetries of a problem, found from its Lagrangian.
@@ -28,5 +29,10 @@ struct SymmetrySearch {
 /// b · (q(T) − q(0)), at random points about the guess. The momenta ∂L/∂q' · δq − b · q are constants of the
 /// motion (Noether).
 std::vector<Generator> continuous_symmetries(const Problem& problem, const SymmetrySearch& search = {});
+
+/// Independent combinations of symmetries that satisfy linear conditions: `values` has what each condition is
+/// for each symmetry, conditions × symmetries.
+std::vector<Generator> symmetries_that_keep(const Eigen::MatrixXd& values,
+                                            const std::vector<Generator>& symmetries);
 
 }  // namespace extremal

@@ -20,7 +20,7 @@ namespace {
 py::bytes plot(const FollowedBranch& branch, const PyStudy& study, const std::string& path,
                const std::string& shown) {
   try {
-    check_quantity(study.study(), shown);
+    if (!shown.empty()) check_quantity(study.study(), shown);
   } catch (const FormulaError& e) {
     throw std::invalid_argument("quantity: " + std::string(e.what()));
   }

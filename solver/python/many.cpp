@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -68,8 +69,10 @@ struct Kept {
     const std::vector<double>& nodes = s.trajectory.nodes;
     std::copy_n(nodes.begin(), n, q + from);
     std::copy_n(nodes.end() - static_cast<std::ptrdiff_t>(n), n, q + from + n);
-    std::copy_n(s.momentum_start.begin(), n, momenta + from);
-    std::copy_n(s.momentum_end.begin(), n, momenta + from + n);
+    // Where L is infinite at an end there is no momentum.
+    std::fill_n(momenta + from, 2 * n, std::numeric_limits<double>::quiet_NaN());
+    std::copy_n(s.momentum_start.begin(), std::min(n, s.momentum_start.size()), momenta + from);
+    std::copy_n(s.momentum_end.begin(), std::min(n, s.momentum_end.size()), momenta + from + n);
     action[row] = s.action;
     energy[row] = s.energy.value_or(0);
     energy_known[row] = s.energy.has_value();

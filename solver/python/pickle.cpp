@@ -42,9 +42,9 @@ auto members(WaypointImpulse& s) {
   return std::tie(time, impulse);
 }
 
-/// But for the Lagrangian, which the study has.
+/// But for the Lagrangian and the manifold, which the study has.
 auto members(ExtensionValues& s) {
-  auto& [constants, integral_multipliers, waypoints, lagrangian] = s;
+  auto& [constants, integral_multipliers, waypoints, lagrangian, manifold] = s;
   return std::tie(constants, integral_multipliers, waypoints);
 }
 

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,7 +41,8 @@ std::string json(const Solved& s, const Times& times) {
   Result result = result_of(s);
   if (s.solution.converged()) {
     if (times) result.samples = sample(s.study->problem, s.solution, list(*times));
-    if (s.study->spectrum) result.spectrum = spectrum_of(*s.study, *s.study->spectrum, s.solution);
+    if (s.study->spectrum) add_spectrum(*s.study, *s.study->spectrum, result);
+    add_surroundings(*s.study, result);
   }
   return text_of([&](std::ostream& out) { write_json(out, result); });
 }
@@ -89,29 +91,43 @@ py::bytes plot(const std::string& path, const std::vector<std::shared_ptr<Solved
 
 enum class Quantity { position, velocity, momentum };
 
-/// (m, n) at m times.
+/// (m, n) at m times; rates and momenta are NaN at an end where L is infinite.
 py::array_t<double> at(const Solved& s, const Doubles& times, Quantity quantity) {
   const std::size_t n = s.study->problem.degrees_of_freedom(), m = times.size();
   py::array_t<double> values({m, n});
   double* const out = values.mutable_data();
-  const double* const t = times.data();
+  const std::span<const double> t(times.data(), m);
   const py::gil_scoped_release unlocked;
-  std::vector<double> other(n), third(n), fourth(n);
-  Scratch scratch;
+  std::vector<double> columns(3 * n * m);
+  std::vector<double*> places[3];
+  for (std::size_t row = 0; row < 3 * n; ++row) places[row / n].push_back(columns.data() + row * m);
+  if (quantity != Quantity::momentum) places[2].clear();
+  phase_columns(s.study->problem, s.solution.trajectory, t, places[0], places[1], places[2]);
+  const std::vector<double*>& wanted = places[static_cast<std::size_t>(quantity)];
+  const bool open_start = s.solution.momentum_start.empty(), open_end = s.solution.momentum_end.empty();
+  const double duration = s.solution.duration();
   for (std::size_t k = 0; k < m; ++k) {
-    const std::span<double> wanted(out + k * n, n);
-    if (s.study->problem.phase) {
-      const std::span<double> q = quantity == Quantity::position ? wanted : std::span<double>(other),
-                              v = quantity == Quantity::velocity ? wanted : std::span<double>(third),
-                              p = quantity == Quantity::momentum ? wanted : std::span<double>(fourth);
-      phase_point(s.study->problem, s.solution.trajectory, t[k], q, v, p, scratch);
-    } else if (quantity == Quantity::position)
-      s.solution.trajectory.at(t[k], wanted, other);
-    else if (quantity == Quantity::velocity)
-      s.solution.trajectory.at(t[k], other, wanted);
-    else
-      phase_point(s.study->problem, s.solution.trajectory, t[k], other, third, wanted, scratch);
+    const bool open = (open_start && t[k] == 0) || (open_end && t[k] == duration);
+    const bool known = quantity == Quantity::position || !open;
+    for (std::size_t a = 0; a < n; ++a)
+      out[k * n + a] = known ? wanted[a][k] : std::numeric_limits<double>::quiet_NaN();
   }
+  return values;
+}
+
+/// (m, k) forces of k constraints at m times; None without any.
+py::object forces(const Solved& s, const Doubles& times, std::vector<Column> Samples::*member) {
+  const std::size_t m = times.size();
+  std::vector<Column> columns;
+  {
+    const std::vector<double> t = list(times);
+    const py::gil_scoped_release unlocked;
+    columns = sample(s.study->problem, s.solution, t).*member;
+  }
+  if (columns.empty()) return py::none();
+  py::array_t<double> values({m, columns.size()});
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    for (std::size_t i = 0; i < m; ++i) values.mutable_at(i, k) = columns[k][i];
   return values;
 }
 
@@ -242,6 +258,10 @@ void bind_solution(py::module_& module) {
       .def("q", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::position); })
       .def("v", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::velocity); })
       .def("p", [](const Solved& s, const Doubles& t) { return at(s, t, Quantity::momentum); })
+      .def("constraint_forces",
+           [](const Solved& s, const Doubles& t) { return forces(s, t, &Samples::constraint_forces); })
+      .def("path_forces",
+           [](const Solved& s, const Doubles& t) { return forces(s, t, &Samples::path_forces); })
       .def("json", json, py::arg("times") = py::none())
       .def("csv", csv)
       .def("npz", npz)

@@ -46,6 +46,8 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
       constants.insert(constants.end(), values.integral_multipliers.begin(),
                        values.integral_multipliers.end());
       values.lagrangian = study->problem.extension->at(constants);
+      if (study->problem.extension->manifold_at)
+        values.manifold = study->problem.extension->manifold_at(constants);
       solution.extension = std::make_shared<const ExtensionValues>(std::move(values));
     }
     Study own = *study;

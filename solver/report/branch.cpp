@@ -5,18 +5,17 @@
 #include <algorithm>
 #include <complex>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "report/figure.hpp"
+#include "report/json_parts.hpp"
 #include "report/result.hpp"
+#include "report/sampling.hpp"
 #include "report/text.hpp"
 
 namespace extremal {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// A branch that went as far as it was to go has converged, however it was to end.
 const char* status(BranchEnd end) {
@@ -77,13 +76,37 @@ Json object(const BranchPoint& point, const std::vector<std::string>& names) {
       {"start", std::move(state)}};
 }
 
+/// Lines in the place of a value, indented by so much more.
+std::string indented(const Json& value, const std::string& indent) {
+  std::string text;
+  for (const char c : value.dump(2, ' ', false, Json::error_handler_t::replace)) {
+    text += c;
+    if (c == '\n') text += indent;
+  }
+  return text;
+}
+
+/// The list of points, as the tree of all without samples is written.
+void write_points(std::ostream& out, const FollowedBranch& branch, int samples) {
+  const std::string indent = "    ", end = "\n" + indent + "}";
+  for (const BranchPoint& point : branch.points) {
+    std::string text = indented(object(point, branch.names), indent);
+    out << (&point == branch.points.data() ? "\n" : ",\n") << indent;
+    if (samples > 0) text.resize(text.size() - end.size());
+    out << text;
+    if (samples == 0) continue;
+    write_motion(out, indent + "  ", sampled(point.solution.trajectory, samples), branch.names);
+    out << end;
+  }
+}
+
 Json object(const BranchRecord& record) {
   return {{"origin", known(record.origin)},
           {"status", status(record.end)},
           {"message", printable(record.message, 2000)},
           {"points", record.points},
           {"action_defect", known(record.worst_action_slope)},
-          {"momentum_defect", record.worst_momentum}};
+          {"momentum_defect", known(record.worst_momentum)}};
 }
 
 template <class Value>
@@ -119,27 +142,32 @@ std::string record_text(const FollowedBranch& branch, std::size_t number) {
                         name(branch.points[*record.origin].kind), branch.points[*record.origin].parameter,
                         record.points);
   text += fmt::format("{:<16}{}\n", "end", printable(record.message, 2000));
-  if (record.points == 0) return text;
+  if (record.points == 0 || !record.worst_momentum) return text;
   const std::string action = record.worst_action_slope
                                  ? fmt::format("{} along the branch to {:.1e} of S; dS/dq = p", law(branch),
                                                *record.worst_action_slope)
                                  : "momenta of the action against dL/dq'";
-  return text + fmt::format("{:<16}{} to {:.1e}\n", "check", action, record.worst_momentum);
+  return text + fmt::format("{:<16}{} to {:.1e}\n", "check", action, *record.worst_momentum);
 }
 
 }  // namespace
 
-void write_json(std::ostream& out, const FollowedBranch& branch) {
-  Json points = Json::array(), branches = Json::array();
-  for (const BranchPoint& point : branch.points) points.push_back(object(point, branch.names));
+void write_json(std::ostream& out, const FollowedBranch& branch, const SavedOrbits& orbits) {
+  Json branches = Json::array();
   for (const BranchRecord& record : branch.branches) branches.push_back(object(record));
   const BranchRecord& first = branch.branches.front();
-  out << Json{{"status", status(first.end)},
-              {"message", printable(first.message, 2000)},
-              {"branches", std::move(branches)},
-              {"points", std::move(points)}}
-             .dump(2)
-      << "\n";
+  std::string head = Json{{"status", status(first.end)},
+                          {"message", printable(first.message, 2000)},
+                          {"title", branch.title},
+                          {"varied", branch.parameter},
+                          {"branches", std::move(branches)}}
+                         .dump(2, ' ', false, Json::error_handler_t::replace);
+  head.resize(head.size() - 2);  // without the last brace
+  out << head;
+  if (orbits.samples > 0) write_about(out, "  ", orbits.annotation);
+  out << ",\n  \"points\": [";
+  write_points(out, branch, orbits.samples);
+  out << (branch.points.empty() ? "]\n}\n" : "\n  ]\n}\n");
 }
 
 void write_csv(std::ostream& out, const FollowedBranch& branch) {

@@ -16,7 +16,14 @@ namespace extremal {
 /// "nullity", "multipliers", "krein", "kind", "start"}]}; what is not known of a point is null. Status and
 /// message are those of the branch that was asked for, number 0; "origin" is the number of the point, counted
 /// from 0, that another one begins next to.
-void write_json(std::ostream& out, const FollowedBranch& branch);
+///
+/// With samples each point has "samples": {"t", coordinates, velocities} at equal steps' ends, from which the
+/// page of the file draws its orbit, and "about" has what the system's [about] says for pictures.
+struct SavedOrbits {
+  int samples = 0;  ///< of each orbit, both ends included; 0: none
+  Annotation annotation = {};
+};
+void write_json(std::ostream& out, const FollowedBranch& branch, const SavedOrbits& orbits = {});
 
 /// A line for each point: branch, parameter, duration, energy, action, morse_index, nullity, kind, then
 /// coordinates and velocities at the start; for periodic orbits real and imaginary parts of the multipliers.

@@ -19,7 +19,8 @@ void write_csv(std::ostream& out, const Samples& samples, const std::vector<std:
 void write_csv(std::ostream& out, const std::vector<Samples>& solutions,
                const std::vector<std::string>& names);
 
-/// The same columns as the bytes of a file .npz. Throws as write_csv() does.
+/// The same columns as the bytes of a file .npz, without the row of an end at which L is infinite: arrays
+/// have no empty entries. Throws as write_csv() does.
 std::string npz_text(const Samples& samples, const std::vector<std::string>& names);
 
 /// The same into a file. Throws std::runtime_error with the path if it cannot be written; what was written

@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
+#include <streambuf>
+#include <string_view>
 #include <utility>
 
 #include "report/interrupts.hpp"
@@ -49,16 +51,60 @@ class Descriptor {
   int number_;
 };
 
-void write_all(int descriptor, const FileContent& file, std::size_t most) {
-  for (std::size_t done = 0; done < file.content.size();) {
-    HeldInterrupts::check();
-    pollfd ready{descriptor, POLLOUT, 0};
-    if (::poll(&ready, 1, wait_milliseconds) <= 0) continue;
-    const ssize_t count =
-        ::write(descriptor, file.content.data() + done, std::min(most, file.content.size() - done));
-    if (count < 0 && errno != EINTR && errno != EAGAIN) refuse(file.path, errno);
-    if (count > 0) done += static_cast<std::size_t>(count);
+/// A file that is open, as the place where a stream writes.
+class FileBuffer : public std::streambuf {
+ public:
+  /// `most` bytes at once.
+  FileBuffer(int descriptor, const std::string& path, std::size_t most)
+      : descriptor_(descriptor), path_(path), most_(most), gathered_(std::min(most, gathering)) {
+    setp(gathered_.data(), gathered_.data() + gathered_.size());
   }
+
+ protected:
+  int sync() override {
+    write({pbase(), static_cast<std::size_t>(pptr() - pbase())});
+    setp(gathered_.data(), gathered_.data() + gathered_.size());
+    return 0;
+  }
+  int_type overflow(int_type c) override {
+    sync();
+    if (!traits_type::eq_int_type(c, traits_type::eof())) sputc(traits_type::to_char_type(c));
+    return traits_type::not_eof(c);
+  }
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    if (count < epptr() - pptr()) return std::streambuf::xsputn(text, count);
+    sync();
+    write({text, static_cast<std::size_t>(count)});
+    return count;
+  }
+
+ private:
+  static constexpr std::size_t gathering = std::size_t{1} << 16;
+
+  void write(std::string_view text) const {
+    while (!text.empty()) {
+      HeldInterrupts::check();
+      pollfd ready{descriptor_, POLLOUT, 0};
+      if (::poll(&ready, 1, wait_milliseconds) <= 0) continue;
+      const ssize_t count = ::write(descriptor_, text.data(), std::min(most_, text.size()));
+      if (count < 0 && errno != EINTR && errno != EAGAIN) refuse(path_, errno);
+      if (count > 0) text.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+
+  int descriptor_;
+  std::string path_;
+  std::size_t most_;
+  std::vector<char> gathered_;
+};
+
+void write_all(int descriptor, const FileContent& file, std::size_t most) {
+  FileBuffer buffer(descriptor, file.path, most);
+  std::ostream out(&buffer);
+  out.exceptions(std::ios::badbit);  // so that what is thrown in the buffer passes through
+  out << file.content;
+  if (file.write) file.write(out);
+  out.flush();
 }
 
 /// Where a path leads, links followed; the file need not exist.
@@ -175,7 +221,7 @@ std::string text_of(const std::function<void(std::ostream&)>& write) {
 }
 
 void write_file(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  write_files({{path, text_of(write)}});
+  write_files({{.path = path, .write = write}});
 }
 
 }  // namespace extremal

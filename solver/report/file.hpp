@@ -11,7 +11,9 @@ namespace extremal {
 
 struct FileContent {
   std::string path;  ///< "-" is standard output
-  std::string content;
+  std::string content = {};
+  /// Writes what follows the content, piece by piece: it need not be in memory at once.
+  std::function<void(std::ostream&)> write = {};
 };
 
 /// Writes all files or none. Each regular file is written beside its place, under a name of its own, and
@@ -26,7 +28,7 @@ bool same_file(const std::string& a, const std::string& b);
 /// What `write` writes.
 std::string text_of(const std::function<void(std::ostream&)>& write);
 
-/// One file with what `write` writes.
+/// One file with what `write` writes, piece by piece.
 void write_file(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 }  // namespace extremal

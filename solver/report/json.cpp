@@ -4,33 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
 
 #include "report/file.hpp"
+#include "report/json_parts.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/path_contacts.hpp"
 
 namespace extremal {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// Texts may hold any bytes; what is not UTF-8 is replaced.
-std::string dumped(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-/// An ordered object looks for the key at each insertion; with the keys known to differ this would only
-/// make large systems quadratic.
-void append(Json& object, std::string key, Json value) {
-  object.get_ref<Json::object_t&>().emplace_back(std::move(key), std::move(value));
-}
-
-[[noreturn]] void refuse(const std::string& field, double value) {
-  throw std::logic_error(fmt::format("the result has converged, but its {} is {}", field, value));
-}
 
 /// The fields of one result but for the samples.
 class Fields {
@@ -198,15 +183,23 @@ class Fields {
     append(object_, "covariance_scaled", fit.scaled);
     append(object_, "chi_squared", number("chi_squared", fit.chi_squared));
     append(object_, "degrees_of_freedom", fit.freedom);
-    Json residuals = Json::object();
-    append(residuals, "t", Json(fit.t));
-    for (const Fitted::Column& column : fit.columns) {
-      Json left = Json::array();
-      for (const std::optional<double>& x : column.residual)
-        left.push_back(x ? number("residuals." + column.name, *x) : Json(nullptr));
-      append(residuals, column.name, std::move(left));
-    }
-    append(object_, "residuals", std::move(residuals));
+    const auto columns = [&](const char* field, auto member, Json object = Json::object()) {
+      for (const Fitted::Column& column : fit.columns) {
+        Json values = Json::array();
+        for (const std::optional<double>& x : column.*member)
+          values.push_back(x ? number(field, *x) : Json(nullptr));
+        append(object, column.name, std::move(values));
+      }
+      append(object_, field, std::move(object));
+    };
+    Json times = Json::object();
+    append(times, "t", Json(fit.t));
+    columns("residuals", &Fitted::Column::residual, std::move(times));
+    columns("observed", &Fitted::Column::observed);
+    const auto known = [](const Fitted::Column& column) {
+      return std::ranges::any_of(column.sigma, [](const auto& x) { return x.has_value(); });
+    };
+    if (std::ranges::any_of(fit.columns, known)) columns("sigma", &Fitted::Column::sigma);
   }
 
   /// The ends of elements of a scheme that was asked for.
@@ -259,7 +252,7 @@ class Fields {
 
   Json momentum(const std::string& field, const std::vector<double>& values) const {
     if (values.size() != result_.names.size()) {
-      if (!converged_) return nullptr;
+      if (!converged_ || values.empty()) return nullptr;  // infinite where L is
       throw std::invalid_argument(
           fmt::format("{} has {} entries for {} coordinates", field, values.size(), result_.names.size()));
     }
@@ -279,7 +272,7 @@ class Fields {
 
   Json number(const std::string& field, double value) const {
     if (std::isfinite(value)) return value;
-    if (converged_) refuse(field, value);
+    if (converged_) refuse_number(field, value);
     return nullptr;
   }
 
@@ -287,48 +280,6 @@ class Fields {
   bool converged_;
   Json object_ = Json::object();
 };
-
-void write_column(std::ostream& out, const std::string& indent, const std::string& key,
-                  const Column& column) {
-  const auto bad = std::find_if_not(column.begin(), column.end(), [](double x) { return std::isfinite(x); });
-  if (bad != column.end()) refuse(fmt::format("samples.{}[{}]", key, bad - column.begin()), *bad);
-  out << indent << dumped(key) << ": " << dumped(column);
-}
-
-/// A list of columns, one for each constraint; nothing without constraints.
-void write_forces(std::ostream& out, const std::string& indent, const char* key,
-                  const std::vector<Column>& forces) {
-  if (forces.empty()) return;
-  Json lists = Json::array();
-  for (const Column& column : forces) {
-    if (const auto bad = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
-        bad != column.end())
-      refuse(fmt::format("samples.{}[{}]", key, bad - column.begin()), *bad);
-    lists.push_back(column);
-  }
-  out << ",\n" << indent << dumped(key) << ": " << dumped(lists);
-}
-
-/// Column by column: a tree of all the samples would cost several times their memory.
-void write_samples(std::ostream& out, const std::string& indent, const Samples& samples,
-                   const std::vector<std::string>& names) {
-  check_shape(samples, names);
-  const std::string inner = indent + "  ";
-  out << ",\n" << indent << "\"samples\": {\n";
-  write_column(out, inner, "t", samples.t);
-  const auto write_columns = [&](const std::vector<Column>& columns, auto key) {
-    for (std::size_t a = 0; a < names.size(); ++a) {
-      out << ",\n";
-      write_column(out, inner, key(names[a]), columns[a]);
-    }
-  };
-  write_columns(samples.q, [](const std::string& coordinate) { return coordinate; });
-  write_columns(samples.v, velocity_key);
-  write_columns(samples.p, momentum_key);
-  write_forces(out, inner, "constraint_forces", samples.constraint_forces);
-  write_forces(out, inner, "path_forces", samples.path_forces);
-  out << "\n" << indent << "}";
-}
 
 /// An object that begins where the stream is; its lines are indented by two more than `indent`.
 void write_object(std::ostream& out, const std::string& indent, const Result& result) {
@@ -340,6 +291,7 @@ void write_object(std::ostream& out, const std::string& indent, const Result& re
     separator = ",\n";
   }
   if (result.samples && result.solution.converged()) write_samples(out, inner, *result.samples, result.names);
+  write_surroundings(out, inner, result);
   if (result.solutions) {
     out << ",\n" << inner << "\"solutions\": [";
     for (std::size_t k = 0; k < result.solutions->size(); ++k) {

@@ -166,7 +166,7 @@ void add_obstacles(const Picture& picture, Panel& panel) {
   constexpr double thick = 5;
   std::vector<Curve> curves;
   for (const PlaneCurve& obstacle : picture.obstacles)
-    curves.push_back({obstacle.x, obstacle.y, obstacle_colour});
+    if (!obstacle.t) curves.push_back({obstacle.x, obstacle.y, obstacle_colour});
   const Samples& samples = picture.samples;
   const Column& across = samples.q.size() == 1 ? samples.t : samples.q[0];
   const Column& up = samples.q.size() == 1 ? samples.q[0] : samples.q[1];
@@ -201,7 +201,34 @@ Figure layout_of(const Picture& picture) {
   return picture.others.empty() ? time_figure(picture, groups) : coordinate_figure(picture);
 }
 
+/// Forces of contacts and of constraints against time, below everything else.
+void add_forces(const Picture& picture, Figure& figure) {
+  constexpr double force_height = 130, above = 30;
+  const ForceCurves forces = force_curves(picture);
+  if (forces.columns.empty() || !picture.others.empty()) return;
+  const TimePanel content{.label = {"force"}, .columns = forces.columns, .names = forces.names};
+  const Box box{20, figure.height + above, figure.width - 48, force_height};
+  for (Panel& panel : time_panels(axis_name(picture.annotation, "t"), picture.samples.t, {content}, box))
+    figure.panels.push_back(std::move(panel));
+  figure.height += above + force_height + bottom;
+}
+
 }  // namespace
+
+ForceCurves force_curves(const Picture& picture) {
+  ForceCurves found;
+  const auto add = [&](const std::vector<Column>& forces, const char* name) {
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      if (std::ranges::all_of(forces[k], [](double force) { return force == 0; })) continue;
+      found.columns.push_back(&forces[k]);
+      found.names.push_back(fmt::format("{} {}", name, k + 1));
+    }
+  };
+  add(picture.samples.path_forces, "contact");
+  add(picture.samples.constraint_forces, "constraint");
+  if (found.columns.size() > most_curves) return {};
+  return found;
+}
 
 Form form_of(const Picture& picture) {
   const std::size_t count = picture.names.size();
@@ -218,6 +245,7 @@ Figure layout(const Picture& picture) {
   const bool plane = picture.names.size() <= 2 && figure.panels.front().caption.empty();
   if (plane && (!picture.obstacles.empty() || !picture.contacts.empty()))
     add_obstacles(picture, figure.panels.front());
+  add_forces(picture, figure);
   return figure;
 }
 

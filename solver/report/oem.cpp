@@ -15,6 +15,7 @@ namespace extremal {
 namespace {
 
 constexpr int largest_degree = 7;  ///< of the interpolation that is advised: what readers have
+constexpr int decimals = 15;       ///< section 7.5.7: at most 16 digits, the point behind the first
 constexpr double latest = 9.2e18;  ///< nanoseconds from 1970 on that 64 bits hold
 
 /// Where the coordinates x, y, z of a body stand; −1: there is none.
@@ -92,7 +93,7 @@ std::string oem_text(const Units& units, const std::string& title, const std::ve
         for (const int a : bodies[b]) {
           const double value = a < 0 ? 0 : (velocity ? samples.v : samples.q)[a][k] * scales[velocity];
           if (!std::isfinite(value)) throw std::invalid_argument("[units] take the ephemeris out of range");
-          fmt::format_to(std::back_inserter(text), " {}", value);
+          fmt::format_to(std::back_inserter(text), " {:.{}e}", value, decimals);
         }
       text += '\n';
     }

@@ -45,9 +45,11 @@ PageData written(const Subject& subject) {
   return PageData::parse(text_of([&](std::ostream& out) { write_json(out, subject); }));
 }
 
-/// The columns of the picture stand for samples.
+/// The picture stands for samples and for what is drawn beside them.
 Result without_samples(Result result) {
   result.samples.reset();
+  result.annotation = {};
+  result.boundaries.clear();
   if (result.solutions)
     for (Result& each : *result.solutions) each.samples.reset();
   return result;
@@ -86,7 +88,7 @@ std::string page(const Result& result, const Picture& picture) {
 
 std::string page(const BranchPicture& picture) {
   require_pages();
-  return filled_page(branch_data(picture, written(picture.branch), true));
+  return filled_page(branch_data(picture, written(picture.branch), orbits_of(picture.branch)));
 }
 
 std::string page(const Comparison& comparison) {

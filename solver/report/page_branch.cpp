@@ -31,27 +31,29 @@ Samples orbit(const Trajectory& trajectory, int wanted) {
   return samples;
 }
 
-PageData orbits_of(const BranchPicture& picture) {
+PageData picture_of(const BranchPicture& picture, std::vector<Samples> orbits) {
   const FollowedBranch& branch = picture.branch;
-  const auto count = static_cast<int>(branch.points.size());
-  const int wanted = std::min(most_samples, most_in_all / count);
   Picture drawn{
       .title = branch.title, .names = branch.names, .samples = {}, .annotation = picture.annotation};
   std::vector<std::string> labels;
-  for (const BranchPoint& point : branch.points) {
+  for (const BranchPoint& point : branch.points)
     labels.push_back(fmt::format("{} = {:.6g}", branch.parameter, point.parameter));
-    Samples samples = orbit(point.solution.trajectory, wanted);
-    if (labels.size() == 1)
-      drawn.samples = std::move(samples);
-    else
-      drawn.others.push_back(std::move(samples));
-  }
+  drawn.samples = std::move(orbits.front());
+  orbits.erase(orbits.begin());
+  drawn.others = std::move(orbits);
   return page_picture(drawn, {labels, branch_colours(branch), true});
 }
 
 }  // namespace
 
-PageData branch_data(const BranchPicture& picture, PageData result, bool orbits) {
+std::vector<Samples> orbits_of(const FollowedBranch& branch) {
+  const int wanted = std::min(most_samples, most_in_all / static_cast<int>(branch.points.size()));
+  std::vector<Samples> orbits;
+  for (const BranchPoint& point : branch.points) orbits.push_back(orbit(point.solution.trajectory, wanted));
+  return orbits;
+}
+
+PageData branch_data(const BranchPicture& picture, PageData result, std::vector<Samples> orbits) {
   Figure diagram;
   diagram.panels.push_back(branch_diagram(picture, diagram.legend));
   PageData places = PageData::array(), colours = PageData::array();
@@ -65,7 +67,7 @@ PageData branch_data(const BranchPicture& picture, PageData result, bool orbits)
           {"title", branch.title},
           {"parameter", branch.parameter},
           {"result", std::move(result)},
-          {"picture", orbits ? orbits_of(picture) : PageData(nullptr)},
+          {"picture", orbits.empty() ? PageData(nullptr) : picture_of(picture, std::move(orbits))},
           {"diagram", page_figure(diagram)},
           {"places", std::move(places)},
           {"colours", std::move(colours)},

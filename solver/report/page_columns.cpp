@@ -67,10 +67,11 @@ std::size_t page_stride(const Picture& picture) {
   return (values + most_values - 1) / most_values;
 }
 
-PageData page_columns(const Samples& samples, std::size_t stride) {
+PageData page_columns(const Samples& samples, const std::vector<const Column*>& forces, std::size_t stride) {
   PageData columns = PageData::array();
   for (const auto* part : {&samples.q, &samples.v})
     for (const Column& values : *part) columns.push_back(column_data(thinned(values, stride)));
+  for (const Column* values : forces) columns.push_back(column_data(thinned(*values, stride)));
   return {{"t", encoded<std::uint64_t>(thinned(samples.t, stride))}, {"columns", std::move(columns)}};
 }
 

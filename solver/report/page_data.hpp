@@ -34,7 +34,7 @@ PageData page_figure(const Figure& figure);
 /// Every so many samples of a picture are kept, so that all of its columns make a page of moderate size.
 std::size_t page_stride(const Picture& picture);
 /// t, then all coordinates and velocities of one solution, as text: every `stride`th sample and the last.
-PageData page_columns(const Samples& samples, std::size_t stride);
+PageData page_columns(const Samples& samples, const std::vector<const Column*>& forces, std::size_t stride);
 
 /// How the solutions of a picture are told apart.
 struct PageSolutions {
@@ -49,8 +49,10 @@ PageData page_picture(const Picture& picture, const PageSolutions& solutions);
 /// The data of a result, of a search, a spectrum or a fit. `result` is what write_json() writes, samples left
 /// out; `actions` are those of all solutions.
 PageData solution_data(PageData result, const Picture& picture);
-/// Of a branch with orbits at its points, or without any.
-PageData branch_data(const BranchPicture& picture, PageData result, bool orbits);
+/// Of a branch with the orbits of its points, or without any.
+PageData branch_data(const BranchPicture& picture, PageData result, std::vector<Samples> orbits);
+/// What a page draws of each point: fewer samples of many, but some in each element.
+std::vector<Samples> orbits_of(const FollowedBranch& branch);
 PageData comparison_data(const Comparison& comparison, PageData result);
 
 /// The page of such data.

@@ -20,6 +20,17 @@ PageData range_data(const std::vector<Extent>& ranges) {
   return list;
 }
 
+/// Columns of a lone solution behind those of velocities.
+ForceCurves page_forces(const Picture& picture) {
+  return picture.others.empty() && !picture.samples.v.empty() ? force_curves(picture) : ForceCurves{};
+}
+
+PageData curve_data(const PlaneCurve& curve) {
+  PageData data{{"x", curve.x}, {"y", curve.y}};
+  if (curve.t) data["t"] = *curve.t;
+  return data;
+}
+
 /// The views and panels of a picture. Columns are told by their numbers in page_columns().
 class Views {
  public:
@@ -27,6 +38,7 @@ class Views {
       : picture_(picture), family_(family), all_(solutions_of(picture)), groups_(families(picture.names)) {
     if (std::optional<Bodies> found = bodies(picture.names)) paths(*found);
     if (panels_.empty()) profile(), curves();
+    forces();
     phases();
   }
 
@@ -48,13 +60,28 @@ class Views {
     panel["colours"] = std::move(colour_list);
     panel["names"] = names;
     std::vector<const Column*> values;
+    const std::size_t n = picture_.names.size();
     for (const Samples* samples : all_)
       for (const std::size_t column : columns)
-        values.push_back(column < picture_.names.size() ? &samples->q[column]
-                                                        : &samples->v[column - picture_.names.size()]);
+        values.push_back(column < n       ? &samples->q[column]
+                         : column < 2 * n ? &samples->v[column - n]
+                                          : page_forces(picture_).columns[column - 2 * n]);
     const Extent range = extent(values, 0.05);
     panel["range"] = {range.low, range.high};
+    if (n == 1 && columns.front() == 0 && !picture_.obstacles.empty()) {
+      panel["walls"] = PageData::array();
+      for (const PlaneCurve& wall : picture_.obstacles) panel["walls"].push_back(curve_data(wall));
+    }
     panels_.push_back(std::move(panel));
+  }
+
+  /// Forces of contacts and of constraints against time.
+  void forces() {
+    const ForceCurves found = page_forces(picture_);
+    if (found.columns.empty()) return;
+    std::vector<std::size_t> columns(found.columns.size());
+    std::iota(columns.begin(), columns.end(), 2 * picture_.names.size());
+    add_panel({"force"}, columns, distinct_colours(columns.size()), found.names);
   }
 
   /// Bodies in the plane or in space, without the axis along which none moves.
@@ -102,7 +129,7 @@ class Views {
     const bool one_body = found.places.size() == 1;
     PageData obstacles = PageData::array();
     if (found.axes.size() == 2)
-      for (const PlaneCurve& curve : seen.obstacles) obstacles.push_back({{"x", curve.x}, {"y", curve.y}});
+      for (const PlaneCurve& curve : seen.obstacles) obstacles.push_back(curve_data(curve));
     views_.push_back({{"kind", "path"},
                       {"axes", std::move(axes)},
                       {"equal", around.lengths && comparable(extents)},
@@ -223,10 +250,12 @@ PageData page_picture(const Picture& picture, const PageSolutions& solutions) {
   if (!picture.samples.v.empty())
     for (const std::string& name : picture.names)
       columns.push_back(page_axis(axis_name(picture.annotation, velocity_key(name))));
+  const ForceCurves forces = page_forces(picture);
+  for (const std::string& name : forces.names) columns.push_back(page_axis({name}));
   const std::vector<const Samples*> all = solutions_of(picture);
   const std::size_t stride = page_stride(picture);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    PageData solution = page_columns(*all[k], stride);
+    PageData solution = page_columns(*all[k], forces.columns, stride);
     solution["label"] = solutions.labels.at(k);
     solution["colour"] = css_colour(solutions.colours.at(k));
     list.push_back(std::move(solution));

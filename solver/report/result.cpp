@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace extremal {
@@ -23,6 +24,14 @@ void check_columns(const char* what, const std::vector<Column>& columns, const S
 }
 
 }  // namespace
+
+std::size_t first_not_finite(const Column& column, bool open_start, bool open_end) {
+  for (std::size_t k = 0; k < column.size(); ++k) {
+    const bool open = (open_start && k == 0) || (open_end && k + 1 == column.size());
+    if (!std::isfinite(column[k]) && !(open && std::isnan(column[k]))) return k;
+  }
+  return column.size();
+}
 
 std::string velocity_key(const std::string& coordinate) { return coordinate + "'"; }
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "solution/solution.hpp"
+#include "study/annotation.hpp"
+#include "study/obstacles.hpp"
 #include "study/spectra.hpp"
 
 /// \file What is reported: a solution with the names of its coordinates and, on request, samples.
@@ -25,10 +27,15 @@ struct Samples {
   std::vector<Column> constraint_forces = {};
   /// With inequalities g_k >= 0 along the path: μ_k(t) >= 0, ∂L/∂q − d/dt ∂L/∂q' = Σ μ_k ∂g_k/∂q.
   std::vector<Column> path_forces = {};
+  /// L is infinite at an end that is in the first or the last row: velocities and momenta there are NaN.
+  bool open_start = false, open_end = false;
 
   std::size_t count() const { return t.size(); }
   std::size_t coordinates() const { return q.size(); }
 };
+
+/// Index of the first entry that is not finite, else the size. NaN is allowed at ends that are open.
+std::size_t first_not_finite(const Column& column, bool open_start = false, bool open_end = false);
 
 /// What a fit found beside its trajectory.
 struct Fitted {
@@ -57,7 +64,10 @@ struct Result {
   std::optional<std::vector<Result>> solutions = {};
   std::optional<SolutionSpectrum> spectrum = {};  ///< where it was asked for
   std::optional<Fitted> fit = {};                 ///< likewise
-  int natural_conditions = 0;                     ///< at the ends, of a problem that is not periodic
+  /// What pictures show beside the samples: units and centres of the system, boundaries of inequalities.
+  Annotation annotation = {};
+  std::vector<PlaneCurve> boundaries = {};
+  int natural_conditions = 0;  ///< at the ends, of a problem that is not periodic
 };
 
 /// Keys in JSON and CSV: "x[1]'" and "p_x[1]".

@@ -23,6 +23,14 @@ bool returns(const Samples& samples, const Bodies& bodies);
 enum class Form { lone, paths, map, curves };
 Form form_of(const Picture& picture);
 
+/// Forces of contacts and of constraints that are not zero throughout, of the first solution, if they are
+/// few.
+struct ForceCurves {
+  std::vector<const Column*> columns;
+  std::vector<std::string> names;
+};
+ForceCurves force_curves(const Picture& picture);
+
 /// "S = 1.235" with as many digits as tell neighbours apart, but no more than eight.
 std::vector<std::string> action_texts(const Column& actions);
 

@@ -148,15 +148,6 @@ std::string solutions_text(const Result& result) {
   return fmt::format("\n{}", plain_text(table));
 }
 
-/// Lines that leave more than this of the largest do not describe a motion.
-constexpr double resolved_part = 0.01;
-
-double largest_amplitude(const Spectrum& spectrum) {
-  double largest = 0;
-  for (const SpectralLine& line : spectrum.lines) largest = std::max(largest, line.amplitude);
-  return largest;
-}
-
 /// A row for each line of each coordinate.
 std::string spectrum_text(const Result& result) {
   using Align = Table::Align;
@@ -172,8 +163,6 @@ std::string spectrum_text(const Result& result) {
       rest.add_number(fmt::format("drift of {}", result.names[a]), spectrum.motion.drift[a]);
     const Spectrum& lines = spectrum.motion.coordinates[a];
     rest.add_small(fmt::format("left of {}", result.names[a]), lines.residual);
-    if (lines.residual > resolved_part * largest_amplitude(lines))
-      rest.add("", "not resolved: too short an arc, too few lines, or a motion without lines");
     if (!spectrum.flat_norm.empty())
       rest.add_number(fmt::format("flat norm of {}", result.names[a]), spectrum.flat_norm[a]);
   }

@@ -75,8 +75,14 @@ std::pair<std::string, Location> unquoted(const Location& at) {
 }
 
 [[noreturn]] void refuse_text(const Location& at, std::string_view description) {
-  if (const auto [value, begin] = unquoted(at); !value.empty())
+  if (const auto [value, begin] = unquoted(at); !value.empty()) {
+    double number = 0;
+    const auto [after, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    if (error == std::errc::result_out_of_range)
+      throw SceneError(
+          begin, fmt::format("{} is out of the range of numbers, whose size is 2.3e-308 to 1.8e308", value));
     throw SceneError(begin, fmt::format("texts and formulas are written in quotes: \"{}\"", value));
+  }
   throw SceneError(at, readable(description));
 }
 

@@ -45,19 +45,11 @@ void check_system(const SystemTable& system) {
   if (!system.lagrangian && !system.hamiltonian)
     throw SceneError(
         system.at, "[system] has no 'lagrangian'; write one, or a 'hamiltonian', or name a system by 'use'");
-  if (system.hamiltonian && !system.force.empty())
-    throw SceneError(
-        system.force.front().name_at,
-        "forces act on a system that a Lagrangian describes, and this one has a Hamiltonian; write "
-        "its 'lagrangian' instead");
   if (system.hamiltonian && !system.constraints.empty())
     throw SceneError(
         position(system.constraints.front(), 0),
         "constraints hold a system that a Lagrangian describes, and this one has a Hamiltonian; write "
         "its 'lagrangian' instead");
-  if (!system.constraints.empty() && !system.force.empty())
-    throw SceneError(position(system.constraints.front(), 0),
-                     "constraints and forces together are not available yet; leave one of them out");
   if (system.curvature && system.curvature->value < 0)
     throw SceneError(system.curvature->at,
                      fmt::format("curvature = {}; need 0 or more", system.curvature->value));

@@ -128,23 +128,31 @@ std::vector<AboutEntry> notes_of(const Document& document) {
   return notes;
 }
 
-/// The scenes that use a system, in the working folder and in those of scenes; the first of a name counts.
-std::vector<std::string> scenes_of(const std::string& system) {
-  std::map<std::string, std::string> found;
-  std::vector<fs::path> places = folders("scenes");
-  places.insert(places.begin(), fs::path("."));
+/// The scenes in these folders, or those of them that use a system; the first of a name counts.
+std::map<std::string, SceneFile> scenes_in(const std::vector<fs::path>& places,
+                                           const std::optional<std::string>& system = {}) {
+  std::map<std::string, SceneFile> found;
   for (const fs::path& folder : places)
     for (const fs::path& file : toml_files(folder)) {
+      const std::string name = file.stem().string();
+      if (found.count(name)) continue;
       try {
         const Document document = parse_document(read_source(file.string()));
-        const std::string use = document.root["system"]["use"].value_or(std::string());
-        if (is_scene(document) && fs::path(use).stem() == system)
-          found.emplace(file.filename().string(), file.lexically_normal().string());
+        const fs::path use = document.root["system"]["use"].value_or(std::string());
+        if (is_scene(document) && (!system || use.stem() == *system))
+          found[name] = {name, file.lexically_normal().string(), use.stem().string()};
       } catch (const SceneError&) {  // this file is no scene
       }
     }
+  return found;
+}
+
+/// The scenes that use a system, in the working folder and in those of scenes.
+std::vector<std::string> scenes_of(const std::string& system) {
+  std::vector<fs::path> places = folders("scenes");
+  places.insert(places.begin(), fs::path("."));
   std::vector<std::string> paths;
-  for (const auto& [name, path] : found) paths.push_back(path);
+  for (const auto& [name, scene] : scenes_in(places, system)) paths.push_back(scene.path);
   return paths;
 }
 
@@ -177,11 +185,19 @@ SystemTable read_system(const Text& use, const std::string& scene_path) {
       use.value, known);
 }
 
-SystemDescription describe_system(const std::string& name) {
+std::vector<SceneFile> scene_files() {
+  std::vector<SceneFile> list;
+  for (auto& [name, scene] : scenes_in(folders("scenes"))) list.push_back(std::move(scene));
+  return list;
+}
+
+SystemDescription describe_system(const std::string& name, const std::string& command) {
   const auto found = find_system(name, "");
   if (!found) {
-    const auto argument = std::make_shared<Source>(Source{"extremal list", "", false});
-    throw UnknownName({argument, 0, 0}, fmt::format("there is no system '{}'", name), name, system_names());
+    const auto argument = std::make_shared<Source>(Source{command, "", false});
+    throw UnknownName({argument, 0, 0},
+                      fmt::format("there is no system '{}' among those that 'extremal list' names", name),
+                      name, system_names());
   }
   const std::string stem = found->path.stem().string();
   return {stem, found->path.string(), notes_of(found->document), table_of(*found), scenes_of(stem)};

@@ -37,8 +37,17 @@ struct SystemDescription {
   std::vector<std::string> scenes;  ///< paths of the scenes that use it
 };
 
-/// The system file of a name in the working folder or as above. Throws as read_system does.
-SystemDescription describe_system(const std::string& name);
+/// The system file of a name in the working folder or as above. Throws as read_system does; `command` is
+/// what the name was given to.
+SystemDescription describe_system(const std::string& name, const std::string& command);
+
+/// A scene of the library, and the name of the system file that it uses, if it does.
+struct SceneFile {
+  std::string name, path, system;
+};
+
+/// Every scene in the directories that find_scene() looks into, by name; the first of a name counts.
+std::vector<SceneFile> scene_files();
 
 /// The path of a scene of the library, with or without ".toml": in the directories of EXTREMAL_PROBLEMS (and
 /// scenes/ in them), installed and in the source; "" if there is none.

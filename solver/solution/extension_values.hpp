@@ -10,6 +10,7 @@
 namespace extremal {
 
 class Lagrangian;
+class Manifold;
 
 /// Time of a waypoint and, of its fixed coordinates, the momentum after it less that before.
 struct WaypointImpulse {
@@ -22,6 +23,7 @@ struct ExtensionValues {
   std::vector<double> integral_multipliers;              ///< ν of L + Σ ν g
   std::vector<WaypointImpulse> waypoints;
   std::shared_ptr<const Lagrangian> lagrangian;  ///< L + Σ ν g at these values
+  std::shared_ptr<const Manifold> manifold{};    ///< of constraints, at these values; null: there are none
 };
 
 }  // namespace extremal

@@ -11,3 +11,14 @@ inline constexpr double most_moved = 100, roundings = 1e-12;
 inline constexpr double real = 1e-6;
 
 }  // namespace extremal::limits::on_manifold
+
+namespace extremal::limits::minimal {
+
+/// Between its nodes a polynomial of q differs from q(u) by no more than this part of the error of u, or of
+/// the tolerance; else it gets a higher degree, by so much.
+inline constexpr double between_nodes = 0.1;
+inline constexpr int raise = 4;
+/// Ends may miss their relation by this part of what stands in it: decimals that a scene gives.
+inline constexpr double relation_missed = 1e-7;
+
+}  // namespace extremal::limits::minimal

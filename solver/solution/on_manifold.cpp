@@ -45,8 +45,13 @@ void refuse_off_manifold(double moved, Solution& solution) {
       limits::on_manifold::most_moved * solution.error_estimate + limits::on_manifold::roundings * size)
     return;
   solution.status = Status::not_converged;
-  solution.message = fmt::format(
-      "the path found is off the constraints by {:.1e}; give a guess that is nearer to a solution", moved);
+  solution.message =
+      std::isfinite(moved)
+          ? fmt::format(
+                "the path found is off the constraints by {:.1e}, its error is {:.1e}; give another guess",
+                moved, solution.error_estimate)
+          : "the path found is so far off the constraints that it cannot be moved onto them; give another "
+            "guess";
 }
 
 /// The momentum of L at an end, of which that of L̃ is the projection.

@@ -28,6 +28,7 @@ double checked_time(double t, double duration) {
 double local_time(const Trajectory& trajectory, int k, double t) {
   const double start = trajectory.times[k], h = trajectory.times[k + 1] - start;
   const double tau = std::min((t - start) / h, 1.0);
+  if (tau == 1) return tau;  // nodes before the end may round to it
   const std::vector<double>& nodes = lobatto_barycentric(trajectory.degree).nodes;
   const auto above = std::lower_bound(nodes.begin(), nodes.end(), tau);
   for (auto node = above == nodes.begin() ? above : above - 1; node != nodes.end() && node <= above; ++node)

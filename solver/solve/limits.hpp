@@ -48,4 +48,43 @@ inline constexpr double momentum_tolerances = 10, tightest_for_momenta = 1e-13;
 
 }  // namespace phase_space
 
+namespace minimal_solve {
+
+/// Of the time there is, what minimal coordinates may take: beside a chart the other way is left.
+inline constexpr double share = 0.3;
+/// Tolerance of a march that is to tell whether a motion stays in the chart.
+inline constexpr double coarse = 1e-4;
+
+}  // namespace minimal_solve
+
+namespace reversed_solve {
+
+/// Motions that vary in a shorter part of T next to the end are run backwards: times next to T differ by
+/// 1e-16 of it, and a layer has many elements.
+inline constexpr double thinnest = 1e-14;
+/// The last element of a path whose layer no time can tell, by T.
+inline constexpr double least_length = 1e-15;
+
+}  // namespace reversed_solve
+
+namespace singular_solve {
+
+/// Elements of a path in t towards a singular end: each is this part of the time to it, so that powers of
+/// the time are polynomials of this degree to 1e-12.
+inline constexpr double shrinking = 0.5;
+inline constexpr int degree = 16;
+/// The first one and the last one, by the duration; times near T have fewer digits.
+inline constexpr double nearest = 1e-18, nearest_to_end = 1e-14;
+/// Instants nearer to each other than this part of their distance from an end are one.
+inline constexpr double least_gap = 1e-3;
+/// Of a free duration: its first change and the largest one, as factors; durations tried; a change that is
+/// none, in tolerances.
+inline constexpr double first_change = 1.01, largest_change = 2;
+inline constexpr int most_durations = 60;
+inline constexpr double same_duration = 1e-3;
+/// What closes it holds to so many tolerances.
+inline constexpr double closing_tolerances = 10;
+
+}  // namespace singular_solve
+
 }  // namespace extremal::limits

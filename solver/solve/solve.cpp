@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "problem/extension.hpp"
+#include "problem/manifold.hpp"
+#include "solution/extension_values.hpp"
 #include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/acceptance.hpp"
@@ -16,11 +20,15 @@
 #include "solve/guessed_by.hpp"
 #include "solve/infinite_solve.hpp"
 #include "solve/march/initial_motion.hpp"
+#include "solve/minimal_solve.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/phase_space_solve.hpp"
+#include "solve/reversed_solve.hpp"
 #include "solve/search/distinct.hpp"
 #include "solve/search/search.hpp"
 #include "solve/search/several.hpp"
+#include "solve/singular_solve.hpp"
+#include "system/deferred_lagrangian.hpp"
 
 namespace extremal {
 
@@ -30,6 +38,27 @@ using Clock = std::chrono::steady_clock;
 
 /// Of the time there is, where what a search finds is then to be solved for with a scheme.
 constexpr double search_share = 0.7;
+
+/// The largest of the values that a problem with an extension gives.
+double given_size(const Problem& problem) {
+  double size = 0;
+  const auto take = [&](double x) { size = std::max(size, std::abs(x)); };
+  std::ranges::for_each(problem.ends.offset, take);
+  std::ranges::for_each(problem.guess.q, take);
+  for (const WaypointCondition& waypoint : problem.extension->waypoints)
+    for (const auto& [coordinate, value] : waypoint.fixed) take(value);
+  return size;
+}
+
+/// Several solutions of a problem with an extension.
+std::vector<Solution> bordered_all(const Problem& problem, const SolveOptions& options, int most) {
+  const bool orbits = problem.periodic && problem.lagrangian->structure().autonomous;
+  const double size = given_size(problem), tolerance = options.tolerance;
+  return solve_bordered_all(problem, options, most, [=](const Solution& a, const Solution& b) {
+    if (orbits) return same_orbit(a, b, tolerance);
+    return same_path(a, b, tolerance, size) || same_continuum(a, b, tolerance);
+  });
+}
 
 /// Newton's method on the part of an orbit that its symmetries leave to be found, continued to the whole.
 Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Workspace& w) {
@@ -74,12 +103,40 @@ std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions
   return solution->converged() ? std::move(solution) : std::nullopt;
 }
 
+Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w);
+
+/// From the guess. Where that does not lead to an extremal, from the one that is found without the scheme.
+Solution solve_with_scheme(const Problem& problem, const SolveOptions& options, Workspace& w,
+                           Clock::time_point start) {
+  const auto from_guess = [&](const Problem& given, const SolveOptions& how, bool& astray) {
+    Outcome outcome = PinnedSolve(given, how, w).run();
+    astray = outcome.astray;
+    return judged(given, how, outcome, w, start);
+  };
+  bool astray = false;
+  Solution solution = from_guess(problem, options, astray);
+  if (!astray) return solution;
+  SolveOptions adaptive = options;
+  adaptive.scheme.reset();
+  adaptive.elements = 0;
+  adaptive.free_steps = false;
+  adaptive.deadline = options.deadline.share(search_share);
+  const Solution guide = solve_once(problem, adaptive, w);
+  if (!guide.converged()) return solution;
+  w.levels.bind(problem.lagrangian);
+  Solution found = from_guess(guessed_by(problem, guide), options, astray);
+  if (!found.converged()) return solution;
+  found.strategy = guide.strategy + ", then the scheme from there";
+  found.iterations += solution.iterations + guide.iterations;
+  return found;
+}
+
 /// As the options ask: with a scheme of their own, by the part of a symmetric orbit, or by a search.
 Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w) {
   if (problem.initial) return solve_initial(problem, options);
   const auto start = Clock::now();
   w.levels.bind(problem.lagrangian);
-  if (options.scheme) return judged(problem, options, PinnedSolve(problem, options, w).run(), w, start);
+  if (options.scheme) return solve_with_scheme(problem, options, w, start);
   int spent = 0;
   if (problem.reduction)
     if (std::optional<Solution> solution = solve_by_part(problem, options, w, start, spent))
@@ -107,13 +164,42 @@ Solution solve_finite(const Problem& problem, const SolveOptions& options, Works
   return solution;
 }
 
+/// In variables in which ends are regular where L is infinite.
+Solution solve_singular(const Problem& problem, const EndVariables& variables, const SolveOptions& options,
+                        Workspace& w) {
+  const auto at_given_duration = [&](const Problem& fixed) {
+    EndVariables there = variables;
+    there.duration = fixed.duration.value;
+    return in_time(fixed, there, solve_once(smoothed(fixed, there), options, w));
+  };
+  return problem.duration.free ? solve_for_duration(problem, options, at_given_duration)
+                               : at_given_duration(problem);
+}
+
 /// On the whole time axis, where ends are at infinity.
 Solution solve_any(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  if (!options.scheme)
+    if (const std::optional<EndVariables> variables = singular_ends(problem))
+      return solve_singular(problem, *variables, options, w);
+  if (!options.scheme && has_layer_at_end(problem))
+    return reversed(problem, solve_once(reversed(problem), options, w));
   if (!problem.infinite) return solve_once(problem, options, w);
   return solve_infinite(problem, options,
                         [&w](const Problem& part, const SolveOptions& how, bool near_guess) {
                           return solve_finite(part, how, w, near_guess);
                         });
+}
+
+/// From the guess alone, by the part of a symmetric orbit or the whole.
+Solution solve_near_guess(const Problem& given, const SolveOptions& how, Workspace& w) {
+  int spent = 0;
+  if (given.reduction) {
+    w.levels.bind(given.lagrangian);
+    if (auto solution = solve_by_part(given, how, w, Clock::now(), spent)) return *std::move(solution);
+  }
+  Solution solution = solve_finite(given, how, w, true);
+  solution.iterations += spent;
+  return solution;
 }
 
 /// In phase space; from the guess alone first, by the part of a symmetric orbit or the whole.
@@ -122,15 +208,7 @@ Solution solve_phase_space(const Problem& problem, const SolveOptions& options, 
                               [&w](const Problem& given, const SolveOptions& how, bool near_guess) {
                                 if (!near_guess || given.initial || how.scheme)
                                   return solve_once(given, how, w);
-                                int spent = 0;
-                                if (given.reduction) {
-                                  w.levels.bind(given.lagrangian);
-                                  if (auto solution = solve_by_part(given, how, w, Clock::now(), spent))
-                                    return *std::move(solution);
-                                }
-                                Solution solution = solve_finite(given, how, w, true);
-                                solution.iterations += spent;
-                                return solution;
+                                return solve_near_guess(given, how, w);
                               });
 }
 
@@ -139,10 +217,26 @@ ArcSolve arc_solve(Workspace& w) {
   return [&w](const Problem& part, const SolveOptions& how) {
     SolveOptions quiet = how;
     quiet.progress = nullptr;
+    if (part.extension) return solve_bordered(part, quiet);
     Solution solution = solve_finite(part, quiet, w, true);
     if (part.manifold) move_onto_manifold(part, solution);
     return solution;
   };
+}
+
+/// With forces, given the solution of both copies.
+Solution one_of_copies(const Problem& problem, Solution pair, const SolveOptions& options) {
+  Solution solution = one_copy(problem, std::move(pair), options.scheme ? &*options.scheme : nullptr);
+  if (problem.manifold) move_onto_manifold(problem, solution);
+  return solution;
+}
+
+/// On the manifold that the constants of a solution have.
+void on_manifold_found(const Problem& problem, Solution& solution) {
+  if (!solution.extension || !solution.extension->manifold) return move_onto_manifold(problem, solution);
+  Problem found = problem;
+  found.manifold = solution.extension->manifold;
+  move_onto_manifold(found, solution);
 }
 
 }  // namespace
@@ -157,8 +251,7 @@ Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
 Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
-  if (problem.pair)
-    return one_copy(problem, solve(*problem.pair, options), options.scheme ? &*options.scheme : nullptr);
+  if (problem.pair) return one_of_copies(problem, solve(*problem.pair, options), options);
   std::vector<Iteration> history;
   history.reserve(32);
   SolveOptions recording = options;
@@ -167,26 +260,49 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     if (options.progress) options.progress(step);
   };
   Workspace& w = memory_->workspace;
-  Solution solution = problem.extension      ? solve_bordered(problem, recording)
-                      : problem.phase        ? solve_phase_space(problem, recording, w)
-                      : problem.inequalities ? solve_with_inequalities(problem, recording, arc_solve(w))
-                                             : solve_any(problem, recording, w);
-  if (problem.manifold) move_onto_manifold(problem, solution);
+  if (problem.manifold && !problem.inequalities) {
+    const bool only = problem.manifold->parts().only_minimal;
+    const auto solve_there = [&w, only](const Problem& there, const SolveOptions& how) {
+      return there.initial || only ? solve_once(there, how, w) : solve_near_guess(there, how, w);
+    };
+    if (std::optional<Solution> solution = solve_minimal(problem, recording, solve_there)) {
+      solution->history = std::move(history);
+      return *std::move(solution);
+    }
+    history.clear();
+  }
+  if (problem.manifold)
+    if (auto made = as_made(problem.lagrangian); made != problem.lagrangian) {
+      Problem whole = problem;
+      whole.lagrangian = std::move(made);
+      return solve(whole, options);
+    }
+  Solution solution = problem.inequalities ? solve_with_inequalities(problem, recording, arc_solve(w))
+                      : problem.extension  ? solve_bordered(problem, recording)
+                      : problem.phase      ? solve_phase_space(problem, recording, w)
+                                           : solve_any(problem, recording, w);
+  if (problem.manifold && !problem.inequalities) on_manifold_found(problem, solution);
   solution.history = std::move(history);
   return solution;
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
-  if (problem.initial || problem.extension || problem.phase) return {solve(problem, options)};
+  const bool single = problem.manifold && problem.manifold->parts().only_minimal;
+  if (!problem.inequalities && (single || problem.initial || problem.phase)) return {solve(problem, options)};
   if (problem.pair) {
     std::vector<Solution> found = solve_all(*problem.pair, options, most);
-    for (Solution& solution : found)
-      solution = one_copy(problem, std::move(solution), options.scheme ? &*options.scheme : nullptr);
+    for (Solution& solution : found) solution = one_of_copies(problem, std::move(solution), options);
     sort_by_action(found);
     return found;
   }
   Workspace& w = memory_->workspace;
+  if (auto made = as_made(problem.lagrangian); made != problem.lagrangian) {
+    Problem whole = problem;
+    whole.lagrangian = std::move(made);
+    return solve_all(whole, options, most);
+  }
   if (problem.inequalities) return minimisers(problem, options, most, arc_solve(w));
+  if (problem.extension) return bordered_all(problem, options, most);
   w.levels.bind(problem.lagrangian);
   SolveOptions adaptive = options;
   adaptive.scheme.reset();

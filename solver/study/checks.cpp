@@ -5,144 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear/dense.hpp"
 #include "machine/simd.hpp"
 #include "problem/nearby.hpp"
-#include "system/hamiltonian.hpp"
 
 namespace extremal {
 namespace {
-
-constexpr int tries = 64;
-constexpr int largest_dense = 200;  ///< matrices that eigenvalues are taken of
-constexpr double singular = 1e-12;
-
-/// The smallest eigenvalue over the largest, in modulus, of the mass matrix brought to unit rows; `weak` is
-/// the coordinate that its eigenvector has most of.
-double regularity(Eigen::MatrixXd mass, int& weak) {
-  for (int pass = 0; pass < 4; ++pass) {
-    Eigen::VectorXd row = mass.cwiseAbs().rowwise().maxCoeff();
-    for (double& r : row) r = r > 0 ? 1 / std::sqrt(r) : 1;
-    mass = row.asDiagonal() * mass * row.asDiagonal();
-  }
-  const SymmetricEigen eigen = symmetric_eigen(mass);
-  const Eigen::VectorXd size = eigen.values.cwiseAbs();
-  Eigen::Index smallest;
-  const double least = size.minCoeff(&smallest);
-  eigen.vectors.col(smallest).cwiseAbs().maxCoeff(&weak);
-  return size.maxCoeff() > 0 ? least / size.maxCoeff() : 0;
-}
-
-/// A coordinate without any second derivative by its velocity, or -1.
-int massless(const Structure& structure) {
-  const int n = structure.coordinates;
-  std::vector<char> has(n, 0);
-  for (const Triplet& m : structure.mass)
-    if (m.value != 0) has[m.row] = has[m.column] = 1;
-  for (const HessianEntry& h : structure.hessian)
-    if (h.row >= n && h.column >= n) has[h.row - n] = has[h.column - n] = 1;
-  const auto found = std::find(has.begin(), has.end(), 0);
-  return found == has.end() ? -1 : static_cast<int>(found - has.begin());
-}
-
-/// Whether q'·∂L/∂q' = L, but L²/2 is regular: L gives the length of a path.
-bool is_length(const Problem& problem) {
-  constexpr int needed = 8;
-  constexpr double roundoff = 1e-10, singular = 1e-10;
-  const int n = problem.coordinates();
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, v;
-  int found = 0, weak = 0;
-  for (int k = 0; k < tries && found < needed; ++k) {
-    const double t = points.next(q, v);
-    const PointValues at = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
-    const Eigen::Map<const Eigen::VectorXd> p(at.dv.data(), n);
-    const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
-    if (!std::isfinite(at.value) || !p.allFinite() || !mass.allFinite() || at.value == 0) continue;
-    const double work = p.dot(Eigen::Map<const Eigen::VectorXd>(v.data(), n));
-    if (!(std::abs(work - at.value) <= roundoff * std::abs(at.value))) return false;
-    if (!(regularity(p * p.transpose() + at.value * mass, weak) > singular)) return false;
-    ++found;
-  }
-  return found == needed;
-}
-
-[[noreturn]] void refuse_irregular(const Problem& problem, int coordinate, const Location& at) {
-  if (is_length(problem))
-    throw SceneError(
-        at,
-        "the Lagrangian is homogeneous of degree one in the velocities: it determines the path, but "
-        "not the speed along it; take L^2/2, whose extremals are the same curves");
-  throw SceneError(
-      at, fmt::format("the Lagrangian is not regular: its second derivative by the velocities is singular, "
-                      "so the momenta do not determine {}'",
-                      problem.names[coordinate]));
-}
-
-/// Whether H_pp is regular, with one signature, at points about the guess, with momenta of any size.
-bool is_regular(const Problem& problem, const Lagrangian& hamiltonian) {
-  constexpr double sizes[] = {1, 0.1, 10};
-  const int n = problem.coordinates();
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, p;
-  int found = 0, weak = 0, first = -1;
-  for (int k = 0; k < tries; ++k) {
-    const double t = points.next(q, p);
-    for (double& component : p) component *= sizes[k % std::size(sizes)];
-    const PointValues values = evaluate_at(hamiltonian, q, p, t, Order::hessian, scratch);
-    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
-    if (!mass.allFinite()) continue;
-    ++found;
-    if (!(regularity(mass, weak) > singular)) continue;
-    const auto negative = static_cast<int>((symmetric_eigenvalues(mass).array() < 0).count());
-    if (first >= 0 && negative != first) return false;
-    first = negative;
-  }
-  return found == 0 || first >= 0;
-}
-
-/// Whether H_pp is finite and singular where momenta vanish, as that of p^4 is, or at initial data: motions
-/// come there.
-bool is_singular_at_rest(const Problem& problem, const Lagrangian& hamiltonian) {
-  const int n = problem.coordinates();
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, p;
-  const auto singular_at = [&](const std::vector<double>& momenta, double t) {
-    int weak = 0;
-    const PointValues values = evaluate_at(hamiltonian, q, momenta, t, Order::hessian, scratch);
-    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
-    return mass.allFinite() && !(regularity(mass, weak) > singular);
-  };
-  if (problem.initial) {
-    q = problem.initial->q;
-    if (singular_at(problem.initial->p, 0)) return true;
-  }
-  const double t = points.next(q, p);
-  return singular_at(std::vector<double>(n, 0), t);
-}
-
-/// A coordinate whose velocity the momenta do not determine near the guess, or -1.
-int irregular(const Problem& problem) {
-  constexpr int needed = 3;
-  const int n = problem.coordinates(), without = massless(problem.lagrangian->structure());
-  if (without >= 0 || n > largest_dense) return without;
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, v;
-  int found = 0, weak = 0;
-  for (int k = 0; k < tries && found < needed; ++k) {
-    const double t = points.next(q, v);
-    const PointValues values = evaluate_at(*problem.lagrangian, q, v, t, Order::hessian, scratch);
-    const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
-    if (!mass.allFinite()) continue;
-    if (regularity(mass, weak) > singular) return -1;
-    ++found;
-  }
-  return found == 0 ? -1 : weak;
-}
 
 std::string point_text(const Problem& problem, const double* q) {
   std::string text;
@@ -202,30 +69,27 @@ class GuessValues {
   double* rows_;
 };
 
+/// The first sample of the guess where L is not finite, or -1.
+int first_not_finite(const Problem& problem) {
+  const Guess& guess = problem.guess;
+  if (!guess.given()) return -1;
+  const int first = wholly_fixed(problem.ends, false),
+            after = static_cast<int>(guess.tau.size()) - wholly_fixed(problem.ends, true);
+  return GuessValues(problem).first_not_finite(first, after - first);
+}
+
 }  // namespace
+
+bool is_finite_on_guess(const Problem& problem) { return first_not_finite(problem) < 0; }
 
 void check_guess_finite(const Problem& problem, const Location& at) {
   const Guess& guess = problem.guess;
-  if (!guess.given()) return;
-  const int first = wholly_fixed(problem.ends, false),
-            after = static_cast<int>(guess.tau.size()) - wholly_fixed(problem.ends, true);
-  const int k = GuessValues(problem).first_not_finite(first, after - first);
+  const int k = first_not_finite(problem);
   if (k >= 0)
     throw SceneError(
         at,
         fmt::format("L is not finite on the guess at t = {:.6g}: {}", guess.tau[k] * problem.duration.value,
                     point_text(problem, guess.q.data() + std::size_t(k) * problem.coordinates())));
-}
-
-void check_regular(const Problem& problem, const SystemTable& system) {
-  if (system.hamiltonian) return;
-  if (const int found = irregular(problem); found >= 0) refuse_irregular(problem, found, system.law().at);
-}
-
-bool has_legendre_transform(const Problem& problem) {
-  const Lagrangian* hamiltonian = hamiltonian_of(*problem.lagrangian);
-  if (!hamiltonian || problem.coordinates() > largest_dense) return irregular(problem) < 0;
-  return is_regular(problem, *hamiltonian) && !is_singular_at_rest(problem, *hamiltonian);
 }
 
 void check_energy_at_ends(const Problem& problem, const Location& at) {

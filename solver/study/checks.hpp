@@ -11,13 +11,8 @@ namespace extremal {
 /// An end that the boundary relation fixes wholly is not the guess's.
 void check_guess_finite(const Problem& problem, const Location& at);
 
-/// Throws SceneError if ∂²L/∂q'∂q' of a Lagrangian is singular at every point tried near the guess: the
-/// velocities do not follow from the momenta.
-void check_regular(const Problem& problem, const SystemTable& system);
-
-/// Whether the momenta of a Hamiltonian follow from the velocities near the guess: ∂²H/∂p∂p is regular, and
-/// its eigenvalues do not change their signs.
-bool has_legendre_transform(const Problem& problem);
+/// Whether it would not.
+bool is_finite_on_guess(const Problem& problem);
 
 /// Throws SceneError at `at` if an end that is fixed wholly cannot have the energy that closes the duration:
 /// where L is convex in the velocities, E = q'·∂L/∂q' − L is least at rest, −L(q, 0).

@@ -23,12 +23,6 @@ const Location& place_of(const BoundaryTable& boundary, bool at_end) {
   return boundary.conditions.empty() ? boundary.at : boundary.conditions.front().at;
 }
 
-int rank_of(const MatrixXd& m) {
-  if (m.size() == 0) return 0;
-  const VectorXd values = singular_values(m);
-  return static_cast<int>((values.array() > rank * std::max(values[0], 1e-300)).count());
-}
-
 /// Both ends of a constrained problem.
 class ConstrainedEnds {
  public:
@@ -38,20 +32,24 @@ class ConstrainedEnds {
     m_ = manifold_.constraints();
   }
 
-  void settle() {
+  bool settle() {
     check_momenta();
     fit_fixed();
     for (const bool at_end : {false, true})
       if (fixed(at_end)) meet(at_end);
-    if (problem_.initial) return settle_initial();
-    if (problem_.periodic) return project_free();
-    if (suits()) {
-      if (!suits_nearby()) refuse_degenerate();
-      return project_free();
+    if (problem_.initial) {
+      settle_initial();
+      return true;
     }
-    pin_determined();
-    if (!suits()) refuse_partly_free();
-    project_free();
+    bool suited = problem_.periodic || suits();
+    if (!suited) {
+      pin_determined();
+      suited = suits();
+    } else if (!problem_.periodic && !suits_nearby()) {
+      refuse_degenerate();
+    }
+    if (suited) project_free();
+    return suited;
   }
 
  private:
@@ -92,15 +90,32 @@ class ConstrainedEnds {
                     vector(near_.end).lpNorm<Eigen::Infinity>());
   }
 
-  [[noreturn]] void refuse_missed(bool at_end) {
-    const ConstraintValues values = manifold_.at(point(at_end), time(at_end));
+  /// The constraint that a point misses most.
+  static Index worst_of(const ConstraintValues& values) {
     Index worst = 0;
     for (Index k = 1; k < values.g.size(); ++k)
       if (size(values, k) > size(values, worst)) worst = k;
+    return worst;
+  }
+
+  [[noreturn]] void refuse_missed(bool at_end) {
+    const ConstraintValues values = manifold_.at(point(at_end), time(at_end));
+    const Index worst = worst_of(values);
     throw SceneError(
         place_of(scene_.boundary, at_end),
         fmt::format("the {} does not satisfy the constraint '{}': left − right = {:.6g} there; give values "
                     "that do, or leave out coordinates that follow from the others",
+                    at_end ? "end" : "start", scene_.system.constraints[worst].value, values.g[worst]));
+  }
+
+  [[noreturn]] void refuse_unmet(bool at_end) {
+    const ConstraintValues values = manifold_.at(point(at_end), time(at_end));
+    const Index worst = worst_of(values);
+    throw SceneError(
+        place_of(scene_.boundary, at_end),
+        fmt::format("no point near the guess satisfies both the constraints and what is given at the {0}: of "
+                    "'{1}' left − right = {2:.6g} remains; give other values, or a guess whose {0} satisfies "
+                    "both",
                     at_end ? "end" : "start", scene_.system.constraints[worst].value, values.g[worst]));
   }
 
@@ -170,7 +185,8 @@ class ConstrainedEnds {
           manifold_.metric() * g.block(end * m_, end * n_, m_, n_).transpose();
     for (Index k = 0; k < across.cols(); ++k) across.col(k).normalize();
     both << z, across;
-    const int tangent = free - rank_of(g * z), normal = free + rank_of(across) - rank_of(both);
+    const int tangent = free - numerical_rank(g * z, rank),
+              normal = free + numerical_rank(across, rank) - numerical_rank(both, rank);
     return tangent + normal == free;
   }
 
@@ -179,7 +195,7 @@ class ConstrainedEnds {
   bool suits_nearby() {
     const std::vector<double> start = near_.start, end = near_.end;
     const MatrixXd z = directions();
-    double step = 0.01 * least_size();
+    double step = aside_part * least_size();
     for (Index k = 0; k < z.cols(); ++k) {
       for (int e = 0; e < 2 * n_; ++e) point(e >= n_)[e % n_] += step * z(e, k);
       step *= -0.9;  // no combination that is special
@@ -200,36 +216,58 @@ class ConstrainedEnds {
                     fmt::join(names, ", ")));
   }
 
-  /// Moves the ends onto the manifold within their relation, and fixes what no virtual displacement moves.
-  void pin_determined() {
+  /// Moves the ends to the nearest ones that satisfy their relation.
+  void put_on_relation(const MatrixXd& z) {
+    VectorXd away(2 * n_);
+    for (int e = 0; e < 2 * n_; ++e) away[e] = point(e >= n_)[e % n_] - problem_.ends.offset[e];
+    move(z * least_norm(z, away) - away);
+  }
+
+  void move(const VectorXd& by) {
+    for (int e = 0; e < 2 * n_; ++e) point(e >= n_)[e % n_] += by[e];
+  }
+
+  /// Newton's method along the free directions. The virtual displacements among these where it ends.
+  MatrixXd meet_along(const MatrixXd& z) {
     constexpr int most_steps = 50;
-    const MatrixXd z = directions();
     VectorXd g;
     MatrixXd by_free;
     for (int k = 0; k < most_steps; ++k) {
       by_free = slopes(&g) * z;
       const VectorXd step = z * least_norm(by_free, -g);
-      for (int e = 0; e < 2 * n_; ++e) point(e >= n_)[e % n_] += step[e];
+      move(step);
       if (step.norm() <= 1e-15 * std::max(vector(near_.start).norm(), vector(near_.end).norm())) break;
     }
-    for (const bool at_end : {false, true})
-      if (!(manifold_.distance(point(at_end), time(at_end)) <= end_distance * least_size()))
-        refuse_missed(at_end);
     const SingularValues parts = singular_value_decomposition(by_free);
-    const int found = rank_of(by_free);
-    const MatrixXd moving = z * parts.v.rightCols(parts.v.cols() - found);
-    const std::vector<int> home = problem_.ends.home;
-    for (const int e : home)
-      if (moving.cols() == 0 || moving.row(e).norm() <= rank * moving.norm())
-        problem_.boundary.fix(e % n_, e >= n_, point(e >= n_)[e % n_]);
-    solve_again();
+    return z * parts.v.rightCols(parts.v.cols() - numerical_rank(by_free, rank));
   }
 
-  [[noreturn]] void refuse_partly_free() const {
-    throw SceneError(
-        place_of(scene_.boundary, !std::ranges::any_of(problem_.ends.home, [&](int e) { return e < n_; })),
-        "this end is fixed in part, and constraints link what is fixed with what is free; such ends are not "
-        "available yet: give all coordinates of the end, or none");
+  /// Moves the ends onto the manifold within their relation, and fixes what no virtual displacement moves,
+  /// there and beside it: where z = 1/2 is given on the unit sphere, x is at an extremum at y = 0, but is not
+  /// fixed.
+  void pin_determined() {
+    const MatrixXd z = directions();
+    put_on_relation(z);
+    const MatrixXd here = meet_along(z);
+    for (const bool at_end : {false, true})
+      if (!(manifold_.distance(point(at_end), time(at_end)) <= end_distance * least_size()))
+        refuse_unmet(at_end);
+    const EndPoints met = near_;
+    MatrixXd beside = here;
+    if (here.cols() > 0) {
+      VectorXd aside = here.col(0);
+      for (Index k = 1; k < here.cols(); ++k) aside += (k % 2 ? -0.9 : 0.8) * here.col(k);
+      move(aside_part * least_size() * aside);
+      beside = meet_along(z);
+      near_ = met;
+    }
+    const auto held = [](const MatrixXd& moving, int e) {
+      return moving.cols() == 0 || moving.row(e).norm() <= rank * moving.norm();
+    };
+    const std::vector<int> home = problem_.ends.home;
+    for (const int e : home)
+      if (held(here, e) && held(beside, e)) problem_.boundary.fix(e % n_, e >= n_, point(e >= n_)[e % n_]);
+    solve_again();
   }
 
   /// Free ends near the manifold.
@@ -268,8 +306,17 @@ EndPoints end_points(const Problem& problem) {
   return points;
 }
 
-void settle_ends(const Scene& scene, EndPoints& near, Problem& problem) {
-  ConstrainedEnds(scene, near, problem).settle();
+bool settle_ends(const Scene& scene, EndPoints& near, Problem& problem) {
+  return ConstrainedEnds(scene, near, problem).settle();
+}
+
+void refuse_partly_free(const Scene& scene, const Problem& problem) {
+  const int n = problem.coordinates();
+  throw SceneError(
+      place_of(scene.boundary, !std::ranges::any_of(problem.ends.home, [&](int e) { return e < n; })),
+      "this end is fixed in part, and constraints link what is fixed with what is free; near the guess no "
+      "coordinates of the motion include what is fixed, or more than a solution near the guess is asked for: "
+      "give all coordinates of the end, or none, or another guess");
 }
 
 }  // namespace extremal

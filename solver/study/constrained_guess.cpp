@@ -25,13 +25,18 @@ class ConstrainedGuess {
   void settle(const EndPoints& ends) {
     if (problem_.initial) return;
     if (!problem_.guess.given()) return settle_default(ends);
+    const Guess given = problem_.guess;
     const std::size_t failed = project(problem_.guess);
-    if (failed < problem_.guess.tau.size())
-      throw SceneError(
-          scene_.guess.at,
-          fmt::format("the guess at t = {:.6g} cannot be moved onto the constraints; give one that "
-                      "is nearer to them",
-                      problem_.guess.tau[failed] * problem_.duration.value));
+    if (failed == problem_.guess.tau.size()) return;
+    const double t = time(given.tau[failed]);
+    const VectorXd g = manifold_.at({given.q.data() + failed * n_, n_}, t).g;
+    Index worst = 0;
+    g.cwiseAbs().maxCoeff(&worst);
+    throw SceneError(
+        scene_.guess.at,
+        fmt::format("the guess at t = {:.6g} cannot be moved onto the constraints: there '{}' has "
+                    "left − right = {:.6g}; give one that satisfies them",
+                    t, scene_.system.constraints[worst].value, g[worst]));
   }
 
  private:

@@ -11,6 +11,8 @@
 #include "study/limits.hpp"
 #include "study/modelling.hpp"
 #include "system/constraints.hpp"
+#include "system/copies.hpp"
+#include "system/deferred_lagrangian.hpp"
 
 namespace extremal {
 namespace {
@@ -56,9 +58,11 @@ MatrixXd metric_of(const Lagrangian& lagrangian, const Problem& problem) {
 }
 
 void put_constraints(const SystemTable& table, const System& system, const MatrixXd& metric, double rate,
-                     Problem& problem) {
-  ConstrainedSystem constrained = constrained_system(make_constrained(table), system, metric, rate);
+                     bool deferred, Problem& problem) {
+  ConstrainedSystem constrained =
+      constrained_system(make_constrained(table, system), system, metric, rate, deferred);
   problem.lagrangian = std::move(constrained.lagrangian);
+  problem.copies = std::move(constrained.copies);
   problem.manifold = std::move(constrained.manifold);
 }
 
@@ -83,33 +87,57 @@ std::shared_ptr<const Manifold> constrained_values(const ConstrainedGraph& graph
                                                    const MatrixXd& metric, double rate) {
   return std::make_shared<const Manifold>(
       Manifold::Parts{system.lagrangian, make_lagrangian(with_time_as_coordinate(graph)),
-                      make_lagrangian(multiplier_form(graph)), metric, rate});
+                      make_lagrangian(multiplier_form(graph)), metric, rate, system.copies});
 }
 
-ConstrainedSystem constrained_system(const ConstrainedGraph& graph, const System& system,
-                                     const MatrixXd& metric, double rate) {
-  NormalMotion normal{{}, rate};
+NormalMotion normal_motion(const MatrixXd& metric, double rate, int coordinates) {
+  NormalMotion normal{{}, rate, coordinates - static_cast<int>(metric.rows())};
   for (Index a = 0; a < metric.rows(); ++a)
     for (Index b = 0; b < metric.cols(); ++b)
       if (metric(a, b) != 0)
         normal.metric.push_back({static_cast<int>(a), static_cast<int>(b), metric(a, b)});
+  return normal;
+}
+
+ConstrainedSystem constrained_system(const ConstrainedGraph& graph, const System& system,
+                                     const MatrixXd& metric, double rate, bool deferred) {
+  const NormalMotion normal = normal_motion(metric, rate, graph.coordinates);
   ConstrainedSystem result;
-  if (graph.constraints.size() < system.names.size())
-    result.lagrangian = make_lagrangian(projected(graph, normal));
   result.manifold = constrained_values(graph, system, metric, rate);
+  if (graph.constraints.size() >= system.names.size()) return result;
+  if (!graph.forces.empty()) {
+    const LagrangianGraph lagrangian = projected(graph, normal);
+    result.lagrangian = make_lagrangian(lagrangian);
+    result.copies = make_lagrangian(two_copies(lagrangian, projected_power(graph, normal)));
+    return result;
+  }
+  if (deferred && graph.parameters.empty() && result.manifold->autonomous() &&
+      !has_kinks(graph.graph, graph.lagrangian))
+    result.lagrangian = std::make_shared<const DeferredLagrangian>(
+        graph.coordinates, [graph, normal] { return make_lagrangian(projected(graph, normal)); });
+  else
+    result.lagrangian = make_lagrangian(projected(graph, normal));
   return result;
 }
 
-void constrain(const SystemTable& table, const System& system, double time, Problem& problem) {
+void constrain(const SystemTable& table, const System& system, double time, bool deferred, Problem& problem) {
   if (table.constraints.empty()) return;
   check_counts(table, system);
   problem.duration.value = time;
   put_constraints(table, system, metric_of(*system.lagrangian, problem),
-                  (problem.initial ? growth_of_motions : growth) / time, problem);
+                  (problem.initial ? growth_of_motions : growth) / time, deferred, problem);
 }
 
 void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem) {
-  put_constraints(table, system, other.metric(), other.rate(), problem);
+  put_constraints(table, system, other.metric(), other.rate(), false, problem);
+}
+
+ConstrainedGraph put_manifold_like(const Manifold& other, const SystemTable& table, const System& system,
+                                   Problem& problem) {
+  ConstrainedGraph graph = make_constrained(table, system);
+  problem.lagrangian = system.lagrangian;
+  problem.manifold = constrained_values(graph, system, other.metric(), other.rate());
+  return graph;
 }
 
 }  // namespace extremal

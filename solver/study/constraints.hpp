@@ -19,15 +19,22 @@ struct EndPoints {
 };
 
 /// Puts L̃ and the manifold of the constraints into a problem that has its relation; `time` is about its
-/// duration. Does nothing without constraints. Throws SceneError.
-void constrain(const SystemTable& table, const System& system, double time, Problem& problem);
+/// duration. Does nothing without constraints. `deferred`: L̃ is made when it is first evaluated, if it does
+/// not depend on t. Throws SceneError.
+void constrain(const SystemTable& table, const System& system, double time, bool deferred, Problem& problem);
 
 /// The same with the metric and ω of another problem of the family.
 void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem);
 
+/// The manifold alone, with the same; `problem` has the Lagrangian of the system. Returns both as
+/// expressions.
+ConstrainedGraph put_manifold_like(const Manifold& other, const SystemTable& table, const System& system,
+                                   Problem& problem);
+
 /// L̃ and the manifold of constraints.
 struct ConstrainedSystem {
   std::shared_ptr<const Lagrangian> lagrangian;  ///< null where there are as many constraints as coordinates
+  std::shared_ptr<const Lagrangian> copies;      ///< with forces: of two copies of it; null: there are none
   std::shared_ptr<const Manifold> manifold;
 };
 
@@ -38,9 +45,12 @@ Eigen::MatrixXd metric_of_motion(const System& system, const Problem& problem);
 std::shared_ptr<const Manifold> constrained_values(const ConstrainedGraph& graph, const System& system,
                                                    const Eigen::MatrixXd& metric, double rate = 0);
 
+/// How points are moved with a metric of fewer coordinates than a system has: the others are constants.
+NormalMotion normal_motion(const Eigen::MatrixXd& metric, double rate, int coordinates);
+
 /// Of a motion with this metric and rate ω.
 ConstrainedSystem constrained_system(const ConstrainedGraph& graph, const System& system,
-                                     const Eigen::MatrixXd& metric, double rate);
+                                     const Eigen::MatrixXd& metric, double rate, bool deferred = false);
 
 /// The ends of the guess, or near those that the relation fixes.
 EndPoints end_points(const Problem& problem);
@@ -51,8 +61,12 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
 /// Makes the relation of a constrained problem one of ends on the manifold. Ends that are given must satisfy
 /// the constraints; coordinates that follow from those given are fixed too, near `near`, which becomes points
 /// on the manifold. Momenta of initial data become those of L̃. Throws SceneError with the amount by which a
-/// constraint is missed, and for relations that are not available.
-void settle_ends(const Scene& scene, EndPoints& near, Problem& problem);
+/// constraint is missed. False where the natural conditions of L̃ are not those on the manifold: only minimal
+/// coordinates have these.
+bool settle_ends(const Scene& scene, EndPoints& near, Problem& problem);
+
+/// Throws SceneError: an end is fixed in part, and there are no minimal coordinates for it.
+[[noreturn]] void refuse_partly_free(const Scene& scene, const Problem& problem);
 
 /// Moves the guess onto the manifold, also the default one. Throws SceneError where that is impossible.
 void settle_guess(const Scene& scene, const EndPoints& ends, Problem& problem);

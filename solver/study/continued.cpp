@@ -14,6 +14,9 @@
 #include "solution/on_manifold.hpp"
 #include "study/boundary.hpp"
 #include "study/constraints.hpp"
+#include "study/continued_by_values.hpp"
+#include "study/infinite.hpp"
+#include "study/minimal_family.hpp"
 #include "study/modelling.hpp"
 #include "study/study.hpp"
 
@@ -84,15 +87,8 @@ class VariedScene {
   }
 
   Problem at(double value) {
-    find_parameter(scene_.system, parameter_)->values.front().value = value;
-    const System system =
-        make_system(scene_.system, {}, problem_.phase ? Formulation::phase_space : Formulation::legendre);
-    Problem problem = problem_;
-    problem.lagrangian = system.lagrangian;
-    if (problem.phase) set_phase_space(*system.hamiltonian, problem, problem_.phase.get());
-    problem.copies = system.copies;
-    set_relation(scene_.boundary, system, problem);
-    problem.duration = read_duration(scene_.boundary, system);
+    const System system = put(value);
+    Problem problem = with(system);
     if (problem_.manifold) {
       constrain_like(*problem_.manifold, scene_.system, system, problem);
       EndPoints near = near_;
@@ -102,7 +98,38 @@ class VariedScene {
     return problem;
   }
 
+  /// With constraints.
+  BareProblem bare(double value) {
+    const System system = put(value);
+    BareProblem found{with(system), {}};
+    found.graph = put_manifold_like(*problem_.manifold, scene_.system, system, found.problem);
+    EndPoints near = near_;
+    settle_ends(scene_, near, found.problem);
+    return found;
+  }
+
  private:
+  System put(double value) {
+    find_parameter(scene_.system, parameter_)->values.front().value = value;
+    return make_system(scene_.system, {}, problem_.phase ? Formulation::phase_space : Formulation::legendre);
+  }
+
+  /// But for constraints.
+  Problem with(const System& system) {
+    Problem problem = problem_;
+    problem.lagrangian = system.lagrangian;
+    if (problem.phase) set_phase_space(*system.hamiltonian, problem, problem_.phase.get());
+    problem.copies = system.copies;
+    set_relation(scene_.boundary, system, problem);
+    problem.duration = read_duration(scene_.boundary, system);
+    if (problem_.infinite) {
+      InfiniteEnds infinite = read_infinite_ends(scene_, problem);
+      problem.guess = guess_;
+      leave_infinite_ends(scene_, std::move(infinite), problem);
+    }
+    return problem;
+  }
+
   /// Those of phase space may depend on the parameter.
   void find_symmetries(Problem& problem) const {
     Problem invariant = problem;
@@ -146,6 +173,18 @@ void check_recurrence_along(VariedScene& varied, const Problem& problem, const C
   }
 }
 
+/// Nothing where there is no problem.
+template <class Make>
+auto where_possible(const Make& make) -> std::optional<decltype(make())> {
+  try {
+    return make();
+  } catch (const SceneError&) {
+    return std::nullopt;
+  } catch (const FormulaError&) {
+    return std::nullopt;
+  }
+}
+
 Continued varied_parameter(const Scene& scene, const System& system, const Problem& problem) {
   const ContinuationTable& table = *scene.continuation;
   const std::string& name = table.parameter.value;
@@ -167,15 +206,9 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
         fmt::format("coefficients of the boundary relation depend on '{}'; only right-hand sides may", name));
   check_recurrence_along(*varied, problem, table, continued.family.from);
   continued.family.name = name;
-  continued.family.at = [varied](double value) -> std::optional<Problem> {
-    try {
-      return varied->at(value);
-    } catch (const SceneError&) {
-      return std::nullopt;
-    } catch (const FormulaError&) {
-      return std::nullopt;
-    }
-  };
+  continued.family.at = [varied](double value) { return where_possible([&] { return varied->at(value); }); };
+  if (problem.manifold)
+    continued.bare = [varied](double value) { return where_possible([&] { return varied->bare(value); }); };
   return continued;
 }
 
@@ -191,6 +224,17 @@ void move_point_onto_manifold(const ProblemFamily& family, BranchPoint& point) {
 Continued read_continued(const Scene& scene, const System& system, const Problem& problem) {
   const ContinuationTable& table = *scene.continuation;
   const std::string& name = table.parameter.value;
+  if (problem.infinite && (name == "duration" || name == "energy"))
+    throw SceneError(position(table.parameter, 0),
+                     fmt::format("with ends at infinity the {} is not varied; vary a parameter", name));
+  if (problem.infinite && table.switching)
+    throw SceneError(position(table.parameter, 0),
+                     "with ends at infinity branch points are not looked for; leave 'switch' out");
+  if (scene.solve.scheme && table.switching)
+    throw SceneError(
+        position(*scene.solve.scheme, 0),
+        "families of a scheme are followed from value to value, and branch points are not looked "
+        "for; leave 'scheme' or 'switch' out");
   Continued continued = name == "duration" ? varied_duration(table, problem)
                         : name == "energy" ? varied_energy(table, problem)
                                            : varied_parameter(scene, system, problem);
@@ -205,8 +249,14 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
     throw std::invalid_argument(
         study.scene + ": the table [continuation] is missing; it names the parameter and its last value");
   const Continued& continued = *study.continuation;
+  if (continued_by_values(study.problem, study.options)) return follow_by_values(study, continued, progress);
   SolveOptions options = study.options;
   options.deadline = deadline_of(study);
+  if (std::optional<FollowedBranch> followed = follow_in_minimal_coordinates(study, options)) {
+    if (progress)
+      for (const BranchPoint& point : followed->points) progress(point);
+    return *std::move(followed);
+  }
   Diagram diagram(continued.family, {std::move(options), continued.points, continued.switching});
   FollowedBranch followed;
   followed.title = study.title;

@@ -10,7 +10,10 @@
 #include <utility>
 
 #include "problem/extension.hpp"
+#include "problem/manifold.hpp"
 #include "scene/schema.hpp"
+#include "study/constrained_extension.hpp"
+#include "study/independent_conditions.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
 #include "study/polyline.hpp"
@@ -97,10 +100,13 @@ Rewritten rewritten(const std::string& text, const Dependents& constants) {
   return result;
 }
 
-EndCondition condition(const Text& text, const System& host, const Dependents& constants, const char* where) {
+/// Of the points that stand for the ends where there are constraints.
+EndCondition condition(const Text& text, const System& host, const Dependents& constants, const char* where,
+                       const MovedEnds* ends) {
   const Rewritten written = rewritten(text.value, constants);
   try {
-    return end_condition(written.text, host, where);
+    return ends ? condition_of_points(written.text, host, where, *ends)
+                : end_condition(written.text, host, where);
   } catch (const FormulaError& e) {
     if (e.where.starts_with("definitions.")) throw;
     throw SceneError(position(text, written.original(e.offset)), e.what());
@@ -137,13 +143,15 @@ double value_of(const Text& text, const System& system) {
 }
 
 /// Each integrand alone as a Lagrangian, so that its errors are found at their places.
-void check_integrands(const Scene& scene) {
+std::vector<std::shared_ptr<const Lagrangian>> integrands_of(const Scene& scene) {
+  std::vector<std::shared_ptr<const Lagrangian>> integrands;
   for (const Text& text : scene.boundary.integrals) {
     SystemTable table = scene.system;
     table.lagrangian = integral_of(text).integrand;
     table.force.clear();
-    make_system(table);
+    integrands.push_back(make_system(table).lagrangian);
   }
+  return integrands;
 }
 
 std::string unused_name(const std::string& stem, const SystemTable& table) {
@@ -167,7 +175,7 @@ Text law_with(const Scene& scene, const std::vector<std::string>& multipliers) {
 }
 
 /// The system whose coordinates are those of the path, the unknowns and the multipliers.
-System extended_system(const Scene& scene, const Dependents& dependents) {
+SystemTable extended_table(const Scene& scene, const Dependents& dependents) {
   SystemTable table = scene.system;
   table.curvature.reset();
   std::erase_if(table.parameters, [&](const Assignment& p) {
@@ -189,11 +197,11 @@ System extended_system(const Scene& scene, const Dependents& dependents) {
     table.coordinates.push_back({multipliers.back(), integral.at});
   }
   if (!multipliers.empty()) table.lagrangian = law_with(scene, multipliers);
-  return make_system(table);
+  return table;
 }
 
-/// L + Σ ν g for values of the unknowns, then of the multipliers.
-std::shared_ptr<const Lagrangian> lagrangian_at(const Scene& scene, const std::vector<double>& constants) {
+/// The system with L + Σ ν g for values of the unknowns, then of the multipliers.
+SystemTable table_at(const Scene& scene, const std::vector<double>& constants) {
   SystemTable table = scene.system;
   table.curvature.reset();
   const std::size_t unknowns = scene.boundary.unknowns.size();
@@ -204,7 +212,48 @@ std::shared_ptr<const Lagrangian> lagrangian_at(const Scene& scene, const std::v
   for (std::size_t j = unknowns; j < constants.size(); ++j)
     multipliers.push_back(fmt::format("{:.17g}", constants[j]));
   if (!multipliers.empty()) table.lagrangian = law_with(scene, multipliers);
-  return make_system(table).lagrangian;
+  return table;
+}
+
+std::shared_ptr<const Lagrangian> lagrangian_at(const Scene& scene, const std::vector<double>& constants) {
+  return make_system(table_at(scene, constants)).lagrangian;
+}
+
+/// The guesses of the unknowns, and 1 for each multiplier.
+std::vector<double> first_constants(const Scene& scene) {
+  std::vector<double> constants;
+  for (const Assignment& unknown : scene.boundary.unknowns)
+    constants.push_back(std::get<double>(unknown.values.front().value));
+  constants.resize(constants.size() + scene.boundary.integrals.size(), 1.0);
+  return constants;
+}
+
+/// L̃ of L + Σ ν g, and the manifold with it, with the metric and the rate of another.
+void put_constrained_laws(const Scene& scene, const std::shared_ptr<const Manifold>& like,
+                          Extension& extension) {
+  extension.at = [scene, like](const std::vector<double>& values) {
+    const SystemTable table = table_at(scene, values);
+    const NormalMotion normal =
+        normal_motion(like->metric(), like->rate(), static_cast<int>(like->metric().rows()));
+    return make_lagrangian(projected(make_constrained(table), normal));
+  };
+  extension.manifold_at = [scene, like](const std::vector<double>& values) {
+    const SystemTable table = table_at(scene, values);
+    return constrained_values(make_constrained(table), make_system(table), like->metric(), like->rate());
+  };
+}
+
+void check_constrained(const Scene& scene, const Problem& problem) {
+  if (problem.duration.free && !problem.manifold->autonomous())
+    throw SceneError(
+        scene.boundary.duration.at,
+        "with integrals, unknowns, nonlinear conditions or waypoints and constraints a free duration "
+        "needs constraints and a Lagrangian that do not depend on t; give the duration as a number");
+  if (!scene.waypoints.empty() && constraints_vary(scene))
+    throw SceneError(
+        position(scene.system.constraints.front(), 0),
+        "constraints that depend on an unknown are not available with waypoints; leave one or the "
+        "other out");
 }
 
 /// The entries of "start" or "end" without those made of unknowns, which become conditions.
@@ -331,9 +380,6 @@ void check_extended(const Scene& scene, Purpose purpose) {
   if (!scene.system.force.empty())
     throw SceneError(scene.system.force.front().name_at,
                      asks + "there must be an action; forces have none: leave them out");
-  if (!scene.system.constraints.empty())
-    throw SceneError(position(scene.system.constraints.front(), 0),
-                     asks + "constraints are not available; leave one or the other out");
   if (scene.boundary.infinite)
     throw SceneError(scene.boundary.duration.at,
                      asks + "an infinite duration is not available; give a number");
@@ -341,9 +387,6 @@ void check_extended(const Scene& scene, Purpose purpose) {
     throw SceneError(scene.fit->at, asks +
                                         "a fit is not available; leave [fit] out, or write parameters "
                                         "that are to be found there");
-  if (scene.search)
-    throw SceneError(scene.search->solutions.at,
-                     asks + "[search] is not available; leave it out, and give a guess for each extremal");
   if (scene.continuation && purpose == Purpose::family)
     throw SceneError(scene.continuation->at,
                      asks +
@@ -365,27 +408,41 @@ void check_extended(const Scene& scene, Purpose purpose) {
 }
 
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene) {
-  check_integrands(scene);
-  std::vector<double> constants;
-  for (const Assignment& unknown : scene.boundary.unknowns)
-    constants.push_back(std::get<double>(unknown.values.front().value));
-  constants.resize(constants.size() + scene.boundary.integrals.size(), 1.0);
-  return lagrangian_at(scene, constants);
+  integrands_of(scene);
+  return lagrangian_at(scene, first_constants(scene));
 }
 
-void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system, Problem& problem) {
+bool constraints_vary(const Scene& scene) {
+  const Dependents dependents = dependents_of(scene);
+  return std::ranges::any_of(scene.system.constraints,
+                             [&](const Text& text) { return any_of(names_in(text.value), dependents); });
+}
+
+void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system,
+                    const SettledEnds& settled, Problem& problem) {
   const Dependents dependents = dependents_of(scene), constants = constants_of(scene, dependents);
-  const System host = extended_system(scene, dependents);
-  const std::size_t ends = 2 * system.names.size(), given = problem.boundary.rows + parts.conditions.size();
-  if (given > ends)
+  const SystemTable table = extended_table(scene, dependents);
+  System host = make_system(table);
+  const std::size_t most = 2 * system.names.size(), given = problem.boundary.rows + parts.conditions.size();
+  if (given > most)
     throw SceneError(parts.conditions.back().at,
                      fmt::format("{} conditions for {} end values; at most {} can hold, so leave some out",
-                                 given, ends, ends));
+                                 given, most, most));
   if (host.lagrangian->kinks())
     throw SceneError(
         scene.system.law().at,
         "with integrals, unknowns, nonlinear conditions or waypoints L must be smooth; abs, min, max "
         "and step are not available");
+  std::optional<ConditionsOnManifold> on_manifold;
+  if (problem.manifold) {
+    check_constrained(scene, problem);
+    const Manifold& manifold = *problem.manifold;
+    const ConstrainedGraph graph = make_constrained(table);
+    host.lagrangian = make_lagrangian(
+        projected(graph, normal_motion(manifold.metric(), manifold.rate(), graph.coordinates)));
+    on_manifold.emplace(graph, manifold, problem.duration.value);
+  }
+  const MovedEnds* const ends = on_manifold ? &on_manifold->ends() : nullptr;
   auto extension = std::make_shared<Extension>();
   extension->lagrangian = host.lagrangian;
   for (const Assignment& unknown : scene.boundary.unknowns) {
@@ -394,11 +451,24 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
   }
   for (const Text& text : scene.boundary.integrals) extension->integrals.push_back(value_of(text, system));
   for (const Text& text : parts.conditions)
-    extension->conditions.push_back(condition(text, host, constants, "conditions"));
-  for (const Text& text : parts.where) extension->where.push_back(condition(text, host, constants, "where"));
+    extension->conditions.push_back(condition(text, host, constants, "conditions", ends));
+  for (const Text& text : parts.where)
+    extension->where.push_back(condition(text, host, constants, "where", ends));
   extension->waypoints = read_waypoints(scene, system, problem);
   extension->at = [scene](const std::vector<double>& values) { return lagrangian_at(scene, values); };
+  if (problem.manifold) settle_waypoints(scene, problem, extension->waypoints);
   if (!extension->waypoints.empty()) guess_through(extension->waypoints, problem);
+  if (problem.manifold) {
+    settle_guess(scene, settled.near, problem);
+    put_constrained_laws(scene, problem.manifold, *extension);
+    problem.lagrangian = extension->at(first_constants(scene));
+    std::vector<std::string> texts;
+    for (const Text& text : parts.conditions) texts.push_back(text.value);
+    if (!settled.suited) on_manifold->put_relation(texts, problem, *extension);
+  }
+  if (scene.boundary.integrals.size() > 1)
+    check_independent_integrals(scene.boundary.integrals, problem, integrands_of(scene));
+  if (!problem.manifold) check_independent_conditions(parts.conditions, problem, *extension);
   problem.extension = std::move(extension);
 }
 

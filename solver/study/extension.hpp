@@ -6,6 +6,7 @@
 
 #include "problem/problem.hpp"
 #include "scene/scene.hpp"
+#include "study/constraints.hpp"
 #include "study/study.hpp"
 #include "system/formula.hpp"
 
@@ -31,8 +32,20 @@ void check_extended(const Scene& scene, Purpose purpose);
 /// L + Σ g, with the unknowns at their guesses: what stands for L until the multipliers are known.
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene);
 
+/// Whether an unknown changes a constraint.
+bool constraints_vary(const Scene& scene);
+
+/// Ends of a problem with constraints: whether the relation is one of ends on the manifold, and points near
+/// them.
+struct SettledEnds {
+  bool suited = true;
+  EndPoints near{};
+};
+
 /// The extension of a problem, whose relation, duration and guess are read; a guess through the waypoints
-/// where there is none.
-void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system, Problem& problem);
+/// where there is none. With constraints the problem has its manifold, and the guess is moved onto it; where
+/// the relation is not suited to it, it becomes a part of the extension.
+void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system,
+                    const SettledEnds& ends, Problem& problem);
 
 }  // namespace extremal

@@ -12,7 +12,9 @@
 #include "problem/closing.hpp"
 #include "problem/phase_space.hpp"
 #include "solve/search/limits.hpp"
+#include "study/closing_correction.hpp"
 #include "study/guess.hpp"
+#include "study/limits.hpp"
 #include "study/memory.hpp"
 #include "study/naming.hpp"
 
@@ -22,6 +24,24 @@ namespace {
 /// q and q' at t = 0; what is not named is zero.
 struct InitialState {
   std::vector<double> q, v;
+  std::vector<double> q_low = {}, v_low = {};  ///< to be added to these, of a state that was corrected
+
+  template <class Real>
+  std::vector<Real> positions() const {
+    return sum<Real>(q, q_low);
+  }
+  template <class Real>
+  std::vector<Real> velocities() const {
+    return sum<Real>(v, v_low);
+  }
+
+ private:
+  template <class Real>
+  static std::vector<Real> sum(const std::vector<double>& high, const std::vector<double>& low) {
+    std::vector<Real> result(high.begin(), high.end());
+    for (std::size_t a = 0; a < low.size(); ++a) result[a] += low[a];
+    return result;
+  }
 };
 
 /// In phase space: q' and p' follow from q and p.
@@ -54,6 +74,8 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
 constexpr int samples_a_step = 64;
 /// Roundoff of so many steps is amplified by the encounters that they follow.
 constexpr std::size_t many_steps = 750;
+/// Steps between points that are kept.
+constexpr int steps_a_point = 8;
 
 /// Elements that follow more steps than these are not made (limits::guess_mesh); and a guess takes at most
 /// this part of memory, as it is copied.
@@ -68,9 +90,13 @@ constexpr double tolerance = 1e-14;
 template <>
 constexpr double tolerance<Extended> = 1e-17;
 
+/// Halves of an orbit meet after at least this part of the first.
+constexpr double earliest_meeting = 0.5;
+
 /// What bounds the integration of a state, and refuses it.
 struct Bounds {
   const Problem& problem;
+  const Lagrangian* hamiltonian;  ///< in phase space
   Deadline deadline;
   Location at;
 
@@ -120,17 +146,37 @@ struct Bounds {
   }
 };
 
+/// A motion, and (q, p) between some of its steps, at its start and its end.
+struct FollowedMotion : SampledMotion {
+  MotionPoints points;
+};
+
 template <class Real, class AnyFlow>
-SampledMotion sample(AnyFlow&& flow, const InitialState& state, double from, double to, const Bounds& bounds,
-                     const Anchor<Real>& anchor = {}) {
-  SampledMotion samples;
+FollowedMotion sample(AnyFlow&& flow, const InitialState& state, double from, double to, const Bounds& bounds,
+                      const Anchor<Real>& anchor = {}) {
+  FollowedMotion samples;
+  const std::size_t size = 2 * state.q.size();
   int taken = 0;
+  const auto keep = [&](Real t, std::span<const Real> y) {
+    samples.points.t.push_back(t);
+    samples.points.y.insert(samples.points.y.end(), y.begin(), y.begin() + static_cast<std::ptrdiff_t>(size));
+  };
+  const auto keep_some = [&](Real t, std::span<Real> y) {
+    const bool on = !anchor || anchor(t, y);
+    if ((taken + 1) % steps_a_point == 0 || t == Real(to)) keep(t, y);
+    return on;
+  };
   const auto more = [&, most = bounds.steps()](int steps) {
     taken = steps;
     return steps < most && !bounds.deadline.passed();
   };
+  const std::vector<Real> q = state.positions<Real>(), v = state.velocities<Real>();
+  std::vector<Real> start = q;
+  start.resize(size);
+  if (flow.momentum(std::span(start).first(size / 2), v, from, std::span(start).subspan(size / 2)))
+    keep(from, start);
   const MotionSampling options{tolerance<Real>, samples_a_step, bounds.problem.duration.value, more};
-  if (!sample_motion<Real>(flow, state.q, state.v, from, to, options, samples, anchor))
+  if (!sample_motion<Real>(flow, q, v, from, to, options, samples, keep_some))
     bounds.refuse(samples, from, taken);
   return samples;
 }
@@ -143,8 +189,8 @@ class ExactMotion {
         method_([this](DoubleDouble t, auto y, auto slope) { return flow_.slope(t, y, slope); },
                 static_cast<int>(2 * state.q.size())),
         t_(from),
-        y_(state.q.begin(), state.q.end()) {
-    const std::vector<DoubleDouble> v(state.v.begin(), state.v.end());
+        y_(state.positions<DoubleDouble>()) {
+    const auto v = state.velocities<DoubleDouble>();
     y_.resize(2 * v.size());
     flow_.momentum(std::span(y_).first(v.size()), v, t_, std::span(y_).subspan(v.size()));
   }
@@ -163,7 +209,7 @@ class ExactMotion {
   }
 
  private:
-  static constexpr double step_error = 1e-28;
+  static constexpr double step_error = 1e-25;
   /// So many are one of extrapolation.
   static constexpr int steps_between = 4;
   static DoubleDouble wide(Extended t) {
@@ -205,27 +251,143 @@ class StateFlow {
   Scratch scratch_;
 };
 
-/// Where it takes many steps, with as many digits as L can be evaluated in.
-SampledMotion motion_from(const InitialState& state, double from, double to, const Bounds& bounds,
-                          const Lagrangian* hamiltonian) {
-  const Problem& problem = bounds.problem;
-  if (hamiltonian) return sample<double>(StateFlow(*hamiltonian, state.q.size()), state, from, to, bounds);
-  SampledMotion samples =
-      sample<double>(Flow(problem.motion(), problem.motion_copies()), state, from, to, bounds);
-  const Lagrangian& lagrangian = *problem.lagrangian;
-  if (problem.copies) return samples;
-  if (samples.tau.size() <= many_steps * samples_a_step || !ExtendedFlow<DoubleDouble>::suits(lagrangian))
-    return samples;
+FollowedMotion double_motion(const InitialState& state, double from, double to, const Bounds& bounds) {
+  if (bounds.hamiltonian)
+    return sample<double>(StateFlow(*bounds.hamiltonian, state.q.size()), state, from, to, bounds);
+  return sample<double>(Flow(bounds.problem.motion(), bounds.problem.motion_copies()), state, from, to,
+                        bounds);
+}
+
+FollowedMotion exact_motion(const InitialState& state, double from, double to, const Bounds& bounds) {
+  const Lagrangian& lagrangian = *bounds.problem.lagrangian;
   ExactMotion exact(state, from, lagrangian);
   return sample<Extended>(ExtendedFlow<Extended>(lagrangian), state, from, to, bounds, std::ref(exact));
 }
 
+/// Whether a motion takes more steps than its digits are good for, and more digits are known.
+bool asks_for_digits(const SampledMotion& samples, const Bounds& bounds) {
+  return !bounds.hamiltonian && !bounds.problem.copies && samples.tau.size() > many_steps * samples_a_step &&
+         ExtendedFlow<DoubleDouble>::suits(*bounds.problem.lagrangian);
+}
+
+/// Where it takes many steps, with as many digits as L can be evaluated in.
+FollowedMotion motion_from(const InitialState& state, double from, double to, const Bounds& bounds) {
+  FollowedMotion samples = double_motion(state, from, to, bounds);
+  return asks_for_digits(samples, bounds) ? exact_motion(state, from, to, bounds) : samples;
+}
+
 /// Where an orbit that closes arrives.
 InitialState closed(const ClosingMap& map, const InitialState& state) {
-  const auto n = static_cast<Eigen::Index>(state.q.size());
-  const Eigen::VectorXd q = map.r * Eigen::Map<const Eigen::VectorXd>(state.q.data(), n) + map.c;
-  const Eigen::VectorXd v = map.r * Eigen::Map<const Eigen::VectorXd>(state.v.data(), n);
-  return {{q.begin(), q.end()}, {v.begin(), v.end()}};
+  const auto image = [&](const std::vector<double>& x) -> std::vector<double> {
+    const Eigen::VectorXd y = map.r * Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+    return {y.begin(), y.end()};
+  };
+  InitialState result{image(state.q), image(state.v)};
+  for (std::size_t a = 0; a < result.q.size(); ++a) result.q[a] += map.c[static_cast<Eigen::Index>(a)];
+  if (!state.q_low.empty()) result.q_low = image(state.q_low), result.v_low = image(state.v_low);
+  return result;
+}
+
+/// Both halves of an orbit.
+struct Halves {
+  FollowedMotion first, second;
+  bool hopeless = false;  ///< they miss each other by more than any digits
+
+  /// By how much they miss each other.
+  PhasePoint apart() const {
+    const std::vector<Extended>&a = first.points.y, &b = second.points.y;
+    const std::size_t size = a.size() / first.points.t.size();
+    PhasePoint result(static_cast<Eigen::Index>(size));
+    for (std::size_t i = 1; i <= size; ++i)
+      result[result.size() - static_cast<Eigen::Index>(i)] =
+          static_cast<double>(a[a.size() - i] - b[b.size() - i]);
+    return result;
+  }
+  /// Relative to the largest |q| and |p| there.
+  double gap() const {
+    const PhasePoint apart = this->apart();
+    const auto n = static_cast<std::size_t>(apart.size() / 2);
+    double largest = 0;
+    for (std::size_t part = 0; part < 2; ++part) {
+      double size = 0, gap = 0;
+      for (std::size_t e = 0; e < n; ++e) {
+        const std::size_t at = part * n + e;
+        size = std::max(size, static_cast<double>(std::abs(*(first.points.y.end() - 2 * n + at))));
+        gap = std::max(gap, std::abs(apart[static_cast<Eigen::Index>(at)]));
+      }
+      if (gap > 0) largest = std::max(largest, gap / size);
+    }
+    return largest;
+  }
+};
+
+/// The end of the longest step in the second part of a motion: there it is nearly free, and what is apart
+/// there is not amplified by an encounter.
+double quietest(const SampledMotion& samples) {
+  const std::vector<double>& tau = samples.tau;
+  double longest = 0, at = tau.back();
+  for (std::size_t k = samples_a_step; k < tau.size(); k += samples_a_step) {
+    const double length = tau[k] - tau[k - samples_a_step];
+    if (tau[k] >= earliest_meeting * tau.back() && length > longest) longest = length, at = tau[k];
+  }
+  return at;
+}
+
+/// The state moved by (δq, δp), to more digits than doubles have: encounters amplify the last of those. The
+/// system is one that ExtendedFlow suits.
+InitialState moved(const InitialState& state, const PhasePoint& change, const Lagrangian& lagrangian) {
+  ExtendedFlow<Extended> flow(lagrangian);
+  const std::size_t n = state.q.size();
+  std::vector<Extended> y = state.positions<Extended>(), v = state.velocities<Extended>();
+  y.resize(2 * n);
+  flow.momentum(std::span(y).first(n), v, 0, std::span(y).subspan(n));
+  for (std::size_t e = 0; e < y.size(); ++e) y[e] += change[static_cast<Eigen::Index>(e)];
+  flow.velocity(y, v);
+  InitialState result;
+  const auto split = [](std::span<const Extended> x, std::vector<double>& high, std::vector<double>& low) {
+    for (const Extended a : x) {
+      high.push_back(static_cast<double>(a));
+      low.push_back(static_cast<double>(a - high.back()));
+    }
+  };
+  split(std::span(y).first(n), result.q, result.q_low);
+  split(v, result.v, result.v_low);
+  return result;
+}
+
+/// A state given to ten digits may lead to encounters later or earlier than a closed orbit does, by more than
+/// they last. The state is corrected by shooting as long as corrections become shorter, with one
+/// factorisation (natural monotonicity: Deuflhard, Newton Methods for Nonlinear Problems, 3.3). What is
+/// solved for stays the stationary point of S_h near this motion.
+Halves closed_halves(InitialState state, const Bounds& bounds) {
+  using namespace limits::closing_correction;
+  const double duration = bounds.problem.duration.value;
+  const ClosingMap map = closing_map(bounds.problem);
+  FollowedMotion first = double_motion(state, 0, duration / 2, bounds);
+  if (!asks_for_digits(first, bounds))
+    return {std::move(first), motion_from(closed(map, state), duration, duration / 2, bounds)};
+  const double meeting = quietest(first) * duration;
+  const auto halves_from = [&](const InitialState& start) -> Halves {
+    return {exact_motion(start, 0, meeting, bounds),
+            exact_motion(closed(map, start), duration, meeting, bounds)};
+  };
+  Halves halves = halves_from(state);
+  halves.hopeless = !(halves.gap() <= most_apart);
+  if (halves.hopeless || halves.gap() <= easily_closed) return halves;
+  const ClosingCorrection correction(bounds.problem, halves.first.points, halves.second.points,
+                                     bounds.deadline);
+  if (!correction.valid()) return halves;
+  PhasePoint change = correction.change(halves.apart());
+  for (int k = 0; k < most_corrections && halves.gap() > closed_well; ++k) {
+    if (!(correction.size(change) > last_digits)) break;
+    state = moved(state, change, *bounds.problem.lagrangian);
+    Halves better = halves_from(state);
+    const PhasePoint rest = correction.change(better.apart());
+    if (!(correction.size(rest) <= least_gain * correction.size(change))) break;
+    halves = std::move(better);
+    change = rest;
+  }
+  return halves;
 }
 
 /// Of an orbit that closes only the first half is integrated onwards; the second is integrated back from
@@ -248,22 +410,21 @@ void add_halves(const SampledMotion& first, const SampledMotion& second, Guess& 
 
 void integrate_state(const std::vector<Assignment>& values, const System& system, const Location& at,
                      const Deadline& deadline, Problem& problem) {
-  const Bounds bounds{problem, deadline, at};
   const InitialState state = read_state(values, system);
   const std::shared_ptr<const Lagrangian> hamiltonian =
       system.hamiltonian ? make_lagrangian(*system.hamiltonian) : nullptr;
+  const Bounds bounds{problem, hamiltonian.get(), deadline, at};
   const double duration = problem.duration.value;
   if (problem.periodic) {
-    const SampledMotion first = motion_from(state, 0, duration / 2, bounds, hamiltonian.get());
-    const SampledMotion second =
-        motion_from(closed(closing_map(problem), state), duration, duration / 2, bounds, hamiltonian.get());
-    add_halves(first, second, problem.guess);
+    const Halves halves = closed_halves(state, bounds);
+    add_halves(halves.first, halves.second, problem.guess);
+    problem.guess.motion = !halves.hopeless;
   } else {
-    SampledMotion samples = motion_from(state, 0, duration, bounds, hamiltonian.get());
+    SampledMotion samples = motion_from(state, 0, duration, bounds);
     problem.guess.tau = std::move(samples.tau);
     problem.guess.q = std::move(samples.q);
+    problem.guess.motion = true;
   }
-  problem.guess.motion = true;
 }
 
 }  // namespace extremal

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "action/scheme.hpp"
 #include "problem/extension.hpp"
 #include "scene/schema.hpp"
 #include "scene/systems.hpp"
 #include "study/suggestion.hpp"
+#include "system/formula.hpp"
 #include "system/hamiltonian.hpp"
 #include "system/tape_lagrangian.hpp"
 
@@ -41,6 +44,22 @@ void read_extension(const Problem& problem, Inspection& found) {
                                  : fmt::format("t = {:.6g}", point.time);
     found.waypoints.push_back(fmt::format("{}: {}", time, fmt::join(fixed, ", ")));
   }
+}
+
+/// What a name that no system has may be meant for: that of a scene, or one that is near.
+std::string other_name(const std::string& name, const std::vector<std::string>& systems) {
+  const std::vector<SceneFile> scenes = scene_files();
+  const auto find = [&](const std::string& wanted) {
+    return std::ranges::find(scenes, wanted, &SceneFile::name);
+  };
+  if (const auto scene = find(name); scene != scenes.end())
+    return fmt::format("; it is the name of the scene '{}'{}", scene->path,
+                       scene->system.empty() ? "" : fmt::format(", whose system is '{}'", scene->system));
+  if (std::string near = suggestion(name, systems); !near.empty()) return near;
+  std::vector<std::string> names;
+  for (const SceneFile& scene : scenes) names.push_back(scene.name);
+  const auto scene = find(nearest_name(name, names));
+  return scene == scenes.end() ? "" : fmt::format("; did you mean the scene '{}'?", scene->path);
 }
 
 }  // namespace
@@ -80,8 +99,12 @@ Catalogue catalogue() {
   return found;
 }
 
-SystemDescription describe(const std::string& system) {
-  return with_suggestion([&] { return describe_system(system); });
+SystemDescription describe(const std::string& system, const std::string& command) {
+  try {
+    return describe_system(system, command);
+  } catch (const UnknownName& e) {
+    throw SceneError(e.at, e.message + other_name(system, e.known));
+  }
 }
 
 std::string example_scene() {

@@ -29,7 +29,7 @@ struct Inspection {
   std::vector<Tape> tapes;  ///< none for a Lagrangian that is not a tape
   DerivativeCheck derivatives;
   std::vector<std::string> unknowns = {}, waypoints = {};  ///< of the problem, as text
-  bool forces_autonomous = true;                    ///< forces, if there are any, do not depend on t
+  bool forces_autonomous = true;                           ///< forces, if there are any, do not depend on t
   std::optional<DerivativeCheck> with_forces = {};  ///< of the Lagrangian of two copies of the coordinates
 };
 Inspection inspect(const Study& study);
@@ -44,8 +44,9 @@ struct Catalogue {
 /// System files, schemes and methods from their own records.
 Catalogue catalogue();
 
-/// One system file. Throws SceneError for an unknown name, with the nearest one.
-SystemDescription describe(const std::string& system);
+/// One system file, whose name was given to `command`. Throws SceneError for an unknown name, with what lists
+/// the names, and the system or scene that may be meant.
+SystemDescription describe(const std::string& system, const std::string& command);
 
 /// A scene of the library that exists, as an example: its path, or "scene.toml" where no library is found.
 std::string example_scene();

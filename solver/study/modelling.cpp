@@ -93,6 +93,11 @@ System make_system(const SystemTable& table, const std::vector<std::string>& act
     SystemText text = system_text(table);
     text.active = active;
     System system = compile(text, formulation);
+    if (!table.force.empty() && formulation == Formulation::phase_space)
+      throw SceneError(
+          table.force.front().name_at,
+          "forces need a Hamiltonian whose second derivative by the momenta is regular; write the "
+          "'lagrangian', or leave 'force' out");
     if (!table.force.empty()) system.copies = compile_forces(text, forces_of(table, system));
     return system;
   } catch (const FormulaError& e) {
@@ -104,15 +109,25 @@ System make_system(const SystemTable& table, const std::vector<std::string>& act
   }
 }
 
-ConstrainedGraph make_constrained(const SystemTable& table) {
+namespace {
+
+ConstrainedGraph constrained_with(const SystemTable& table, const std::vector<ForceText>& forces) {
   std::vector<ConstraintText> constraints;
   for (std::size_t k = 0; k < table.constraints.size(); ++k)
     constraints.push_back({table.constraints[k].value, fmt::format("constraints[{}]", k)});
   try {
-    return constrained_graph(system_text(table), constraints);
+    return constrained_graph(system_text(table), constraints, forces);
   } catch (const FormulaError& e) {
     throw at_its_place(table, e);
   }
+}
+
+}  // namespace
+
+ConstrainedGraph make_constrained(const SystemTable& table) { return constrained_with(table, {}); }
+
+ConstrainedGraph make_constrained(const SystemTable& table, const System& system) {
+  return constrained_with(table, forces_of(table, system));
 }
 
 }  // namespace extremal

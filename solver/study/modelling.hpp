@@ -24,8 +24,10 @@ struct NoLegendreTransform : SceneError {
 System make_system(const SystemTable& table, const std::vector<std::string>& active = {},
                    Formulation formulation = Formulation::legendre);
 
-/// The same with its constraints, as an expression. Throws SceneError likewise.
+/// The same with its constraints, as expressions; without its forces. Throws SceneError likewise.
 ConstrainedGraph make_constrained(const SystemTable& table);
+/// With its forces too; `system` has its names.
+ConstrainedGraph make_constrained(const SystemTable& table, const System& system);
 
 /// An error of a formula of the system, at its place.
 SceneError at_its_place(const SystemTable& table, const FormulaError& error);

@@ -11,8 +11,10 @@
 namespace extremal {
 namespace {
 
-/// Cells along each side of the plane in which the boundary is a line.
-constexpr int cells = 200;
+/// Cells along each side of the plane in which the boundary is a line; fewer where it moves.
+constexpr int many_cells = 200, few_cells = 100;
+/// Steps of time at which a boundary that moves is drawn.
+constexpr int moving_steps = 24;
 
 using Point = std::array<double, 2>;
 
@@ -23,8 +25,8 @@ using Side = std::array<int, 3>;
 class Contour {
  public:
   template <class Function>
-  Contour(Point low, Point high, const Function& g)
-      : low_(low), high_(high), values_((cells + 1) * (cells + 1)) {
+  Contour(Point low, Point high, int cells, const Function& g)
+      : low_(low), high_(high), cells_(cells), values_((cells + 1) * (cells + 1)) {
     for (int j = 0; j <= cells; ++j)
       for (int i = 0; i <= cells; ++i) value(i, j) = g(corner(i, j));
     for (int j = 0; j < cells; ++j)
@@ -53,9 +55,9 @@ class Contour {
   }
 
  private:
-  double& value(int i, int j) { return values_[j * (cells + 1) + i]; }
+  double& value(int i, int j) { return values_[j * (cells_ + 1) + i]; }
   Point corner(int i, int j) const {
-    return {low_[0] + (high_[0] - low_[0]) * i / cells, low_[1] + (high_[1] - low_[1]) * j / cells};
+    return {low_[0] + (high_[0] - low_[0]) * i / cells_, low_[1] + (high_[1] - low_[1]) * j / cells_};
   }
 
   /// Joins the sides of a cell where the sign of g changes.
@@ -98,6 +100,7 @@ class Contour {
   }
 
   Point low_, high_;
+  int cells_;
   std::vector<double> values_;
   std::map<Side, std::vector<Side>> next_;
 };
@@ -127,14 +130,23 @@ std::vector<PlaneCurve> obstacle_boundaries(const Problem& problem, const Trajec
     low[0] = 0;
     high[0] = trajectory.duration();
   }
-  const std::vector<double> middle(trajectory.nodes.begin(), trajectory.nodes.begin() + n);
-  for (int k = 0; k < inequalities.count(); ++k) {
-    if (n == 2 && inequalities.all->at(middle, 0.3 * trajectory.duration()).rates[k] != 0) continue;
-    Contour contour(low, high, [&](const Point& point) {
+  const std::vector<double> first(trajectory.nodes.begin(), trajectory.nodes.begin() + n);
+  const double duration = trajectory.duration();
+  const auto add = [&](int k, int cells, std::optional<double> t) {
+    Contour contour(low, high, cells, [&](const Point& point) {
       return n == 1 ? inequalities.all->at(std::array{point[1]}, point[0]).g[k]
-                    : inequalities.all->at(point, 0).g[k];
+                    : inequalities.all->at(point, t.value_or(0)).g[k];
     });
-    for (PlaneCurve& curve : contour.curves()) found.push_back(std::move(curve));
+    for (PlaneCurve& curve : contour.curves()) {
+      curve.t = t;
+      found.push_back(std::move(curve));
+    }
+  };
+  for (int k = 0; k < inequalities.count(); ++k) {
+    // A time at which no rate that varies is likely to vanish.
+    const bool moves = n == 2 && inequalities.all->at(first, 0.3 * duration).rates[k] != 0;
+    if (!moves) add(k, many_cells, std::nullopt);
+    for (int i = 0; moves && i <= moving_steps; ++i) add(k, few_cells, duration * i / moving_steps);
   }
   return found;
 }

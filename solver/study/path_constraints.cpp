@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "problem/inequalities.hpp"
+#include "problem/nearby.hpp"
 #include "solve/external/method.hpp"
 #include "study/constraints.hpp"
 #include "study/limits.hpp"
@@ -46,27 +47,30 @@ Equation equation_of(const Text& inequality) {
   return equation;
 }
 
-/// A system with inequalities in place of its constraints.
+/// A system with inequalities as equations beside its constraints.
 struct InequalityTable {
   SystemTable table;
+  std::vector<Text> equations;
   std::vector<char> negated;
 
   explicit InequalityTable(const Scene& scene) : table(scene.system) {
     for (const Text& inequality : scene.inequalities->constraints) {
       Equation equation = equation_of(inequality);
-      table.constraints.push_back(std::move(equation.text));
+      equations.push_back(std::move(equation.text));
       negated.push_back(equation.negated);
     }
   }
 
-  /// Of the inequalities with these numbers.
-  ConstrainedGraph graph(const std::vector<int>& numbers) const {
+  /// Of the inequalities with these numbers, perhaps behind the constraints.
+  ConstrainedGraph graph(const std::vector<int>& numbers, bool with_constraints) const {
     SystemTable part = table;
-    part.constraints.clear();
-    for (const int k : numbers) part.constraints.push_back(table.constraints[k]);
+    if (!with_constraints) part.constraints.clear();
+    const std::size_t first = part.constraints.size();
+    for (const int k : numbers) part.constraints.push_back(equations[k]);
     ConstrainedGraph graph = make_constrained(part);
     for (std::size_t i = 0; i < numbers.size(); ++i)
-      if (negated[numbers[i]]) graph.constraints[i] = graph.graph.unary(Op::neg, graph.constraints[i]);
+      if (negated[numbers[i]])
+        graph.constraints[first + i] = graph.graph.unary(Op::neg, graph.constraints[first + i]);
     return graph;
   }
 };
@@ -74,8 +78,8 @@ struct InequalityTable {
 /// Each of them alone, so that an error names its own.
 void check_formulas(const InequalityTable& inequalities) {
   constexpr std::string_view velocities = "stands for velocities";
-  for (std::size_t k = 0; k < inequalities.table.constraints.size(); ++k) try {
-      inequalities.graph({static_cast<int>(k)});
+  for (std::size_t k = 0; k < inequalities.equations.size(); ++k) try {
+      inequalities.graph({static_cast<int>(k)}, false);
     } catch (const SceneError& e) {
       const std::string what = e.what();
       const std::size_t found = what.find(velocities);
@@ -109,17 +113,70 @@ void check_end(const Scene& scene, const Inequalities& inequalities, bool at_end
   const std::vector<double> q(begin, begin + n);
   double size = 0;
   for (const double x : problem.ends.offset) size = std::max(size, std::abs(x));
+  if (size == 0) size = 1;
   const ConstraintValues values = inequalities.all->at(q, at_end ? problem.duration.value : 0);
   for (int k = 0; k < inequalities.count(); ++k) {
     if (!std::isfinite(values.g[k]))
       throw SceneError(place_of(scene.boundary, at_end),
                        fmt::format("the inequality '{}' is not finite at the {}; give another point",
                                    inequalities.texts[k], at_end ? "end" : "start"));
-    if (values.g[k] >= -end_distance * std::max(size, 1e-300) * values.slopes.row(k).norm()) continue;
+    if (values.g[k] >= -end_distance * size * values.slopes.row(k).norm()) continue;
     throw SceneError(place_of(scene.boundary, at_end),
                      fmt::format("the {} does not keep the inequality '{}': it is missed by {:.6g} there; "
                                  "give values that keep it",
                                  at_end ? "end" : "start", inequalities.texts[k], -values.g[k]));
+  }
+}
+
+/// The least of all inequalities at a point, as a distance.
+double least_distance(const Inequalities& inequalities, const std::vector<double>& q, double t) {
+  const ConstraintValues values = inequalities.all->at(q, t);
+  double least = INFINITY;
+  for (Eigen::Index c = 0; c < values.g.size(); ++c)
+    least = std::min(least, values.g[c] / std::max(values.slopes.row(c).norm(), 1e-300));
+  return least;
+}
+
+/// Moves a point to a distance from the surface of an inequality, along its slope.
+void move_beside(const Inequalities& inequalities, int k, double distance, double t, std::vector<double>& q) {
+  constexpr int most_steps = 20;
+  for (int step = 0; step < most_steps; ++step) {
+    const ConstraintValues values = inequalities.all->at(q, t);
+    const Eigen::VectorXd slope = values.slopes.row(k);
+    const double length = slope.norm();
+    if (!(length > 0)) return;
+    for (std::size_t a = 0; a < q.size(); ++a)
+      q[a] += (distance - values.g[k] / length) * slope[static_cast<Eigen::Index>(a)] / length;
+  }
+}
+
+/// What is allowed on a closed path must be allowed one period later, where its map takes it: compared on
+/// both sides of each surface.
+void check_closed(const Scene& scene, const Inequalities& inequalities, const Problem& problem) {
+  if (!problem.periodic) return;
+  const int n = problem.coordinates();
+  NearbyPoints points(problem);
+  std::vector<double> near, v;
+  for (int k = 0; k < closing_points; ++k) {
+    const double t = points.next(near, v);
+    double size = 0;
+    for (const double x : near) size = std::max(size, std::abs(x));
+    for (int c = 0; c < 2 * inequalities.count(); ++c) {
+      std::vector<double> q = near;
+      move_beside(inequalities, c / 2, (c % 2 ? 1 : -1) * closing_distance * size, t, q);
+      std::vector<double> later(problem.ends.offset.begin() + n, problem.ends.offset.end());
+      for (const Triplet& z : problem.ends.z)
+        if (z.row >= n) later[z.row - n] += z.value * q[problem.ends.home[z.column]];
+      const double a = least_distance(inequalities, q, t),
+                   b = least_distance(inequalities, later, t + problem.duration.value);
+      const bool clear = std::min(std::abs(a), std::abs(b)) > closing_distance * size / 2;
+      if (!clear || (a < 0) == (b < 0)) continue;
+      throw SceneError(scene.inequalities->at,
+                       fmt::format("a closed path recurs only if the inequalities do: a point that is {} at "
+                                   "t = {:.6g} is {} where the path takes it one period later; give "
+                                   "inequalities that 'map' and 'duration' leave unchanged",
+                                   a < 0 ? "excluded" : "allowed", t, b < 0 ? "excluded" : "allowed"));
+    }
   }
 }
 
@@ -137,14 +194,11 @@ void check_inequalities(const Scene& scene, Purpose purpose) {
   if (scene.system.hamiltonian)
     refuse(scene.inequalities->at, "the system must have a 'lagrangian', whose action is minimised");
   if (!scene.system.force.empty())
-    refuse(scene.system.force.front().name_at, "there must be an action; forces have none: leave them out");
-  if (!scene.system.constraints.empty())
-    refuse(position(scene.system.constraints.front(), 0),
-           "constraints are not available; use coordinates that satisfy them, or leave [path] out");
-  if (boundary.periodic)
-    refuse(boundary.at, "periodic orbits are not available; fix both ends, or leave [path] out");
-  if (boundary.free || boundary.infinite)
-    refuse(boundary.duration.at, "the duration must be a number; write one, or leave [path] out");
+    refuse(scene.system.force.front().name_at,
+           "there must be an action that can be least, and forces have none; leave them out, or the "
+           "inequalities");
+  if (boundary.infinite)
+    refuse(boundary.duration.at, "the duration must be finite; write a number, or leave [path] out");
   if (!boundary.integrals.empty())
     refuse(position(boundary.integrals.front(), 0),
            "integrals are not available; leave one or the other out");
@@ -173,10 +227,6 @@ void put_inequalities(const Scene& scene, const System& system, Problem& problem
     throw SceneError(scene.inequalities->at,
                      "'start' gives initial data, and their motion is no minimiser; leave [path] out, or fix "
                      "the end instead of momenta");
-  if (problem.extension)
-    throw SceneError(scene.boundary.at,
-                     "with inequalities along the path nonlinear conditions of the ends are not available; "
-                     "leave one or the other out");
   if (problem.lagrangian->kinks())
     throw SceneError(position(scene.system.law(), 0),
                      "with inequalities along the path the Lagrangian must be smooth, without abs, min, max "
@@ -192,12 +242,17 @@ void put_inequalities(const Scene& scene, const System& system, Problem& problem
   }
   const Eigen::MatrixXd metric = metric_of_motion(system, problem);
   const double rate = growth / problem.duration.value;
-  inequalities->all = constrained_values(table.graph(numbers), system, metric);
+  inequalities->all = constrained_values(table.graph(numbers, false), system, metric);
   inequalities->hold = [table, system, metric, rate](const std::vector<int>& held) -> HeldSystem {
-    ConstrainedSystem found = constrained_system(table.graph(held), system, metric, rate);
+    ConstrainedSystem found = constrained_system(table.graph(held, true), system, metric, rate);
     return {std::move(found.lagrangian), std::move(found.manifold)};
   };
+  if (problem.duration.free && problem.duration.energy && !inequalities->all->autonomous())
+    throw SceneError(scene.inequalities->at,
+                     "inequalities that depend on t change the energy; with 'energy' they must not: write "
+                     "'where', or give the duration as a number");
   for (const bool at_end : {false, true}) check_end(scene, *inequalities, at_end, problem);
+  check_closed(scene, *inequalities, problem);
   problem.inequalities = std::move(inequalities);
 }
 

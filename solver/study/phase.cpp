@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "problem/manifold.hpp"
+#include "solution/columns.hpp"
 
 namespace extremal {
 
@@ -25,6 +26,49 @@ void phase_point(const Problem& problem, const Trajectory& trajectory, double t,
   const Lagrangian& lagrangian = problem.manifold ? problem.manifold->lagrangian() : *problem.lagrangian;
   const PointValues values = evaluate_at(lagrangian, q, v, t, Order::gradient, scratch);
   std::copy(values.dv.begin(), values.dv.end(), p.begin());
+}
+
+namespace {
+
+/// Of the state (q, p), the rates of p left out.
+void state_columns(const Trajectory& trajectory, std::span<const double> times, std::span<double* const> q,
+                   std::span<double* const> v, std::span<double* const> p) {
+  const std::size_t n = q.size();
+  std::vector<double*> state(q.begin(), q.end()), rate(v.begin(), v.end());
+  std::vector<double> unused((p.empty() ? 2 : 1) * n * times.size());
+  for (std::size_t a = 0; a < n; ++a) {
+    rate.push_back(unused.data() + a * times.size());
+    state.push_back(p.empty() ? unused.data() + (n + a) * times.size() : p[a]);
+  }
+  evaluate_columns(trajectory, times, state, rate);
+}
+
+/// Each point is put on the manifold.
+void manifold_columns(const Problem& problem, const Trajectory& trajectory, std::span<const double> times,
+                      std::span<double* const> q, std::span<double* const> v, std::span<double* const> p) {
+  const std::size_t n = q.size();
+  std::vector<double> point(n), rate(n), momentum(n);
+  Scratch scratch;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    phase_point(problem, trajectory, times[i], point, rate, momentum, scratch);
+    for (std::size_t a = 0; a < n; ++a) {
+      q[a][i] = point[a];
+      v[a][i] = rate[a];
+      if (!p.empty()) p[a][i] = momentum[a];
+    }
+  }
+}
+
+}  // namespace
+
+void phase_columns(const Problem& problem, const Trajectory& trajectory, std::span<const double> times,
+                   std::span<double* const> q, std::span<double* const> v, std::span<double* const> p) {
+  if (problem.phase) return state_columns(trajectory, times, q, v, p);
+  if (problem.manifold) return manifold_columns(problem, trajectory, times, q, v, p);
+  evaluate_columns(trajectory, times, q, v);
+  if (p.empty()) return;
+  const std::vector<const double*> at_q(q.begin(), q.end()), at_v(v.begin(), v.end());
+  momentum_columns(*problem.lagrangian, times, at_q, at_v, p);
 }
 
 std::vector<std::string> coordinate_names(const Problem& problem) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -13,10 +14,20 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Lines that leave more than this of the largest do not describe a motion.
+constexpr double resolved_part = 0.01;
+
 std::vector<PointMass> measure_of(const Spectrum& spectrum) {
   std::vector<PointMass> measure;
   for (const SpectralLine& line : spectrum.lines) measure.push_back({line.frequency, line.amplitude});
   return measure;
+}
+
+/// Of the largest amplitude, what the lines leave.
+double part_left(const Spectrum& spectrum) {
+  double largest = 0;
+  for (const SpectralLine& line : spectrum.lines) largest = std::max(largest, line.amplitude);
+  return largest > 0 ? spectrum.residual / largest : 0;
 }
 
 double finite(const Json& line, const char* key, const Location& whole) {
@@ -69,6 +80,17 @@ SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request,
     result.flat_norm.push_back(flat_norm(std::move(difference)));
   }
   return result;
+}
+
+std::string unresolved_lines(const Study& study, const SolutionSpectrum& spectrum) {
+  std::string text;
+  for (std::size_t a = 0; a < spectrum.motion.coordinates.size(); ++a)
+    if (const double left = part_left(spectrum.motion.coordinates[a]); left > resolved_part)
+      text += fmt::format(
+          "; the lines of {} leave {:.2g} of the largest: too short an arc, too few lines, or a motion "
+          "without lines",
+          study.problem.names[a], left);
+  return text;
 }
 
 }  // namespace extremal

@@ -33,4 +33,8 @@ struct SolutionSpectrum {
 /// Throws std::invalid_argument where the elements of such a scheme are too few.
 SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request, const Solution& solution);
 
+/// What is to be added to the message of the solution: of which coordinates the lines do not describe the
+/// motion.
+std::string unresolved_lines(const Study& study, const SolutionSpectrum& spectrum);
+
 }  // namespace extremal

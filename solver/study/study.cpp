@@ -6,6 +6,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "problem/manifold.hpp"
+#include "problem/minimal_problem.hpp"
 #include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
 #include "scene/scene.hpp"
@@ -18,13 +20,17 @@
 #include "study/guess.hpp"
 #include "study/infinite.hpp"
 #include "study/memory.hpp"
+#include "study/minimal_coordinates.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
 #include "study/path_constraints.hpp"
 #include "study/phase.hpp"
 #include "study/phase_space.hpp"
+#include "study/regularity.hpp"
+#include "study/singular_ends.hpp"
 #include "study/suggestion.hpp"
 #include "study/usage.hpp"
+#include "system/deferred_lagrangian.hpp"
 
 namespace extremal {
 namespace {
@@ -96,21 +102,45 @@ double expected_duration(const Scene& scene, const System& system, const Problem
   return scene.guess.duration ? evaluate(*scene.guess.duration, system) : 0;
 }
 
-/// The guess, and what constraints make of it and of the ends.
-void read_constrained_guess(const Scene& scene, const System& system, const Deadline& deadline,
-                            Problem& problem) {
+/// Whether one solution is asked for, without a scheme.
+bool only_near_guess(const Scene& scene, Purpose purpose) {
+  const bool family = scene.continuation && purpose == Purpose::family;
+  return purpose != Purpose::comparison && !family && !scene.boundary.periodic && !scene.search &&
+         !scene.spectrum && !scene.fit && !scene.inequalities && !scene.solve.scheme && !scene.solve.method &&
+         !scene.guess.state;
+}
+
+/// With the ends that are made of unknowns at the guesses of these.
+Problem with_guessed_ends(const Scene& scene, const ExtendedScene& parts, const System& system,
+                          Problem problem) {
+  BoundaryTable boundary = parts.linear;
+  boundary.start = scene.boundary.start;
+  boundary.end = scene.boundary.end;
+  set_relation(boundary, system, problem);
+  return problem;
+}
+
+/// The guess, and what constraints make of it and of the ends, which become points near them. False as
+/// settle_ends().
+bool read_constrained_guess(const Scene& scene, const ExtendedScene& parts, const System& system,
+                            const Deadline& deadline, Purpose purpose, EndPoints& ends, Problem& problem) {
+  const bool extended = parts.extended;
+  const bool deferred = !extended && purpose == Purpose::solution && only_near_guess(scene, purpose);
   const double time = expected_duration(scene, system, problem);
   if (!(time > 0)) {
     read_guess(scene, system, deadline, problem);
-    constrain(scene.system, system, problem.duration.value, problem);
+    constrain(scene.system, system, problem.duration.value, deferred, problem);
   } else {
-    constrain(scene.system, system, time, problem);
+    constrain(scene.system, system, time, deferred, problem);
     read_guess(scene, system, deadline, problem);
   }
-  EndPoints ends = end_points(problem);
+  ends = end_points(extended ? with_guessed_ends(scene, parts, system, problem) : problem);
   check_independent(scene, ends, problem);
-  settle_ends(scene, ends, problem);
-  settle_guess(scene, ends, problem);
+  // Ends that an unknown decides on are conditions, and a guess through waypoints is still to be made.
+  if (extended && !problem.periodic && constraints_vary(scene)) return false;
+  const bool suited = settle_ends(scene, ends, problem);
+  if (!extended) settle_guess(scene, ends, problem);
+  return suited;
 }
 
 /// Nothing where a Hamiltonian needs phase space and `system` is its Legendre transform.
@@ -141,12 +171,17 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   if (legendre && names_momenta(scene.guess, system) && !has_legendre_transform(problem)) return std::nullopt;
   std::optional<InfiniteEnds> infinite;
   if (scene.boundary.infinite) infinite = read_infinite_ends(scene, problem);
+  bool suited = true;
+  EndPoints ends;
   if (constrained)
-    read_constrained_guess(scene, system, deadline, problem);
+    suited = read_constrained_guess(scene, parts, system, deadline, purpose, ends, problem);
   else
     read_guess(scene, system, deadline, problem);
   if (legendre && !has_legendre_transform(problem)) return std::nullopt;
-  if (parts.extended) read_extension(scene, parts, system, problem);
+  if (parts.extended) {
+    read_extension(scene, parts, system, {suited, ends}, problem);
+    suited = true;
+  }
   if (infinite) leave_infinite_ends(scene, *std::move(infinite), problem);
   try {
     if (system.hamiltonian) set_phase_space(*system.hamiltonian, problem);
@@ -156,9 +191,19 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   } catch (const std::invalid_argument& e) {
     throw SceneError(scene.boundary.at, e.what());
   }
-  check_regular(problem, scene.system);
+  if (!suited && !only_near_guess(scene, purpose)) refuse_partly_free(scene, problem);
+  if (!parts.extended && !problem.copies) put_minimal_coordinates(scene.system, !suited, problem);
+  if (!suited && !problem.manifold->parts().minimal) refuse_partly_free(scene, problem);
+  if (!problem.manifold || !has_regular_chart(problem)) {
+    problem.lagrangian = as_made(std::move(problem.lagrangian));
+    check_regular(problem, scene.system);
+    check_guess_finite(problem, scene.guess.at);
+  }
+  if (problem.duration.where && problem.ends.free == 0)
+    throw SceneError(position(*scene.boundary.where, 0),
+                     "'where' names ends that are fixed, so it does not determine the duration; give the "
+                     "duration, or 'energy' instead of 'where'");
   if (scene.boundary.energy && !problem.extension) check_energy_at_ends(problem, scene.boundary.energy->at);
-  check_guess_finite(problem, scene.guess.at);
   put_inequalities(scene, system, problem);
   return problem;
 }
@@ -230,16 +275,13 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
   read_law(scene, purpose, study);
+  check_singular_ends(scene, purpose, study.problem);
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.units) study.units = read_units(*scene.units);
   if (scene.spectrum)
     study.spectrum = read_spectrum(*scene.spectrum, scene.path, coordinate_names(study.problem));
   if (scene.fit) study.fit = read_fit(scene, study);
-  if (scene.continuation && purpose == Purpose::family && study.problem.infinite)
-    throw SceneError(scene.continuation->at,
-                     "families with ends at infinity are not available; solve at each value of the parameter "
-                     "with --set instead");
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;
@@ -291,10 +333,14 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
 }  // namespace
 
 void use_constants(const Solution& solution, Study& study) {
-  if (solution.extension) study.problem.lagrangian = solution.extension->lagrangian;
+  if (!solution.extension) return;
+  study.problem.lagrangian = solution.extension->lagrangian;
+  if (solution.extension->manifold) study.problem.manifold = solution.extension->manifold;
 }
 
 int natural_conditions(const Problem& problem) {
+  if (problem.manifold && problem.manifold->parts().minimal)
+    return natural_conditions(problem.manifold->parts().minimal->problem);
   const std::vector<double>& given = problem.boundary.momenta;
   const auto zeros = std::count(given.begin(), given.end(), 0.0);
   if (problem.periodic || problem.initial) return 0;

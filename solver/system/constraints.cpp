@@ -5,6 +5,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "system/copies.hpp"
+#include "system/moved_ends.hpp"
+
 namespace extremal {
 
 namespace {
@@ -14,32 +17,26 @@ using Symbols = std::vector<Symbol>;
 /// Steps onto the manifold after the first. One is enough for the second variation; with another L̃ has other
 /// extremals beside the manifold only farther away.
 constexpr int further_steps = 2;
+/// Of forces, which have the derivatives of P to second order.
+constexpr int further_steps_of_power = 1;
 
 /// A vector that depends on (x, t), and its rate along x(t).
 struct Moving {
   Symbols value, rate;
 };
 
-/// P, its rate and c, on the graph of a system.
+/// P, its rate and c, on the graph of a system. The rates are those along a motion, whose velocities are
+/// inputs, or along a displacement at one time.
 class Projector {
  public:
   Projector(ConstrainedGraph& system, const NormalMotion& normal)
-      : system_(system),
-        graph_(system.graph),
-        normal_(normal),
-        n_(system.coordinates),
-        m_(static_cast<int>(system.constraints.size())) {
-    for (int a = 0; a < n_; ++a) {
-      x_.value.push_back(input(a));
-      x_.rate.push_back(input(n_ + a));
-    }
-    differentiate();
-    factor();
-  }
+      : Projector(system, normal, system.coordinates, true) {}
+  /// Along the displacement that inputs from `displacement` on are.
+  Projector(ConstrainedGraph& system, const NormalMotion& normal, int displacement)
+      : Projector(system, normal, displacement, false) {}
 
   NodeId run() {
-    Moving q = moved(x_, g_);
-    for (int further = 0; further < further_steps && curved(); ++further) q = moved(q, constraints_at(q));
+    const Moving q = point();
     Symbol sum(&graph_, substitute(graph_, system_.lagrangian, inputs(q)));
     const double square = normal_.rate * normal_.rate;
     for (int k = 0; k < m_; ++k) {
@@ -50,7 +47,45 @@ class Projector {
     return sum.node(graph_);
   }
 
+  /// P alone.
+  std::vector<NodeId> position() {
+    std::vector<NodeId> nodes;
+    for (const Symbol& s : point().value) nodes.push_back(s.node(graph_));
+    return nodes;
+  }
+
+  /// F(P, dP/dt, t)·(rate of P along the displacement of another).
+  NodeId power(Projector& displaced) {
+    const Moving q = point(further_steps_of_power), moving = displaced.point(further_steps_of_power);
+    const std::vector<NodeId> there = inputs(q);
+    Symbol sum = symbol(graph_.constant(0));
+    for (int a = 0; a < n_; ++a) sum += symbol(substitute(graph_, system_.forces[a], there)) * moving.rate[a];
+    return sum.node(graph_);
+  }
+
  private:
+  Projector(ConstrainedGraph& system, const NormalMotion& normal, int rates, bool timed)
+      : system_(system),
+        graph_(system.graph),
+        normal_(normal),
+        n_(system.coordinates),
+        m_(static_cast<int>(system.constraints.size())),
+        timed_(timed) {
+    for (int a = 0; a < n_; ++a) {
+      x_.value.push_back(input(a));
+      x_.rate.push_back(a < n_ - normal.constants ? input(rates + a) : symbol(graph_.constant(0)));
+    }
+    differentiate();
+    factor();
+  }
+
+  /// P.
+  Moving point(int most_further = further_steps) {
+    Moving q = moved(x_, g_);
+    for (int further = 0; further < most_further && curved(); ++further) q = moved(q, constraints_at(q));
+    return q;
+  }
+
   Symbol input(int index) { return {&graph_, graph_.input(static_cast<std::uint32_t>(index))}; }
   Symbol symbol(NodeId id) { return {&graph_, id}; }
   bool zero(const Symbol& s) { return graph_.is_constant(s.node(graph_), 0); }
@@ -64,7 +99,7 @@ class Projector {
   }
 
   Symbol rate_of(std::span<const NodeId> slopes, const Symbols& velocity) {
-    Symbol rate = symbol(slopes[n_]);
+    Symbol rate = symbol(timed_ ? slopes[n_] : graph_.constant(0));
     for (int a = 0; a < n_; ++a) rate += symbol(slopes[a]) * velocity[a];
     return rate;
   }
@@ -193,6 +228,7 @@ class Projector {
   Graph& graph_;
   const NormalMotion& normal_;
   const int n_, m_;
+  const bool timed_;
   Moving x_, g_;
   std::vector<std::vector<NodeId>> slopes_;  ///< of each g_k by (x, t)
   Symbols g_q_, g_q_rate_;                   ///< G and its rate, m × n
@@ -263,6 +299,56 @@ bool has_kinks(const Graph& graph, NodeId f) {
 LagrangianGraph projected(ConstrainedGraph system, const NormalMotion& normal) {
   const NodeId body = Projector(system, normal).run();
   return whole(system.coordinates, std::move(system.graph), body, std::move(system.parameters));
+}
+
+LagrangianGraph projected_power(ConstrainedGraph system, const NormalMotion& normal) {
+  const int n = system.coordinates, active = static_cast<int>(system.parameters.size());
+  const int first = 2 * n + 1 + active;  // of the displacement, behind all inputs of the system
+  Projector moving(system, normal), displaced(system, normal, first);
+  const NodeId body = moving.power(displaced);
+  // Of (x, λ): x, λ, x', λ', t, parameters.
+  std::vector<NodeId> inputs;
+  const auto put = [&](int index, int count) {
+    for (int a = 0; a < count; ++a)
+      inputs.push_back(system.graph.input(static_cast<std::uint32_t>(index + a)));
+  };
+  put(0, n);
+  put(2 * n, n);
+  put(4 * n, 1 + active);
+  put(n, n);
+  const NodeId power = substitute(system.graph, body, inputs);
+  return whole(2 * n, std::move(system.graph), power, std::move(system.parameters));
+}
+
+std::vector<NodeId> forces_of_power(const LagrangianGraph& power, Graph& target) {
+  const int n = power.coordinates / 2;
+  Graph graph;
+  const NodeId body = flattened(power, graph);
+  std::vector<std::uint32_t> multipliers(n);
+  std::iota(multipliers.begin(), multipliers.end(), static_cast<std::uint32_t>(n));
+  const std::vector<NodeId> slopes = gradient(graph, body, multipliers);
+  // q, λ, q', λ', t, parameters; λ does not occur any more.
+  std::vector<NodeId> inputs, forces;
+  const auto put = [&](int number) { inputs.push_back(target.input(static_cast<std::uint32_t>(number))); };
+  for (int a = 0; a < 4 * n; ++a) put(a < n ? a : a >= 2 * n && a < 3 * n ? a - n : 0);
+  for (int k = 0; k <= power.parameters; ++k) put(2 * n + k);
+  for (const NodeId slope : slopes) forces.push_back(copied(graph, slope, inputs, target));
+  return forces;
+}
+
+MovedEnds moved_ends(ConstrainedGraph system, const NormalMotion& normal, double duration) {
+  const int n = system.coordinates;
+  const std::vector<NodeId> point = Projector(system, normal).position();
+  MovedEnds ends;
+  for (const int end : {0, 1}) {
+    std::vector<NodeId> inputs;
+    for (int a = 0; a < n; ++a) inputs.push_back(ends.graph.input(static_cast<std::uint32_t>(end * n + a)));
+    inputs.resize(2 * static_cast<std::size_t>(n), ends.graph.constant(0));
+    inputs.push_back(ends.graph.constant(end ? duration : 0));
+    for (const double parameter : system.parameters) inputs.push_back(ends.graph.constant(parameter));
+    for (const NodeId node : point) ends.values.push_back(copied(system.graph, node, inputs, ends.graph));
+  }
+  return ends;
 }
 
 LagrangianGraph with_time_as_coordinate(const ConstrainedGraph& system) {

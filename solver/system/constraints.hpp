@@ -27,6 +27,7 @@ struct ConstrainedGraph {
   Graph graph;
   NodeId lagrangian = 0;
   std::vector<NodeId> constraints;
+  std::vector<NodeId> forces{};  ///< F, one for each coordinate; empty: there are none
   std::vector<double> parameters;
 };
 
@@ -40,10 +41,18 @@ bool has_kinks(const Graph& graph, NodeId f);
 struct NormalMotion {
   std::vector<Triplet> metric;  ///< W, symmetric and positive definite, both triangles
   double rate = 0;
+  int constants = 0;  ///< so many of the last coordinates have no velocity, and are not moved
 };
 
 /// L̃.
 LagrangianGraph projected(ConstrainedGraph system, const NormalMotion& normal);
+
+/// The power F(P, dP/dt, t)·(∂P/∂x λ) of the forces in the coordinates (x, λ), as two_copies() takes it.
+/// Where a displacement λ is normal to the manifold it vanishes: forces do not move c.
+LagrangianGraph projected_power(ConstrainedGraph system, const NormalMotion& normal);
+
+/// ∂/∂λ of F·λ, which is given in the coordinates (q, λ), as expressions of q, q', t on another graph.
+std::vector<NodeId> forces_of_power(const LagrangianGraph& power, Graph& target);
 
 /// L with t as one more coordinate, the last one.
 LagrangianGraph with_time_as_coordinate(const ConstrainedGraph& system);

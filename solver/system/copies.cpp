@@ -7,9 +7,6 @@
 
 namespace extremal {
 
-namespace {
-
-/// A body of another graph, with inputs replaced.
 NodeId copied(const Graph& from, NodeId body, std::span<const NodeId> inputs, Graph& to) {
   std::unordered_map<NodeId, NodeId> image;
   for (const NodeId id : nodes_of(from, body)) {
@@ -21,6 +18,8 @@ NodeId copied(const Graph& from, NodeId body, std::span<const NodeId> inputs, Gr
   }
   return image[body];
 }
+
+namespace {
 
 /// Global inputs of Λ: q₁, q₂, q₁', q₂' (n each), t, numbers.
 class Doubling {

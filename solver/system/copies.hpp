@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "system/tape.hpp"
 
 /// \file Forces in an action: two copies of a system.
@@ -21,5 +23,8 @@ namespace extremal {
 /// Λ in 2n coordinates (q₁, q₂), of L in n and of `power` = F·λ in 2n, (q, λ). In each term of `power` an
 /// input is of one kind in all rows.
 LagrangianGraph two_copies(const LagrangianGraph& lagrangian, const LagrangianGraph& power);
+
+/// An expression of another graph, with expressions in place of its inputs.
+NodeId copied(const Graph& from, NodeId body, std::span<const NodeId> inputs, Graph& to);
 
 }  // namespace extremal

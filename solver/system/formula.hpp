@@ -108,9 +108,10 @@ struct ConstraintText {
   std::string formula{}, where{};
 };
 
-/// A system with the left sides (left − right) of its constraints. Throws FormulaError, also for one that is
-/// not smooth.
-ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints);
+/// A system with the left sides (left − right) of its constraints and its forces. Throws FormulaError, also
+/// for a constraint that is not smooth.
+ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints,
+                                   std::span<const ForceText> forces = {});
 
 /// Parses, differentiates and compiles. Throws FormulaError, and SingularHamiltonian (hamiltonian.hpp) where
 /// the Legendre transform is asked for and the second derivative by the momenta is singular.

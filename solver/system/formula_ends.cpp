@@ -4,9 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "system/copies.hpp"
 #include "system/end_condition.hpp"
 #include "system/expression_evaluate.hpp"
 #include "system/formula_binder.hpp"
+#include "system/moved_ends.hpp"
 
 /// \file Conditions between end values, and maps of one end to the other.
 
@@ -99,6 +101,28 @@ void add_curvatures(EndFunction& function) {
     for (const NodeId second : gradient(function.graph, slope, inputs)) function.curvatures.push_back(second);
 }
 
+/// An expression of end values, with its derivatives.
+EndFunction compact(const Graph& graph, NodeId value) {
+  EndFunction function;
+  function.read = inputs_of(graph, value);
+  std::vector<NodeId> inputs(function.read.empty() ? 0 : function.read.back() + 1);
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t k = 0; k < function.read.size(); ++k) {
+    inputs[function.read[k]] = function.graph.input(k);
+    numbers.push_back(k);
+  }
+  function.value = copied(graph, value, inputs, function.graph);
+  function.slopes = gradient(function.graph, function.value, numbers);
+  add_curvatures(function);
+  return function;
+}
+
+EndCondition condition_of(EndFunction made) {
+  return {[function = std::make_shared<const EndFunction>(std::move(made))](
+              std::span<const double> start, std::span<const double> end, std::span<double> gradient,
+              std::span<double> hessian) { return play(*function, start, end, gradient, hessian); }};
+}
+
 }  // namespace
 
 }  // namespace formula
@@ -126,11 +150,32 @@ EndCondition end_condition(const std::string& text, const Vocabulary& vocabulary
   using namespace formula;
   Names names = names_of(Kind::condition, vocabulary);
   Formula formula = parse_equation(text, where);
-  const auto function = std::make_shared<EndFunction>(function_of(formula, names));
-  if (function->read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
-  add_curvatures(*function);
-  return {[function](std::span<const double> start, std::span<const double> end, std::span<double> gradient,
-                     std::span<double> hessian) { return play(*function, start, end, gradient, hessian); }};
+  EndFunction function = function_of(formula, names);
+  if (function.read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
+  add_curvatures(function);
+  return condition_of(std::move(function));
+}
+
+EndCondition condition_of_points(const std::string& text, const Vocabulary& vocabulary,
+                                 const std::string& where, const MovedEnds& ends) {
+  using namespace formula;
+  Names names = names_of(Kind::condition, vocabulary);
+  Formula formula = parse_equation(text, where);
+  const EndFunction function = function_of(formula, names);
+  if (function.read.empty()) fail(formula, 0, "the equation depends on no end value; write x(0) or x(T)");
+  std::vector<NodeId> points;
+  for (const std::uint32_t e : function.read) points.push_back(ends.values[e]);
+  Graph graph = ends.graph;
+  const NodeId value = copied(function.graph, function.value, points, graph);
+  return condition_of(compact(graph, value));
+}
+
+EndCondition linear_condition_of_points(std::span<const Triplet> row, double value, const MovedEnds& ends) {
+  Graph graph = ends.graph;
+  NodeId sum = graph.constant(-value);
+  for (const Triplet& entry : row)
+    sum = graph.add(sum, graph.mul(graph.constant(entry.value), ends.values[entry.column]));
+  return formula::condition_of(formula::compact(graph, sum));
 }
 
 AffineForm affine_form(const std::string& text, const Vocabulary& vocabulary, const std::string& where,

@@ -251,6 +251,7 @@ class Resolver {
     }
     if (kind_ == Kind::lagrangian && !velocity_mend(name, call).empty()) mend = velocity_mend(name, call);
     if (kind_ != Kind::guess && !call && !momentum_mend(name).empty()) mend = momentum_mend(name);
+    if (call && kind_ == Kind::condition && !end_momentum_mend(name).empty()) mend = end_momentum_mend(name);
     if (name == "t") mend = "; the time cannot stand here";
     if (name == "T") mend = "; T is the duration only in a guess, and in x(T) in a condition";
     stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80), mend));
@@ -277,6 +278,17 @@ class Resolver {
     if (kind_ != Kind::hamiltonian) return {};
     return fmt::format("; there is no coordinate '{}'; momenta are those of coordinates: {}", name.substr(2),
                        momentum_of(first.name, {.array = first.array}));
+  }
+
+  /// For p_x(0) and p_x(T).
+  std::string end_momentum_mend(const std::string& name) const {
+    if (!name.starts_with("p_")) return {};
+    const Known* known = names_.find(name.substr(2));
+    if (known == nullptr || known->meaning != Meaning::coordinate) return {};
+    return fmt::format(
+        "; conditions hold between coordinates, and a momentum is given at its end: start = {{ "
+        "{0} = … }} or end = {{ {0} = … }}",
+        name);
   }
 
   /// For dx/dt, x_dot, v_x, diff(x, t) and the like.

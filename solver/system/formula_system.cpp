@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "system/constraints.hpp"
@@ -31,6 +33,16 @@ std::shared_ptr<const Lagrangian> compile_hamiltonian(formula::Names& names, con
                     fmt::join(momenta, ", ")),
         e.momenta);
   }
+}
+
+/// The Lagrangian of which two copies are made.
+LagrangianGraph transformed(const LagrangianGraph& hamiltonian) {
+  std::optional<LagrangianGraph> lagrangian = legendre_transform(hamiltonian);
+  if (!lagrangian)
+    throw std::invalid_argument(
+        "forces act on Hamiltonians that are made of quadratic forms of the momenta or of square roots of "
+        "such; write the 'lagrangian' instead");
+  return *std::move(lagrangian);
 }
 
 /// Behind the coordinates.
@@ -72,12 +84,17 @@ System compile(const SystemText& text, Formulation formulation) {
 }
 
 std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces) {
-  formula::Names names = formula::names_of(text), of_forces = formula::names_of(text);
-  const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian, "lagrangian");
+  SystemText of_velocities = text;
+  of_velocities.hamiltonian.reset();
+  formula::Names names = formula::names_of(text), of_forces = formula::names_of(of_velocities);
+  const LagrangianGraph lagrangian =
+      text.hamiltonian ? transformed(formula::graph_of(names, *text.hamiltonian, "hamiltonian"))
+                       : formula::graph_of(names, text.lagrangian, "lagrangian");
   return make_lagrangian(two_copies(lagrangian, formula::power_of(of_forces, forces)));
 }
 
-ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints) {
+ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints,
+                                   std::span<const ForceText> forces) {
   formula::Names names = formula::names_of(text);
   const LagrangianGraph lagrangian = formula::graph_of(names, text.lagrangian, "lagrangian");
   ConstrainedGraph system;
@@ -89,6 +106,10 @@ ConstrainedGraph constrained_graph(const SystemText& text, std::span<const Const
     system.constraints.push_back(flattened(equation, system.graph));
     if (has_kinks(system.graph, system.constraints.back()))
       throw FormulaError("a constraint must be smooth, without abs, min, max and step", constraint.where, 0);
+  }
+  if (!forces.empty()) {
+    formula::Names of_forces = formula::names_of(text);
+    system.forces = forces_of_power(formula::power_of(of_forces, forces), system.graph);
   }
   return system;
 }

@@ -195,4 +195,14 @@ bool TapeLagrangian::evaluate_extended(const DoubleDouble* q, const DoubleDouble
   return true;
 }
 
+void TapeLagrangian::evaluate_hessian(const DoubleDouble* q, const DoubleDouble* v, const DoubleDouble& t,
+                                      DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const {
+  orders_[static_cast<int>(Order::hessian)].play_extended(q, v, t, out, scratch);
+}
+
+void TapeLagrangian::evaluate_hessian(const Extended* q, const Extended* v, const Extended& t, Extended* out,
+                                      PointScratch<Extended>& scratch) const {
+  orders_[static_cast<int>(Order::hessian)].play_extended(q, v, t, out, scratch);
+}
+
 }  // namespace extremal

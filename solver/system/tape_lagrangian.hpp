@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "system/extended_hessian.hpp"
 #include "system/kinks.hpp"
 #include "system/lagrangian.hpp"
 #include "system/tape_program.hpp"
@@ -70,7 +71,7 @@ class Tape {
 };
 
 /// A Lagrangian from an expression graph.
-class TapeLagrangian final : public Lagrangian {
+class TapeLagrangian final : public Lagrangian, public ExtendedHessian {
  public:
   /// Throws std::invalid_argument for a malformed graph.
   explicit TapeLagrangian(const LagrangianGraph& lagrangian, std::shared_ptr<const Kinks> kinks = nullptr);
@@ -83,6 +84,10 @@ class TapeLagrangian final : public Lagrangian {
                          PointScratch<Extended>& scratch) const override;
   bool evaluate_extended(const DoubleDouble* q, const DoubleDouble* v, const DoubleDouble& t,
                          DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const override;
+  void evaluate_hessian(const DoubleDouble* q, const DoubleDouble* v, const DoubleDouble& t,
+                        DoubleDouble* out, PointScratch<DoubleDouble>& scratch) const override;
+  void evaluate_hessian(const Extended* q, const Extended* v, const Extended& t, Extended* out,
+                        PointScratch<Extended>& scratch) const override;
 
   TapeSummary summary(Order order) const { return orders_[static_cast<int>(order)].summary(); }
   /// Of scratch memory, that an evaluation at so many points takes from its beginning.

@@ -7,16 +7,16 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "machine/folder.hpp"
+
 /// \file The built program, run as a user runs it.
 
 namespace extremal::test {
-namespace fs = std::filesystem;
 
 inline std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -30,21 +30,8 @@ struct Outcome {
   std::string out, error;
 };
 
-class Command : public ::testing::Test {
+class Command : public InFolder {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(EXTREMAL_BINARY_DIR) / "scratch" /
-             (std::string(info->test_suite_name()) + "." + info->name());
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
-  void write(const std::string& name, const std::string& content) {
-    std::ofstream(folder / name, std::ios::binary) << content;
-  }
-
   /// Starts `extremal ARGUMENTS` in the folder, killed after 60 s of processor time.
   pid_t start(const std::vector<std::string>& arguments) {
     const std::string program = std::string(EXTREMAL_BINARY_DIR) + "/extremal";
@@ -76,8 +63,6 @@ class Command : public ::testing::Test {
     options.insert(options.begin(), {"solve", "scene.toml"});
     return extremal(options);
   }
-
-  fs::path folder;
 };
 
 inline const std::string pendulum =

@@ -42,7 +42,9 @@ TEST_F(Command, ContinuesAFamily) {
   EXPECT_NE(o.out.find("30 points have been found"), std::string::npos) << o.out;
   EXPECT_NE(read_text(folder / "b.svg").find("<svg"), std::string::npos);
   const Json b = Json::parse(read_text(folder / "b.json"));
-  ASSERT_EQ(b.size(), 4u);
+  ASSERT_EQ(b.size(), 6u);
+  EXPECT_EQ(b["varied"], "lambda");
+  EXPECT_TRUE(b["title"].is_string());
   ASSERT_EQ(b["branches"].size(), 1u);
   EXPECT_EQ(b["branches"][0]["origin"], nullptr);
   EXPECT_EQ(b["branches"][0]["points"], 30);

@@ -37,7 +37,23 @@ TEST_F(Init, StandardOutputHasTheSceneAlone) {
   ASSERT_EQ(o.exit, 0) << o.error;
   EXPECT_NE(o.out.find("use = \"kepler\""), std::string::npos);
   EXPECT_FALSE(fs::exists(folder / "kepler.toml"));
-  EXPECT_EQ(extremal({"init", "keppler"}).exit, 2);
+}
+
+TEST_F(Init, AnUnknownNameIsToldWithWhatMayBeMeant) {
+  const auto refused = [this](const std::string& name) {
+    const Outcome o = extremal({"init", name});
+    EXPECT_EQ(o.exit, 2);
+    const std::string start =
+        "error: extremal init: there is no system '" + name + "' among those that 'extremal list' names";
+    EXPECT_EQ(o.error.substr(0, start.size()), start);
+    return o.error.substr(std::min(start.size(), o.error.size()));
+  };
+  EXPECT_EQ(refused("keppler"), "; did you mean 'kepler'?\n");
+  EXPECT_EQ(refused("something-else-entirely"), "\n");
+  const std::string exact = refused("halo-family"), near = refused("halo-famly");
+  EXPECT_NE(exact.find("halo-family.toml', whose system is 'cr3bp'"), std::string::npos) << exact;
+  EXPECT_EQ(near.find("; did you mean the scene '"), 0U) << near;
+  EXPECT_NE(near.find("halo-family.toml'?"), std::string::npos) << near;
 }
 
 }  // namespace

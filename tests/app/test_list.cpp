@@ -59,7 +59,10 @@ TEST_F(Listing, NamesTheNearestSystem) {
   const Outcome o = extremal({"list", "sprnig"});
   EXPECT_EQ(o.exit, 2);
   EXPECT_EQ(o.out, "");
-  EXPECT_EQ(o.error, "error: extremal list: there is no system 'sprnig'; did you mean 'spring'?\n");
+  EXPECT_EQ(
+      o.error,
+      "error: extremal list: there is no system 'sprnig' among those that 'extremal list' names; did you "
+      "mean 'spring'?\n");
 }
 
 TEST_F(Listing, EverySystemOfTheLibraryHasAScene) {

@@ -19,7 +19,9 @@ TEST_F(Oem, IsWrittenInTheUnitsOfTheScene) {
   const std::string text = read_text(folder / "arc.oem");
   EXPECT_EQ(text.rfind("CCSDS_OEM_VERS = 2.0\n", 0), 0u);
   EXPECT_NE(text.find("OBJECT_NAME = Arc\n"), std::string::npos);
-  EXPECT_NE(text.find("\n2025-01-31T00:00:00.000000000 149597870.7 0 0 "), std::string::npos) << text;
+  EXPECT_NE(text.find("\n2025-01-31T00:00:00.000000000 1.495978707000000e+08 0.000000000000000e+00 "),
+            std::string::npos)
+      << text;
   EXPECT_NE(text.find("STOP_TIME = 2025-06-25T07:56:47.250000000\n"), std::string::npos) << text;
 }
 

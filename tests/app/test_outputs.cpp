@@ -158,7 +158,7 @@ TEST_F(Outputs, AnInterruptEndsEveryVerbAtOnceAndLeavesNothing) {
 /// A step that is begun is ended; those of Ipopt and Ceres are long where coordinates are many.
 TEST_F(Outputs, TheBudgetEndsEveryVerb) {
   using namespace std::chrono_literals;
-  write("long.toml", chain(150));
+  write("long.toml", chain(100));
   write("short.toml", chain(40));
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"solve", "long.toml"},

@@ -29,6 +29,49 @@ TEST_F(Command, QuietWritesNothing) {
   }
 }
 
+TEST_F(Command, RatesThatAreInfiniteAtAnEndAreNull) {
+  write(
+      "scene.toml",
+      "[system]\ncoordinates = [\"y\"]\nlagrangian = \"sqrt((1 + y'^2)/y)\"\n[boundary]\nstart = { y = 0 }\n"
+      "end = { y = 1 }\nduration = 1\n");
+  const Outcome o = extremal({"solve", "scene.toml", "--quiet", "--output", "-", "--samples", "3", "--csv",
+                              "y.csv", "--plot", "y.svg"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  const Json result = Json::parse(o.out);
+  EXPECT_TRUE(result["momentum_start"].is_null());
+  EXPECT_TRUE(result["momentum_end"]["y"].is_number());
+  EXPECT_EQ(result["samples"]["y"][0], 0);
+  for (const char* key : {"y'", "p_y"}) {
+    EXPECT_TRUE(result["samples"][key][0].is_null()) << key;
+    EXPECT_TRUE(result["samples"][key][1].is_number()) << key;
+    EXPECT_TRUE(result["samples"][key][2].is_number()) << key;
+  }
+  EXPECT_NE(read_text(folder / "y.csv").find("\n0,0,,\n"), std::string::npos) << read_text(folder / "y.csv");
+}
+
+TEST_F(Command, FamiliesWithEndsAtInfinity) {
+  const std::string system =
+      "[system]\ncoordinates = [\"x\"]\nparameters = { a = 1.0 }\nlagrangian = \"x'^2/2 + (x^2 - a)^2/4\"\n"
+      "[boundary]\nstart = { x = \"-sqrt(a)\" }\nend = { x = \"sqrt(a)\" }\nduration = \"infinite\"\n"
+      "[continuation]\nto = 4.0\npoints = 10\n";
+  write("scene.toml", system + "parameter = \"a\"\n");
+  const Outcome o = extremal({"continue", "scene.toml", "--quiet", "--output", "-"});
+  ASSERT_EQ(o.exit, 0) << o.error;
+  const Json branch = Json::parse(o.out);
+  EXPECT_EQ(branch["status"], "converged");
+  ASSERT_EQ(branch["points"].size(), 10u);
+  for (const Json& point : branch["points"]) {
+    const double a = point["parameter"];
+    EXPECT_NEAR(point["action"].get<double>(), 2 * std::sqrt(2.0) / 3 * std::pow(a, 1.5), 1e-8) << a;
+    EXPECT_EQ(point["morse_index"], 0) << a;
+  }
+  EXPECT_EQ(branch["points"].back()["parameter"], 4.0);
+  write("scene.toml", system + "parameter = \"duration\"\n");
+  const Outcome refused = extremal({"continue", "scene.toml", "--quiet"});
+  EXPECT_EQ(refused.exit, 2);
+  EXPECT_NE(refused.error.find("vary a parameter"), std::string::npos) << refused.error;
+}
+
 TEST_F(Command, AFailureIsToldOnce) {
   for (const std::string search : {"", "[search]\nsolutions = 3\n"}) {
     const Outcome o = solve(

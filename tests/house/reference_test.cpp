@@ -243,6 +243,12 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
   add_fields("solve", lines + "against = \"other.json\"\n", fields);
   add_fields("solve", "system.use = \"driven-oscillator\"\nboundary = { start = { x = 0 }, duration = 2 }\n",
              fields);
+  write("above.toml",
+        "about = { summary = \"S\", formula = \"L\", axes = [\"x: m\"], centres = [\"C: 0\"] }\n"
+        "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2 - x^2/2\" }\n");
+  add_fields("solve",
+             "system.use = \"above\"\nboundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
+             fields, {"--samples", "2"});
   add_fields("solve",
              "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2\", force = { x = \"-x'\" } }\n"
              "boundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n",
@@ -253,6 +259,12 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
              "constraints = [\"x^2 + y^2 = 1\"] }\n"
              "boundary = { start = { x = 1, y = 0 }, end = { x = 0, y = 1 }, duration = 2 }\n",
              constrained, {"--samples", "2"});
+  if (extremal::available(extremal::Method::ipopt))
+    add_fields("solve",
+               "system = { coordinates = [\"x\", \"y\"], lagrangian = \"(x'^2 + y'^2)/2\" }\n"
+               "boundary = { start = { x = -1, y = 0.1 }, end = { x = 1, y = 0.1 }, duration = 1 }\n"
+               "path = { constraints = [\"x^2 + y^2 >= (0.2 + t/9)^2\"] }\n",
+               constrained, {"--samples", "2"});
   for (const std::string& field : constrained)  // those of y are those of x
     if (!field.ends_with(".y") && !field.ends_with("_y") && !field.ends_with(".y'")) fields.insert(field);
   add_fields("solve",
@@ -267,7 +279,7 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
                "boundary = { start = { x = 0 }, end = { x = 0 }, duration = 2 }\n"
                "path = { constraints = [\"x >= -1\"] }\n",
                fields, {"--samples", "2"});
-  write("data.csv", "t,x\n0,1\n1,0.5\n1.5,0.1\n2,-0.4\n");
+  write("data.csv", "t,x,sigma x\n0,1,0.1\n1,0.5,0.1\n1.5,0.1,0.1\n2,-0.4,0.1\n");
   add_fields(
       "solve",
       "system = { coordinates = [\"x\"], parameters = { k = 1.0 }, lagrangian = \"x'^2/2 - k*x^2/2\" }\n"
@@ -288,6 +300,13 @@ TEST_F(Written, FieldsOfAResultAreThoseOfThePage) {
 TEST_F(Written, FieldsOfABranchAreThoseOfThePage) {
   std::set<std::string> fields;
   add_fields("continue", complete, fields);
+  write("above.toml",
+        "about = { summary = \"S\", formula = \"L\", axes = [\"x: m\"], centres = [\"C: 0\"] }\n"
+        "system = { coordinates = [\"x\"], lagrangian = \"x'^2/2 - x^2/2\" }\n");
+  add_fields("continue",
+             "system.use = \"above\"\nboundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n"
+             "continuation = { parameter = \"duration\", to = 2.5, points = 3 }\n",
+             fields, {"--samples", "2"});
   EXPECT_EQ(fields, names_in("## Fields of a branch"));
 }
 

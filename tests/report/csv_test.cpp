@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <random>
 #include <sstream>
 
 #include "report/sample_results.hpp"
 #include "report/temporary_folder.hpp"
+#include "study/files/numpy.hpp"
 
 namespace extremal {
 namespace {
@@ -36,6 +38,19 @@ TEST(Csv, SeveralSolutionsBelowEachOther) {
   EXPECT_EQ(out.str(),
             "solution,t,x,x',p_x\n1,0,1,4,6\n1,2,3,5,7\n"
             "2,0,1,4,6\n2,2,3,5,7\n");
+}
+
+/// Where L is infinite at the start: an empty cell, and in arrays no row.
+TEST(Csv, EndsWithoutVelocities) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  Samples samples{.t = {0, 1, 2}, .q = {{1, 3, 5}}, .v = {{none, 5, 6}}, .p = {{none, 7, 8}}};
+  samples.open_start = true;
+  EXPECT_EQ(text(samples, {"x"}), "t,x,x',p_x\n0,1,,\n1,3,5,7\n2,5,6,8\n");
+  const std::map<std::string, NumpyArray> arrays = read_npz(npz_text(samples, {"x"}), 1 << 20);
+  EXPECT_EQ(arrays.at("t").values, (std::vector<double>{1, 2}));
+  EXPECT_EQ(arrays.at("x").values, (std::vector<double>{3, 5}));
+  EXPECT_EQ(arrays.at("x'").values, (std::vector<double>{5, 6}));
+  EXPECT_EQ(arrays.at("p_x").values, (std::vector<double>{7, 8}));
 }
 
 TEST(Csv, ElementsOfArraysAreKeyedAsTheyAreWritten) {

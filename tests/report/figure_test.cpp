@@ -228,6 +228,17 @@ TEST(Layout, SeveralSolutionsAreDrawnTogether) {
   for (const Panel& panel : four.panels) EXPECT_EQ(panel.curves.size(), 4u);
 }
 
+TEST(Layout, ForcesAreBelowEverything) {
+  Picture picture = several({"x", "y"}, 1);
+  const double height = layout(picture).height;
+  picture.samples.path_forces = {Column(picture.samples.count(), 0.0), Column(picture.samples.count(), 2.0)};
+  const Figure figure = layout(picture);
+  EXPECT_EQ(planes(figure), (Texts{"x-y", "t-x", "t-y", "t-force"}));
+  EXPECT_EQ(figure.panels.back().curves.size(), 1u);  // none of the force that is zero
+  EXPECT_GT(figure.panels.back().box.top, height);
+  EXPECT_GT(figure.height, figure.panels.back().box.top + figure.panels.back().box.height);
+}
+
 TEST(Layout, OrbitsAndSeveralBodiesHaveAPanelForEachSolution) {
   const Figure bodies = layout(several(joined(elements("x", 3), elements("y", 3)), 4));
   ASSERT_EQ(bodies.panels.size(), 4u);

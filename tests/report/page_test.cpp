@@ -96,6 +96,19 @@ TEST_F(Page, ColumnsAreTheSamples) {
   EXPECT_EQ(picture.at("panels").size(), 2u);
 }
 
+TEST_F(Page, ForcesAreAPanelOfTheirOwn) {
+  Result result = transfer_result();
+  result.samples->constraint_forces = {{0, 0}};  // none is drawn where there is none
+  result.samples->path_forces = {{0.5, 2}};
+  const Json picture = data_in(page_of(result)).at("picture");
+  ASSERT_EQ(picture.at("solutions").at(0).at("columns").size(), 5u);
+  const Json& panel = picture.at("panels").back();
+  EXPECT_EQ(panel.at("columns"), (std::vector<int>{4}));
+  EXPECT_EQ(panel.at("names"), (std::vector<std::string>{"contact 1"}));
+  EXPECT_LT(panel.at("range").at(0).get<double>(), 0.5);
+  EXPECT_GT(panel.at("range").at(1).get<double>(), 2);
+}
+
 TEST_F(Page, BoundariesOfObstaclesAreThoseOfThePicture) {
   const Result result = transfer_result();
   Picture picture = picture_of_samples(result);

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+#include <regex>
 #include <sstream>
 
 #include "report/oem.hpp"
@@ -45,9 +48,39 @@ TEST(Oem, HasKilometresAndDatesOfTheEpoch) {
                                              "INTERPOLATION_DEGREE = 3",
                                              "META_STOP",
                                              "",
-                                             "2024-02-28T00:00:00.000000000 1000 3000 0 500 700 0",
-                                             "2024-03-01T00:00:00.000000000 2000 4000 0 600 800 0"};
+                                             "2024-02-28T00:00:00.000000000 1.000000000000000e+03 "
+                                             "3.000000000000000e+03 0.000000000000000e+00 "
+                                             "5.000000000000000e+02 7.000000000000000e+02 "
+                                             "0.000000000000000e+00",
+                                             "2024-03-01T00:00:00.000000000 2.000000000000000e+03 "
+                                             "4.000000000000000e+03 0.000000000000000e+00 "
+                                             "6.000000000000000e+02 8.000000000000000e+02 "
+                                             "0.000000000000000e+00"};
   EXPECT_EQ(lines, expected);
+}
+
+/// Section 7 of CCSDS 502.0-B-2: keywords and values, dates, numbers of at most 16 digits whose point is the
+/// second character.
+TEST(Oem, KeepsTheGrammarOfTheStandard) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  Samples samples{{0, 1, 2.5}, {{}, {}, {}}, {{}, {}, {}}, {{}, {}, {}}};
+  for (std::vector<Column>* part : {&samples.q, &samples.v, &samples.p})
+    for (Column& column : *part)
+      for (std::size_t k = 0; k < samples.count(); ++k)
+        column.push_back(normal(random) * std::pow(10.0, 20 * normal(random)));
+  const std::string date = "\\d{4}-\\d{2}-\\d{2}T\\d{2}:\\d{2}:\\d{2}\\.\\d+";
+  const std::string number = "[+-]?\\d\\.\\d{1,15}e[+-]?\\d{1,3}";
+  const std::regex keyword("[A-Z_]+ = [ -~]*[!-~]"), block("META_START|META_STOP|"),
+      state(date + "( " + number + "){6}");
+  int states = 0;
+  for (const std::string& line : lines_of(oem_text(units(), "Title", {"x", "y", "z"}, samples))) {
+    const bool is_state = std::regex_match(line, state);
+    states += is_state;
+    EXPECT_TRUE(is_state || std::regex_match(line, keyword) || std::regex_match(line, block)) << line;
+    EXPECT_LE(line.size(), 254u);
+  }
+  EXPECT_EQ(states, 3);
 }
 
 TEST(Oem, HasASegmentForEachBody) {

@@ -40,6 +40,47 @@ TEST(ConjugateEnds, OfTheOscillator) {
       }
 }
 
+/// From q(0) = 0 to rest a quarter of a period later: b sin t for every b. The nearest to 0.4 sin t + 0.1 sin
+/// 3t in L2 is 0.4 sin t.
+TEST(ConjugateEnds, OfAnOscillatorThatEndsAtRest) {
+  Problem problem;
+  problem.names = {"q"};
+  problem.lagrangian = systems::oscillator(1);
+  problem.boundary.coordinates = 1;
+  problem.boundary.fix(0, false, 0);
+  problem.duration.value = pi / 2;
+  for (int i = 0; i <= 100; ++i) {
+    const double tau = i / 100.0, t = tau * pi / 2;
+    problem.guess.tau.push_back(tau);
+    problem.guess.q.push_back(0.4 * std::sin(t) + 0.1 * std::sin(3 * t));
+  }
+  const Solution s = Solver().solve(make_problem(problem), within(1e-9));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_EQ(s.nullity, 1);
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_NEAR(s.momentum_start[0], 0.4, 1e-5);  // the guess is a cubic through 101 samples
+  EXPECT_NEAR(s.action, 0, 1e-12);
+}
+
+/// Free ends and forces that depend on q₁ − q₂ alone: translations move the one extremal.
+TEST(FreeEnds, FamilyOfTranslationsMinimises) {
+  Problem problem;
+  problem.names = {"x", "y"};
+  problem.lagrangian = trace(2, [](auto q, auto v, auto) {
+    const auto stretch = q[0] - q[1] - 1;
+    return (v[0] * v[0] + v[1] * v[1] + stretch * stretch) / 2;
+  });
+  problem.boundary.coordinates = 2;
+  problem.duration.value = 1;
+  problem.guess.tau = {0, 1};
+  problem.guess.q = {0.4, 0.1, 0.4, 0.1};
+  const Solution s = Solver().solve(make_problem(problem), within(1e-9));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_EQ(s.nullity, 1);
+  EXPECT_TRUE(s.minimizing);
+}
+
 std::shared_ptr<const Lagrangian> sphere() {
   return trace(2, [](auto q, auto v, auto) {
     const auto c = cos(q[0]);

@@ -1,6 +1,5 @@
 #include "solve/newton/krylov.hpp"
 
-#include <fstream>
 #include <random>
 
 #include "solve/guess/first_path.hpp"
@@ -29,9 +28,7 @@ double greatest_gap(const Step& a, const Step& b, double sign) {
 }
 
 TEST_P(Krylov, FindsTheStepOfAnotherPath) {
-  const std::string file = testing::TempDir() + "extremal-krylov-" + GetParam().name + ".toml";
-  std::ofstream(file) << GetParam().text;
-  const Problem problem = load(file).problem;
+  const Problem problem = study_of(GetParam().text).problem;
   Levels levels;
   levels.bind(problem.lagrangian);
   const ElementTables& tables = levels.at(6);

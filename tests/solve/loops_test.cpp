@@ -1,5 +1,4 @@
 #include <chrono>
-#include <fstream>
 #include <numbers>
 
 #include "problem/closing.hpp"
@@ -75,10 +74,7 @@ std::vector<Solution> found(const Problem& problem, int most) {
 }
 
 std::vector<Solution> found(const std::string& scene, int most) {
-  const std::string path =
-      testing::TempDir() + testing::UnitTest::GetInstance()->current_test_info()->name() + ".toml";
-  std::ofstream(path) << scene;
-  return found(load(path).problem, most);
+  return found(study_of(scene).problem, most);
 }
 
 /// How near the values of `all` come to one.
@@ -195,9 +191,7 @@ TEST(Loops, Close) {
 
 /// Symmetries are drawn that L has, each once, and of which so many segments make a whole.
 TEST(Loops, Symmetries) {
-  const std::string path = testing::TempDir() + "symmetries.toml";
-  std::ofstream(path) << three_bodies;
-  const Study study = load(path);
+  const Study study = study_of(three_bodies);
   SegmentSource source(study.problem);
   int count = 0;
   for (; const auto segment = source.draw(); ++count) {
@@ -217,9 +211,7 @@ TEST(Loops, FromSketchesThatCollide) {
   for (const char* guess :
        {"x = \"sin(2*pi*(t/T + i - 1)/4)\"\ny = \"0.4*sin(6*pi*(t/T + i - 1)/4)\"\n",
         "x = \"1.3*sin(2*pi*(t/T + i - 1)/4)\"\ny = \"0.6*sin(4*pi*(t/T + i - 1)/4)\"\n"}) {
-    const std::string path = testing::TempDir() + "colliding.toml";
-    std::ofstream(path) << start << "[guess]\n" << guess;
-    const Study study = load(path);
+    const Study study = study_of(start + "[guess]\n" + guess);
     const Solution s = run(study);
     ASSERT_TRUE(s.converged()) << s.message;
     EXPECT_TRUE(verify(study.problem, s.trajectory).verified);

@@ -1,4 +1,3 @@
-#include <fstream>
 #include <random>
 
 #include "solve/external/displacement.hpp"
@@ -42,16 +41,10 @@ std::vector<EndsCase> ends_cases() {
   };
 }
 
-Study study_of(const std::string& text, const std::string& name) {
-  const std::string path = ::testing::TempDir() + "extremal-method-" + name + ".toml";
-  std::ofstream(path) << text;
-  return load(path);
-}
-
 class Methods : public ::testing::TestWithParam<EndsCase> {};
 
 TEST_P(Methods, FindTheSameExtremal) {
-  Study study = study_of(GetParam().text, GetParam().name);
+  Study study = study_of(GetParam().text);
   const Solution newton = run(study, 1);
   ASSERT_TRUE(newton.converged()) << newton.message;
   EXPECT_EQ(newton.strategy, "newton from the guess");
@@ -83,8 +76,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Methods, ::testing::ValuesIn(ends_cases()),
 TEST(MethodEffort, IsBounded) {
   Study study = study_of(
       "[system]\nuse = \"pendulum\"\n[boundary]\nstart = { theta = 0 }\nend = { theta = 1 }\n"
-      "duration = 40\n",
-      "effort");
+      "duration = 40\n");
   study.options.max_iterations = 3;
   for (const Method method : {Method::ceres, Method::ipopt}) {
     if (!available(method)) continue;
@@ -98,7 +90,7 @@ TEST(MethodEffort, IsBounded) {
 /// F' beside differences of F.
 TEST(Displacement, DerivativesAreThoseOfTheEquations) {
   for (const EndsCase& test : ends_cases()) {
-    const Study study = study_of(test.text, test.name);
+    const Study study = study_of(test.text);
     const Problem& problem = study.problem;
     Levels levels;
     levels.bind(problem.lagrangian);

@@ -101,6 +101,30 @@ TEST(Minimisers, RestsBetweenTheEnds) {
   expect_minimum(solve(between, within(1e-8)), (8.0 / 3 + 7.0 / 24) / std::sqrt(2.0), 1e-9);
 }
 
+/// Out to −1, across to 1 and back: where it crosses, the action is largest, by less than roundoff. It falls
+/// to a path that rests at −1 or at 1 alone.
+TEST(Minimisers, RestsThatThePathTurnsBackFrom) {
+  const auto sharp = [](double sharpness) {
+    return trace(1, [=](auto q, auto v, auto) {
+      const auto u = v[0] / sharpness - sharpness * (1.0 - q[0] * q[0]);
+      return u * u / 2.0;
+    });
+  };
+  const auto well = trace(1, [](auto q, auto v, auto) {
+    const auto u = 1.0 - q[0] * q[0];
+    return (v[0] * v[0] + u * u) / 2.0;
+  });
+  const auto w = [](double x) { return x - x * x * x / 3; };
+  const double left = w(-0.8) - w(-1) + w(0.9) - w(-1), right = w(1) - w(-0.8) + w(1) - w(0.9);
+  for (const double T : {16.0, 100.0, 1000.0}) {
+    const Solution s = solve(fixed_ends(well, {-0.8}, {0.9}, T), within(1e-8));
+    expect_minimum(s, std::abs(s.action - left) < std::abs(s.action - right) ? left : right, 1e-8);
+  }
+  for (const double e : {1e-3, 1e-5})
+    expect_minimum(solve(fixed_ends(sharp(1 / std::sqrt(e)), {-0.8}, {0.9}, 1), within(1e-8)),
+                   2 * (w(1) - w(0.9)), 1e-8);
+}
+
 TEST(Minimisers, SaddlesAreLeftBothWays) {
   const Problem paraboloid = fixed_ends(trace(2,
                                               [](auto q, auto v, auto) {

@@ -114,5 +114,33 @@ TEST(OrderAdapted, SchemesMeetTheTolerance) {
   }
 }
 
+/// Velocities and momenta between nodes meet ten times the tolerance, whatever the degree of the elements.
+TEST(SchemesToATolerance, VelocitiesMeetIt) {
+  for (const NonlinearCase& c : nonlinear_cases()) {
+    const Solution exact = Solver().solve(c.problem, within(1e-13));
+    ASSERT_TRUE(exact.converged()) << exact.message;
+    const std::size_t n = c.problem.coordinates();
+    for (const char* name : {"midpoint", "trapezoid", "linear", "quadratic", "gauss(2)", "lobatto(3)"}) {
+      SolveOptions options = within(1e-7);
+      options.scheme = scheme(name);
+      const Solution s = Solver().solve(c.problem, options);
+      ASSERT_TRUE(s.converged()) << c.name << ' ' << name << ": " << s.message;
+      std::vector<double> q(n), v(n), exact_v(n);
+      double off = 0, low = INFINITY, high = -INFINITY;
+      for (int k = 0; k <= 500; ++k) {
+        const double t = s.duration() * k / 500;
+        s.trajectory.at(t, q, v);
+        exact.trajectory.at(t, q, exact_v);
+        for (std::size_t a = 0; a < n; ++a) {
+          off = std::max(off, std::abs(v[a] - exact_v[a]));
+          low = std::min(low, exact_v[a]);
+          high = std::max(high, exact_v[a]);
+        }
+      }
+      EXPECT_LE(off, 10 * 1e-7 * (high - low)) << c.name << ' ' << name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -136,12 +136,7 @@ std::string scene_of(const nlohmann::json& c, double tolerance) {
       system.text, decimal(c["refined"]["period"]), guess, tolerance);
 }
 
-Study study_of(const nlohmann::json& c, double tolerance) {
-  const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
-  const std::string path = testing::TempDir() + test + "-" + c["id"].get<std::string>() + ".toml";
-  std::ofstream(path) << scene_of(c, tolerance);
-  return load(path);
-}
+Study study_of(const nlohmann::json& c, double tolerance) { return study_of(scene_of(c, tolerance)); }
 
 Solution solved(const nlohmann::json& c, double tolerance) { return run(study_of(c, tolerance)); }
 

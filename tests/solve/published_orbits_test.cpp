@@ -100,6 +100,19 @@ TEST(PublishedOrbits, MultipliersPastCloseEncounters) {
   }
 }
 
+/// Ten digits of a state do not say when the last of the encounters come, which last no longer than 1e-6.
+TEST(PublishedOrbits, FromStatesOfTenDigits) {
+  for (const nlohmann::json& published : cases_of("three_body_states.json")) {
+    nlohmann::json c = published;
+    c["refined"] = c["published"];
+    const Solution s = solved(c, 1e-12);
+    ASSERT_TRUE(s.converged()) << c["id"] << ": " << s.message;
+    EXPECT_LT(distance(c, s), 1e-7) << c["id"];
+    EXPECT_EQ(s.strategy, "newton from the guess") << c["id"];
+    EXPECT_GE(s.nullity.value_or(0), 1) << c["id"];
+  }
+}
+
 TEST(PublishedOrbits, OfThreeBodiesInSpace) {
   for (const char* id : {"3b3d-O__10__0.8_", "3b3d-O__2__0.1_"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;

@@ -5,6 +5,8 @@
 
 namespace extremal::laws {
 
+Study study_of(const std::string& scene) { return load(text_source("scene.toml", scene)); }
+
 Table read_table(const std::string& path, int n) {
   std::ifstream file(path);
   std::string line;

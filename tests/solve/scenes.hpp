@@ -19,6 +19,9 @@ struct Table {
 /// Columns t, the n coordinates, their n velocities.
 Table read_table(const std::string& path, int n);
 
+/// Of the text of a scene.
+Study study_of(const std::string& scene);
+
 inline std::string bench_data(const std::string& name) {
   return std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/" + name;
 }

@@ -150,6 +150,24 @@ TEST(Several, LambertWithUpToTwoRevolutions) {
   }
 }
 
+/// As from a low orbit to a high one: most of them pass the centre several times.
+TEST(Several, LambertWithUpToSixRevolutions) {
+  struct Case {
+    Values end;
+    double duration;
+  };
+  for (const Case& c : {Case{{-2.4, 4.3}, 198}, Case{{0.4, -2.1}, 60}, Case{{-1.7, -0.2}, 45}}) {
+    const Values start{1, 0}, exact = lambert_energies(start, c.end, c.duration);
+    EXPECT_GE(exact.size(), 18u);
+    Values energies;
+    for (const Solution& s : solve_all(fixed_ends(systems::kepler(), start, c.end, c.duration), 40))
+      energies.push_back(s.energy.value());
+    std::sort(energies.begin(), energies.end());
+    ASSERT_EQ(energies.size(), exact.size()) << c.end[0] << ", " << c.duration;
+    EXPECT_LT(largest_difference(energies, exact), 1e-7);
+  }
+}
+
 /// Actions of x'' = x − x³ from `start` to `end` in T: shooting finds every sign of q(T) − end on a fine grid
 /// of velocities.
 Values well_actions(double start, double end, double duration, double fastest) {

@@ -1,34 +1,18 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
 #include <string>
+#include <vector>
 
+#include "machine/folder.hpp"
 #include "scene/source.hpp"
 #include "study/study.hpp"
 
 /// \file Scenes in a folder of their own for each test.
 
 namespace extremal::test {
-namespace fs = std::filesystem;
 
-class Scenes : public ::testing::Test {
+class Scenes : public InFolder {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(EXTREMAL_BINARY_DIR) / "scratch" /
-             (std::string(info->test_suite_name()) + "." + info->name());
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
-  std::string write(const std::string& name, const std::string& content) {
-    std::ofstream(folder / name, std::ios::binary) << content;
-    return (folder / name).string();
-  }
   Study study(const std::string& content, const std::vector<std::string>& sets = {}) {
     return load(write("scene.toml", content), sets);
   }
@@ -38,14 +22,9 @@ class Scenes : public ::testing::Test {
       study(content, sets);
       return "";
     } catch (const SceneError& e) {
-      std::string what = e.what();
-      const std::string prefix = folder.string() + "/";
-      for (std::size_t at; (at = what.find(prefix)) != std::string::npos;) what.erase(at, prefix.size());
-      return what;
+      return without_folder(e.what());
     }
   }
-
-  fs::path folder;
 };
 
 /// Two coordinates and an array, parameters and a definition; [boundary] is to follow as line 6.

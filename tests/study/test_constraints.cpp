@@ -208,7 +208,9 @@ TEST_F(Scenes, NodesOfASchemeAreOnTheManifold) {
     ASSERT_TRUE(found.converged()) << found.message;
     EXPECT_LT(missed(s.problem, found.trajectory), 2e-15);
     const double error = std::abs(found.action - exact);
-    if (before > 0) EXPECT_NEAR(std::log2(before / error), 4, 0.4);
+    if (before > 0) {
+      EXPECT_NEAR(std::log2(before / error), 4, 0.4);
+    }
     before = error;
   }
 }

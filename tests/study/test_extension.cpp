@@ -116,6 +116,20 @@ TEST_F(Scenes, ReflectionAtALine) {
   EXPECT_EQ(s.windows[0][1], w.time);
 }
 
+/// From the ground to the ground through the height 1: S(t) = 1/(2t) + 1/(2(2 − t)) − g − g²(t³ + (2 −
+/// t)³)/24 has a maximum at t = 1, though the path there is a minimiser between its points.
+TEST_F(Scenes, TheIndexCountsTheTimeOfAWaypoint) {
+  const Study free = study(system("[\"x\"]", "x'^2/2 - g*x", "parameters = { g = 9.81 }\n") +
+                           "[boundary]\nstart = { x = 0 }\nend = { x = 0 }\nduration = 2\n"
+                           "[[waypoints]]\nat = \"free\"\nx = 1\n");
+  const Solution s = run(free);
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.extension->waypoints.at(0).time, 1, 1e-9);
+  EXPECT_EQ(s.morse_index, 1);
+  EXPECT_EQ(s.nullity, 0);
+  EXPECT_FALSE(s.minimizing);
+}
+
 TEST_F(Scenes, WaypointsAtGivenTimes) {
   const Study three = study(system("[\"x\"]", "x'^2/2 - x^2/2") +
                             "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 3\n"
@@ -140,7 +154,7 @@ TEST_F(Scenes, ChainsThatAreTooShort) {
                                "[boundary]\nstart = { y = 1 }\nend = { y = 3 }\nduration = 1\n"
                                "integrals = [\"sqrt(1 + y'^2) = 2\"]\n[solve]\nbudget = 20\n"));
   EXPECT_FALSE(s.converged());
-  EXPECT_NE(s.message.find("try another guess"), std::string::npos);
+  EXPECT_NE(s.message.find("another guess of the path"), std::string::npos);
 }
 
 /// The elements of a scheme converge with its order.
@@ -217,11 +231,69 @@ TEST_F(Scenes, ExtensionsThatAreRefused) {
   EXPECT_EQ(
       message(free + fixed + "unknowns = { k = 1 }\n").rfind("scene.toml:8:14: 'where' has 0 equations", 0),
       0u);
-  EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[search]\nsolutions = 2\n")
-                .rfind("scene.toml:10:13: ", 0),
+  EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[fit]\ndata = \"observed.csv\"\n")
+                .rfind("scene.toml:9:", 0),
             0u);
   EXPECT_EQ(message(free + "[boundary]\nconditions = [\"x(0)^2 = 1\", \"y(0) = 0\"]\nduration = 1\n"
                            "[continuation]\nparameter = \"duration\"\nto = 2\n")
                 .rfind("scene.toml:7:1: ", 0),
             0u);
+}
+
+/// Multipliers of integrals that depend on each other are not determined, nor is the index.
+TEST_F(Scenes, IntegralsThatDependOnEachOther) {
+  const auto refusal = [&](const std::string& integrals) {
+    const Solution s = run(study(
+        system("[\"x\"]", "x'^2/2 - x^2/2 - x^4/4") +
+        "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 1\nintegrals = [" + integrals + "]\n"));
+    EXPECT_FALSE(s.converged()) << integrals;
+    return s.message;
+  };
+  EXPECT_EQ(refusal("\"1 = 1\"").find("integral 1 does not change with the path"), 0u);
+  // Their values differ by what no path changes.
+  EXPECT_EQ(refusal("\"x = 0.5\", \"2*x + t = 1.5\"").find("integral 1, integral 2 depend on each other"),
+            0u);
+}
+
+/// Rotations about the origin keep both circles: nothing else leaves the action as it is.
+TEST_F(Scenes, FamilyThatASymmetryMakes) {
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - (x^2 + y^2)/2") +
+                "[boundary]\nconditions = [\"x(0)^2 + y(0)^2 = 1\", \"x(T)^2 + y(T)^2 = 2.25\"]\n"
+                "duration = 1\n[guess]\nx = \"1 + 0.5*t\"\ny = \"0.1*t\"\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_EQ(s.nullity, 1);
+  EXPECT_TRUE(s.minimizing);
+  EXPECT_NE(s.message.find("one of a family of extremals, which symmetries"), std::string::npos) << s.message;
+}
+
+/// A chain hangs, or stands as an arch: y and −y + const of one multiplier, with energies of opposite signs.
+TEST_F(Scenes, BothCatenariesAreFound) {
+  const Study s = study(system("[\"y\"]", "y*sqrt(1 + y'^2)") +
+                        "[boundary]\nstart = { y = 1 }\nend = { y = 3 }\nduration = 1\n"
+                        "integrals = [\"sqrt(1 + y'^2) = 4\"]\n[search]\nsolutions = 2\n");
+  const std::vector<Solution> found = run_all(s);
+  ASSERT_EQ(found.size(), 2u) << found.front().message;
+  EXPECT_NEAR(found[0].action, 5.0684801110, 1e-8);
+  // Reflection at the height 2 of the middle takes one to the other: actions add up to 2·2·4.
+  EXPECT_NEAR(found[0].action + found[1].action, 16, 1e-8);
+  EXPECT_NEAR(*found[0].energy + *found[1].energy, 0, 1e-8);
+}
+
+/// Orbits through a point at a given time may go round the centre on either side before and after it.
+TEST_F(Scenes, ToursThroughAPointDiffer) {
+  const Study s = study(
+      "[system]\nuse = \"kepler\"\n[boundary]\nstart = { x = 1.0, y = 0.0 }\n"
+      "end = { x = -1.2, y = 0.3 }\nduration = 7.0\n[[waypoints]]\nat = 3.0\nx = -0.5\n"
+      "y = 0.8\n[search]\nsolutions = 40\n");
+  const std::vector<Solution> found = run_all(s);
+  ASSERT_GE(found.size(), 2u) << found.front().message;
+  EXPECT_NE(found.front().message.find("more may exist"), std::string::npos);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_TRUE(found[i].converged());
+    EXPECT_NEAR(at(found[i], 3, 0), -0.5, 1e-9);
+    EXPECT_NEAR(at(found[i], 3, 1), 0.8, 1e-9);
+    if (i > 0) EXPECT_GT(found[i].action, found[i - 1].action + 1e-6);
+  }
 }

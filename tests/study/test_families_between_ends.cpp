@@ -56,3 +56,76 @@ TEST_F(FamiliesBetweenEnds, TwoDirectionsOfAnIsotropicOscillator) {
   EXPECT_NEAR(found.momentum_start[0], 0.2, 1e-8);
   EXPECT_NEAR(found.momentum_start[1], 0.5, 1e-8);
 }
+
+TEST_F(FamiliesBetweenEnds, NaturalEnds) {
+  const std::string natural =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2 + LOAD\"\n[boundary]\nduration = "
+      "\"pi\"\n"
+      "[guess]\nx = \"0.7*cos(t) + 0.3*sin(5*t) + 0.2*t\"\n";
+  const auto with = [&](const char* load) {
+    std::string text = natural;
+    return text.replace(text.find("LOAD"), 4, load);
+  };
+  const Solution found = run(study(with("x*cos(3*t)")));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.nullity, 1);
+  EXPECT_EQ(found.morse_index, 1);
+  // x = A cos t − cos(3t)/8 with ∫ (guess − x) cos t dt = 0.
+  EXPECT_NEAR(found.trajectory.nodes[0], 0.7 - 0.8 / std::numbers::pi - 0.125, 1e-8);
+  EXPECT_NE(found.message.find("one of a family"), std::string::npos) << found.message;
+  // A force along cos t, which no natural path takes up.
+  EXPECT_EQ(run(study(with("x*cos(t)"))).status, Status::conjugate_ends);
+}
+
+TEST_F(FamiliesBetweenEnds, CoupledEnds) {
+  const std::string coupled =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\n[boundary]\nduration = \"pi\"\n";
+  const Solution found = run(study(coupled + "conditions = [\"x(0) + x(T) = 0\"]\n[guess]\nx = \"1 + t\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.nullity, 2);
+  EXPECT_EQ(run(study(coupled + "conditions = [\"x(0) + x(T) = 1\"]\n")).status, Status::conjugate_ends);
+}
+
+TEST_F(FamiliesBetweenEnds, ShiftsOfAFreeParticle) {
+  const Solution found =
+      run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[boundary]\nduration = "
+                "2\n[guess]\nx = \"exp(t)\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(found.trajectory.nodes[0], (std::exp(2) - 1) / 2, 1e-8);
+}
+
+TEST_F(FamiliesBetweenEnds, RestAtAnExtremalOfAPendulumIsAlone) {
+  const Solution found = run(study(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + cos(x)\"\n[boundary]\nduration = \"pi\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.message.find("family"), std::string::npos) << found.message;
+}
+
+TEST_F(FamiliesBetweenEnds, WithForces) {
+  const std::string forced =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\nforce = { x = \"FORCE\" "
+      "}\n[boundary]\nstart "
+      "= { x = 0 }\nend = { x = 0 }\nduration = \"pi\"\n";
+  const auto with = [&](const char* force) {
+    std::string text = forced;
+    return text.replace(text.find("FORCE"), 5, force);
+  };
+  const Solution found = run(study(with("sin(2*t)")));
+  ASSERT_TRUE(found.converged()) << found.message;
+  // x = −sin(2t)/3, to which sin t is orthogonal.
+  EXPECT_NEAR(found.momentum_start[0], -2.0 / 3, 1e-8);
+  EXPECT_EQ(run(study(with("sin(t)"))).status, Status::conjugate_ends);
+}
+
+/// From the guess steps lead to the member on the other side of the centre, which is the farthest.
+TEST_F(FamiliesBetweenEnds, TheNearestAndNotTheFarthest) {
+  const Solution found = run(study(
+      "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\ndefinitions = { s = \"x^2 + y^2 + z^2\" }\n"
+      "lagrangian = \"(x'^2 + y'^2 + z'^2)/2 - s/2 - s^2/4\"\n[boundary]\nstart = { x = 1, y = 0, z = 0 }\n"
+      "end = { x = -1, y = 0, z = 0 }\nduration = \"pi/sqrt(2)\"\n[guess]\nx = \"1 - 2*t/T\"\n"
+      "y = \"0.5*sin(pi*t/T)\"\nz = \"0.4*sin(2*pi*t/T)\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_EQ(found.nullity, 1);
+  EXPECT_NEAR(found.momentum_start[1], std::numbers::sqrt2, 1e-8);
+  EXPECT_NEAR(found.momentum_start[2], 0, 1e-8);
+}

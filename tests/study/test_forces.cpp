@@ -163,9 +163,30 @@ TEST_F(Scenes, PeriodsThatAreNotIsolated) {
   EXPECT_TRUE(s.floquet->stable());
 }
 
+/// The Legendre transform has the copies; where there is none the scene is refused.
 TEST_F(Scenes, ForcesOfAHamiltonian) {
-  EXPECT_EQ(message("[system]\ncoordinates = [\"x\"]\nhamiltonian = \"p_x^2/2\"\nforce = { x = \"-x'\" }\n"
-                    "[boundary]\nstart = { x = 1 }\nend = { x = 0 }\nduration = 1\n")
-                .find("scene.toml:4"),
-            0u);
+  const auto scene = [](const std::string& law, const std::string& rest) {
+    return "[system]\ncoordinates = [\"x\", \"y\"]\n" + law +
+           "\nforce = { x = \"-0.3*x' + 0.1*y\", y = \"-0.1*y'^3\" }\n[boundary]\n" + rest;
+  };
+  const std::string l = "lagrangian = \"(x'^2/(1 + y^2) + y'^2)/2 - x^2/2 - y^4/4\"",
+                    h = "hamiltonian = \"((1 + y^2)*p_x^2 + p_y^2)/2 + x^2/2 + y^4/4\"";
+  const std::string ends = "start = { x = 1, y = 0.2 }\nend = { x = -0.3, p_y = 0.1 }\nduration = 2\n",
+                    initial = "start = { x = 1, p_x = 0.2, y = 0.3, p_y = -0.1 }\nduration = 5\n";
+  for (const std::string& rest : {ends, initial, ends + "[solve]\nscheme = \"midpoint\"\nelements = 40\n"}) {
+    const Solution of_l = run(study(scene(l, rest))), of_h = run(study(scene(h, rest)));
+    ASSERT_TRUE(of_l.converged() && of_h.converged()) << of_l.message << of_h.message;
+    std::vector<double> q(2), other(2), v(2);
+    for (const double tau : {0.0, 0.3, 0.7, 1.0}) {
+      of_l.trajectory.at(tau * of_l.duration(), q, v);
+      of_h.trajectory.at(tau * of_h.duration(), other, v);
+      EXPECT_NEAR(q[0], other[0], 1e-9) << rest;
+      EXPECT_NEAR(q[1], other[1], 1e-9) << rest;
+    }
+    EXPECT_NEAR(*of_l.work, *of_h.work, 1e-8) << rest;
+    EXPECT_FALSE(of_h.morse_index);
+  }
+  EXPECT_NE(message(scene("hamiltonian = \"x*p_x + y*p_y\"", ends)).find("scene.toml:4"), std::string::npos);
+  EXPECT_NE(message(scene("hamiltonian = \"cosh(p_x) + p_y^2/2\"", ends)).find("quadratic forms"),
+            std::string::npos);
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -91,6 +93,31 @@ TEST_F(InfiniteEndsOf, BouncesInThreeDimensions) {
   ASSERT_TRUE(found.converged()) << found.message;
   EXPECT_NEAR(4 * std::numbers::pi * found.action, 43.660237, 2e-4);
   EXPECT_EQ(found.morse_index, 1);
+}
+
+TEST_F(InfiniteEndsOf, BouncesInOtherDimensions) {
+  // Values by shooting; 2 π² times that in four dimensions is 204.42844.
+  const std::pair<int, double> actions[] = {{2, 1.23357704}, {4, 10.35646592}, {5, 27.32063820}};
+  for (const auto& [n, action] : actions) {
+    const Solution found = solved(scene_of("[\"f\"]", fmt::format("t^{}*(f'^2/2 + f^2/2 - f^3/3)", n - 1),
+                                           "end = { f = 0 }\n", "[guess]\nf = \"6/cosh(t)\"\n"));
+    ASSERT_TRUE(found.converged()) << n << ": " << found.message;
+    EXPECT_NEAR(found.action, action, 2e-8) << n;
+    EXPECT_EQ(found.morse_index, 1) << n;
+    EXPECT_EQ(found.nullity, 0) << n;
+  }
+}
+
+/// At r = 0 the mass is zero, a power of r that is no whole number between these dimensions.
+TEST_F(InfiniteEndsOf, BouncesFromDimensionToDimension) {
+  std::string scene = scene_of("[\"f\"]", "t^(n - 1)*(f'^2/2 + f^2/2 - f^3/3)", "end = { f = 0 }\n",
+                               "[guess]\nf = \"6/cosh(t)\"\n[continuation]\nparameter = \"n\"\nto = 3\n"
+                               "points = 20\n");
+  scene.replace(scene.find("lagrangian"), 0, "parameters = { n = 4.0 }\n");
+  const FollowedBranch branch = follow(study(scene));
+  EXPECT_EQ(branch.branches.front().end, BranchEnd::target) << branch.branches.front().message;
+  EXPECT_NEAR(branch.points.back().solution.action, 3.474371245, 1e-8);
+  for (const BranchPoint& point : branch.points) EXPECT_EQ(point.solution.morse_index, 1) << point.parameter;
 }
 
 TEST_F(InfiniteEndsOf, AreRefusedWhereTheyCannotBe) {

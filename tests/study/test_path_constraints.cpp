@@ -270,6 +270,14 @@ TEST_F(PathConstraints, AMinimumBesideASaddleIsFound) {
   EXPECT_LT(found.action, 12);
 }
 
+TEST_F(PathConstraints, ActionsThatFallWithoutBoundAreGivenUpEarly) {
+  for (const char* lagrangian : {"y'^2/2 - y^4/4", "y'^2/2 - exp(y)"}) {
+    const Solution found = run(study(height(lagrangian, "\"y >= -2\"", 0.5, 0.9, 9.5)));
+    EXPECT_EQ(found.status, Status::no_solution_near) << lagrangian;
+    EXPECT_NE(found.message.find("no lower bound"), std::string::npos) << found.message;
+  }
+}
+
 TEST_F(PathConstraints, NoMinimiserIsReportedWhereThereIsNone) {
   const Study s = study(height("y'^2/2 - 2*y^2", "\"y >= -1\"", 0, 0.5, 4));
   const Solution found = run(s);

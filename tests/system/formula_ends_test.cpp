@@ -85,6 +85,10 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   EXPECT_EQ(refused("1 = 2"), "the equation depends on no end value; write x(0) or x(T) | where | 0");
   EXPECT_EQ(refused("x(0) = x(0)"), "the equation depends on no end value; write x(0) or x(T) | where | 0");
   EXPECT_EQ(refused("sine(x(0)) = 1"), "unknown function 'sine'; did you mean 'sin'? | where | 0");
+  EXPECT_EQ(
+      refused("p_x(T) = 1"),
+      "unknown function 'p_x'; conditions hold between coordinates, and a momentum is given at its end: "
+      "start = { p_x = … } or end = { p_x = … } | where | 0");
 }
 
 TEST(FormulaEnds, MapsAreAffineInTheCoordinates) {

@@ -42,8 +42,9 @@ export async function withBrowser(use, options = {}) {
 }
 
 /** A page from disk, with what went wrong on it and what it asked of the network. */
-export async function openPage(browser, file, hash = "") {
+export async function openPage(browser, file, hash = "", { frames = false } = {}) {
   const page = await browser.newPage();
+  if (frames) await page.addInitScript(watchFrames);
   page.setDefaultTimeout(patience);
   const complaints = [],
     requests = [];
@@ -56,4 +57,56 @@ export async function openPage(browser, file, hash = "") {
   await page.goto(`file://${file}${hash && `#${hash}`}`);
   await page.waitForSelector("html[data-ready]", { timeout: patience });
   return { page, complaints, requests };
+}
+
+/** In the page, before its own scripts: what happens in each frame that it asks for. */
+function watchFrames() {
+  const frames = { gaps: [], scripts: [], calls: [], changes: [] };
+  window.watchedFrames = frames;
+  let calls = 0,
+    changes = 0,
+    before = null;
+  for (const kind of [CanvasRenderingContext2D, WebGLRenderingContext, WebGL2RenderingContext])
+    for (const name of Object.getOwnPropertyNames(kind.prototype)) {
+      const { value } = Object.getOwnPropertyDescriptor(kind.prototype, name);
+      if (typeof value !== "function") continue;
+      kind.prototype[name] = function (...words) {
+        ++calls;
+        return value.apply(this, words);
+      };
+    }
+  new MutationObserver((list) => (changes += list.length)).observe(document, {
+    subtree: true,
+    childList: true,
+    characterData: true,
+    attributes: true,
+  });
+  const ask = window.requestAnimationFrame.bind(window);
+  window.requestAnimationFrame = (work) =>
+    ask((now) => {
+      const begin = performance.now();
+      calls = changes = 0;
+      work(now);
+      // Work that the frame puts off is done before this: microtasks keep their order, twice.
+      queueMicrotask(() =>
+        queueMicrotask(() => {
+          if (before !== null) frames.gaps.push(now - before);
+          before = now;
+          frames.scripts.push(performance.now() - begin);
+          frames.calls.push(calls);
+          frames.changes.push(changes);
+        }),
+      );
+    });
+}
+
+/** Plays a page that was opened with `frames` for so long (ms); what each frame took. */
+export async function countFrames(page, milliseconds) {
+  await page.keyboard.press("Space");
+  await page.waitForTimeout(300);
+  await page.evaluate(() => Object.values(window.watchedFrames).forEach((list) => (list.length = 0)));
+  await page.waitForTimeout(milliseconds);
+  const found = await page.evaluate(() => window.watchedFrames);
+  await page.keyboard.press("Space");
+  return { frames: found.scripts.length, ...found };
 }

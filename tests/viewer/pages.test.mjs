@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, test } from "node:test";
-import { openPage, withBrowser } from "./browser.mjs";
+import { countFrames, openPage, withBrowser } from "./browser.mjs";
 
 const program = resolve(process.env.EXTREMAL ?? "build/release/extremal");
 const scenes = resolve(import.meta.dirname, "../../problems/scenes");
@@ -51,7 +51,7 @@ const fields = (page) =>
 async function showsFields(page, result) {
   const shown = await fields(page);
   for (const [key, value] of Object.entries(result)) {
-    if (["samples", "solutions", "title", "nodes"].includes(key)) continue;
+    if (["samples", "about", "boundaries", "solutions", "title", "nodes"].includes(key)) continue;
     assert.equal(shown[key], JSON.stringify(value), key);
   }
   assert.equal(await page.textContent("[data-field=action]"), String(result.action));
@@ -216,6 +216,64 @@ test("a saved result has the same page; without samples it says what to do", asy
     () => execFileSync(program, ["view", "kepler-solve.json"], { cwd: folder, stdio: "pipe" }),
     (error) => error.status === 2 && /--samples 1000/.test(String(error.stderr)),
   );
+});
+
+test("a saved branch has its orbits; without samples its page says what to do", async () => {
+  const remark = "extremal continue SCENE --samples 200 --output FILE";
+  for (const words of [[], ["--samples", "60"]]) {
+    const { result } = made("continue", "halo-family", "--set", "continuation.points=4", ...words);
+    const file = join(folder, "saved-branch.html");
+    run("view", join(folder, "halo-family-continue.json"), "--output", file);
+    await withPage(file, "pause", async (page) => {
+      const text = await page.textContent("main");
+      assert.equal(text.includes(remark), words.length === 0);
+      assert.equal(await page.locator(".stage canvas").count() > 0, words.length > 0);
+      const last = result.points.length - 1;
+      await page.locator(".figure input[type=range]").fill(String(last));
+      const { samples, ...shown } = result.points[last];
+      await showsFields(page, shown);
+      if (words.length === 0) return;
+      near(await readout(page, 0), samples.x[0], 1);
+      await moves(page);
+    });
+  }
+});
+
+test("the work of a frame is small and does not grow with the result", async () => {
+  const most = { calls: 600, changes: 40 };
+  for (const scene of ["nbody", "pendulum-solutions", "kepler-tour"]) {
+    const found = [];
+    for (const samples of ["1000", "10000"])
+      await withBrowser(async (browser) => {
+        const { file } = made("solve", scene, "--samples", samples);
+        const { page } = await openPage(browser, file, "pause", { frames: true });
+        found.push(await countFrames(page, 1500));
+      });
+    for (const { frames, calls, changes } of found) {
+      assert.ok(frames > 0, scene);
+      assert.ok(Math.max(...calls) <= most.calls, `${scene}: ${Math.max(...calls)} calls`);
+      assert.ok(Math.max(...changes) <= most.changes, `${scene}: ${Math.max(...changes)} changes`);
+    }
+    const [few, many] = found.map(({ calls }) => Math.max(...calls));
+    assert.ok(many <= 1.5 * few, `${scene}: ${few} calls, then ${many}`);
+  }
+});
+
+test("walls, contacts and waypoints are drawn and marked", async () => {
+  const walls = made("solve", "pendulum-walls");
+  await withPage(walls.file, "pause", async (page) => {
+    assert.equal(await page.locator(".marks .contact").count(), walls.result.contacts.length);
+    assert.match(await page.textContent(".legend"), /contact/);
+    const { windows, ...shown } = walls.result;
+    assert.equal(windows, null);
+    await showsFields(page, shown);
+  });
+  const tour = made("solve", "kepler-tour");
+  await withPage(tour.file, "pause", async (page) => {
+    assert.equal(await page.locator(".marks .waypoint").count(), tour.result.waypoints.length);
+    const title = await page.locator(".marks .waypoint").first().getAttribute("title");
+    for (const name of Object.keys(tour.result.waypoints[0].impulse)) assert.match(title, RegExp(name));
+  });
 });
 
 test("titles and names are texts", async () => {

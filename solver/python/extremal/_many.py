@@ -31,7 +31,7 @@ class Solutions:
         status: why each row has no solution, or "converged", (m,).
         converged: (m,) of bool.
         q: positions at both ends, (m, 2, n).
-        momenta: canonical momenta at both ends, (m, 2, n).
+        momenta: canonical momenta at both ends, (m, 2, n); masked at ends where L is infinite.
         action, energy, duration, error_estimate: (m,); energies are masked where L depends on t.
         index: Morse index, (m,); masked where there is none.
         iterations: steps of Newton's method, (m,).
@@ -68,8 +68,10 @@ class Solutions:
         failed = arrays["status"] != 0
         put(self, "status", known(status, np.zeros(0, dtype=bool)))
         put(self, "converged", known(~failed, np.zeros(0, dtype=bool)))
-        for name in ("q", "momenta", "action", "duration", "error_estimate"):
+        for name in ("q", "action", "duration", "error_estimate"):
             put(self, name, known(arrays[name], failed))
+        momenta = arrays["momenta"]
+        put(self, "momenta", known(momenta, failed[:, np.newaxis, np.newaxis] | np.isnan(momenta)))
         put(self, "energy", known(arrays["energy"], failed | ~arrays["energy_known"]))
         put(self, "index", known(arrays["index"], failed | (arrays["index"] < 0)))
         put(self, "iterations", known(arrays["iterations"], np.zeros(0, dtype=bool)))

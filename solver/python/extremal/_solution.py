@@ -223,13 +223,20 @@ class Solution:
 
     @property
     def momentum_start(self) -> Named:
-        """Canonical momenta at t = 0 by name."""
-        return Named(self._solved.names, self._solved.momentum_start)
+        """Canonical momenta at t = 0 by name; empty where L is infinite there."""
+        return self._momenta(self._solved.momentum_start)
 
     @property
     def momentum_end(self) -> Named:
-        """Canonical momenta at t = T by name."""
-        return Named(self._solved.names, self._solved.momentum_end)
+        """Canonical momenta at t = T by name; empty where L is infinite there."""
+        return self._momenta(self._solved.momentum_end)
+
+    def _momenta(self, values: Array) -> Named:
+        return Named(self._solved.names if len(values) else [], values)
+
+    def _field(self, name: str) -> Any:
+        """A field of the result as `--output` writes it; None where it has none."""
+        return json.loads(self._solved.json()).get(name)
 
     @property
     def multipliers(self) -> npt.NDArray[np.complex128] | None:
@@ -261,6 +268,49 @@ class Solution:
         )
 
     @property
+    def symplectic_defect(self) -> float | None:
+        """How far the flow of a periodic orbit is from a symplectic one; None without multipliers."""
+        defect: float | None = self._field("symplectic_defect")
+        return defect
+
+    @property
+    def rates(self) -> dict[str, float] | None:
+        """Slowest rates of decay at infinite ends, "start" and "end"; None without such ends."""
+        rates: dict[str, float] | None = self._field("rates")
+        return rates
+
+    @property
+    def integral_multipliers(self) -> list[float] | None:
+        """ν of L + Σ ν (integrand), in the order of `integrals`; None without them."""
+        multipliers: list[float] | None = self._field("integral_multipliers")
+        return multipliers
+
+    @property
+    def waypoints(self) -> list[dict[str, Any]] | None:
+        """Of each waypoint its time "t" and, by name, the "impulse": momentum after it less that before."""
+        waypoints: list[dict[str, Any]] | None = self._field("waypoints")
+        return waypoints
+
+    @property
+    def contacts(self) -> list[dict[str, float]] | None:
+        """When inequalities of `path` are equalities: "constraint", counted from 0, "from" and "to"."""
+        contacts: list[dict[str, float]] | None = self._field("contacts")
+        return contacts
+
+    @property
+    def spectrum(self) -> dict[str, list[dict[str, float]]] | None:
+        """Lines of each coordinate, "frequency", "amplitude" and "phase", by falling amplitude; None without
+        a table `spectrum` in the problem."""
+        spectrum: dict[str, list[dict[str, float]]] | None = self._field("spectrum")
+        return spectrum
+
+    @property
+    def flat_norm(self) -> dict[str, float] | None:
+        """Of each coordinate the distance of its spectrum from that of `spectrum.against`."""
+        norm: dict[str, float] | None = self._field("flat_norm")
+        return norm
+
+    @property
     def minimal_period(self) -> float | None:
         """Of a path that closes: T, or a part of it."""
         return self._solved.minimal_period
@@ -276,9 +326,10 @@ class Solution:
         return self._solved.degree
 
     @property
-    def unknowns(self) -> int:
-        """Numbers that were solved for."""
-        return self._solved.unknowns
+    def unknowns(self) -> int | dict[str, float]:
+        """Constants that were asked for, by name; elsewhere how many numbers were solved for."""
+        found: int | dict[str, float] = self._field("unknowns")
+        return found
 
     @property
     def iterations(self) -> int:
@@ -333,12 +384,26 @@ class Solution:
         return self._at(t, self._solved.q)
 
     def v(self, t: npt.ArrayLike) -> Array:
-        """Velocities q'(t), likewise."""
+        """Velocities q'(t), likewise; NaN at an end where L is infinite."""
         return self._at(t, self._solved.v)
 
     def p(self, t: npt.ArrayLike) -> Array:
-        """Canonical momenta ∂L/∂q'(t), likewise."""
+        """Canonical momenta ∂L/∂q'(t), likewise; NaN at an end where L is infinite."""
         return self._at(t, self._solved.p)
+
+    def constraint_forces(self, t: npt.ArrayLike) -> Array | None:
+        """λ of d/dt ∂L/∂q' − ∂L/∂q = Σ λ_k ∂g_k/∂q: (k,) at one time, (m, k) at m; None without constraints."""
+        return self._forces(t, self._solved.constraint_forces)
+
+    def path_forces(self, t: npt.ArrayLike) -> Array | None:
+        """μ >= 0 of the inequalities of `path`, likewise; None without them."""
+        return self._forces(t, self._solved.path_forces)
+
+    def _forces(self, t: npt.ArrayLike, evaluate: Any) -> Array | None:
+        self._require()
+        if evaluate(np.zeros(1)) is None:
+            return None
+        return self._at(t, evaluate)
 
     def __getitem__(self, name: str) -> Array:
         """Values of "x", "x'" or "p_x" at the times `t`: (m,), of an array of k coordinates (m, k)."""

@@ -1,9 +1,9 @@
 // Coordinates against time, by uPlot: windows as bands, conjugate times and the time that is shown as lines.
 import uPlot from "uplot";
 import { faded, themeColour, tone } from "./colour.js";
-import { fieldsOf } from "./data.js";
+import { contactsOf, fieldsOf, waypointsOf } from "./data.js";
 import { element, setText } from "./dom.js";
-import { axisText, brief, minus } from "./text.js";
+import { axisNumbers, axisText, brief } from "./text.js";
 
 const height = 170,
   mostNames = 6,
@@ -16,7 +16,7 @@ export const plotAxis = (more) => ({
   grid: { stroke: () => themeColour("grid"), width: 1 },
   ticks: { stroke: () => themeColour("grid"), width: 1, size: 5 },
   font: "11px system-ui, sans-serif",
-  values: (plot, splits) => splits.map((split) => minus(String(Number(split.toPrecision(8))))),
+  values: (plot, splits) => axisNumbers(splits),
   ...more,
 });
 
@@ -101,7 +101,10 @@ class CurvePanel {
           pxAlign: 0,
         })),
       ],
-      hooks: { drawClear: [(plot) => this.drawBands(plot)], drawAxes: [(plot) => this.drawOthers(plot)] },
+      hooks: {
+        drawClear: [(plot) => this.drawBands(plot)],
+        drawAxes: [(plot) => (this.drawWalls(plot), this.drawOthers(plot))],
+      },
     };
     this.plot = new uPlot(options, this.data(), this.place);
     this.playhead = element("div", { class: "playhead" });
@@ -160,15 +163,44 @@ class CurvePanel {
     (fields.windows ?? []).slice(0, mostBands).forEach(([from, to], k) => {
       if (k % 2) ctx.fillRect(at(from), bbox.top, at(to) - at(from), bbox.height);
     });
-    ctx.strokeStyle = themeColour("conjugate");
-    ctx.lineWidth = 1.2 * devicePixelRatio;
-    ctx.setLineDash([4 * devicePixelRatio, 4 * devicePixelRatio]);
+    ctx.fillStyle = themeColour("contact");
+    const thick = 5 * devicePixelRatio;
+    for (const { from, to } of contactsOf(fields))
+      ctx.fillRect(at(from), bbox.top + bbox.height - thick, Math.max(at(to) - at(from), thick / 2), thick);
+    const lines = (times, colour, dash) => {
+      ctx.strokeStyle = themeColour(colour);
+      ctx.lineWidth = 1.2 * devicePixelRatio;
+      ctx.setLineDash(dash.map((length) => length * devicePixelRatio));
+      ctx.beginPath();
+      for (const time of times.slice(0, mostBands)) {
+        ctx.moveTo(at(time), bbox.top);
+        ctx.lineTo(at(time), bbox.top + bbox.height);
+      }
+      ctx.stroke();
+    };
+    lines(fields.conjugate_times ?? [], "conjugate", [4, 4]);
+    lines(
+      waypointsOf(fields).map((waypoint) => waypoint.t),
+      "waypoint",
+      [1, 3],
+    );
+    ctx.restore();
+  }
+
+  /** Boundaries of what inequalities forbid to a lone coordinate. */
+  drawWalls(plot) {
+    const { ctx, bbox } = plot;
+    ctx.save();
     ctx.beginPath();
-    for (const time of (fields.conjugate_times ?? []).slice(0, mostBands)) {
-      ctx.moveTo(at(time), bbox.top);
-      ctx.lineTo(at(time), bbox.top + bbox.height);
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.strokeStyle = themeColour("muted");
+    ctx.lineWidth = 1.4 * devicePixelRatio;
+    for (const { x, y } of this.panel.walls ?? []) {
+      ctx.beginPath();
+      x.forEach((time, k) => ctx.lineTo(plot.valToPos(time, "x", true), plot.valToPos(y[k], "y", true)));
+      ctx.stroke();
     }
-    ctx.stroke();
     ctx.restore();
   }
 

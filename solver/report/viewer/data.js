@@ -19,7 +19,7 @@ function slopes(t, values) {
   });
 }
 
-/** A trajectory: columns of coordinates, then of velocities, cubic between samples. */
+/** A trajectory: columns of coordinates, of velocities and of forces, cubic between samples. */
 export class Trajectory {
   constructor(data, coordinates) {
     this.label = data.label;
@@ -43,7 +43,9 @@ export class Trajectory {
 
   slopes(number) {
     this.derived ??= [];
-    const velocity = this.columns[number + this.coordinates];
+    // Forces of contact jump: between samples they stay between their values.
+    if (number >= 2 * this.coordinates) return (this.derived[number] ??= new Float64Array(this.t.length));
+    const velocity = number < this.coordinates ? this.columns[number + this.coordinates] : undefined;
     return (this.derived[number] ??= velocity ?? slopes(this.t, this.columns[number]));
   }
 
@@ -119,3 +121,7 @@ export function fieldsOf(data, number) {
   if (data.kind === "branch") return data.result.points[number];
   return data.result.solutions ? (data.result.solutions[number] ?? data.result) : data.result;
 }
+
+/** When inequalities along the path are equalities, and points in between: none where a result has none. */
+export const contactsOf = (fields) => fields.contacts ?? [];
+export const waypointsOf = (fields) => fields.waypoints ?? [];

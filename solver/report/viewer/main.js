@@ -13,7 +13,7 @@ import { State } from "./state.js";
 import { Timeline } from "./timeline.js";
 
 const orbitsElsewhere =
-  "A saved branch has no orbits; extremal continue SCENE --plot PAGE.html makes a page that has them.";
+  "This file has no orbits; extremal continue SCENE --samples 200 --output FILE saves them with the branch.";
 const figureHeight = 220,
   comparisonHeight = 460;
 

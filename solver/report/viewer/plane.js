@@ -47,6 +47,7 @@ export class PlaneView {
     }
     context.clearRect(0, 0, width, height);
     context.drawImage(this.still, 0, 0, width, height);
+    this.drawObstacles(context, this.obstaclesNow());
     drawMotion(this, context);
   }
 
@@ -59,7 +60,10 @@ export class PlaneView {
     if (!this.small && !this.space) this.drawAxes(context, width, height);
     if (!this.small && this.space) this.drawRoom(context);
     if (this.view.kind === "profile") return;
-    this.drawObstacles(context);
+    this.drawObstacles(
+      context,
+      (this.view.obstacles ?? []).filter((curve) => curve.t === undefined),
+    );
     for (const other of this.behind) this.drawPaths(context, other, 0.3, 1.1, tone(other.colour));
     this.drawPaths(context, this.front, 0.55, this.small ? 1.3 : 1.8, null);
     if (!this.small) this.drawEnds(context);
@@ -151,11 +155,19 @@ export class PlaneView {
       });
   }
 
+  /** Of boundaries that move, those of the time that is nearest. */
+  obstaclesNow() {
+    const moving = (this.view.obstacles ?? []).filter((curve) => curve.t !== undefined);
+    const time = this.state.time;
+    const gap = Math.min(...moving.map((curve) => Math.abs(curve.t - time)));
+    return moving.filter((curve) => Math.abs(curve.t - time) === gap);
+  }
+
   /** Boundaries of what inequalities along the path forbid. */
-  drawObstacles(context) {
+  drawObstacles(context, curves) {
     context.strokeStyle = themeColour("muted");
     context.lineWidth = this.small ? 0.8 : 1.4;
-    for (const { x, y } of this.view.obstacles ?? []) {
+    for (const { x, y } of curves) {
       context.beginPath();
       x.forEach((across, k) => context.lineTo(...this.project.at([across, y[k]])));
       context.stroke();

@@ -20,6 +20,14 @@ export const full = (value) => String(value);
 /** "x (km)". */
 export const axisText = ({ name, unit }) => (unit ? `${name} (${unit})` : name);
 
+/** Round values of an axis: with powers of ten where the largest is very large or very small. */
+export function axisNumbers(values) {
+  const largest = Math.max(...values.map(Math.abs));
+  const scientific = largest >= 1e6 || largest < 1e-3;
+  const text = (value) => (scientific && value ? Number(value.toPrecision(4)).toExponential() : String(value));
+  return values.map((value) => minus(text(Number(value.toPrecision(8)))));
+}
+
 /** Round values within a range, some `count` of them, with their texts. */
 export function ticks(low, high, count) {
   const wanted = (high - low) / Math.max(count, 1);

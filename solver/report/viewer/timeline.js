@@ -1,10 +1,16 @@
 // Play, speed, and the time with windows and conjugate times on it.
-import { fieldsOf } from "./data.js";
+import { contactsOf, fieldsOf, waypointsOf } from "./data.js";
 import { drawing, element, setText } from "./dom.js";
 import { axisText, brief } from "./text.js";
 
 const mostMarks = 400;
 const steps = 10000; // of the slider
+
+/** "waypoint at 1.5: impulse of x 0.2". */
+function impulseText(t, impulse) {
+  const jumps = Object.entries(impulse).map(([name, jump]) => `${name} ${brief(jump)}`);
+  return `waypoint at ${brief(t)}: impulse of ${jumps.join(", ")}`;
+}
 
 export class Timeline {
   constructor(state) {
@@ -76,13 +82,15 @@ export class Timeline {
     setText(this.speed, `${speed >= 1 ? speed : `1/${1 / speed}`}\u00d7`);
   }
 
-  /** Windows as bands, conjugate times as diamonds. */
+  /** Windows as bands, contacts as bars, conjugate times as diamonds, waypoints as rings. */
   mark() {
     const { state } = this,
       fields = fieldsOf(state.data, state.selected),
       duration = state.trajectory.duration;
     const windows = (fields.windows ?? []).slice(0, mostMarks),
-      times = (fields.conjugate_times ?? []).slice(0, mostMarks);
+      times = (fields.conjugate_times ?? []).slice(0, mostMarks),
+      contacts = contactsOf(fields).slice(0, mostMarks),
+      waypoints = waypointsOf(fields).slice(0, mostMarks);
     const share = (time) => `${(100 * time) / duration}%`;
     this.marks.replaceChildren(
       ...windows.map(([from, to], k) =>
@@ -92,6 +100,13 @@ export class Timeline {
           title: `window ${k + 1}: ${brief(from)} to ${brief(to)}`,
         }),
       ),
+      ...contacts.map(({ constraint, from, to }) =>
+        element("span", {
+          class: "contact",
+          style: `left:${share(from)};width:max(2px, ${share(to - from)})`,
+          title: `contact ${constraint + 1}: ${brief(from)} to ${brief(to)}`,
+        }),
+      ),
       ...times.map((time) =>
         element("span", {
           class: "conjugate",
@@ -99,12 +114,18 @@ export class Timeline {
           title: `conjugate to 0: ${brief(time)}`,
         }),
       ),
+      ...waypoints.map(({ t, impulse }) =>
+        element("span", { class: "waypoint", style: `left:${share(t)}`, title: impulseText(t, impulse) }),
+      ),
     );
     const said = [];
+    const count = (list, word) => `${list.length} ${word}${list.length > 1 ? "s" : ""}`;
     if (windows.length)
       said.push(`${fields.windows.length} minimising window${windows.length > 1 ? "s" : ""}`);
     if (times.length)
       said.push(`\u25c6 ${fields.conjugate_times.length} conjugate time${times.length > 1 ? "s" : ""}`);
+    if (contacts.length) said.push(`\u25ac ${count(fields.contacts, "contact")}`);
+    if (waypoints.length) said.push(`\u25cb ${count(fields.waypoints, "waypoint")}`);
     setText(this.legend, said.join(" \u00b7 "));
     this.legend.title = axisText(state.data.picture.time);
   }

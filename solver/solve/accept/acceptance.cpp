@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
+#include "problem/symmetry.hpp"
 #include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/conditions.hpp"
@@ -13,8 +15,10 @@
 #include "solve/accept/limits.hpp"
 #include "solve/accept/minimality.hpp"
 #include "solve/accept/quadrature_check.hpp"
+#include "solve/accept/symmetries.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
+#include "solve/periodic/moving_symmetries.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/periodic/stability.hpp"
 
@@ -93,6 +97,17 @@ Examined refused(Refusal refusal, Solution& solution) {
   return {.hopeless = refusal.hopeless};
 }
 
+/// A drift that is not small against the energy or the mean of L, but against what the energy is left of: as
+/// in a thin layer.
+void explain_drift(const Survey& survey, Solution& solution) {
+  const double drift = survey.energy_drift, part = drift / survey.terms;
+  const double mean = std::abs(solution.action) / solution.duration();
+  if (!(drift > noticed_drift * std::max(std::abs(survey.energy), mean)) || !(part < noticed_drift)) return;
+  solution.message += fmt::format(
+      "; the energy is left of terms that cancel: its drift is {:.1e} of the largest ones, {:.1e}", part,
+      survey.terms);
+}
+
 /// Reads a solution off a path, and refuses it where equations or elements fail.
 Examined examine(const Problem& problem, const SolveOptions& options, const Path& path,
                  const Outcome& outcome, Workspace& w, Solution& solution) {
@@ -114,6 +129,7 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
     if (auto fails = copies_differ(solution.trajectory, scales(path, *outcome.tables).q))
       return refused(*std::move(fails), solution);
   Examined result{observe_energy(*problem.lagrangian, solution)};
+  if (result.survey && !problem.paired) explain_drift(*result.survey, solution);  // two copies have none
   if (auto fails =
           elements_fail(problem, options, outcome, path, result.survey, w.iteration.action(), solution))
     result.hopeless = refused(*std::move(fails), solution).hopeless;
@@ -182,6 +198,20 @@ Examined examine_all(const Problem& problem, const SolveOptions& options, const 
   return found;
 }
 
+/// Null directions that symmetries make are none along which the action might fall. They are looked for where
+/// that decides.
+void explain_nullity(const Problem& problem, Solution& solution) {
+  const int null = solution.nullity.value_or(0) - held_directions(problem);
+  if (null <= 0 || problem.periodic || problem.infinite || problem.manifold ||
+      !problem.boundary.momenta.empty())
+    return;
+  const int symmetric =
+      moving_symmetries(symmetries_about(problem, solution.trajectory), solution.trajectory, false);
+  if (symmetric < null) return;
+  solution.minimizing = solution.morse_index == 0;
+  solution.message += family_of_symmetries;
+}
+
 /// A shift in time is a symmetry of L.
 void tell_soft_shift(Solution& solution) {
   solution.minimizing = solution.morse_index == 0;
@@ -201,6 +231,15 @@ void leave_out_end(Solution& solution) {
     windows.pop_back();
     windows.back()[1] = T;
   }
+}
+
+/// With free ends T itself may be conjugate to 0, as of an orbit that begins at a turning point. A time that
+/// differs from T by no more than the path is known is T, which is not between the ends.
+void leave_out_times_at_end(const Problem& problem, double size, Solution& solution) {
+  if (problem.ends.free == 0 || !(size > 0)) return;
+  const double within =
+      solution.duration() * std::clamp(solution.error_estimate / size, least_blur, largest_blur);
+  std::erase_if(solution.conjugate_times, [&](double t) { return t >= solution.duration() - within; });
 }
 
 /// A solution that is refused has no path.
@@ -226,20 +265,23 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
       w.variation.assemble(problem.lagrangian, solution.trajectory, {}, nullptr,
                            problem.paired ? Definite::paired : Definite::none);
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
+    if (found.family == 0) explain_nullity(problem, solution);
     if (found.shifts_held)
       tell_soft_shift(solution);
     else if (found.family == 0)
       judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
     else
       leave_out_end(solution);
+    leave_out_times_at_end(problem, scales(path, *found.tables).q, solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
   if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned && solution.converged() && !problem.paired) {
     const SchemeTables& scheme = found.tables->scheme();
-    solution.element_energies =
-        element_energies(*problem.lagrangian, scheme.node, scheme.weight, solution.trajectory);
+    // Of the discrete path itself, not of what its momenta make of it.
+    solution.element_energies = element_energies(*problem.lagrangian, scheme.node, scheme.weight,
+                                                 found.recovered ? trajectory_of(path) : solution.trajectory);
   }
   const bool conjugate = solution.status == Status::conjugate_ends && !found.elsewhere;
   if (!solution.converged()) solution = without_path(solution);

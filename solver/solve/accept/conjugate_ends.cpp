@@ -65,7 +65,7 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, c
 }
 
 bool failed_at_conjugate_ends(const Problem& problem, const Trajectory& last, SecondVariation& memory) {
-  if (!fixed(problem) || problem.coordinates() > SecondVariation::most_to_find_all) return false;
+  if (!fixed(problem) || problem.coordinates() > most_examined) return false;
   if (last.elements() > most_elements) return false;
   if (!memory.assemble(problem.lagrangian, last)) return false;
   return minimality(memory).distance <= suspicious * last.duration();

@@ -11,6 +11,7 @@
 #include "solve/accept/acceptance.hpp"
 #include "solve/accept/conjugate_ends.hpp"
 #include "solve/accept/limits.hpp"
+#include "system/open_ends.hpp"
 
 /// \file Why a solve found nothing.
 
@@ -73,9 +74,10 @@ std::string unreachable(const Problem& problem) {
   const auto finite = [&](Point q, const std::vector<double>& v, double t) {
     return std::isfinite(evaluate_at(*problem.lagrangian, q, v, t, Order::value, scratch).value);
   };
+  const auto* const open = dynamic_cast<const OpenEnds*>(problem.lagrangian.get());
   for (const bool end : {false, true}) {
     const Point q = fixed_end(problem, end);
-    if (q.empty()) continue;
+    if (q.empty() || (open && (end ? open->open_end() : open->open_start()))) continue;
     std::vector<double> v(n, 0);
     bool somewhere = finite(q, v, end ? duration : 0);
     for (std::size_t a = 0; a < n && !somewhere; ++a) {
@@ -90,7 +92,7 @@ std::string unreachable(const Problem& problem) {
                          place_of(problem, q));
   }
   const Point start = fixed_end(problem, false), end = fixed_end(problem, true);
-  if (start.empty() || end.empty() || problem.duration.free) return {};
+  if (start.empty() || end.empty() || problem.duration.free || open) return {};
   std::vector<double> mean(n);
   for (std::size_t a = 0; a < n; ++a) mean[a] = (end[a] - start[a]) / duration;
   if (finite(start, mean, 0) || finite(end, mean, duration)) return {};
@@ -103,7 +105,7 @@ std::string unreachable(const Problem& problem) {
 /// Why a solve may have failed before it began; empty if nothing is found.
 std::string irregularity(const Problem& problem) {
   const int n = problem.coordinates();
-  if (n > most_coordinates) return {};
+  if (n > most_coordinates || problem.phase) return {};
   if (std::string reason = unreachable(problem); !reason.empty()) return reason;
   const std::vector<double> middle = middle_of_guess(problem);
   const std::pair<const char*, Point> points[] = {
@@ -133,6 +135,7 @@ Solution explain_failure(const Problem& problem, const SolveOptions& options, co
   if (const std::string reason = irregularity(problem); !reason.empty()) {
     solution.message = reason;
   } else if (last.status != Status::conjugate_ends && last.path.elements() > 0 &&
+             !options.deadline.passed() &&
              failed_at_conjugate_ends(problem, trajectory_of(last.path), w.variation)) {
     solution.status = Status::conjugate_ends;
     solution.message =

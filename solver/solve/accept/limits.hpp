@@ -15,8 +15,14 @@ namespace acceptance {
 inline constexpr double residual_growth = 10;
 /// Part of T within which a time conjugate to 0 is T, if ends are conjugate.
 inline constexpr double conjugate_end = 1e-5;
+/// With free ends, the part of T within which a time conjugate to 0 is T: the error of the path relative to
+/// its size, not less than roundoff and not more than what a coarse scheme leaves.
+inline constexpr double least_blur = 1e-13, largest_blur = 1e-3;
 /// Two copies of the coordinates that agree differ by roundoff, relative to the largest coordinate.
 inline constexpr double most_difference_of_copies = 1e-8;
+/// A drift of the energy that looks like an error, relative to the energy or to the mean of L. Drifts are
+/// small if they are less than this part of the terms.
+inline constexpr double noticed_drift = 1e-6;
 
 }  // namespace acceptance
 
@@ -50,6 +56,9 @@ inline constexpr double suspicious = 1e-6;
 /// A path that failed on more elements is not resolved: its second variation would take long and be
 /// no measure.
 inline constexpr int most_elements = 512;
+/// With more coordinates a solve that failed is not examined for conjugate ends: the work grows with their
+/// fourth power, and took half a minute for 100.
+inline constexpr int most_examined = 40;
 /// Roundoff of the elements' lengths, half a rounding on average, which acts as one of T.
 inline constexpr double roundoff = unit_roundoff / 2;
 inline constexpr int finer = 3, steps = 12;

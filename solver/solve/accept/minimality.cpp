@@ -1,7 +1,5 @@
 #include "solve/accept/minimality.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -60,9 +58,12 @@ LegendreCondition legendre_condition(const Lagrangian& lagrangian, const Traject
   return result;
 }
 
-/// There is no part that is a minimum, and the negative eigenvalues are as many as the mesh has room for.
-double without_minima(Solution& solution) {
-  solution.message += "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
+/// Without pieces that minimise. If L_vv is not positive definite there are none, and the negative
+/// eigenvalues are as many as the mesh has room for.
+double without_pieces(LegendreCondition legendre, Solution& solution) {
+  solution.message += legendre == LegendreCondition::holds
+                          ? "; no index and no windows are told: its second variation is not resolved"
+                          : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
   solution.morse_index.reset();
   solution.minimizing = false;
   return INFINITY;
@@ -81,28 +82,27 @@ void count_conjugate_times(const Problem& problem, const SolveOptions& options, 
 
 double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
                        Solution& solution) {
-  if (problem.coordinates() > SecondVariation::most_coordinates) {
-    solution.message +=
-        fmt::format("; windows are only found for up to {} coordinates", SecondVariation::most_coordinates);
-    return INFINITY;
-  }
   std::optional<ClosingMap> closed;
   if (problem.periodic) closed = closing_map(problem);
   const ClosingMap* map = closed ? &*closed : nullptr;
   const bool assembled = memory.assemble(problem.lagrangian, solution.trajectory, {}, map);
+  if (memory.too_large()) {
+    solution.message += "; windows are not found: the forms of its elements need too much memory";
+    return INFINITY;
+  }
   if (memory.too_many()) {
     solution.message += "; windows are not found: Jacobi fields vary too fast for its elements";
     return INFINITY;
   }
   const LegendreCondition legendre = legendre_condition(*problem.lagrangian, solution.trajectory);
   // As of a radius at zero. The index is that of the second variation all the same.
-  if (legendre == LegendreCondition::between_ends && problem.infinite) {
+  if (legendre == LegendreCondition::between_ends && !problem.periodic) {
     solution.message += "; ∂²L/∂q'∂q' is singular at an end, so windows and conjugate times are not told";
     return INFINITY;
   }
   if (!assembled || legendre != LegendreCondition::holds) {
     if (problem.periodic) memory.assemble(problem.lagrangian, solution.trajectory, {}, map, Definite::none);
-    return without_minima(solution);
+    return without_pieces(legendre, solution);
   }
   const bool bounded = problem.curvature && is_natural(problem.lagrangian->structure());
   Minimality found =
@@ -118,8 +118,7 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
     solution.conjugate_times = *std::move(found.conjugate_times);
     count_conjugate_times(problem, options, solution);
   } else {
-    solution.message += fmt::format("; conjugate times are only found for up to {} coordinates",
-                                    SecondVariation::most_to_find_all);
+    solution.message += "; conjugate times are not found: they would take too long";
   }
   solution.certificate = bounded && !refuted ? Certificate::global : Certificate::sampled;
   return found.distance;

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "solve/accept/limits.hpp"
+#include "solve/accept/symmetries.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
+#include "system/open_ends.hpp"
 
 namespace extremal {
 
@@ -17,29 +19,16 @@ using namespace limits::quadrature_check;
 
 namespace {
 
-/// Symmetries of the problem, found about a path and nearer to the origin: at some of those points forces
-/// count.
-int symmetries_about(const Problem& problem, const Trajectory& found) {
-  const std::size_t n = problem.coordinates();
-  Problem about = problem;
-  about.guess = {};
-  about.guess.q.resize((guess_points + 1) * n);
-  std::vector<double> v(n);
-  for (int i = 0; i <= guess_points; ++i) {
-    about.guess.tau.push_back(static_cast<double>(i) / guess_points);
-    found.at(about.guess.tau.back() * found.duration(), {about.guess.q.data() + i * n, n}, v);
-  }
-  const SymmetrySearch search{most_coordinates,
-                              {1, 0.25, 0.0625, 1 / 64.0, 1 / 256.0, 1 / 1024.0, 1 / 4096.0}};
-  return static_cast<int>(continuous_symmetries(about, search).size());
-}
-
 /// By how much momenta at the ends of a solution are others where the action was evaluated last.
-double kick(const DiscreteAction& action, const Solution& solution) {
+double kick(const DiscreteAction& action, const Lagrangian& lagrangian, const Solution& solution) {
   double largest = 0;
-  for (std::size_t a = 0; a < solution.momentum_start.size(); ++a)
-    largest = std::max({largest, std::abs(action.start_gradient()[a] + solution.momentum_start[a]),
-                        std::abs(action.end_gradient()[a] - solution.momentum_end[a])});
+  const auto* const open = dynamic_cast<const OpenEnds*>(&lagrangian);
+  for (std::size_t a = 0; a < solution.momentum_start.size(); ++a) {
+    if (!open || !open->open_start())
+      largest = std::max(largest, std::abs(action.start_gradient()[a] + solution.momentum_start[a]));
+    if (!open || !open->open_end())
+      largest = std::max(largest, std::abs(action.end_gradient()[a] - solution.momentum_end[a]));
+  }
   return largest > momentum_roundoff * action.momentum_scale() ? largest : 0;
 }
 
@@ -78,14 +67,14 @@ QuadratureCheck check_quadrature(const Problem& problem, const Path& path, const
   if (!orbit && model.left_out() > 0 && problem.coordinates() <= most_coordinates) {
     // Directions that are null because symmetries move the ends belong to a family of extremals. Others may
     // be soft: weak forces fix the path, if to the last digit. Where forces vanish nothing does.
-    const int family = symmetries_about(problem, solution.trajectory);
+    const int family = static_cast<int>(symmetries_about(problem, solution.trajectory).size());
     if (model.left_out() > family) {
       check.moved = std::max(check.moved, moved(0));
       check.isolated = model.left_out() <= family && check.moved <= outcome.tolerance;
     }
   }
   check.turned = size.v > 0 ? w.iteration.steepness(path) / size.v : 0;
-  check.kicked = kick(w.iteration.action(), solution);
+  check.kicked = kick(w.iteration.action(), *problem.lagrangian, solution);
   return check;
 }
 

@@ -25,6 +25,8 @@ inline constexpr int steps = 100;
 inline constexpr int companion_steps = 25;
 /// Of the times, in t/T, at which the companion crosses kinks.
 inline constexpr double companion_misplacement = 1e-12;
+/// Errors of q' may be so many tolerances, relative to its range.
+inline constexpr double velocity_tolerances = 10;
 /// Elements become at most so many times more at once.
 inline constexpr double most_growth = 16;
 /// An error within this factor of that predicted by its order falls regularly.

@@ -210,10 +210,32 @@ double PinnedSolve::distance_to_companion() {
   return distance;
 }
 
-/// How many times more elements the tolerance needs, as the error falls by its order.
-double PinnedSolve::wanted_growth() const {
-  return std::pow(2 * outcome_.error / outcome_.tolerance, 1.0 / order());
+/// By how much velocities of the result differ from those of the companion, of which distance_to_companion()
+/// was measured last, in the tolerance that they have. Where momenta give none they are the path's own.
+double PinnedSolve::velocity_excess() {
+  w_.iteration.reset(problem_, w_.pinned, path_.elements());
+  outcome_.recovered = recover(problem_, path_, w_, w_.raised);
+  const Trajectory found = trajectory_of(outcome_.recovered ? w_.raised : path_),
+                   exact = trajectory_of(w_.other);
+  const int n = problem_.coordinates();
+  std::vector<double> q(n), v(n), exact_v(n);
+  double difference = 0;
+  for (int k = 0; k < found.elements(); ++k)
+    for (const double tau : {0.0, 0.25, 0.5, 1.0}) {
+      found.in_element(k, tau, q, v);
+      // A free duration differs by its error.
+      const double t = found.times[k] + tau * (found.times[k + 1] - found.times[k]);
+      exact.at(std::min(t / found.duration(), 1.0) * exact.duration(), q, exact_v);
+      for (int a = 0; a < n; ++a) difference = std::max(difference, std::abs(v[a] - exact_v[a]));
+    }
+  const double range = scales(w_.other, w_.levels.at(w_.other.degree())).v;
+  const double allowed = velocity_tolerances * options_.tolerance * range;
+  return allowed > 0 ? difference / allowed : 0;
 }
+
+/// How many times more elements are needed, as the error falls by its order; `excess` is by how much it is
+/// larger than the tolerance.
+double PinnedSolve::wanted_growth(double excess) const { return std::pow(2 * excess, 1.0 / order()); }
 
 /// Elements.
 int PinnedSolve::most_affordable() {
@@ -226,10 +248,10 @@ Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
   const int most = most_affordable();
-  double before = INFINITY, expected = 0;  // errors: the last, and the expected one
+  double before = INFINITY, latest = INFINITY, expected = 0;  // errors: the two last, and the expected one
   double least = INFINITY;
   int of_least = elements;
-  for (;; before = outcome_.error) {
+  for (;; before = latest) {
     if (options_.deadline.passed()) {
       outcome_.status = Status::iteration_limit;
       outcome_.message =
@@ -261,7 +283,9 @@ Outcome PinnedSolve::run() {
       // No better extremal is near: the discrete one may be an artefact of the mesh.
       outcome_.error = size.q;
     }
-    if (options_.elements > 0 || outcome_.error <= outcome_.tolerance) {
+    double excess = outcome_.error / outcome_.tolerance;
+    if (options_.elements == 0 && excess <= 1) excess = std::max(excess, velocity_excess());
+    if (options_.elements > 0 || excess <= 1) {
       outcome_.status = Status::converged;
       outcome_.message = "converged";
       if (const int kinked = kinked_elements(); kinked > 0)
@@ -271,21 +295,22 @@ Outcome PinnedSolve::run() {
       outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
       break;
     }
+    const double error = latest = excess * outcome_.tolerance;
     const double noise = std::max(amplified_roundoff * size.q, at_roundoff * size.magnitude);
-    if (outcome_.error < stagnation * least) {
-      least = outcome_.error;
+    if (error < stagnation * least) {
+      least = error;
       of_least = elements;
     }
     const bool futile = cost_ > most_cost && elements > futile_growth * of_least && least < resolved * size.q;
-    if (futile || (outcome_.error > stagnation * before && outcome_.error < noise)) {
+    if (futile || (error > stagnation * before && error < noise)) {
       outcome_.message =
           fmt::format("the tolerance {:.1e} is below roundoff with {} elements or more; loosen it",
                       options_.tolerance, elements);
       break;
     }
     // An error that falls as expected gives the number of elements needed; else the next number.
-    const bool regular = outcome_.error > regular_fall * expected && outcome_.error < expected / regular_fall;
-    const double growth = wanted_growth();
+    const bool regular = error > regular_fall * expected && error < expected / regular_fall;
+    const double growth = wanted_growth(excess);
     if (elements * (regular ? growth : std::min(growth, most_growth)) > most) {
       outcome_.message =
           fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
@@ -293,9 +318,10 @@ Outcome PinnedSolve::run() {
       break;
     }
     const double factor = std::clamp(growth, 1.1, most_growth);
-    expected = outcome_.error * std::pow(factor, -order());
+    expected = error * std::pow(factor, -order());
     elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * factor)));
   }
+  outcome_.astray = outcome_.status == Status::not_converged && least == INFINITY;
   return std::move(outcome_);
 }
 

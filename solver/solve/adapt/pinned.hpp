@@ -29,7 +29,8 @@ class PinnedSolve {
   NewtonReport follow_kinks(const ElementTables& tables, NewtonReport report);
   int kinked_elements() const;
   double distance_to_companion();
-  double wanted_growth() const;
+  double velocity_excess();
+  double wanted_growth(double excess) const;
   int most_affordable();
   /// Of the error of q throughout, not of the nodes alone.
   int order() const { return std::min(scheme_.order, scheme_.degree + 1); }

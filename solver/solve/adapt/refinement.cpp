@@ -38,6 +38,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
 void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
   mesh_kept_ = false;
+  digits_ = Digits::of_double;
   outcome_.shifts_held = false;
   w_.iteration.forget();
   tables_ = &tables;
@@ -46,6 +47,12 @@ void Refinement::take(const ElementTables& tables) {
   const double wanted = std::max(most_cost, most_first_steps * step_cost());
   if (first_cost_ == 0) first_cost_ = wanted;
   most_cost_ = std::max(most_cost_, std::min(wanted, most_cost_growth * first_cost_));
+}
+
+bool Refinement::loses_digits() {
+  const bool factored = w_.iteration.factor_quickly(path_);
+  const Chain& chain = w_.iteration.action().nodes.chain;
+  return w_.iteration.condensed() && (!factored || chain.pivoted() || !chain.deflated().empty());
 }
 
 double Refinement::step_cost() const {
@@ -68,7 +75,9 @@ Refinement::Result Refinement::pursue() {
   if (mesh_kept_) {
     w_.iteration.action().evaluate_plain(path_);
     measure_momenta();
+    if (digits_ != Digits::of_double) w_.iteration.double_digits();
     w_.iteration.extend();
+    if (digits_ == Digits::doubled) w_.iteration.extend();
   }
   Attempt result = attempt();
   for (double before = INFINITY; result == Attempt::refine; before = worst_) {

@@ -44,6 +44,16 @@ class Refinement {
   /// The path that was opened follows a motion through many encounters: its elements keep their ends, degrees
   /// rise before all are halved, and gradients are in extended precision.
   void keep_mesh() { mesh_kept_ = true; }
+  bool mesh_kept() const { return mesh_kept_; }
+  /// Whether the factors of a step from the path that was opened have lost digits.
+  bool loses_digits();
+  /// Of the factors of steps from the path that was opened.
+  enum class Digits {
+    of_double,
+    doubled_where_lost,
+    doubled,  ///< from the first step on
+  };
+  void set_digits(Digits digits) { digits_ = digits; }
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
   /// Counts a step that the caller takes; false if there may be no more.
@@ -116,8 +126,9 @@ class Refinement {
   double first_magnitude_ = 0;  ///< of the path that is pursued
   bool varied_mass_ = false;    ///< with q
   bool mesh_kept_ = false;      ///< see keep_mesh()
-  double inertia_ = 0;          ///< of momenta by velocities where these are not all of momenta
-  double momentum_range_ = 0;   ///< when last known
+  Digits digits_ = Digits::of_double;
+  double inertia_ = 0;         ///< of momenta by velocities where these are not all of momenta
+  double momentum_range_ = 0;  ///< when last known
   ResidualTest test_;
   double longest_ = 0;      ///< undamped step so far, relative
   double left_out_ = 0;     ///< of q, by the elements that were judged last

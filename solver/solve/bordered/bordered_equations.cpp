@@ -326,14 +326,32 @@ double BorderedEquations::residual() const {
   return values_.head(of_path_).lpNorm<Eigen::Infinity>() / (momentum_ > 0 ? momentum_ : 1);
 }
 
+std::vector<double> BorderedEquations::units_of_times() const {
+  std::vector<double> diagonal(unknowns_), beside(unknowns_), units(unknowns_, 1.0);
+  double largest = 0;
+  for (const auto& e : symmetric_) {
+    if (e.row() < of_path_ && e.col() < of_path_) largest = std::max(largest, std::abs(e.value()));
+    (e.row() == e.col() ? diagonal : beside)[e.row()] += std::abs(e.value());
+  }
+  for (int row = first_time(); row < first_held(); ++row) {
+    const double size = std::max(std::sqrt(diagonal[row] * largest), beside[row]);
+    if (size > 0) units[row] = largest / size;
+  }
+  return units;
+}
+
 Inertia BorderedEquations::inertia() const {
-  // Columns of the matrix that are kept: the path, ν, η and the directions held.
+  // Columns of the matrix that are kept: the path, times of waypoints, ν, η and the directions held.
   std::vector<int> number(unknowns_, -1);
   int size = 0;
   for (int u = 0; u < of_path_; ++u) number[u] = size++;
+  for (std::size_t l = 0; l + 1 < time_unknown_.size(); ++l)
+    if (time_unknown_[l] >= 0) number[time_unknown_[l]] = size++;
+  const int varied = size;
   for (int u = first_constant() + extension().unknowns(); u < first_time(); ++u) number[u] = size++;
-  const int conditions = size - of_path_;
+  const int conditions = size - varied;
   const int held = phases_.count;
+  const std::vector<double> units = units_of_times();
   std::vector<int> rows, columns;
   std::vector<double> values;
   double largest = 0;
@@ -342,8 +360,8 @@ Inertia BorderedEquations::inertia() const {
     if (r < 0 || c < 0 || r < c) return;  // the other triangle is its mirror image
     rows.push_back(r);
     columns.push_back(c);
-    values.push_back(e.value());
-    largest = std::max(largest, std::abs(e.value()));
+    values.push_back(units[e.row()] * units[e.col()] * e.value());
+    largest = std::max(largest, std::abs(values.back()));
   };
   for (const auto& e : symmetric_) take(e);
   for (int j = 0; j < held; ++j) number[first_held() + j] = size++;
@@ -367,7 +385,7 @@ Inertia BorderedEquations::inertia() const {
   Inertia result;
   result.negative = shifted(null).negative - conditions - held;
   result.positive = shifted(-null).positive - conditions - held;
-  result.zero = of_path_ - conditions - held - result.negative - result.positive + held;
+  result.zero = varied - conditions - held - result.negative - result.positive + held;
   return result;
 }
 

@@ -39,6 +39,7 @@ class BorderedEquations {
   /// Whether the free times of waypoints stay as they are, for now. Kept by reset().
   void hold_times(bool on) { times_held_ = on; }
 
+  const Extension& extension() const { return *problem_->extension; }
   int unknowns() const { return unknowns_; }
   int of_path() const { return of_path_; }                                     ///< unknowns of the path
   int first_constant() const { return of_path_; }                              ///< k, then ν
@@ -70,8 +71,9 @@ class BorderedEquations {
   /// The largest that is left of the equations of the free times: energies.
   double energy_jump() const;
 
-  /// Index and nullity of the second variation where constants and times are held: on the paths that keep the
-  /// integrals and the conditions. The matrix was evaluated last.
+  /// Index and nullity of the second variation where constants and the duration are held: on the paths that
+  /// keep the integrals, the conditions and the waypoints, those without a given time at any time. The matrix
+  /// was evaluated last.
   Inertia inertia() const;
 
  private:
@@ -79,7 +81,6 @@ class BorderedEquations {
     int unknown;
     double factor;
   };
-  const Extension& extension() const { return *problem_->extension; }
   std::span<const Share> shares(int element, int local) const {
     const std::size_t place = static_cast<std::size_t>(element) * local_ + local;
     return {shares_.data() + start_[place], static_cast<std::size_t>(start_[place + 1] - start_[place])};
@@ -99,6 +100,8 @@ class BorderedEquations {
   std::vector<int> target_rows() const;
   double size_of_terms(std::span<const double> start, std::span<const double> end) const;
   void add_held(const BorderedState& state);
+  /// Of each unknown, so that entries in the rows of times are as large as those of the path.
+  std::vector<double> units_of_times() const;
 
   const Problem* problem_ = nullptr;
   const ElementTables *tables_ = nullptr, *own_ = nullptr;

@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "problem/symmetry.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/observe.hpp"
 #include "solve/accept/minimality.hpp"
+#include "solve/accept/symmetries.hpp"
 #include "solve/bordered/bordered_newton.hpp"
+#include "solve/bordered/dependence.hpp"
 #include "solve/bordered/limits.hpp"
+#include "solve/periodic/moving_symmetries.hpp"
 #include "solve/periodic/stability.hpp"
 
 namespace extremal {
@@ -40,7 +45,31 @@ std::shared_ptr<const ExtensionValues> read_extension_values(const Problem& prob
       impulse.impulse.emplace_back(a, -equations.node_gradient(state.mesh.first[w + 1], a));
   }
   values->lagrangian = extension.at(constants);
+  if (extension.manifold_at) values->manifold = extension.manifold_at(constants);
   return values;
+}
+
+/// What is wrong with conditions that should follow from the others and from constraints; empty: nothing.
+std::string missed_condition(const Problem& problem, const BorderedState& state) {
+  const std::size_t n = problem.coordinates(), all = n + problem.extension->constants();
+  const std::vector<double> constants = state.constants(static_cast<int>(n));
+  const Trajectory path = trajectory_of(state.path);
+  std::vector<double> start(all), end(all), v(all), gradient(2 * all);
+  path.at(0, start, v);
+  path.at(path.duration(), end, v);
+  for (const ImpliedCondition& implied : problem.extension->implied) {
+    const double missed = implied.condition.function(start, end, gradient, {});
+    double size = 1;
+    for (std::size_t e = 0; e < 2 * all; ++e)
+      size = std::max(size, std::abs(gradient[e] * (e < all ? start[e] : end[e - all])));
+    if (!(std::abs(missed) <= largest_implied * size))
+      return fmt::format(
+          "'{}' is missed by {:.3g}: the constraints and what else is given at the ends determine what it "
+          "says; "
+          "leave it out, or leave out another condition",
+          implied.text, missed);
+  }
+  return {};
 }
 
 /// The elements of one leg as a trajectory of its own, from time 0.
@@ -89,6 +118,55 @@ void read_legs(const Problem& held, const SolveOptions& options, const BorderedS
   solution = std::move(whole);
 }
 
+/// What a condition on the ends, with the gradient over (q(0), q(T)), is for each symmetry at a path.
+Eigen::RowVectorXd along_symmetries(const std::vector<Generator>& symmetries, const Eigen::VectorXd& start,
+                                    const Eigen::VectorXd& end, const Eigen::VectorXd& by_start,
+                                    const Eigen::VectorXd& by_end) {
+  const Eigen::Index n = start.size();
+  Eigen::RowVectorXd row(std::ssize(symmetries));
+  for (Eigen::Index s = 0; s < row.size(); ++s) {
+    const Eigen::Map<const Eigen::MatrixXd> transposed(symmetries[s].matrix.data(), n, n);
+    const Eigen::Map<const Eigen::VectorXd> shift(symmetries[s].shift.data(), n);
+    row[s] = by_start.dot(transposed.transpose() * start + shift) +
+             by_end.dot(transposed.transpose() * end + shift);
+  }
+  return row;
+}
+
+/// The continuous symmetries of L + Σ ν g that keep the relation, conditions and waypoints.
+std::vector<Generator> symmetries_of(const Problem& held, const BorderedState& state,
+                                     const Trajectory& path) {
+  const std::vector<Generator> all = symmetries_about(held, path);
+  if (all.empty()) return {};
+  const Extension& extension = *held.extension;
+  const int n = held.coordinates(), whole = n + extension.constants();
+  const std::vector<double> constants = state.constants(n);
+  Eigen::VectorXd start(whole), end(whole), v(n), gradient(2 * whole);
+  const auto at = [&](double t, Eigen::VectorXd& q) {
+    path.at(t, {q.data(), static_cast<std::size_t>(n)}, {v.data(), static_cast<std::size_t>(n)});
+    std::ranges::copy(constants, q.begin() + n);
+  };
+  at(0, start);
+  at(path.duration(), end);
+  std::vector<Eigen::RowVectorXd> rows;
+  for (const EndCondition& condition : extension.conditions) {
+    condition.function({start.data(), start.data() + whole}, {end.data(), end.data() + whole},
+                       {gradient.data(), gradient.data() + 2 * whole}, {});
+    const double size = gradient.norm();
+    rows.push_back(along_symmetries(all, start.head(n), end.head(n), gradient.head(n) / size,
+                                    gradient.segment(whole, n) / size));
+  }
+  for (std::size_t w = 0; w < extension.waypoints.size(); ++w) {
+    at(state.times[w], end);
+    for (const auto& [a, value] : extension.waypoints[w].fixed)
+      rows.push_back(along_symmetries(all, start.head(n), end.head(n), Eigen::VectorXd::Zero(n),
+                                      Eigen::VectorXd::Unit(n, a)));
+  }
+  Eigen::MatrixXd values(std::ssize(rows), std::ssize(all));
+  for (Eigen::Index r = 0; r < values.rows(); ++r) values.row(r) = rows[r];
+  return symmetries_that_keep(values, all);
+}
+
 /// Windows, conjugate times and multipliers of L + Σ ν g with all constants held; with waypoints leg by leg.
 void read_variation(const Problem& problem, const SolveOptions& options, const BorderedState& state,
                     double size, Solution& solution) {
@@ -123,7 +201,11 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
                     equations.residual()));
   if (!(equations.mismatch() <= largest_mismatch))
     return refused(
-        fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch()));
+        std::isfinite(equations.mismatch())
+            ? fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch())
+            : "the conditions are not finite on the path found; try another guess");
+  if (std::string fault = dependence(equations); !fault.empty()) return refused(std::move(fault));
+  if (std::string fault = missed_condition(problem, state); !fault.empty()) return refused(std::move(fault));
   const double energy = equations.momentum() * size / state.times.back();
   if (!(equations.energy_jump() <=
         largest_residual * std::max(energy, std::abs(problem.duration.energy.value_or(0)))))
@@ -154,6 +236,16 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
   observe_energy(*solution.extension->lagrangian, solution);
+  if (inertia.negative == 0 && inertia.zero > 0 && !problem.periodic && problem.boundary.momenta.empty()) {
+    Problem held = problem;
+    held.lagrangian = solution.extension->lagrangian;
+    held.duration.value = state.times.back();
+    const std::vector<Generator> symmetries = symmetries_of(held, state, solution.trajectory);
+    if (moving_symmetries(symmetries, solution.trajectory, false) >= inertia.zero) {
+      solution.minimizing = true;
+      solution.message += family_of_symmetries;
+    }
+  }
   read_variation(problem, options, state, size, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned)

@@ -10,6 +10,7 @@
 
 #include "linear/dense.hpp"
 #include "solve/bordered/limits.hpp"
+#include "solve/bordered/null_directions.hpp"
 
 namespace extremal {
 
@@ -49,7 +50,7 @@ class BorderedNewton {
     lu_.factorize(matrix);
     set_units(matrix);
     find_null_directions(matrix);
-    if (lu_.info() == Eigen::Success || least_norm_) return true;
+    if (lu_.info() == Eigen::Success || least_norm_ || across_) return true;
     failure_ = "the second variation with the conditions is singular";
     return false;
   }
@@ -58,6 +59,7 @@ class BorderedNewton {
   Eigen::VectorXd correction() const {
     Eigen::VectorXd right = -equations_.values();
     for (Eigen::Index j = equations_.first_held(); j < right.size(); ++j) right[j] = 0;
+    if (across_) return units_.cwiseProduct(across_->solve(right.cwiseProduct(row_units_)));
     if (!least_norm_) return lu_.solve(right);
     return units_.cwiseProduct(least_norm_->solve(right.cwiseProduct(row_units_)));
   }
@@ -69,6 +71,15 @@ class BorderedNewton {
   }
 
   const std::string& failure() const { return failure_; }
+
+  /// Beside a family the second variation is not singular, but steps along the family may be far too long.
+  /// Its softest directions are then left out, until the path is near. False if they are left out already.
+  bool leave_soft_directions_out() {
+    if (null_below_ >= soft_direction) return false;
+    null_below_ = soft_direction;
+    return true;
+  }
+  void take_all_directions() { null_below_ = null_direction; }
 
  private:
   /// What each unknown is compared with. A multiplier counts by the momentum that it makes.
@@ -96,22 +107,27 @@ class BorderedNewton {
   /// solution that is much larger than its right-hand side.
   void find_null_directions(const BorderedEquations::Matrix& matrix) {
     least_norm_.reset();
+    across_.reset();
     const Eigen::Index size = matrix.rows();
-    if (size > most_dense) return;
+    const bool dense = size <= most_dense;
+    if (!dense && null_below_ > null_direction) return;
     row_units_.setZero(size);
     for (Eigen::Index c = 0; c < size; ++c)
       for (BorderedEquations::Matrix::InnerIterator it(matrix, c); it; ++it)
         row_units_[it.row()] = std::max(row_units_[it.row()], std::abs(it.value()) * units_[c]);
     for (double& unit : row_units_) unit = unit > 0 ? 1 / unit : 1;
-    Eigen::VectorXd probe(size);
-    for (Eigen::Index i = 0; i < size; ++i) probe[i] = std::cos(1.0 + 2.3 * static_cast<double>(i));
+    const Eigen::VectorXd probe = NullDirections::probe(size, 0);
     if (lu_.info() == Eigen::Success) {
       const Eigen::VectorXd answer = lu_.solve(probe.cwiseQuotient(row_units_)).cwiseQuotient(units_);
-      if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_direction) return;
+      if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_below_) return;
     }
-    const Eigen::MatrixXd dense = row_units_.asDiagonal() * Eigen::MatrixXd(matrix) * units_.asDiagonal();
-    least_norm_.emplace(size, size);
-    least_norm_->setThreshold(null_direction).compute(dense);
+    const BorderedEquations::Matrix scaled = row_units_.asDiagonal() * matrix * units_.asDiagonal();
+    if (dense) {
+      least_norm_.emplace(size, size);
+      least_norm_->setThreshold(null_below_).compute(Eigen::MatrixXd(scaled));
+    } else if (NullDirections found; found.find(scaled, null_below_)) {
+      across_ = std::move(found);
+    }
   }
   int coordinates() const {
     return state_.path.coordinates() - (equations_.first_multiplier() - equations_.first_constant());
@@ -121,8 +137,10 @@ class BorderedNewton {
   BorderedState& state_;
   Eigen::SparseLU<BorderedEquations::Matrix> lu_;
   Eigen::VectorXd units_, row_units_;
-  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> least_norm_;
+  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> least_norm_;  ///< of few unknowns
+  std::optional<NullDirections> across_;                                               ///< of many
   Eigen::Index analysed_ = -1;  ///< entries of the pattern
+  double null_below_ = null_direction;
   std::string failure_;
 };
 
@@ -146,11 +164,14 @@ BorderedReport converge(BorderedEquations& equations, BorderedState& state,
       return report;
     }
     const BorderedState saved = state;
+    bool too_short = false;
     double damping = size < roundoff_step ? 1 : predicted, simplified = INFINITY;
     Eigen::VectorXd next;
     for (;; damping /= 2) {
       if (damping < least_damping) {
         state = saved;
+        too_short = true;
+        if (newton.leave_soft_directions_out()) break;
         report.failure = "the steps of Newton's method became too short";
         return report;
       }
@@ -162,6 +183,8 @@ BorderedReport converge(BorderedEquations& equations, BorderedState& state,
       }
       state = saved;
     }
+    if (too_short) continue;
+    if (size < near_family) newton.take_all_directions();
     if (!on_step(size, damping)) {
       report.failure = "the limit of work for one solve is reached";
       return report;

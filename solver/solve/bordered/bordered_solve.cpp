@@ -72,28 +72,39 @@ class BorderedSolve {
     times_.push_back(problem.duration.value);
   }
 
-  Solution run() {
+  using Same = std::function<bool(const Solution&, const Solution&)>;
+
+  /// From the guess and, as long as fewer are found than are wanted, from others.
+  std::vector<Solution> run(int most, const Same& same) {
     const auto start = Clock::now();
     std::vector<Start> starts{{}};
     if (has_targets()) starts.push_back({.led = true});
+    std::vector<Solution> found;
     std::string first_failure;
-    for (std::size_t k = 0; k < starts.size() && !(k > 0 && spent()); ++k) {
+    std::size_t tried = 0;
+    for (; tried < starts.size() && !(tried > 0 && spent()); ++tried) {
+      if (static_cast<int>(found.size()) >= most) break;
+      const Start& from = starts[tried];
       equations_.set_offsets({});
-      Solution solution = options_.scheme ? solve_with_scheme(starts[k]) : solve_adapted(starts[k]);
+      Solution solution = options_.scheme ? solve_with_scheme(from) : solve_adapted(from);
       if (solution.converged()) {
-        solution.strategy = starts[k].strategy();
-        return timed(std::move(solution), start);
+        solution.strategy = from.strategy();
+        const auto known = [&](const Solution& other) { return same(other, solution); };
+        if (std::ranges::none_of(found, known)) found.push_back(timed(std::move(solution), start));
+      } else if (first_failure.empty()) {
+        first_failure = solution.message;
       }
-      if (first_failure.empty()) first_failure = solution.message;
-      if (k + 1 == starts.size() && starts[k].size == 0) add_bent(starts);
+      const bool bent = starts.size() > 2 || starts.back().size != 0;
+      const bool wanted = static_cast<int>(found.size()) < most;
+      if (tried + 1 == starts.size() && !bent && wanted) add_bent(starts);
     }
-    Solution solution;
-    solution.status = spent() ? Status::iteration_limit : Status::not_converged;
-    solution.message =
-        first_failure + (spent() ? "; the budget is spent" : "") +
-        "; no guess with waves added led to a solution either: try another guess of the path, of the "
-        "unknowns or of the duration";
-    return timed(std::move(solution), start);
+    if (found.empty()) return {timed(failure(first_failure), start)};
+    std::ranges::stable_sort(found, {}, &Solution::action);
+    if (static_cast<int>(found.size()) < most)
+      found.front().message +=
+          fmt::format("; {} of {} extremals wanted were found from {} guesses{}; more may exist",
+                      found.size(), most, tried, spent() ? ", until the budget was spent" : "");
+    return found;
   }
 
  private:
@@ -105,6 +116,16 @@ class BorderedSolve {
 
   bool has_targets() const {
     return extension_.multipliers() > 0 || !extension_.conditions.empty() || !extension_.where.empty();
+  }
+
+  Solution failure(const std::string& first_failure) const {
+    Solution solution;
+    solution.status = spent() ? Status::iteration_limit : Status::not_converged;
+    solution.message =
+        first_failure + (spent() ? "; the budget is spent" : "") +
+        "; no guess with waves added led to a solution; another guess of the path, of the unknowns or of the "
+        "duration may";
+    return solution;
   }
 
   Solution timed(Solution solution, Clock::time_point start) const {
@@ -166,7 +187,19 @@ class BorderedSolve {
     state.path.load_ends();
   }
 
-  /// Adds waves, the ends at rest; closed paths stay closed.
+  /// By how much the ends of a bent start are moved, where nonlinear conditions hold between them: at those
+  /// of the guess their gradients may vanish.
+  std::vector<double> moved_ends(double size, const std::vector<double>& extent, Noise& noise) const {
+    std::vector<double> moved(2 * static_cast<std::size_t>(n_));
+    if (extension_.conditions.empty()) return moved;
+    std::vector<double> free(problem_.ends.free);
+    for (int f = 0; f < problem_.ends.free; ++f)
+      free[f] = size * extent[problem_.ends.home[f] % n_] * noise();
+    for (const Triplet& z : problem_.ends.z) moved[z.row] += z.value * free[z.column];
+    return moved;
+  }
+
+  /// Adds waves, and moves ends that are free; closed paths stay closed.
   void bend(const Start& start, const ElementTables& tables, Path& path) const {
     if (start.size == 0) return;
     if (problem_.periodic) return bend_path(problem_, {start.size, start.seed, start.last}, tables, path);
@@ -176,11 +209,16 @@ class BorderedSolve {
     for (double& c : amplitude) c = start.size * noise();
     // One wave of one coordinate has the size that is asked for.
     if (start.first == start.last && n_ == 1) std::ranges::fill(amplitude, start.size);
-    add_to(path, tables, [&](double tau, double* point) {
-      for (int m = start.first; m <= start.last; ++m)
-        for (int a = 0; a < n_; ++a)
+    const std::vector<double> moved = moved_ends(start.size, extent, noise);
+    std::vector<double> ends = ends_of(path);
+    for (std::size_t e = 0; e < ends.size(); ++e) ends[e] += moved[e];
+    fill_path(ends, tables, path, [&](double tau, double* point) {
+      for (int a = 0; a < n_; ++a) {
+        point[a] += (1 - tau) * moved[a] + tau * moved[n_ + a];
+        for (int m = start.first; m <= start.last; ++m)
           point[a] += extent[a] / m * amplitude[static_cast<std::size_t>(m) * n_ + a] *
                       std::sin(m * std::numbers::pi * tau);
+      }
     });
   }
 
@@ -201,25 +239,13 @@ class BorderedSolve {
       tau[a].push_back(1);
       missed[a].push_back(0);
     }
-    add_to(path, tables, [&](double t, double* point) {
+    fill_path(ends_of(path), tables, path, [&](double t, double* point) {
       for (int a = 0; a < n_; ++a) {
         const auto after = std::min(std::ranges::upper_bound(tau[a], t), tau[a].end() - 1);
         const auto k = static_cast<std::size_t>(after - tau[a].begin());
         const double part = (t - tau[a][k - 1]) / (tau[a][k] - tau[a][k - 1]);
         point[a] += missed[a][k - 1] + part * (missed[a][k] - missed[a][k - 1]);
       }
-    });
-  }
-
-  /// Adds a function of t/T, which changes q(t) in place, to a path; nothing at the ends.
-  template <class Change>
-  static void add_to(Path& path, const ElementTables& tables, const Change& change) {
-    const Trajectory before = trajectory_of(path);
-    const auto n = static_cast<std::size_t>(path.coordinates());
-    std::vector<double> v(n);
-    fill_path(ends_of(path), tables, path, [&](double tau, double* point) {
-      before.at(tau * before.duration(), {point, n}, v);
-      change(tau, point);
     });
   }
 
@@ -501,7 +527,12 @@ class BorderedSolve {
 }  // namespace
 
 Solution solve_bordered(const Problem& problem, const SolveOptions& options) {
-  return BorderedSolve(problem, options).run();
+  return std::move(BorderedSolve(problem, options).run(1, {}).front());
+}
+
+std::vector<Solution> solve_bordered_all(const Problem& problem, const SolveOptions& options, int most,
+                                         const std::function<bool(const Solution&, const Solution&)>& same) {
+  return BorderedSolve(problem, options).run(most, same);
 }
 
 }  // namespace extremal

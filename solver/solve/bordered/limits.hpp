@@ -13,9 +13,14 @@ inline constexpr double least_leg = 0.1;
 inline constexpr double null_eigenvalue = 1e-10;
 
 /// Of the equations and unknowns in their units: a direction in which the matrix is so small is one of a
-/// family of solutions. It is looked for in so many unknowns at most.
+/// family of solutions. So many are looked for at most.
 inline constexpr double null_direction = 1e-10;
-inline constexpr int most_dense = 1500;
+inline constexpr int most_null_directions = 6;
+/// Directions so soft, relative to the others, are left out where steps become too short; until steps are at
+/// most the second, by the size of the path. There may be many: they are looked for by a dense decomposition,
+/// in so many unknowns at most.
+inline constexpr double soft_direction = 0.02, near_family = 1e-3;
+inline constexpr int most_dense = 400;
 
 /// Of the damped iteration.
 inline constexpr int most_steps = 60;
@@ -45,8 +50,15 @@ inline constexpr int most_refinements = 14;
 /// Errors of q' may be so many tolerances, relative to its range.
 inline constexpr double velocity_tolerances = 10;
 
+/// Derivatives of integrals and conditions, of length one, that are so nearly dependent are so; a small one
+/// is compared with its terms. Of a combination that vanishes, parts beyond the second belong to it.
+inline constexpr double dependent = 1e-6, takes_part = 1e-3;
+
 /// Of a result: equations of the path by the largest momentum, conditions by their terms.
 inline constexpr double largest_residual = 1e-9, largest_mismatch = 1e-10;
+/// Of conditions that follow from others and from constraints: decimals that a scene gives, and their squares
+/// in constraints.
+inline constexpr double largest_implied = 1e-7;
 
 /// Starting paths bent by waves sin(mπt/T): sizes by the extent of the guess, first and last m, and how many.
 struct BendRow {

@@ -208,18 +208,16 @@ bool Continuation::step() {
   tracker_.predict(from_, length);
   length_ = std::min(length_, tracker_.predictable_length());
   BranchPoint next = read_point(tracker_, PointKind::regular);
+  // Quadratures agree on a path whose forces they all overlook.
+  if (!next.resolved) return retry(length);
   state.doubling_tests_before = from_.doubling_tests;
   if (++steps_ % unchecked == 0) check_action();
   std::swap(state, to_);
   StepEvents events =
       locate_events(tracker_, {family_, first_, options_.other_branches}, {from_, to_, length});
   if (!events.missed) count_index(events, next);
-  std::swap(state, events.missed ? from_ : to_);
-  if (events.missed) {
-    length_ = shortening * length;
-    tracker_.fail(StepFailure::rough);
-    return step();
-  }
+  std::swap(state, to_);
+  if (events.missed) return retry(length);
   for (FoundPoint& found : events.points) add(std::move(found));
   if (events.end != BranchEnd::none)
     stop(events.end, std::move(events.message));
@@ -228,6 +226,14 @@ bool Continuation::step() {
   before_ = std::exchange(here_, period_of(family_, state));
   if (end_ == BranchEnd::none) end_where_period_diverges(here_.error);
   return !found_.empty();
+}
+
+/// A shorter step than that to the tracker's state.
+bool Continuation::retry(double length) {
+  std::swap(tracker_.state, from_);
+  length_ = shortening * length;
+  tracker_.fail(StepFailure::rough);
+  return step();
 }
 
 /// Along a step the index changes by the eigenvalues that pass zero, which are counted on one mesh. Where the

@@ -62,6 +62,7 @@ class Continuation {
   bool begin_from_solve();
   bool begin_from_start();
   bool step();
+  bool retry(double length);
   void check_action();
   void count_index(StepEvents& events, BranchPoint& next);
   bool end_where_period_diverges(double error);

@@ -56,6 +56,10 @@ inline constexpr double stagnation = 0.3;
 
 namespace continuation {
 
+/// Drift of the energy by its largest terms: elements that overlook forces miss it by as much as it is. Near
+/// a bound of the velocities it is known to few digits of q'.
+inline constexpr double unresolved = 1e-2;
+
 /// Lengths are relative, as Branch::dot measures them. The longest step is one of which so many make up the
 /// distance wanted where as many points are allowed.
 inline constexpr double first_length = 0.02, least_length = 1e-6, least_longest = 0.1, most_longest = 0.4;

@@ -5,6 +5,7 @@
 #include "motion/flow.hpp"
 #include "solution/observe.hpp"
 #include "solve/branch/branch_point.hpp"
+#include "solve/branch/limits.hpp"
 #include "solve/periodic/stability.hpp"
 
 /// \file All that is known of a state on a branch.
@@ -86,7 +87,9 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   solution.error_estimate = tracker.error();
   solution.morse_index = branch.inertia().negative;
   solution.nullity = branch.inertia().zero;
-  observe_energy(*problem.lagrangian, solution);
+  const std::optional<Survey> survey = observe_energy(*problem.lagrangian, solution);
+  point.resolved = !problem.lagrangian->structure().autonomous || problem.paired ||
+                   (survey && survey->energy_drift <= limits::continuation::unresolved * survey->terms);
   const auto middle = branch.momenta().begin() + problem.coordinates();
   solution.momentum_start.assign(branch.momenta().begin(), middle);
   solution.momentum_end.assign(middle, branch.momenta().end());

@@ -48,12 +48,17 @@ inline bool is_located(const Tracker& tracker, const ProblemFamily& family, doub
 template <class Test, class Done>
 double root(Tracker& tracker, const BranchState& from, Sample low, Sample high, std::optional<Sample> third,
             const Test& test, const Done& done) {
-  constexpr int most_trials = 60, most_parabolas = 8;
-  double at = parabola_root(low, high, third);
+  constexpr int most_trials = 60, most_parabolas = 8, most_closer = 4;
+  double at = parabola_root(low, high, third), reached = NAN;
   for (int k = 0; k < most_trials; ++k) {
-    if (!tracker.reach(from, at)) return NAN;
+    // Factors that are singular to roundoff give no tangent: as at a fold itself, though not beside it.
+    for (int closer = 0; !tracker.reach(from, at); ++closer) {
+      if (closer == most_closer || !std::isfinite(reached)) return NAN;
+      at = 0.5 * (at + reached);
+    }
     const Sample here = {at, test()};
     if (!std::isfinite(here.value)) return NAN;
+    reached = at;
     third = std::exchange(here.value * high.value > 0 ? high : low, here);
     const double next =
         (k + 1) % most_parabolas == 0 ? 0.5 * (low.at + high.at) : parabola_root(low, high, third);

@@ -22,6 +22,27 @@ VectorXd vector_of(const std::vector<double>& v) {
   return Eigen::Map<const VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
+/// Of the first attempt.
+double arc_tolerance(const SolveOptions& options) {
+  return std::max(arc_share * options.tolerance, std::min(least_arc_tolerance, options.tolerance));
+}
+
+/// What roundoff of q allows, relative to the largest range of a coordinate: little in a short arc.
+double attainable(const Guess& guess, std::size_t n) {
+  double range = 0, largest = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    double low = guess.q[a], high = low;
+    for (std::size_t i = a; i < guess.q.size(); i += n) {
+      low = std::min(low, guess.q[i]);
+      high = std::max(high, guess.q[i]);
+    }
+    range = std::max(range, high - low);
+    largest = std::max({largest, std::abs(low), std::abs(high)});
+  }
+  const double relative = arc_roundoff * largest / range;
+  return relative < most_arc_tolerance ? relative : most_arc_tolerance;
+}
+
 /// A guess whose ends are moved to those of the arc, all of it in proportion.
 Guess fitted(const PathArc& arc) {
   const std::size_t n = arc.start.size();
@@ -60,7 +81,7 @@ Guess guess_of(const Trajectory& trajectory) {
 
 Arcs::Arcs(const Problem& problem, const SolveOptions& options, const ArcSolve& solve)
     : problem_(problem), options_(options), solve_(solve) {
-  systems_[{}] = {problem.lagrangian, nullptr};
+  systems_[{}] = {problem.lagrangian, problem.manifold};
 }
 
 const HeldSystem& Arcs::system(const std::vector<int>& held) {
@@ -74,20 +95,26 @@ bool Arcs::project(const std::vector<int>& held, double t, VectorXd& q) {
   return !onto || onto->project({q.data(), static_cast<std::size_t>(q.size())}, t);
 }
 
+/// Whether constraints and inequalities alone determine the path.
+bool Arcs::determined(const std::vector<int>& held) const {
+  return static_cast<int>(held.size()) + constraints() == problem_.coordinates();
+}
+
 SolvedArc Arcs::solve(const PathArc& arc) {
   if (!(arc.to > arc.from)) {
     SolvedArc none;
     none.message = "an arc has no length";
     return none;
   }
-  if (arc.held.size() == static_cast<std::size_t>(problem_.coordinates())) return follow_constraints(arc);
-  SolvedArc solved = solve_extremal(
-      arc, std::max(arc_share * options_.tolerance, std::min(least_arc_tolerance, options_.tolerance)));
-  if (!solved.found) solved = solve_extremal(arc, arc_share_again * options_.tolerance);
-  if (!solved.found && arc.held.empty()) {  // what is left of a path that rests may be no guess
+  if (determined(arc.held)) return follow_constraints(arc);
+  const double least = attainable(fitted(arc), arc.start.size());
+  SolvedArc solved = solve_extremal(arc, std::max(arc_tolerance(options_), least));
+  if (!solved.found) solved = solve_extremal(arc, std::max(arc_share_again * options_.tolerance, 2 * least));
+  if (!solved.found) {  // what is left of a path that rests may be no guess
     PathArc line = arc;
     line.guess = {};
-    solved = solve_extremal(line, arc_share_again * options_.tolerance);
+    const double coarse = 2 * attainable(fitted(line), arc.start.size());
+    solved = solve_extremal(line, std::max(arc_share_again * options_.tolerance, coarse));
   }
   return solved;
 }
@@ -104,9 +131,30 @@ SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
   for (int a = 0; a < n; ++a) problem.boundary.fix(a, true, arc.end[a]);
   problem.duration.value = arc.to - arc.from;
   problem.guess = fitted(arc);
+  return solve_problem(arc, std::move(problem), tolerance);
+}
+
+SolvedArc Arcs::solve_closed(const PathArc& arc) {
+  if (determined(arc.held)) {
+    if (!problem_.duration.free) return follow_constraints(arc);
+    SolvedArc none;
+    none.message = "a path that is held throughout has no duration of its own";
+    return none;
+  }
+  const HeldSystem& system = this->system(arc.held);
+  Problem problem = problem_;
+  problem.inequalities = nullptr;
+  problem.lagrangian = system.lagrangian;
+  problem.manifold = system.manifold;
+  problem.guess = arc.guess;
+  return solve_problem(arc, std::move(problem), arc_tolerance(options_));
+}
+
+SolvedArc Arcs::solve_problem(const PathArc& arc, Problem problem, double tolerance) {
+  const auto n = static_cast<std::size_t>(problem_.coordinates());
   if (problem.manifold)
     for (std::size_t k = 0; k < problem.guess.tau.size(); ++k)
-      problem.manifold->project({problem.guess.q.data() + k * n, static_cast<std::size_t>(n)},
+      problem.manifold->project({problem.guess.q.data() + k * n, n},
                                 problem.guess.tau[k] * problem.duration.value);
   SolveOptions options = options_;
   options.tolerance = tolerance;
@@ -133,6 +181,13 @@ SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
   measure(arc, result);
   result.p_start = vector_of(solution.momentum_start);
   result.p_end = vector_of(solution.momentum_end);
+  // By these, which are more accurate than velocities, the energy is right to second order.
+  const double later = arc.from + result.trajectory.duration();
+  std::vector<double> q(n), v(n);
+  result.trajectory.at(result.trajectory.duration(), q, v);
+  Scratch scratch;
+  result.energy_end = result.p_end.dot(result.v_end) -
+                      evaluate_at(motion(), q, values_of(result.v_end), later, Order::value, scratch).value;
   return result;
 }
 
@@ -143,12 +198,13 @@ void Arcs::measure(const PathArc& arc, SolvedArc& solved) {
   Scratch scratch;
   for (const bool at_end : {false, true}) {
     std::vector<double> q(n), v(n);
-    const double t = at_end ? arc.to : arc.from;
+    const double t = arc.from + (at_end ? solved.trajectory.duration() : 0);
     solved.trajectory.at(at_end ? solved.trajectory.duration() : 0, q, v);
     if (onto) onto->make_tangent(q, t, v);
-    const PointValues l = evaluate_at(*problem_.lagrangian, q, v, t, Order::gradient, scratch);
+    const PointValues l = evaluate_at(motion(), q, v, t, Order::gradient, scratch);
     (at_end ? solved.v_end : solved.v_start) = vector_of(v);
     (at_end ? solved.p_end : solved.p_start) = vector_of(l.dv);
+    if (at_end) solved.energy_end = solved.p_end.dot(solved.v_end) - l.value;
   }
 }
 
@@ -195,7 +251,7 @@ SolvedArc Arcs::follow_constraints(const PathArc& arc) {
         for (std::size_t a = 0; a < n; ++a)
           error = std::max({error, std::abs(q[a] - between[a]), 0.1 * duration * std::abs(v[a] - slope[a])});
         result.action += rule.weights[i] * path.length(k) *
-                         evaluate_at(*problem_.lagrangian, q, v, arc.from + t, Order::value, scratch).value;
+                         evaluate_at(motion(), q, v, arc.from + t, Order::value, scratch).value;
       }
     result.error = error;
     result.trajectory = std::move(path);

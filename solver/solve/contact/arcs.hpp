@@ -33,6 +33,7 @@ struct SolvedArc {
   std::string message;    ///< where it was not found
   Trajectory trajectory;  ///< from time 0
   Eigen::VectorXd p_start, p_end, v_start, v_end;
+  double energy_end = 0;  ///< p·q' − L
   double action = 0, error = 0, residual = 0;
   int iterations = 0, degree = 0;
   bool minimizing = true;
@@ -45,17 +46,27 @@ class Arcs {
   Arcs(const Problem& problem, const SolveOptions& options, const ArcSolve& solve);
 
   SolvedArc solve(const PathArc& arc);
-  /// The manifold of inequalities as equations; null of none.
+  /// An arc that is the whole of a closed path; its duration is that of the problem, or the one found.
+  SolvedArc solve_closed(const PathArc& arc);
+  /// The manifold of the constraints and of inequalities as equations, in this order; null of none.
   std::shared_ptr<const Manifold> manifold(const std::vector<int>& held) { return system(held).manifold; }
   /// Moves a point to where these inequalities are equalities. False if the iteration does not converge.
   bool project(const std::vector<int>& held, double t, Eigen::VectorXd& q);
   int iterations() const { return iterations_; }
   const Problem& problem() const { return problem_; }
   const SolveOptions& options() const { return options_; }
+  /// L as it is written.
+  const Lagrangian& motion() const {
+    return problem_.manifold ? problem_.manifold->lagrangian() : *problem_.lagrangian;
+  }
+  /// Constraints that hold along the whole path.
+  int constraints() const { return problem_.manifold ? problem_.manifold->constraints() : 0; }
 
  private:
   const HeldSystem& system(const std::vector<int>& held);
+  bool determined(const std::vector<int>& held) const;
   SolvedArc solve_extremal(const PathArc& arc, double tolerance);
+  SolvedArc solve_problem(const PathArc& arc, Problem problem, double tolerance);
   SolvedArc follow_constraints(const PathArc& arc);
   void measure(const PathArc& arc, SolvedArc& solved);
 

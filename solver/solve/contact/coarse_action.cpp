@@ -1,11 +1,11 @@
 #include "solve/contact/coarse_action.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "linear/dense.hpp"
-#include "solve/contact/limits.hpp"
+#include "problem/extension.hpp"
+#include "problem/manifold.hpp"
+#include "solve/contact/element_hessian.hpp"
 
 namespace extremal {
 
@@ -16,31 +16,46 @@ using Eigen::MatrixXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Square = Eigen::Map<const RowMajor>;
 
-/// The second derivatives of h L by the ends of an element: (a, a), (b, a) and (b, b).
-struct ElementHessian {
-  MatrixXd aa, ba, bb;
-};
+const std::vector<EndCondition>& conditions_of(const Problem& problem) {
+  static const std::vector<EndCondition> none;
+  return problem.extension ? problem.extension->conditions : none;
+}
 
-ElementHessian element_hessian(const PointValues& l, double h, int n, double kinetic_only) {
-  const Square qq(l.qq.data(), n, n), vq(l.vq.data(), n, n), vv(l.vv.data(), n, n);
-  const MatrixXd mass = (1 + kinetic_only) / h * vv, mixed = 0.5 * vq, rest = 0.25 * h * qq;
-  return {rest - mixed - mixed.transpose() + mass, rest - mixed.transpose() + mixed - mass,
-          rest + mixed + mixed.transpose() + mass};
+/// Of a condition at the ends of a path of nodes.
+RowMajor second_derivatives(const EndCondition& condition, std::span<const double> z, int n) {
+  const auto size = static_cast<std::size_t>(n);
+  std::vector<double> slope(2 * size);
+  RowMajor second(2 * n, 2 * n);
+  condition.function(z.first(size), z.last(size), slope, {second.data(), 4 * size * size});
+  return second;
+}
+
+/// Of equal elements.
+std::vector<double> node_times(double duration, int elements) {
+  std::vector<double> times(elements + 1);
+  for (int k = 0; k < elements; ++k) times[k] = duration * k / elements;
+  times.back() = duration;
+  return times;
 }
 
 }  // namespace
 
 CoarseAction::CoarseAction(const Problem& problem, int elements)
+    : CoarseAction(problem, node_times(problem.duration.value, elements)) {}
+
+CoarseAction::CoarseAction(const Problem& problem, std::vector<double> times)
     : problem_(problem),
       inequalities_(*problem.inequalities),
       n_(problem.coordinates()),
-      elements_(elements),
-      h_(problem.duration.value / elements) {
-  for (int k = 0; k <= elements_; ++k)
-    for (int c = 0; c < inequalities_.count() && !fixed(k); ++c) places_.push_back({k, c});
+      elements_(static_cast<int>(times.size()) - 1),
+      times_(std::move(times)) {
+  for (int k = 0; k <= elements_; ++k) {
+    // The end of a closed path is its start.
+    if (fixed(k) || (problem.periodic && k == elements_)) continue;
+    for (int c = 0; c < inequalities_.count(); ++c) places_.push_back({k, c});
+    if (problem.manifold) constrained_.push_back(k);
+  }
 }
-
-double CoarseAction::time(int node) const { return node == elements_ ? problem_.duration.value : node * h_; }
 
 bool CoarseAction::fixed(int node) const {
   if (node != 0 && node != elements_) return false;
@@ -54,7 +69,7 @@ void CoarseAction::midpoint(std::span<const double> z, int k, Point& point) cons
   point.v.resize(n_);
   for (int i = 0; i < n_; ++i) {
     point.q[i] = 0.5 * (a[i] + b[i]);
-    point.v[i] = (b[i] - a[i]) / h_;
+    point.v[i] = (b[i] - a[i]) / length(k);
   }
 }
 
@@ -62,18 +77,21 @@ PointValues CoarseAction::values(std::span<const double> z, int k, Order order) 
   Point point;
   Scratch scratch;
   midpoint(z, k, point);
-  return evaluate_at(*problem_.lagrangian, point.q, point.v, (k + 0.5) * h_, order, scratch);
+  return evaluate_at(*problem_.lagrangian, point.q, point.v, (times_[k] + times_[k + 1]) / 2, order, scratch);
 }
 
-MatrixXd CoarseAction::curvature(std::span<const double> z, int node,
+ConstraintValues CoarseAction::at(const Manifold& manifold, std::span<const double> z, int node) const {
+  return manifold.at(z.subspan(node * n_, n_), time(node));
+}
+
+MatrixXd CoarseAction::curvature(const Manifold& manifold, std::span<const double> z, int node,
                                  std::span<const double> multipliers) const {
-  const int m = inequalities_.count(), all = n_ + 1 + m;
+  const int all = n_ + 1 + static_cast<int>(multipliers.size());
   std::vector<double> point(z.begin() + node * n_, z.begin() + (node + 1) * n_), rest(all);
   point.push_back(time(node));
   point.insert(point.end(), multipliers.begin(), multipliers.end());
   Scratch scratch;
-  const PointValues form =
-      evaluate_at(*inequalities_.all->parts().forms, point, rest, 0, Order::hessian, scratch);
+  const PointValues form = evaluate_at(*manifold.parts().forms, point, rest, 0, Order::hessian, scratch);
   return Square(form.qq.data(), all, all).topLeftCorner(n_, n_);
 }
 
@@ -85,7 +103,7 @@ bool CoarseAction::hessian(std::span<const double> z, double factor, std::span<c
       for (int j = 0; j <= i; ++j) entries[at++] = block(i, j);
   };
   for (int k = 0; k < elements_; ++k) {
-    const ElementHessian element = element_hessian(values(z, k, Order::hessian), h_, n_, 0);
+    const ElementHessian element = element_hessian(values(z, k, Order::hessian), length(k), n_, 0);
     put_lower(factor * element.aa);
     put_lower(factor * element.bb);
     for (int i = 0; i < n_; ++i)
@@ -93,21 +111,43 @@ bool CoarseAction::hessian(std::span<const double> z, double factor, std::span<c
   }
   const std::size_t m = inequalities_.count();
   for (std::size_t place = 0; place < places_.size(); place += m)
-    put_lower(curvature(z, places_[place].node, multipliers.subspan(place, m)));
+    put_lower(curvature(*inequalities_.all, z, places_[place].node, multipliers.subspan(place, m)));
+  std::size_t row = places_.size() + problem_.boundary.rows;
+  for (const EndCondition& condition : conditions_of(problem_)) {
+    const RowMajor second = multipliers[row++] * second_derivatives(condition, z, n_);
+    put_lower(second.topLeftCorner(n_, n_));
+    put_lower(second.bottomRightCorner(n_, n_));
+    for (int i = 0; i < n_; ++i)
+      for (int j = 0; j < n_; ++j) entries[at++] = second(n_ + i, j);
+  }
+  for (const int node : constrained_) {
+    const std::size_t c = problem_.manifold->constraints();
+    put_lower(curvature(*problem_.manifold, z, node, multipliers.subspan(row, c)));
+    row += c;
+  }
   return std::ranges::all_of(entries, [](double x) { return std::isfinite(x); });
 }
 
-InequalityMinimum CoarseAction::minimum() const {
+InequalityMinimum CoarseAction::minimum(std::span<const double> z, double size) const {
   InequalityMinimum minimum;
   const std::vector<Triplet>& relation = problem_.boundary.matrix;
   const int rows = static_cast<int>(places_.size());
   minimum.variables = (elements_ + 1) * n_;
   minimum.inequalities = rows;
-  minimum.equations = problem_.boundary.rows;
+  const std::vector<EndCondition>& conditions = conditions_of(problem_);
+  const int constraints = problem_.manifold ? problem_.manifold->constraints() : 0;
+  minimum.equations = problem_.boundary.rows + static_cast<int>(conditions.size()) +
+                      constraints * static_cast<int>(constrained_.size());
   const auto variable = [this](int e) { return e < n_ ? e : elements_ * n_ + e - n_; };
   for (int i = 0; i < rows; ++i)
     for (int a = 0; a < n_; ++a) minimum.slopes.push_back({i, places_[i].node * n_ + a});
   for (const Triplet& b : relation) minimum.slopes.push_back({rows + b.row, variable(b.column)});
+  int row = rows + problem_.boundary.rows;
+  for (std::size_t i = 0; i < conditions.size(); ++i, ++row)
+    for (int e = 0; e < 2 * n_; ++e) minimum.slopes.push_back({row, variable(e)});
+  for (const int node : constrained_)
+    for (int c = 0; c < constraints; ++c, ++row)
+      for (int a = 0; a < n_; ++a) minimum.slopes.push_back({row, node * n_ + a});
   const auto lower = [&](int node) {
     for (int i = 0; i < n_; ++i)
       for (int j = 0; j <= i; ++j) minimum.curvature.push_back({node * n_ + i, node * n_ + j});
@@ -120,11 +160,60 @@ InequalityMinimum CoarseAction::minimum() const {
   }
   for (std::size_t place = 0; place < places_.size(); place += inequalities_.count())
     lower(places_[place].node);
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    lower(0);
+    lower(elements_);
+    for (int a = 0; a < n_; ++a)
+      for (int b = 0; b < n_; ++b) minimum.curvature.push_back({elements_ * n_ + a, b});
+  }
+  for (const int node : constrained_) lower(node);
+  put_functions(minimum);
+  put_units(z, size, minimum);
+  return minimum;
+}
 
+/// Size of the path, of its action by forces, and of constraints by their largest slopes along the path.
+void CoarseAction::put_units(std::span<const double> z, double size, InequalityMinimum& minimum) const {
+  const double duration = times_.back();
+  double force = this->force(z);
+  for (const int k : {0, elements_ / 2, elements_ - 1})
+    for (const double m : values(z, k, Order::hessian).vv)
+      force = std::max(force, std::abs(m) * size / (duration * duration));
+  if (!(size > 0) || !std::isfinite(force) || !(force > 0)) return;
+  minimum.unit = size;
+  minimum.value_unit = force * size * duration / elements_;  // what a node adds
+  std::vector<double> slopes(minimum.slopes.size());
+  if (!minimum.constraint_slopes(z, slopes)) return;
+  // Those that are the same at other nodes have one unit.
+  const int inequalities = inequalities_.count(), places = static_cast<int>(places_.size());
+  const int constraints = problem_.manifold ? problem_.manifold->constraints() : 0;
+  const int ends =
+      minimum.inequalities + minimum.equations - constraints * static_cast<int>(constrained_.size());
+  const auto kind = [&](int row) {
+    if (row < places) return row % inequalities;
+    return row < ends ? inequalities + row - places
+                      : inequalities + ends - places + (row - ends) % constraints;
+  };
+  std::vector<double> largest(inequalities + ends - places + constraints);
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    double& most = largest[kind(minimum.slopes[i].row)];
+    most = std::max(most, std::abs(slopes[i]));
+  }
+  for (int row = 0; row < minimum.inequalities + minimum.equations; ++row) {
+    const double most = largest[kind(row)];
+    minimum.constraint_units.push_back(most > 0 ? most * size : 1);
+  }
+}
+
+void CoarseAction::put_functions(InequalityMinimum& minimum) const {
+  const std::vector<Triplet>& relation = problem_.boundary.matrix;
+  const std::vector<EndCondition>& conditions = conditions_of(problem_);
+  const int rows = static_cast<int>(places_.size());
+  const auto variable = [this](int e) { return e < n_ ? e : elements_ * n_ + e - n_; };
   const std::vector<double>& momenta = problem_.boundary.momenta;
   minimum.value = [=, this, &momenta](std::span<const double> z, double& f) {
     f = 0;
-    for (int k = 0; k < elements_; ++k) f += h_ * values(z, k, Order::value).value;
+    for (int k = 0; k < elements_; ++k) f += length(k) * values(z, k, Order::value).value;
     for (std::size_t e = 0; e < momenta.size(); ++e)
       f += (e < std::size_t(n_) ? 1 : -1) * momenta[e] * z[variable(static_cast<int>(e))];
     return std::isfinite(f);
@@ -134,8 +223,8 @@ InequalityMinimum CoarseAction::minimum() const {
     for (int k = 0; k < elements_; ++k) {
       const PointValues l = values(z, k, Order::gradient);
       for (int i = 0; i < n_; ++i) {
-        f_z[k * n_ + i] += 0.5 * h_ * l.dq[i] - l.dv[i];
-        f_z[(k + 1) * n_ + i] += 0.5 * h_ * l.dq[i] + l.dv[i];
+        f_z[k * n_ + i] += 0.5 * length(k) * l.dq[i] - l.dv[i];
+        f_z[(k + 1) * n_ + i] += 0.5 * length(k) * l.dq[i] + l.dv[i];
       }
     }
     for (std::size_t e = 0; e < momenta.size(); ++e)
@@ -143,31 +232,54 @@ InequalityMinimum CoarseAction::minimum() const {
     return std::ranges::all_of(f_z, [](double x) { return std::isfinite(x); });
   };
   const int m = inequalities_.count();
-  const auto at = [this](std::span<const double> z, int node) {
-    return inequalities_.all->at(z.subspan(node * n_, n_), time(node));
-  };
-  minimum.constraints = [=, this, &relation](std::span<const double> z, std::span<double> a) {
-    for (int i = 0; i < rows; i += m) {
-      const ConstraintValues found = at(z, places_[i].node);
-      for (int c = 0; c < m; ++c) a[i + c] = found.g[c];
-    }
+  const auto size = static_cast<std::size_t>(n_);
+  minimum.constraints = [=, this, &relation, &conditions](std::span<const double> z, std::span<double> a) {
+    for (int i = 0; i < rows; i += m)
+      std::ranges::copy(at(*inequalities_.all, z, places_[i].node).g, a.begin() + i);
     for (int r = 0; r < problem_.boundary.rows; ++r) a[rows + r] = -problem_.boundary.value[r];
     for (const Triplet& b : relation) a[rows + b.row] += b.value * z[variable(b.column)];
+    std::vector<double> slope(2 * size);
+    auto next = a.begin() + rows + problem_.boundary.rows;
+    for (const EndCondition& condition : conditions)
+      *next++ = condition.function(z.first(size), z.last(size), slope, {});
+    for (const int node : constrained_) next = std::ranges::copy(at(*problem_.manifold, z, node).g, next).out;
     return std::ranges::all_of(a, [](double x) { return std::isfinite(x); });
   };
-  minimum.constraint_slopes = [=, this, &relation](std::span<const double> z, std::span<double> a_z) {
-    std::size_t next = 0;
-    for (int i = 0; i < rows; i += m) {
-      const ConstraintValues found = at(z, places_[i].node);
-      for (int c = 0; c < m; ++c)
-        for (int a = 0; a < n_; ++a) a_z[next++] = found.slopes(c, a);
+  minimum.constraint_slopes = [=, this, &relation, &conditions](std::span<const double> z,
+                                                                std::span<double> a_z) {
+    auto next = a_z.begin();
+    const auto put = [&](const Manifold& manifold, int node) {
+      const RowMajor slopes = at(manifold, z, node).slopes;
+      next = std::copy_n(slopes.data(), slopes.size(), next);
+    };
+    for (int i = 0; i < rows; i += m) put(*inequalities_.all, places_[i].node);
+    for (const Triplet& b : relation) *next++ = b.value;
+    for (const EndCondition& condition : conditions) {
+      std::vector<double> slope(2 * size);
+      condition.function(z.first(size), z.last(size), slope, {});
+      next = std::ranges::copy(slope, next).out;
     }
-    for (const Triplet& b : relation) a_z[next++] = b.value;
+    for (const int node : constrained_) put(*problem_.manifold, node);
     return std::ranges::all_of(a_z, [](double x) { return std::isfinite(x); });
   };
   minimum.hessian = [this](std::span<const double> z, double factor, std::span<const double> multipliers,
                            std::span<double> entries) { return hessian(z, factor, multipliers, entries); };
-  return minimum;
+}
+
+double CoarseAction::closing(std::span<const double> z) const {
+  if (closed_by_condition(problem_)) {
+    std::vector<double> ends(z.begin(), z.begin() + n_), gradient(2 * static_cast<std::size_t>(n_));
+    ends.insert(ends.end(), z.end() - n_, z.end());
+    return closing_condition(problem_, ends, gradient);
+  }
+  double energy = 0;
+  for (int k = 0; k < elements_; ++k) {
+    const PointValues l = values(z, k, Order::gradient);
+    double action = 0;  // p·q'
+    for (int a = 0; a < n_; ++a) action += l.dv[a] * (z[(k + 1) * n_ + a] - z[k * n_ + a]);
+    energy += (action - length(k) * l.value) / times_.back();
+  }
+  return energy - *problem_.duration.energy;
 }
 
 double CoarseAction::force(std::span<const double> z) const {
@@ -178,52 +290,6 @@ double CoarseAction::force(std::span<const double> z) const {
       largest = std::max({largest, std::abs(l.dq[a]), std::abs(l.dv[a]) / problem_.duration.value});
   }
   return largest;
-}
-
-bool CoarseAction::positive(std::span<const double> z, const std::vector<std::vector<int>>& held,
-                            const std::vector<std::vector<double>>& forces) const {
-  // Displacements of each node, with columns that keep what is held; those of ends that are fixed: none.
-  std::vector<MatrixXd> free(elements_ + 1);
-  std::vector<Index> first(elements_ + 2, 0);
-  for (int k = 0; k <= elements_; ++k) {
-    MatrixXd basis = MatrixXd::Identity(n_, n_);
-    if (k == 0 || k == elements_) {
-      Index columns = 0;
-      for (int a = 0; a < n_; ++a)
-        if (!problem_.ends.fixed[(k == 0 ? 0 : n_) + a])
-          basis.col(columns++) = MatrixXd::Identity(n_, n_).col(a);
-      basis.conservativeResize(Eigen::NoChange, columns);
-    } else if (!held[k].empty()) {
-      const ConstraintValues found = inequalities_.all->at(z.subspan(k * n_, n_), time(k));
-      MatrixXd normals(n_, held[k].size());
-      for (std::size_t i = 0; i < held[k].size(); ++i) normals.col(i) = found.slopes.row(held[k][i]);
-      basis = held[k].size() < std::size_t(n_) ? complement(normals) : MatrixXd(n_, 0);
-    }
-    free[k] = std::move(basis);
-    first[k + 1] = first[k] + free[k].cols();
-  }
-  if (first.back() == 0) return true;
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto add = [&](int row, int column, const MatrixXd& block) {
-    const MatrixXd reduced = free[row].transpose() * block * free[column];
-    for (Index i = 0; i < reduced.rows(); ++i)
-      for (Index j = 0; j < (row == column ? i + 1 : reduced.cols()); ++j)
-        entries.emplace_back(first[row] + i, first[column] + j, reduced(i, j));
-  };
-  for (int k = 0; k < elements_; ++k) {
-    const ElementHessian element =
-        element_hessian(values(z, k, Order::hessian), h_, n_, limits::contact::shift);
-    add(k, k, element.aa);
-    add(k + 1, k + 1, element.bb);
-    add(k + 1, k, element.ba);
-  }
-  for (int k = 1; k < elements_; ++k)
-    if (!held[k].empty()) add(k, k, -h_ * curvature(z, k, forces[k]));
-  Eigen::SparseMatrix<double> matrix(first.back(), first.back());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors(
-      matrix);
-  return factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all();
 }
 
 }  // namespace extremal

@@ -8,9 +8,10 @@
 
 #include "problem/inequalities.hpp"
 #include "problem/problem.hpp"
+#include "solve/contact/end_equations.hpp"
 #include "solve/external/inequality_minimum.hpp"
 
-/// \file The action of the midpoint rule on equal elements, under inequalities at the nodes.
+/// \file The action of the midpoint rule on elements, equal ones at first, under inequalities at the nodes.
 
 namespace extremal {
 
@@ -19,28 +20,46 @@ struct NodeInequality {
   int node, constraint;
 };
 
-/// S_h = Σ h L((q_k + q_{k+1})/2, (q_{k+1} − q_k)/h, t_k + h/2) of N + 1 nodes z = (q_0 … q_N).
+/// What a path touches, for its second variation: for each node what is held, and μ of all inequalities.
+struct CoarseContacts {
+  std::vector<std::vector<int>> held;
+  std::vector<std::vector<double>> forces;
+  EndCurvature ends;
+};
+
+/// S_h = Σ h_k L((q_k + q_{k+1})/2, (q_{k+1} − q_k)/h_k, t_k + h_k/2) of N + 1 nodes z = (q_0 … q_N).
 class CoarseAction {
  public:
   /// Keeps a reference to the problem.
   CoarseAction(const Problem& problem, int elements);
+  /// The same on elements between these times, from 0 to T.
+  CoarseAction(const Problem& problem, std::vector<double> times);
 
   int elements() const { return elements_; }
-  double time(int node) const;
+  double time(int node) const { return times_[node]; }
+  double length(int element) const { return times_[element + 1] - times_[element]; }
+  /// Half of the elements beside a node.
+  double cell_begin(int node) const { return node == 0 ? 0 : (times_[node - 1] + times_[node]) / 2; }
+  double cell_end(int node) const {
+    return node == elements_ ? times_.back() : (times_[node] + times_[node + 1]) / 2;
+  }
   /// Where inequalities are compared: at nodes that the boundary relation leaves free.
   const std::vector<NodeInequality>& places() const { return places_; }
 
-  /// The minimum of S_h; its functions refer to this.
-  InequalityMinimum minimum() const;
+  /// The minimum of S_h, in units of a path of this size; its functions refer to this.
+  InequalityMinimum minimum(std::span<const double> z, double size) const;
 
   /// The largest force along a path: of ∂L/∂q, and of momenta by the duration.
   double force(std::span<const double> z) const;
 
-  /// Whether the second variation of S_h − Σ h μ g is positive, but for what symmetries make zero, among the
-  /// displacements that keep the inequalities with `held` as equalities: a list for each node. μ: a list of
-  /// all inequalities for each node.
-  bool positive(std::span<const double> z, const std::vector<std::vector<int>>& held,
-                const std::vector<std::vector<double>>& forces) const;
+  /// What a free duration makes zero: the energy, by its mean −∂S_h/∂T along the path, less the one given, or
+  /// the condition that closes the duration.
+  double closing(std::span<const double> z) const;
+
+  /// Whether the second variation of S_h − Σ h μ g + Σ η r is positive, but for what symmetries make zero,
+  /// among the displacements that keep constraints, conditions of the ends and the inequalities that are
+  /// held.
+  bool positive(std::span<const double> z, const CoarseContacts& contacts) const;
 
  private:
   using Block = Eigen::MatrixXd;
@@ -49,17 +68,25 @@ class CoarseAction {
   };
   void midpoint(std::span<const double> z, int k, Point& point) const;
   PointValues values(std::span<const double> z, int k, Order order) const;
-  /// Σ λ_k ∂²g_k/∂q².
-  Block curvature(std::span<const double> z, int node, std::span<const double> multipliers) const;
+  /// Σ λ_k ∂²g_k/∂q² of inequalities or constraints.
+  Block curvature(const Manifold& manifold, std::span<const double> z, int node,
+                  std::span<const double> multipliers) const;
+  Block contact_curvature(std::span<const double> z, int node, std::span<const double> forces) const;
+  Block displacements(std::span<const double> z, int node, const std::vector<int>& held) const;
+  Block end_displacements(std::span<const double> z, const CoarseContacts& contacts) const;
+  ConstraintValues at(const Manifold& manifold, std::span<const double> z, int node) const;
   bool fixed(int node) const;
+  void put_functions(InequalityMinimum& minimum) const;
+  void put_units(std::span<const double> z, double size, InequalityMinimum& minimum) const;
   bool hessian(std::span<const double> z, double factor, std::span<const double> multipliers,
                std::span<double> entries) const;
 
   const Problem& problem_;
   const Inequalities& inequalities_;
   int n_, elements_;
-  double h_;
+  std::vector<double> times_;  ///< of nodes, from 0 to T
   std::vector<NodeInequality> places_;
+  std::vector<int> constrained_;  ///< nodes at which the constraints are equations
 };
 
 }  // namespace extremal

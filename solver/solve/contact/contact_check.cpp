@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solve/contact/coarse_action.hpp"
+#include "solve/contact/constraint_sets.hpp"
 #include "solve/contact/limits.hpp"
 
 namespace extremal {
@@ -109,15 +110,16 @@ class LawCheck {
     const Trajectory& trajectory = path_.solved()[i].trajectory;
     const std::shared_ptr<const Manifold> manifold = arcs_.manifold(arc.held);
     std::vector<Sampled> sampled(arc.held.size(), {times_of(trajectory), {}});
+    const int constraints = arcs_.constraints();
     double largest = 0;
     for (const double t : sampled.front().t) {
       trajectory.at(t, q_, v_);
       manifold->project(q_, arc.from + t);
       manifold->make_tangent(q_, arc.from + t, v_);
       const std::vector<double> forces = manifold->multipliers(q_, arc.from + t, v_);
-      for (std::size_t h = 0; h < forces.size(); ++h) {
-        sampled[h].values.push_back(-forces[h]);
-        largest = std::max(largest, std::abs(forces[h]));
+      for (std::size_t h = 0; h < sampled.size(); ++h) {
+        sampled[h].values.push_back(-forces[constraints + h]);
+        largest = std::max(largest, std::abs(forces[constraints + h]));
       }
     }
     for (std::size_t h = 0; h < sampled.size(); ++h) {
@@ -142,35 +144,81 @@ class LawCheck {
   std::optional<Violation> worst_;
 };
 
+/// Times of elements that end where arcs do.
+std::vector<double> aligned_times(const Junctions& path, int elements) {
+  std::vector<double> times = {0};
+  for (const PathArc& arc : path.arcs()) {
+    const double share = (arc.to - arc.from) / path.duration();
+    const int count = std::max(least_arc_elements, static_cast<int>(std::lround(share * elements)));
+    for (int i = 1; i <= count; ++i)
+      times.push_back(i == count ? arc.to : arc.from + (arc.to - arc.from) * i / count);
+  }
+  return times;
+}
+
+/// μ of all inequalities, the mean between two times that are near each other; where a contact begins between
+/// them, its force counts in part.
+std::vector<double> mean_forces(Arcs& arcs, const Junctions& path, double from, double to) {
+  const std::size_t n = arcs.problem().coordinates();
+  std::vector<double> forces(arcs.problem().inequalities->count()), q(n), v(n);
+  for (std::size_t i = 0; i < path.arcs().size(); ++i) {
+    const PathArc& arc = path.arcs()[i];
+    const double begin = std::max(from, arc.from), end = std::min(to, arc.to), t = (begin + end) / 2;
+    if (arc.held.empty() || !(end > begin)) continue;
+    const Trajectory& trajectory = path.solved()[i].trajectory;
+    trajectory.at(std::clamp(t - arc.from, 0.0, trajectory.duration()), q, v);
+    const std::shared_ptr<const Manifold> manifold = arcs.manifold(arc.held);
+    manifold->make_tangent(q, t, v);
+    const std::vector<double> found = manifold->multipliers(q, t, v);
+    for (std::size_t h = 0; h < arc.held.size(); ++h)
+      forces[arc.held[h]] -= (end - begin) / (to - from) * found[arcs.constraints() + h];
+  }
+  return forces;
+}
+
+/// Whether the second variation is positive on about so many elements.
+bool is_positive(Arcs& arcs, const Junctions& path, int elements) {
+  const Problem& problem = arcs.problem();
+  const std::size_t n = problem.coordinates();
+  const CoarseAction action(problem, aligned_times(path, elements));
+  std::vector<double> z((action.elements() + 1) * n), v(n);
+  CoarseContacts contacts;
+  contacts.held.resize(action.elements() + 1);
+  contacts.forces.resize(contacts.held.size());
+  std::size_t i = 0;
+  for (int k = 0; k <= action.elements(); ++k) {
+    const double t = action.time(k);
+    while (i + 1 < path.arcs().size() && t >= path.arcs()[i].to) ++i;
+    const PathArc& arc = path.arcs()[i];
+    const Trajectory& trajectory = path.solved()[i].trajectory;
+    trajectory.at(std::clamp(t - arc.from, 0.0, trajectory.duration()), {z.data() + k * n, n}, v);
+    contacts.held[k] = arc.held;
+    if (i > 0 && t == arc.from) contacts.held[k] = sorted_union(path.arcs()[i - 1].held, arc.held);
+    contacts.forces[k] = mean_forces(arcs, path, action.cell_begin(k), action.cell_end(k));
+  }
+  const std::vector<EndContact>& ends = path.end_contacts();
+  contacts.ends = path.end_curvature();
+  for (std::size_t c = 0; c < ends.size(); ++c)
+    if (!ends[c].holonomic) {
+      std::vector<int>& held = ends[c].at_end ? contacts.held.back() : contacts.held.front();
+      if (!std::ranges::binary_search(held, ends[c].constraint)) held.push_back(ends[c].constraint);
+      std::ranges::sort(held);
+    }
+  return action.positive(z, contacts);
+}
+
 }  // namespace
 
 std::optional<Violation> worst_violation(Arcs& arcs, const Junctions& path) {
   return LawCheck(arcs, path).run();
 }
 
+/// Zero within the error of few elements is positive on more.
 bool is_minimum(Arcs& arcs, const Junctions& path) {
-  const Problem& problem = arcs.problem();
-  const std::size_t n = problem.coordinates();
-  const CoarseAction action(problem, std::min<int>(variation_elements, most_unknowns / static_cast<int>(n)));
-  std::vector<double> z((action.elements() + 1) * n), v(n);
-  std::vector<std::vector<int>> held(action.elements() + 1);
-  std::vector<std::vector<double>> forces(held.size(), std::vector<double>(problem.inequalities->count()));
-  std::size_t i = 0;
-  for (int k = 0; k <= action.elements(); ++k) {
-    const double t = action.time(k);
-    while (i + 1 < path.arcs().size() && t >= path.arcs()[i].to) ++i;
-    const PathArc& arc = path.arcs()[i];
-    const std::span<double> q(z.data() + k * n, n);
-    const Trajectory& trajectory = path.solved()[i].trajectory;
-    trajectory.at(std::clamp(t - arc.from, 0.0, trajectory.duration()), q, v);
-    held[k] = arc.held;
-    if (arc.held.empty()) continue;
-    const std::shared_ptr<const Manifold> manifold = arcs.manifold(arc.held);
-    manifold->make_tangent(q, t, v);
-    const std::vector<double> found = manifold->multipliers(q, t, v);
-    for (std::size_t h = 0; h < found.size(); ++h) forces[k][arc.held[h]] = -found[h];
-  }
-  return action.positive(z, held, forces);
+  const int n = arcs.problem().coordinates();
+  return std::ranges::any_of(variation_elements, [&](int elements) {
+    return is_positive(arcs, path, std::min(elements, most_unknowns / n));
+  });
 }
 
 }  // namespace extremal

@@ -14,6 +14,10 @@ namespace extremal {
 /// bent aside first, the less the better.
 std::vector<double> first_path(const Problem& problem, const CoarseAction& action);
 
+/// The same past each obstacle on one side or the other, those that move least first. Sides are those of one
+/// direction across the path; an obstacle beside the path may also be between it and where it was.
+std::vector<std::vector<double>> paths_by_sides(const Problem& problem, const CoarseAction& action);
+
 /// The same bent by waves, for the `number`-th start of a search; nothing if it jumps.
 std::optional<std::vector<double>> bent_path(const Problem& problem, const CoarseAction& action, int number);
 

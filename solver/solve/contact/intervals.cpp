@@ -5,6 +5,8 @@
 #include <iterator>
 
 #include "linear/dense.hpp"
+#include "problem/manifold.hpp"
+#include "solve/contact/constraint_sets.hpp"
 #include "solve/contact/limits.hpp"
 
 namespace extremal {
@@ -16,15 +18,20 @@ using namespace limits::contact;
 /// Gradients whose part across the others is smaller, relative, depend on them.
 constexpr double dependence = 1e-6;
 
-/// At a node; of inequalities whose gradients depend on each other, those pressed most.
+/// At a node; of inequalities whose gradients depend on each other, those held at the node before, then those
+/// pressed most.
 struct Pressed {
   int constraint;
   double force;
+  bool before = false;
 };
 
-std::vector<int> independent(std::vector<Pressed> pressed, const ConstraintValues& values) {
-  std::ranges::stable_sort(pressed, [](const Pressed& a, const Pressed& b) { return a.force > b.force; });
-  Eigen::MatrixXd basis(values.slopes.cols(), 0);
+/// `basis`: orthonormal columns of the gradients of constraints.
+std::vector<int> independent(std::vector<Pressed> pressed, const ConstraintValues& values,
+                             Eigen::MatrixXd basis) {
+  std::ranges::stable_sort(pressed, [](const Pressed& a, const Pressed& b) {
+    return a.before != b.before ? a.before : a.force > b.force;
+  });
   std::vector<int> held;
   for (const Pressed& each : pressed) {
     Eigen::VectorXd row = values.slopes.row(each.constraint);
@@ -39,6 +46,8 @@ std::vector<int> independent(std::vector<Pressed> pressed, const ConstraintValue
   return held;
 }
 
+bool includes(const std::vector<int>& a, const std::vector<int>& b) { return std::ranges::includes(a, b); }
+
 /// Where several inequalities are held on few elements, beside the ends of the path, a path passes a corner
 /// rather than resting in it: it leaves one surface before it comes to another. One that the neighbours do
 /// not hold is held there alone, or none; what is missing then is found as a violation.
@@ -52,6 +61,12 @@ void pass_corners(std::vector<Interval>& intervals, double longest) {
       continue;
     }
     const std::vector<int>&before = intervals[i - 1].held, &after = intervals[i + 1].held;
+    // One contact comes after the other, or on top of it.
+    if (includes(before, interval.held) || includes(after, interval.held) ||
+        (!(before.empty() && after.empty()) && (includes(before, after) || includes(after, before)))) {
+      passed.push_back(interval);
+      continue;
+    }
     std::vector<int> alone;
     for (const int k : interval.held)
       if (alone.empty() && !std::ranges::binary_search(before, k) && !std::ranges::binary_search(after, k))
@@ -62,8 +77,6 @@ void pass_corners(std::vector<Interval>& intervals, double longest) {
   }
   intervals = std::move(passed);
 }
-
-bool includes(const std::vector<int>& a, const std::vector<int>& b) { return std::ranges::includes(a, b); }
 
 }  // namespace
 
@@ -87,16 +100,27 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
       // The product of both is the small barrier parameter; in contact the force is the larger one.
       const double slope = values.slopes.row(c).norm(), pressure = multipliers[place + c] * slope / h;
       if (pressure * slope * size > std::abs(values.g[c]) * force)
-        pressed.push_back({static_cast<int>(c), pressure});
+        pressed.push_back({static_cast<int>(c), pressure,
+                           node > 0 && std::ranges::binary_search(held[node - 1], static_cast<int>(c))});
     }
-    held[node] = independent(std::move(pressed), values);
+    Eigen::MatrixXd basis(n, 0);
+    if (problem.manifold)
+      basis = orthonormal(problem.manifold->at(z.subspan(node * n, n), action.time(node)).slopes.transpose());
+    held[node] = independent(std::move(pressed), values, std::move(basis));
   }
-  // An end that is given belongs to a contact that lasts until there.
+  // An end that is given belongs to a contact that lasts until there; what a free end holds alone is touched.
+  std::vector<int> at_start, at_end;
   for (const int node : {0, elements}) {
     const int next = node == 0 ? 1 : elements - 1;
-    if (!action.places().empty() &&
-        (node == 0 ? action.places().front().node == 0 : action.places().back().node == elements))
-      continue;
+    const bool compared = !action.places().empty() && (node == 0 ? action.places().front().node == 0
+                                                                 : action.places().back().node == elements);
+    if (compared && !problem.periodic) {
+      std::vector<int>& touched = node == 0 ? at_start : at_end;
+      touched = sorted_difference(held[node], held[next]);
+      held[node] = sorted_difference(held[node], touched);
+    }
+    if (problem.periodic && node == elements) held[node] = held[next];
+    if (compared || problem.periodic) continue;
     const ConstraintValues values = inequalities.all->at(z.subspan(node * n, n), action.time(node));
     for (const int c : held[next])
       if (std::abs(values.g[c]) <= 1e-7 * values.slopes.row(c).norm() * size) held[node].push_back(c);
@@ -121,12 +145,18 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
     intervals.push_back({held[k], from, to});
   }
   pass_corners(intervals, corner_elements * h);
+  intervals.front().at_start = std::move(at_start);
+  intervals.back().at_end = std::move(at_end);
   return intervals;
 }
 
 void tidy(std::vector<Interval>& intervals, double duration) {
   std::vector<Interval> kept;
+  std::vector<int> at_start = std::move(intervals.front().at_start),
+                   at_end = std::move(intervals.back().at_end);
   for (Interval& interval : intervals) {
+    interval.at_start.clear();
+    interval.at_end.clear();
     if (!(interval.to - interval.from > shortest_arc * duration)) continue;
     if (!kept.empty() && kept.back().held == interval.held && interval.touched < 0)
       kept.back().to = interval.to;
@@ -138,6 +168,8 @@ void tidy(std::vector<Interval>& intervals, double duration) {
   }
   kept.front().from = 0;
   kept.back().to = duration;
+  kept.front().at_start = std::move(at_start);
+  kept.back().at_end = std::move(at_end);
   intervals = std::move(kept);
 }
 
@@ -147,18 +179,19 @@ void leave_out(std::vector<Interval>& intervals, int number, double duration) {
   const std::size_t next = number;
   const bool inner = next > 0 && next + 1 < intervals.size();
   if (inner && intervals[next - 1].held == intervals[next + 1].held && gone.touched < 0 &&
-      intervals[next + 1].touched < 0 && gone.held.size() == intervals[next - 1].held.size() + 1) {
-    std::vector<int> only;
-    std::ranges::set_difference(gone.held, intervals[next - 1].held, std::back_inserter(only));
-    intervals[next + 1].touched = only.front();
-  }
+      intervals[next + 1].touched < 0 && gone.held.size() == intervals[next - 1].held.size() + 1)
+    intervals[next + 1].touched = sorted_difference(gone.held, intervals[next - 1].held).front();
   intervals.erase(intervals.begin() + number);
-  if (next == 0)
+  if (next == 0) {
     intervals.front().from = gone.from;
-  else if (next == intervals.size())
+    intervals.front().at_start =
+        sorted_difference(sorted_union(gone.held, gone.at_start), intervals.front().held);
+  } else if (next == intervals.size()) {
     intervals.back().to = gone.to;
-  else
+    intervals.back().at_end = sorted_difference(sorted_union(gone.held, gone.at_end), intervals.back().held);
+  } else {
     intervals[next - 1].to = intervals[next].from = (gone.from + gone.to) / 2;
+  }
   if (next == 0) intervals.front().touched = -1;
   tidy(intervals, duration);
 }
@@ -181,6 +214,8 @@ void change(std::vector<Interval>& intervals, int constraint, bool held, double 
     changed.push_back({middle.held, a, b});
     changed.push_back({interval.held, b, interval.to});
   }
+  changed.front().at_start = intervals.front().at_start;
+  changed.back().at_end = intervals.back().at_end;
   intervals = std::move(changed);
   tidy(intervals, duration);
 }

@@ -35,6 +35,15 @@ std::shared_ptr<const PathContacts> contacts_of(Arcs& arcs, const Junctions& pat
   const std::vector<PathArc>& parts = path.arcs();
   auto found = std::make_shared<PathContacts>();
   found->constraints = arcs.problem().inequalities->count();
+  const auto touches = [&](bool at_end) {
+    const std::vector<int>& held = at_end ? parts.back().held : parts.front().held;
+    const double t = at_end ? path.duration() : 0;
+    for (const EndContact& contact : path.end_contacts())
+      if (contact.at_end == at_end && !contact.holonomic &&
+          !std::ranges::binary_search(held, contact.constraint))
+        found->contacts.push_back({contact.constraint, t, t});
+  };
+  touches(false);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const PathArc& arc = parts[i];
     if (i > 0 && path.touched()[i - 1] >= 0)
@@ -49,6 +58,7 @@ std::shared_ptr<const PathContacts> contacts_of(Arcs& arcs, const Junctions& pat
         found->contacts.push_back({k, arc.from, arc.to});
     }
   }
+  touches(true);
   return found;
 }
 
@@ -75,15 +85,14 @@ Solution joined_path(Arcs& arcs, const Junctions& path) {
     solution.unknowns += (solved.degree * solved.trajectory.elements() - 1) * problem.coordinates();
   }
   solution.error_estimate = solution.error_estimate * (1 + path.amplification()) + path.movement();
-  for (std::size_t j = 0; j < path.touched().size(); ++j)
-    if (path.touched()[j] >= 0)  // in place of an arc that is shorter
-      solution.error_estimate += (path.solved()[j].v_end - path.solved()[j + 1].v_start).norm() *
-                                 limits::contact::shortest_arc * problem.duration.value;
+  for (std::size_t j = 0; j < path.touched().size(); ++j)  // in place of arcs that are shorter
+    solution.error_estimate += (path.solved()[j].v_end - path.solved()[j + 1].v_start).norm() *
+                               limits::contact::shortest_arc * path.duration();
   solution.momentum_start = {path.solved().front().p_start.begin(), path.solved().front().p_start.end()};
   solution.momentum_end = {path.solved().back().p_end.begin(), path.solved().back().p_end.end()};
   solution.contacts = contacts_of(arcs, path);
   solution.iterations = arcs.iterations();
-  if (problem.inequalities->all->autonomous()) observe_energy(*problem.lagrangian, solution);
+  if (problem.inequalities->all->autonomous()) observe_energy(arcs.motion(), solution);
   solution.minimizing = true;
   solution.status = Status::converged;
   const std::size_t count = solution.contacts->contacts.size();

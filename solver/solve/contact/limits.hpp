@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 /// \file The numbers that decide where a path touches what inequalities forbid.
 
 namespace extremal::limits::contact {
@@ -9,23 +11,50 @@ namespace extremal::limits::contact {
 inline constexpr int coarse_elements[] = {96, 384, 1152};
 /// Elements on which a path that passes a corner holds both sides of it, at most.
 inline constexpr double corner_elements = 2.5;
+/// A free duration of a coarse path: ratio of the first two, largest ratio of two in succession, halvings on
+/// the way to one where there is a minimum, steps; it is found where a step is smaller than this part of it.
+inline constexpr double first_ratio = 1.05, most_ratio = 2, near_duration = 1e-5;
+inline constexpr int most_halvings = 6, most_durations = 40;
+/// Where the values come nearer to zero by less than this part in so many steps, none of them being zero,
+/// they have an extremum there.
+inline constexpr double useful_share = 0.9;
+inline constexpr int most_vain_durations = 8;
+/// A minimum is on another side of an obstacle, perhaps, if nodes that move straight there are so deep in it,
+/// in parts of the size of the path, at one of so many points. Boundaries curve by less between neighbours.
+inline constexpr double crossing_depth = 0.01;
+inline constexpr double crossing_points = 32;
+/// Then the path moves by steps of this part of its size, at most so many. The last one is shorter than this
+/// part of a step, so that no bound acts.
+inline constexpr double confined_step = 0.05, confined_end = 0.99;
+inline constexpr int most_confined = 60;
+/// A closed path is shifted in time where a contact begins or ends within so many elements of t = 0.
+inline constexpr double clear_elements = 4;
 /// Coordinates times elements of a coarse path, at most.
 inline constexpr int most_unknowns = 40'000;
 /// The arcs are solved to this part of the tolerance: differences of their momenta are derivatives.
 inline constexpr double arc_share = 0.03, least_arc_tolerance = 2e-13, arc_share_again = 0.5;
-/// Displacements for differences, relative to the size of the path and to the duration.
-inline constexpr double difference = 1e-5;
+/// Roundoff of positions, by their magnitude: the range of a short arc may not be known any better than a
+/// part of itself, at most the second.
+inline constexpr double arc_roundoff = 1e-14, most_arc_tolerance = 1e-3;
+/// Displacements for differences, relative to the size of the path and to the duration; of a junction at most
+/// this part of the arcs beside it.
+inline constexpr double difference = 1e-5, difference_share = 0.2;
 /// Momenta agree at a junction within this part of the largest.
 inline constexpr double matched = 1e-12;
 /// Parts of the tolerance for the next step, by which Newton's method ends: what it aims at, and what is
 /// enough where it goes no further.
 inline constexpr double settled_share = 0.02, enough_share = 0.3;
 inline constexpr int most_steps = 30;
+/// Where a step would leave so large a part of the equations, they contradict each other.
+inline constexpr double disagreeing = 0.3;
+/// Times of changes that are told apart, by the shortest arc and by what lies between the first and the last;
+/// a change moves by no more than this part of the arcs beside it.
+inline constexpr double apart = 2, told_apart = 0.1, most_apart = 0.3;
 /// A step may shorten an arc to this part of its length.
 inline constexpr double shortest_step = 0.2;
 inline constexpr double least_damping = 1e-3;
 /// Arcs shorter than this part of the duration are left out.
-inline constexpr double shortest_arc = 1e-5;
+inline constexpr double shortest_arc = 1e-6;
 /// Singular values below this, relative, belong to directions that momenta do not depend on.
 inline constexpr double rank = 1e-7;
 /// Singular values below this, relative, are zero within what differences tell: such paths of one action are
@@ -35,6 +64,9 @@ inline constexpr double singular_rank = 1e-4;
 inline constexpr int most_changes = 12;
 /// Points in each element at which the inequalities are compared, and forces of contact.
 inline constexpr int points = 24;
+/// A path is freed along so many times the stretch in which its force is negative, −k (a² − s²) there:
+/// between tangents at ±b it leaves the surface by ∫ k (a² − s²) ds = 0, so that b = √3 a.
+inline constexpr double freed_stretch = 1.7320508;
 /// Negative forces that are roundoff, relative to the largest force and momentum by time.
 inline constexpr double negative_force = 1e-6;
 /// Degree of elements of paths that constraints determine, and their largest number.
@@ -47,8 +79,14 @@ inline constexpr int most_pushes = 30;
 /// The second variation with this part of the kinetic one added is positive at a minimum, also where
 /// symmetries make it singular.
 inline constexpr double shift = 1e-3;
-/// Elements on which the second variation is taken.
-inline constexpr int variation_elements = 384;
+/// Elements on which the second variation is taken, at least so many in each arc. They end where contacts do:
+/// then that of a shift in time is zero to second order.
+inline constexpr int variation_elements[] = {384, 1536}, least_arc_elements = 4;
+/// Points at which an inequality is looked for aside of a path, as far as the path is long; steepest slope of
+/// a path that goes round it, by its length; combinations of sides.
+inline constexpr int side_points = 96;
+inline constexpr double side_slope = 4;
+inline constexpr std::size_t most_sides = 64;
 /// Waves of first paths of a search, their sizes, and starts in vain after which it ends.
 inline constexpr int waves = 4;
 inline constexpr double wave_sizes[] = {0.35, 0.8, 1.6};

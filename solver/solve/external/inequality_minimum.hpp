@@ -20,6 +20,11 @@ struct SparseEntry {
 /// function returns false where its values do not exist.
 struct InequalityMinimum {
   int variables = 0, inequalities = 0, equations = 0;
+  std::vector<double> lower = {}, upper = {};  ///< bounds of z; empty: none
+  /// Units of z, f and each a: with them the iteration does not depend on those of the problem. Those of a
+  /// may be left out: all one.
+  double unit = 1, value_unit = 1;
+  std::vector<double> constraint_units = {};
   std::vector<SparseEntry> slopes;  ///< entries of ∂a/∂z, (constraint, variable)
   std::vector<SparseEntry> curvature;  ///< entries of ∂²(f + Σ λ a)/∂z², row >= column, repeated ones add up
   std::function<bool(std::span<const double> z, double& f)> value = {};

@@ -19,19 +19,24 @@ void start_path(const Problem& problem, const std::vector<double>& ends, const E
 /// to where forces vanish, most likely.
 bool ran_away(const Problem& problem, double first, double magnitude);
 
-/// Fills `path` (already reset) with that whose values are at(τ, q), and at the ends those of `ends`.
+/// Replaces the values q of `path` (already reset) by what at(τ, q) makes of them, and sets those at the ends
+/// to `ends`.
 template <class At>
 void fill_path(const std::vector<double>& ends, const ElementTables& tables, Path& path, const At& at) {
   const std::size_t n = path.coordinates();
   const int degree = path.degree();
-  std::vector<double> q((degree + 1) * n);
+  std::vector<double> q((degree + 1) * n), next(q.size());
+  path.element(0, next.data());
   for (int k = 0; k < path.elements(); ++k) {
-    path.element(k, q.data());
+    q.swap(next);
+    // An element is kept by deviations from its chord: it is read before its first node moves.
+    if (k + 1 < path.elements()) path.element(k + 1, next.data());
     const double from = path.mesh()[k], to = path.mesh()[k + 1];
     // The first node of an element is already where the one before left it.
     for (int j = k > 0; j <= degree; ++j)
       at(j == degree ? to : from + tables.scheme().lobatto[j] * (to - from), q.data() + j * n);
     path.set_element(k, q.data());
+    std::copy_n(q.end() - static_cast<std::ptrdiff_t>(n), n, next.begin());
   }
   for (std::size_t a = 0; a < n; ++a) {
     path.set_node(0, static_cast<int>(a), ends[a]);

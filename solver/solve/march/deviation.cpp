@@ -134,25 +134,32 @@ class Comparer {
 /// gives.
 constexpr double nearly_uniform = limits::resolution::nearly_uniform;
 
-double excess_of(const MotionDeviation::Sizes& error, const MotionDeviation& whole, double tolerance) {
+MotionDeviation::Part worst_of(const MotionDeviation::Sizes& error, const MotionDeviation& whole,
+                               double tolerance) {
   constexpr double negligible = 1e-12, velocity_tolerances = 10;
   const double q = whole.range.q > negligible * whole.magnitude ? whole.range.q : whole.magnitude;
   const double v = std::max(whole.range.v, nearly_uniform * q / whole.duration),
                p = std::max(whole.range.p, nearly_uniform * whole.largest_momentum);
-  const auto part = [](double error, double allowed) { return error == 0 ? 0 : error / allowed; };
-  return std::max({part(error.q, tolerance * q), part(error.v, velocity_tolerances * tolerance * v),
-                   part(error.p, velocity_tolerances * tolerance * p)});
+  const double loose = velocity_tolerances * tolerance;
+  return std::max({MotionDeviation::Part{"coordinates", error.q, tolerance * q},
+                   {"velocities", error.v, loose * v},
+                   {"momenta", error.p, loose * p}},
+                  [](const auto& a, const auto& b) { return a.excess() < b.excess(); });
 }
 
 }  // namespace
 
+MotionDeviation::Part MotionDeviation::worst(double tolerance) const {
+  return worst_of(error, *this, tolerance);
+}
+
 double MotionDeviation::excess(double tolerance) const {
-  return finite ? excess_of(error, *this, tolerance) : INFINITY;
+  return finite ? worst(tolerance).excess() : INFINITY;
 }
 
 double MotionDeviation::exceeded(double tolerance) const {
   for (const Growth& entry : growth)
-    if (!(excess_of(entry.error, *this, tolerance) <= 1)) return entry.time;
+    if (!(worst_of(entry.error, *this, tolerance).excess() <= 1)) return entry.time;
   return INFINITY;
 }
 

@@ -22,7 +22,15 @@ struct MotionDeviation {
   double duration = 0;
   bool finite = true;
 
-  /// Largest of the errors relative to the tolerance times the range, ten times that for q' and p.
+  /// An error of q, q' or p, and what the tolerance allows: that times the range, ten times that for q' and
+  /// p.
+  struct Part {
+    const char* of;
+    double error, allowed;
+    double excess() const { return error == 0 ? 0 : error / allowed; }
+  };
+  /// The one that is largest beside what is allowed.
+  Part worst(double tolerance) const;
   double excess(double tolerance) const;
   /// The first time at which it is above 1; infinite if it never is.
   double exceeded(double tolerance) const;

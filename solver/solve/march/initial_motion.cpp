@@ -165,10 +165,11 @@ class InitialMotion {
           options_.tolerance, apart.range.q, apart.magnitude);
       return;
     }
+    const MotionDeviation::Part worst = apart.worst(options_.tolerance);
     solution_.message = fmt::format(
-        "the motion amplifies roundoff: the tolerance {:.1e} holds until t = {:.6g}, at the end the error is "
-        "{:.1e}; shorten the duration to {:.6g}, or loosen the tolerance",
-        options_.tolerance, until, apart.error.q, shorter * until);
+        "the motion amplifies roundoff: the tolerance {:.1e} holds until t = {:.6g}; after that {} are known "
+        "to {:.1e}, where {:.1e} is allowed; shorten the duration to {:.6g}, or loosen the tolerance",
+        options_.tolerance, until, worst.of, worst.error, worst.allowed, shorter * until);
   }
 
   /// Equal elements of the scheme against a motion that is known much better.

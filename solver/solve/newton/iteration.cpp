@@ -8,6 +8,7 @@
 #include "solve/newton/ends.hpp"
 #include "solve/newton/krylov.hpp"
 #include "solve/newton/limits.hpp"
+#include "solve/newton/moving_step.hpp"
 #include "solve/periodic/soft_shifts.hpp"
 
 namespace extremal {
@@ -54,6 +55,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
                             const ElementTables* low) {
   problem_ = &problem;
   tables_ = &tables;
+  elements_ = elements;
   const bool sparse = tables.unknowns() > most_dense_unknowns;
   action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
   action_.give_momenta(problem.boundary.momenta);
@@ -68,9 +70,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   phase_free_ = shifts_held_ = false;
   held_.clear();
   if (!sparse) {
-    if (!condensed_) condensed_ = make_condensed_model();
-    use(*condensed_);
-    model_->reset(problem, tables, elements);
+    use_dense();
   } else if (low && tables.scheme().degree >= low->scheme().degree && RaisedModel::suits(tables)) {
     use_low(*low, elements);
   } else {
@@ -80,17 +80,38 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
 
 void NewtonIteration::forget() {
   curvature_ = largest_curvature_ = noise_ = 0;
-  extended_ = refined_ = false;
+  extended_ = refined_ = doubling_ = false;
   action_.extend(false);
 }
 
+bool NewtonIteration::doubles_digits() const {
+  return doubling_ && extended_model_suits(*problem_, *tables_, elements_);
+}
+
 bool NewtonIteration::extend() {
-  if (refined_ || model_ != condensed_.get() || !problem_->boundary.costs.empty()) return false;
+  if (refined_ || !dense() || !problem_->boundary.costs.empty()) return false;
   noise_ = 0;
   refined_ = extended_;
   extended_ = true;
   action_.extend(true);
+  if (refined_ && doubles_digits()) use_dense();
   return true;
+}
+
+/// Elements condensed one by one.
+void NewtonIteration::use_dense() {
+  const bool doubled = refined_ && doubles_digits();
+  std::unique_ptr<SecondVariationModel>& model = doubled ? doubled_ : condensed_;
+  if (!model) model = doubled ? make_extended_model() : make_condensed_model();
+  use(*model);
+  model_->reset(*problem_, *tables_, elements_);
+}
+
+/// Whether the factors show that roundoff has taken pivots, though gradients have digits to spare.
+bool NewtonIteration::lost_digits() const {
+  if (!doubling_ || !extended_ || refined_ || model_ != condensed_.get()) return false;
+  const Chain& chain = action_.nodes.chain;
+  return chain.pivoted() || !chain.deflated().empty();
 }
 
 void NewtonIteration::use_low(const ElementTables& low, int elements) {
@@ -117,7 +138,8 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
   model_->set_refining(refine);
   model_->solve(action_, closing(path), step);
   model_->set_refining(true);
-  if (refined_ && action_.extended()) refine_by_krylov(action_, *model_, path, closing(path), step);
+  if (refined_ && action_.extended() && !in_twice_the_precision())
+    refine_by_krylov(action_, *model_, path, closing(path), step);
   if (problem_->paired) make_agree(step, problem_->coordinates());
   return length(path, step);
 }
@@ -137,7 +159,10 @@ bool NewtonIteration::leaves_duration(const Path& path, const Step& step) const 
 
 /// `corners` are those of the path before. False if an element would become too short or too long for it.
 bool NewtonIteration::apply(Path& path, const Step& step, double factor, std::span<const Corner> corners) {
-  path.add(step.nodes, step.inner, factor);
+  if (in_twice_the_precision())
+    MovingStep().add(step, factor, path);
+  else
+    path.add(step.nodes, step.inner, factor);
   keep_ends(problem_->ends, path);
   if (problem_->duration.free) path.set_duration(path.duration() + factor * step.duration);
   path.load_ends();
@@ -146,7 +171,7 @@ bool NewtonIteration::apply(Path& path, const Step& step, double factor, std::sp
 
 /// The path as it was saved, and its mesh where that may have moved.
 void NewtonIteration::restore(Path& path) {
-  if (saved_corners_.empty())
+  if (saved_corners_.empty() && !in_twice_the_precision())
     path.copy_values(saved_);
   else
     path = saved_;
@@ -163,7 +188,9 @@ bool NewtonIteration::factor_quickly(const Path& path) {
 /// Inner unknowns are condensed without pivoting; where that breaks down, as at a conjugate time inside one
 /// element, all unknowns are factored at once with pivoting, if they are not too many.
 bool NewtonIteration::factor(const Path& path) {
-  const bool done = factor_quickly(path);
+  bool done = factor_quickly(path);
+  if (action_.finite() && (lost_digits() || (!done && extended_ && doubling_)) && extend())
+    done = factor_quickly(path);
   if (done && action_.nodes.pivot_ratio > breakdown) return true;
   const bool condensed = model_ == condensed_.get();
   if (!action_.finite() || !(condensed || approximate())) return false;
@@ -171,6 +198,16 @@ bool NewtonIteration::factor(const Path& path) {
   use_sparse(path.elements());
   model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
   return model_->evaluate(action_, path, closing(path));
+}
+
+/// Where a short step with good gradients goes astray, its factors do: from the path before it, with better
+/// ones, if there are.
+bool NewtonIteration::restart_in_twice_the_precision(Path& path) {
+  if (refined_ || model_ != condensed_.get() || !doubles_digits()) return false;
+  restore(path);
+  path.load_ends();
+  --count_;
+  return extend();
 }
 
 /// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
@@ -201,7 +238,7 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
   }
   double factor = predicted_;
   saved_corners_.assign(action_.corners().begin(), action_.corners().end());
-  if (saved_corners_.empty())
+  if (saved_corners_.empty() && !in_twice_the_precision())
     saved_.copy_values(path);
   else
     saved_ = path;
@@ -228,6 +265,9 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
       use_sparse(path.elements());
       return full_step(path, enough, least_damping);
     }
+    if (!(simplified <= (1 - factor / 4) * step) && extended_ &&
+        step < limits::converge::stalled_by_factors && restart_in_twice_the_precision(path))
+      return full_step(path, enough, least_damping);
     const bool small = step < std::max(roundoff_step, quiet * noise_);
     if (positive && (simplified <= (1 - factor / 4) * step || small)) {
       contraction_ = simplified / step;

@@ -49,9 +49,11 @@ class NewtonIteration {
 
   /// Forgets the curvature of δS: the path is another.
   void forget();
+  /// From now until forget() factors may have 106 bits, where the system allows that and doubles lose digits.
+  void double_digits() { doubling_ = true; }
   /// From now until forget() gradients are in extended precision, where the system has them; from the second
-  /// time on so is the second variation that steps are solved for. False if they were, or where the Hessian
-  /// is a large sparse matrix.
+  /// time on so is the second variation that steps are solved for, with its factors where they may be. False
+  /// if they were, or where the Hessian is a large sparse matrix.
   bool extend();
   bool extended() const { return extended_; }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
@@ -131,6 +133,12 @@ class NewtonIteration {
   void use(SecondVariationModel& model) { model_ = exact_ = &model; }
   void use_low(const ElementTables& low, int elements);
   void use_sparse(int elements);
+  void use_dense();
+  bool dense() const { return model_ == condensed_.get() || in_twice_the_precision(); }
+  bool in_twice_the_precision() const { return doubled_ && model_ == doubled_.get(); }
+  bool doubles_digits() const;
+  bool lost_digits() const;
+  bool restart_in_twice_the_precision(Path& path);
   /// Whether model() is not the second variation itself.
   bool approximate() const { return exact_ == nullptr; }
   double solve_for_step(const Path& path, Step& step, bool refine = false);
@@ -141,11 +149,12 @@ class NewtonIteration {
   void restore(Path& path);
   double measure_noise(Path& path);
   bool round_equations(const Path& path);
+  double terms_at_end(const Path& path, std::size_t e) const;
 
   const Problem* problem_ = nullptr;
   const ElementTables* tables_ = nullptr;
   DiscreteAction action_;
-  std::unique_ptr<SecondVariationModel> condensed_;
+  std::unique_ptr<SecondVariationModel> condensed_, doubled_;  ///< the second with 106 bits
   std::optional<SparseModel> sparse_, low_;
   std::optional<RaisedModel> raised_;
   QuadraticModel* model_ = nullptr;
@@ -153,7 +162,7 @@ class NewtonIteration {
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
-  bool phase_free_ = false, shifts_held_ = false, extended_ = false, refined_ = false;
+  bool phase_free_ = false, shifts_held_ = false, extended_ = false, refined_ = false, doubling_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   ClosingMap closed_;  ///< of a periodic problem with kinks
@@ -163,7 +172,7 @@ class NewtonIteration {
   double noise_ = 0;
   double curvature_ = 0;  ///< contraction of the last full step by its length; 0: not known
   double largest_curvature_ = 0;
-  int count_ = 0;
+  int count_ = 0, elements_ = 0;
   int trials_ = 0;  ///< dampings that the last full step tried
 };
 

@@ -36,6 +36,7 @@ double NewtonIteration::residual() const {
 double NewtonIteration::burden() const {
   const double tested = 1 + trial_burden * std::max(0, trials_ - 1);
   if (tables_->unknowns() > most_dense_unknowns) return tested;
+  if (in_twice_the_precision()) return tested;
   if (model_ != condensed_.get()) return sparse_burden * tested;
   const Chain& chain = action_.nodes.chain;
   return tested * (chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1);
@@ -133,6 +134,24 @@ double NewtonIteration::steepness(const Path& path) const {
   return most / path.duration();
 }
 
+/// Sum of the terms of an equation of an end, as the second variation has them. Where the mass vanishes at an
+/// end, as at a radius of zero, it is far below the largest momentum.
+double NewtonIteration::terms_at_end(const Path& path, std::size_t e) const {
+  const NodeEquations& nodes = action_.nodes;
+  const std::size_t n = path.coordinates();
+  const bool start = e < n;
+  const std::size_t a = start ? e : e - n, elements = path.elements();
+  const double* const block = start ? nodes.first.data() : nodes.last.data();
+  const double* const beside = start || elements == 1 ? nodes.first_lower.data() : nodes.last_lower.data();
+  const double* const at = path.node(start ? 0 : elements);
+  const double* const next = path.node(start ? 1 : elements - 1);
+  double sum = 0;
+  for (std::size_t b = 0; b < n; ++b)
+    sum += std::abs(block[a * n + b] * at[b]) +
+           std::abs((start ? beside[b * n + a] : beside[a * n + b]) * next[b]);
+  return sum;
+}
+
 /// Moves the equation that closes the duration, and the momenta at free ends, by half a digit of their terms;
 /// those to where step_ points, which they resist least. False if nothing is free.
 bool NewtonIteration::round_equations(const Path& path) {
@@ -143,12 +162,12 @@ bool NewtonIteration::round_equations(const Path& path) {
       terms += std::abs(closing_.row[e] * (e < n ? path.node(0)[e] : path.node(path.elements())[e - n]));
     closing_.value += half_a_digit * terms;
   }
-  const double digit = (extended_ ? half_an_extended_digit : half_a_digit) * action_.momentum_scale();
+  const double digit = extended_ ? half_an_extended_digit : half_a_digit, most = action_.momentum_scale();
   std::vector<double>& parts = action_.nodes.end_parts;
   parts.resize(2 * n);
   for (const Triplet& z : problem_->ends.z) {
     const std::size_t at = z.row < path.coordinates() ? z.row : step_.nodes.size() - 2 * n + z.row;
-    parts[z.row] -= std::copysign(digit, step_.nodes[at]);
+    parts[z.row] -= std::copysign(digit * std::min(most, terms_at_end(path, z.row)), step_.nodes[at]);
   }
   return problem_->duration.free || problem_->ends.free > 0;
 }

@@ -65,12 +65,32 @@ inline constexpr int most_iterations = 24;
 
 }  // namespace krylov
 
+namespace extended_system {
+
+/// Passes that scale rows and columns to a largest entry of about 1.
+inline constexpr int equilibrations = 3;
+/// Of the scaled border: a smaller pivot is null.
+inline constexpr double null_pivot = 1e-22;
+
+}  // namespace extended_system
+
+namespace moving_step {
+
+/// Of an element: a shift in time below this leaves values at fixed times linear.
+inline constexpr double least_part = 1e-5;
+/// An element becomes longer or shorter by less than this part.
+inline constexpr double most_stretch = 0.5;
+
+}  // namespace moving_step
+
 namespace node_system {
 
 /// Of the size of the terms that a row of the border is the difference of.
 inline constexpr double negligible = 1e-10;
 /// Null directions of the chain, by coordinates, that are believed.
 inline constexpr std::size_t most_deflated = 4;
+/// An end whose part of the second variation is this much smaller than that of others has units of its own.
+inline constexpr double light_end = 1e-2;
 
 }  // namespace node_system
 

@@ -23,7 +23,9 @@ struct ClosingEquation {
 /// A step of every unknown.
 struct Step {
   std::vector<double> nodes;  ///< (N + 1) × n
-  AlignedDoubles inner;       ///< laid out as Path::x
+  /// What rounding left of them, of a model with 106 bits: M/h makes a force of a last digit.
+  std::vector<double> nodes_low;
+  AlignedDoubles inner;  ///< laid out as Path::x
   double duration = 0;
 };
 
@@ -76,5 +78,10 @@ class SecondVariationModel : public QuadraticModel {
 
 /// Inner unknowns condensed element by element in lanes, then a chain of dense blocks: few coordinates.
 std::unique_ptr<SecondVariationModel> make_condensed_model();
+
+/// The same with 106 bits, and steps from gradients that have them too.
+std::unique_ptr<SecondVariationModel> make_extended_model();
+/// Whether the system and its elements allow that.
+bool extended_model_suits(const Problem& problem, const ElementTables& tables, int elements);
 
 }  // namespace extremal

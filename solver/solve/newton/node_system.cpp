@@ -96,12 +96,24 @@ void NodeSystem::assemble_phases() {
   }
 }
 
+/// Where the mass vanishes at an end, as at a radius of zero, the second variation there is small in all its
+/// parts: no direction is null for that. The ends get units in which the parts are of one size.
+void NodeSystem::scale_ends() {
+  const auto parts = corner_.diagonal().cwiseAbs();
+  const double largest = parts.maxCoeff();
+  for (int j = 0; j < free_; ++j)
+    if (parts[j] > 0 && parts[j] < light_end * largest) column_units_[j] = std::sqrt(largest / parts[j]);
+  row_units_ = column_units_;
+  schur_.array().colwise() *= row_units_.array();
+  schur_.array().rowwise() *= column_units_.transpose().array();
+}
+
 /// The duration and directions that are held have units of their own; pivots are compared. A row that is the
 /// roundoff of its terms is null, and stays so.
 void NodeSystem::scale_border(bool own_row) {
   column_units_.setOnes(border_);
   row_units_.setOnes(border_);
-  if (border_ == free_) return;
+  if (border_ == free_) return scale_ends();
   const double curvature = free_ > 0 ? schur_.topLeftCorner(free_, free_).cwiseAbs().maxCoeff() : 0;
   for (int j = free_; j < border_ && curvature > 0; ++j) {
     const double along = schur_.col(j).head(free_).cwiseAbs().maxCoeff();

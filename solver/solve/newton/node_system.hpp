@@ -51,6 +51,7 @@ class NodeSystem {
   void assemble_border(const NodeEquations& nodes);
   void assemble_phases();
   void scale_border(bool own_row);
+  void scale_ends();
   void add_end(double* column, int stride, int e, double factor, const NodeEquations& nodes) const;
 
   const EndMap* ends_ = nullptr;

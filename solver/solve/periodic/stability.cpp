@@ -10,6 +10,7 @@
 #include "linear/dense.hpp"
 #include "problem/closing.hpp"
 #include "problem/phase_space.hpp"
+#include "solve/periodic/moving_symmetries.hpp"
 #include "solve/periodic/repetition.hpp"
 
 namespace extremal {
@@ -29,47 +30,6 @@ void add_vectors(const SecondVariation& variation, const ClosedOrbit& orbit, Flo
 Eigen::MatrixXd map_of(const Problem& problem) {
   const ClosingMap map = closing_map(problem);
   return map.r.isIdentity(0) ? Eigen::MatrixXd{} : map.r;
-}
-
-/// Columns: the generators about `centre`, in units of `size`, G by columns and then c, orthonormal.
-Eigen::MatrixXd generators(const std::vector<Generator>& symmetries, const Eigen::VectorXd& centre,
-                           double size) {
-  const auto n = centre.size();
-  Eigen::MatrixXd columns(n * n + n, std::ssize(symmetries));
-  for (Eigen::Index s = 0; s < columns.cols(); ++s) {
-    const Generator& symmetry = symmetries[s];
-    const Eigen::Map<const Eigen::MatrixXd> transposed(symmetry.matrix.data(), n, n);
-    const Eigen::MatrixXd g = transposed.transpose();
-    columns.col(s) << size * g.reshaped(),
-        g * centre + Eigen::Map<const Eigen::VectorXd>(symmetry.shift.data(), n);
-  }
-  return orthonormal(columns);
-}
-
-/// How many symmetries move the orbit, and not only along itself: one that does not, as a rotation of a
-/// centre of mass that rests at the origin, has no multipliers 1 of its own.
-int moving_symmetries(const Problem& problem, const Trajectory& orbit) {
-  constexpr double dependent = 1e-8, at_rest = 1e-9;  // the square of a sine; of the distance from the origin
-  const Eigen::Index n = problem.coordinates(), points = std::ssize(orbit.times),
-                     count = std::ssize(problem.symmetries);
-  if (count == 0) return 0;
-  Eigen::MatrixXd q(n, points), fields(points * n, count + 1);
-  for (Eigen::Index p = 0; p < points; ++p)
-    orbit.at(orbit.times[p], {&q(0, p), &q(0, p) + n}, {&fields(p * n, count), &fields(p * n, count) + n});
-  const Eigen::VectorXd centre = q.rowwise().mean();
-  q.colwise() -= centre;
-  const double extent = std::max(q.cwiseAbs().maxCoeff(), at_rest * centre.norm()),
-               size = extent > 0 ? extent : 1;
-  const Eigen::MatrixXd columns = generators(problem.symmetries, centre, size);
-  for (Eigen::Index s = 0; s < count; ++s)
-    fields.col(s).reshaped(n, points) =
-        ((columns.col(s).head(n * n).reshaped(n, n) * q / size).colwise() + columns.col(s).tail(n)) /
-        std::sqrt(points);
-  fields.col(count).normalize();
-  if (!problem.lagrangian->structure().autonomous) fields.col(count).setZero();
-  const bool shifts = fields.col(count).norm() > 0;
-  const Eigen::VectorXd squares = symmetric_eigenvalues(fields.transpose() * fields);
-  return static_cast<int>((squares.array() > dependent).count()) - shifts;
 }
 
 /// Whether orbits beside one with forces, which are no images of it, close as well: more multipliers are 1
@@ -92,7 +52,8 @@ ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, d
   return {.map = map_of(problem),
           .relative_error = relative_error,
           .autonomous = problem.lagrangian->structure().autonomous,
-          .symmetries = moving_symmetries(problem, trajectory)};
+          .symmetries =
+              moving_symmetries(problem.symmetries, trajectory, problem.lagrangian->structure().autonomous)};
 }
 
 std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariation& variation,

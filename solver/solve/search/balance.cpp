@@ -25,6 +25,27 @@ double length(std::span<const double> x) {
   return std::sqrt(sum);
 }
 
+/// Moves what is after each span by its shift. False, and nothing is done, where an element would become
+/// shorter than `shortest` of itself.
+template <class Spans>
+bool stretch(const Spans& spans, std::span<const double> shifts, double shortest, Path& path) {
+  const double T = path.duration();
+  std::vector<double> times(path.mesh().begin(), path.mesh().end());
+  for (double& tau : times) {
+    const double t = tau * T;
+    double shift = 0;
+    for (std::size_t j = 0; j < spans.size() && t > spans[j].from; ++j) {
+      const double part = std::min(1.0, (t - spans[j].from) / spans[j].length());
+      const double before = j > 0 ? shifts[j - 1] : 0;
+      shift = before + part * (shifts[j] - before);
+    }
+    tau = shift / T;
+  }
+  if (!path.move_mesh(times, 1, shortest)) return false;
+  path.load_ends();
+  return true;
+}
+
 }  // namespace
 
 /// Speeds along a trajectory, at times that its elements give.
@@ -98,14 +119,14 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   while (after < last && speeds.values[after] < tail) ++after;
   const bool begins = speeds.values[before] < tail, ends = speeds.values[after] < tail;
   if (begins && ends) return std::nullopt;
-  Rest rest{0, speeds.times[last], 0, 0, true};
+  Rest rest{{0, speeds.times[last]}, {0, speeds.times[last]}, 0, 0, true};
   std::vector<double> in, out;
   if (!begins) {
-    rest.from = speeds.crossing(before + 1, before, tail);
+    rest.span.from = speeds.crossing(before + 1, before, tail);
     in = speeds.v();
   }
   if (!ends) {
-    rest.to = speeds.crossing(after - 1, after, tail);
+    rest.span.to = speeds.crossing(after - 1, after, tail);
     out = speeds.v();
   }
   if (begins) in = out;
@@ -128,8 +149,11 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   if (at_end && acceleration > off_equilibrium * r * std::max(least, speed_roundoff * speeds.fastest))
     return std::nullopt;
   rest.stiffness = at_end ? 2 * r : r;
-  rest.log_energy = 0.5 * std::log(kinetic) - rest.stiffness * (rest.to - rest.from);
+  rest.log_energy = 0.5 * std::log(kinetic) - rest.stiffness * rest.span.length();
   rest.positive = form(in, values.vv, out) > 0;
+  while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
+  while (after < last && speeds.values[after] < moving * speeds.fastest) ++after;
+  rest.slow = {speeds.times[before], speeds.times[after]};
   return rest;
 }
 
@@ -149,28 +173,42 @@ void Balance::balance() {
     shift += longer;
     shifts_.push_back(shift);
     largest_shift_ = std::max(largest_shift_, std::abs(longer) * rest.stiffness);
-    exists_ = exists_ && rest.to - rest.from + longer > 0;
+    exists_ = exists_ && rest.span.length() + longer > 0;
   }
   shifts_.back() = 0;
 }
 
-bool Balance::apply(Path& path) const {
-  if (!exists_) return false;
-  const double T = path.duration();
-  std::vector<double> times(path.mesh().begin(), path.mesh().end());
-  for (double& tau : times) {
-    const double t = tau * T;
-    double shift = 0;
-    for (std::size_t j = 0; j < rests_.size() && t > rests_[j].from; ++j) {
-      const double part = std::min(1.0, (t - rests_[j].from) / (rests_[j].to - rests_[j].from));
-      const double before = j > 0 ? shifts_[j - 1] : 0;
-      shift = before + part * (shifts_[j] - before);
-    }
-    tau = shift / T;
+std::vector<Balance::Span> Balance::spans() const {
+  std::vector<Span> spans;
+  for (const Rest& rest : rests_) spans.push_back(rest.span);
+  return spans;
+}
+
+bool Balance::apply(Path& path) const { return exists_ && stretch(spans(), shifts_, shortest_element, path); }
+
+bool Balance::falls() const {
+  return rests_.size() > 1 && !std::ranges::all_of(rests_, [](const Rest& rest) { return rest.positive; });
+}
+
+bool Balance::fall(Path& path) const {
+  std::vector<Span> spans = this->spans();
+  std::size_t gone = rests_.size();
+  double others = 0;
+  for (std::size_t j = 0; j < rests_.size(); ++j) {
+    others += spans[j].length();
+    if (rests_[j].positive || (gone < j && rests_[gone].log_energy > rests_[j].log_energy)) continue;
+    gone = j;
   }
-  if (!path.move_mesh(times, 1, shortest_element)) return false;
-  path.load_ends();
-  return true;
+  if (gone == rests_.size()) return false;
+  others -= spans[gone].length();
+  spans[gone] = rests_[gone].slow;
+  const double shorter = spans[gone].length() - std::min(spans[gone].length(), 1 / rests_[gone].stiffness);
+  std::vector<double> shifts;
+  double shift = 0;
+  for (std::size_t j = 0; j < spans.size(); ++j)
+    shifts.push_back(shift += j == gone ? -shorter : shorter * spans[j].length() / others);
+  shifts.back() = 0;
+  return stretch(spans, shifts, 0, path);
 }
 
 }  // namespace extremal

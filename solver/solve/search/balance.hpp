@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "action/path.hpp"
@@ -28,17 +29,29 @@ class Balance {
   /// Shifts the parts of `path`, by stretching and compressing the elements of the rests. False, and nothing
   /// is done, if those are too short.
   bool apply(Path& path) const;
+  /// Whether the action falls as a rest becomes shorter, between parts or at an end: its energy is negative,
+  /// as where a path turns back. For ∂S/∂t of a part is the energy after it less that before, and energies
+  /// fall in size as rests become longer.
+  bool falls() const;
+  /// Gives the time of the rest that falls most to the others: the parts beside it meet.
+  bool fall(Path& path) const;
 
  private:
+  struct Span {
+    double from, to;
+    double length() const { return to - from; }
+  };
   struct Rest {
-    double from, to;    ///< times at which the speed falls and rises
+    Span span;          ///< times at which the speed falls and rises
+    Span slow;          ///< with the tails
     double log_energy;  ///< but for a constant
-    double stiffness;   ///< −∂(log_energy)/∂(to − from): r, or 2r at an end of the path
+    double stiffness;   ///< −∂(log_energy)/∂(length of span): r, or 2r at an end of the path
     bool positive;      ///< energy
   };
   class Speeds;
   static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest);
   void balance();
+  std::vector<Span> spans() const;
 
   std::vector<Rest> rests_;
   std::vector<double> shifts_;  ///< of the parts after the rests; the last is 0

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "problem/point_range.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/search/limits.hpp"
 
@@ -16,17 +17,9 @@ namespace {
 
 /// Largest range of a coordinate over the nodes, or its largest absolute value where that is negligible.
 double extent(const Trajectory& trajectory) {
-  const std::size_t n = trajectory.coordinates;
-  double most = 0, magnitude = 0;
-  for (std::size_t a = 0; a < n; ++a) {
-    double low = INFINITY, high = -INFINITY;
-    for (std::size_t k = a; k < trajectory.nodes.size(); k += n) {
-      low = std::min(low, trajectory.nodes[k]);
-      high = std::max(high, trajectory.nodes[k]);
-    }
-    most = std::max(most, high - low);
-    magnitude = std::max({magnitude, std::abs(low), std::abs(high)});
-  }
+  const double most = largest_range(trajectory.nodes, trajectory.coordinates);
+  double magnitude = 0;
+  for (double x : trajectory.nodes) magnitude = std::max(magnitude, std::abs(x));
   return most > 1e-12 * magnitude ? most : magnitude;
 }
 
@@ -80,6 +73,17 @@ bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
   if (a.energy && b.energy && !agree(*a.energy, *b.energy, energy, error)) return false;
   return agree(a.duration(), b.duration(), a.duration(), error) &&
          agree(a.action, b.action, std::max(action_size(a), action_size(b)), error);
+}
+
+bool same_but_for_place(const Solution& a, const Solution& b, double tolerance) {
+  if (!same_orbit(a, b, tolerance)) return false;
+  Solution moved = b;
+  const std::size_t n = a.trajectory.coordinates;
+  for (std::size_t k = 0; k < moved.trajectory.nodes.size(); ++k)
+    moved.trajectory.nodes[k] += a.trajectory.nodes[k % n] - b.trajectory.nodes[k % n];
+  const double size = std::max(extent(a.trajectory), extent(b.trajectory));
+  const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
+  return near(a.trajectory, moved.trajectory, allowed) && near(moved.trajectory, a.trajectory, allowed);
 }
 
 bool same_discrete(const Solution& a, const Solution& b) {

@@ -69,6 +69,12 @@ bool Search::flow_from(double away, double side) {
   });
   flow.prefer(side);
   if (!flow.run(away * flow_limits::kick)) return false;
+  // Between long rests the action may fall by less than the flow sees.
+  for (int falls = 0; falls < rest_limits::most_falls; ++falls) {
+    const Balance balance(problem_, path_);
+    if (!balance.falls() || !balance.fall(path_)) break;
+    if (!flow.run()) return false;
+  }
   // Newton's method may have spent all on long intervals, where its equations are nearly singular.
   if (refinement_.exhausted())
     refinement_.allow(std::min(allowance_, most - outcome_.attempts), flow_limits::share);
@@ -105,7 +111,7 @@ bool Search::held_in_time(const char* strategy) {
     if (!again(true) || w_.iteration.held_shifts() == 0) break;
     const Balance balance(problem_, path_);
     speed = balance.rest_speed();
-    balance_found = balance.exists();
+    balance_found = balance.exists() && !balance.falls();
     if (!balance_found || balance.largest_shift() < rest_limits::balanced || !balance.apply(path_)) break;
   }
   acceptance_ = acceptance;

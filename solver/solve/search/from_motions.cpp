@@ -42,6 +42,20 @@ bool Search::connect(const Guess& motion, double duration) {
   return true;
 }
 
+bool Search::refine_motion(const Guess& motion, double duration, const char* strategy) {
+  Problem launched = problem_;
+  launched.guess = motion;
+  launched.duration.value = duration;
+  guess_ = &launched;
+  const bool usable = begin() != GuessKind::undefined;
+  guess_ = &problem_;
+  if (!usable) return false;
+  path_.set_duration(duration);
+  const bool result = found(strategy);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  return result;
+}
+
 /// A motion satisfies all but the end. The longer a path, the fewer lines come near one; and each extremal is
 /// tied to motions by the ends between. As much effort as all before: it finds extremals that they miss.
 bool Search::from_motions() {

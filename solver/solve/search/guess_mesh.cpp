@@ -78,6 +78,19 @@ bool Search::mesh_of_motion() {
   return true;
 }
 
+/// The same elements for the same motion, with factors that have more digits; false if it was not followed.
+/// Errors of the elements are amplified as roundoff is: where the first step amplifies all that doubles have
+/// lost, their degree is higher.
+bool Search::follow_with_double_digits() {
+  if (!refinement_.mesh_kept()) return false;
+  start(mesh_, bend_, kept_degree);
+  const bool lost = refinement_.loses_digits();
+  if (lost) start(mesh_, bend_, exact_degree);
+  refinement_.set_digits(lost ? Refinement::Digits::doubled : Refinement::Digits::doubled_where_lost);
+  refinement_.keep_mesh();
+  return true;
+}
+
 /// Elements that resolve a good guess; false if those there were do.
 bool Search::resolve_guess() {
   bool finer_found = false;

@@ -8,12 +8,41 @@
 
 namespace extremal::limits {
 
+namespace arrivals {
+
+/// Of an integrator's step, relative: of motions that are led to the end, and of those that are looked along.
+inline constexpr double fine_step = 1e-8, coarse_step = 1e-6;
+inline constexpr int most_integrator_steps = 2000, samples_a_step = 4;
+/// A step with variations by that of a motion alone; and one where velocities follow from momenta by Newton's
+/// method.
+inline constexpr int variations_cost = 2, implicit_cost = 3;
+/// Directions of two coordinates, and how often they are halved where passages are further apart than this
+/// part of the extent, or one that is not too far has no partner.
+inline constexpr int sectors = 48, most_halvings = 5;
+inline constexpr double near_passage = 0.3, far_passage = 0.5;
+/// Unknowns are relative to a fast velocity, and the logarithm of the time. A motion has arrived where it
+/// misses the end by this part of the extent.
+inline constexpr double least_miss = 1e-6;
+inline constexpr int most_newton_steps = 6;
+/// Steps of Newton's method shrink by this, from at most the second.
+inline constexpr double contraction = 0.7, longest_correction = 0.3;
+/// Along a curve, and where it turns.
+inline constexpr double first_length = 0.02, longest_length = 0.2, least_length = 1e-5;
+inline constexpr double sharpest_turn = 0.9, mild_turn = 0.98;
+inline constexpr int most_points = 400, crossing_samples = 8;
+/// Points so near to a curve, by the length of the step there, are on it.
+inline constexpr double near_curve = 1e-3;
+
+}  // namespace arrivals
+
 namespace balance {
 
 inline constexpr int speed_samples = 4, halvings = 60;
 /// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
 /// equations, large against errors, and so many times the least that one exponential function is left.
 inline constexpr double resting = 3e-3, tail_speed = 1e-4, tail_growth = 10;
+/// Faster than this, by the largest, a part is no tail of a rest.
+inline constexpr double moving = 0.1;
 /// Acceleration at an end by the rate and the speed: more shows that it is not at the equilibrium. The speed
 /// has roundoff.
 inline constexpr double off_equilibrium = 0.1, speed_roundoff = 1e-12;
@@ -22,6 +51,8 @@ inline constexpr double shortest_element = 0.02;
 /// A shift by the rate, after which the tails need not be measured again; and passes at most.
 inline constexpr double balanced = 1e-5;
 inline constexpr int most_balances = 4;
+/// Rests that are given up, one by one.
+inline constexpr int most_falls = 8;
 /// Rests slower than this, by the largest speed, hold what lies between them in time by forces of 1e-12.
 inline constexpr double loose = 1e-6;
 
@@ -87,6 +118,13 @@ inline constexpr unsigned most_motions = 1000;
 /// A scan of more coordinates would have to be too dense; of so many the ball is filled evenly, of more the
 /// distance from its centre is as of these.
 inline constexpr int most_scanned = 24, most_dimensions = 4;
+/// Lengths of velocities on which curves of arrivals are looked for, at first and in each ring beyond, and
+/// how many times more with one coordinate.
+inline constexpr int first_levels = 8, further_levels = 5, denser_in_one = 3;
+/// Times, by the duration, until which curves are looked for and followed; and velocities, by the reach.
+inline constexpr double seed_until = 1.5, follow_until = 2, follow_beyond = 100;
+/// Directions in which the least velocity is looked for.
+inline constexpr int directions_tried = 24;
 /// Newton steps for a velocity of given energy, and how near they come, relative.
 inline constexpr int most_energy_steps = 30;
 inline constexpr double energy_error = 1e-9;
@@ -153,7 +191,7 @@ inline constexpr int inverse_iterations = 4;
 inline constexpr double longest_family_step = 0.5;
 inline constexpr int most_family_steps = 60, most_null_rounds = 12;
 /// Of both attempts, from the path that was found and from the guess.
-inline constexpr int most_steps_in_all = 400;
+inline constexpr int most_steps_in_all = 800;
 /// Whole steps from where no direction is null, until they are this part of the range.
 inline constexpr int whole_steps = 4;
 inline constexpr double near_extremal = 1e-3;
@@ -162,6 +200,17 @@ inline constexpr double arrived = 1e-14, nearly = 1e-10;
 /// Other members of the family are looked for at this part of the range to both sides. There, the force along
 /// the null directions, relative to the largest momentum, is at most this: roundoff.
 inline constexpr double aside = 0.05, no_force = 1e-10;
+/// Members at that distance are nearer to the guess if the square of their distance is less by this part of
+/// the square of the range: more than roundoff. Steps along the family to the nearest, and how often it is
+/// looked for.
+inline constexpr double nearer = 1e-9;
+inline constexpr int most_slides = 40, most_nearer = 4;
+/// Factors of steps along the family.
+inline constexpr double least_relaxation = 0.1, largest_relaxation = 10;
+/// Directions of two copies that depend on others but for this part are the same.
+inline constexpr double dependent = 0.1;
+/// A path so small by the guess is roundoff.
+inline constexpr double roundoff_of_guess = 1e-13;
 /// Part of the tolerance that the elements may take.
 inline constexpr double family_share = 0.3;
 
@@ -179,6 +228,8 @@ inline constexpr int most_passes = 10, highest_guess_degree = 12;
 /// Samples of a motion, elements that follow it, and their degree.
 inline constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
 inline constexpr int kept_degree = 7;
+/// Their degree where a step amplifies all that doubles have lost.
+inline constexpr int exact_degree = 12;
 /// A path of chance that needs more elements than this comes too near a singularity.
 inline constexpr int most_launched = 128;
 /// A singularity is near where elements differ so much.
@@ -238,9 +289,13 @@ inline constexpr int most_rows = 12;
 inline constexpr int motions_each = 8, least_motions = 24;
 /// Motions for each extremal that is wanted: of chaotic systems there are always more.
 inline constexpr int most_motions_each = 60;
+/// Of integrators, in all, of the search for all motions that arrive; and its part of the time there is.
+inline constexpr int most_scan_steps = 1500000;
+inline constexpr double arrivals_share = 0.3;
 /// The ball reaches so much further than the extremals that are wanted; and grows so, so often in vain, where
-/// there are not enough in it.
-inline constexpr double reach_beyond = 1.1, growth_of_reach = 1.4;
+/// there are not enough in it; more where curves of arrivals are followed, for few of fast motions are
+/// costly.
+inline constexpr double reach_beyond = 1.1, growth_of_reach = 1.4, growth_of_arrivals = 2.5;
 inline constexpr int most_growths = 4;
 /// Motions for each extremal known that may lead nowhere, in a row.
 inline constexpr int most_astray = 40;
@@ -252,5 +307,21 @@ inline constexpr int returns_each = 2;
 inline constexpr unsigned spare_loops = 1;
 
 }  // namespace several
+
+namespace start_scan {
+
+/// Of an integrator's step, relative.
+inline constexpr double step_error = 1e-8;
+inline constexpr int most_integrator_steps = 2000;
+/// Of one range; and how often an interval is halved where the middle is off the mean of its ends by more
+/// than this part of them.
+inline constexpr int samples = 96, most_halvings = 6;
+inline constexpr double straight = 0.1;
+/// Zeros are known to this part of the interval, or of the values at its ends; where the integrator fails, at
+/// least to the second.
+inline constexpr double met = 1e-7, nearly_met = 1e-3;
+inline constexpr int most_sections = 60;
+
+}  // namespace start_scan
 
 }  // namespace extremal::limits

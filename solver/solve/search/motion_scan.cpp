@@ -8,6 +8,7 @@
 #include "motion/flow.hpp"
 #include "motion/sample.hpp"
 #include "solve/guess/starting_ends.hpp"
+#include "solve/search/arrivals.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -90,6 +91,78 @@ Eigen::VectorXd MotionScan::direction() {
     for (double& x : u) x = std::sqrt(-2 * std::log(unit())) * std::cos(2 * std::numbers::pi * unit());
   while (!(u.norm() > 0));
   return u.normalized();
+}
+
+/// Motions of L̃ keep to the manifold only if they begin on it: their velocities have fewer coordinates.
+bool MotionScan::has_curves() const {
+  return usable_ && start_.size() <= most_followed && !problem_.manifold;
+}
+
+double MotionScan::slowest() const {
+  const auto n = static_cast<std::size_t>(start_.size());
+  const Lagrangian& lagrangian = *problem_.lagrangian;
+  if (problem_.duration.free || !lagrangian.structure().autonomous) return 0;
+  const std::vector<double>& ends = search_.ends();
+  const std::vector<double> rest(n, 0);
+  Scratch scratch;
+  const std::span<const double> from = std::span(ends).first(n), to = std::span(ends).subspan(n, n);
+  const double needed = -evaluate_at(lagrangian, to, rest, 0, Order::value, scratch).value;
+  const double at_rest = -evaluate_at(lagrangian, from, rest, 0, Order::value, scratch).value;
+  if (!(needed > at_rest)) return 0;
+  double least = INFINITY;
+  for (int k = 0; k < directions_tried; ++k) {
+    const double angle = 2 * std::numbers::pi * k / directions_tried;
+    Eigen::VectorXd direction = Eigen::VectorXd::Constant(1, k % 2 == 0 ? 1 : -1);
+    if (n == 2) direction = Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    Eigen::VectorXd v = inverse_root_ * direction * std::sqrt(2 * (needed - at_rest));
+    if (!scale_to_energy(lagrangian, from, needed, {v.data(), n})) return 0;
+    least = std::min(least, (root_ * v).norm());
+  }
+  return least;
+}
+
+bool MotionScan::all(double nearest, double farthest, const std::function<bool(int steps)>& more,
+                     const std::function<void(const Guess& motion, double duration)>& visit) {
+  const auto n = static_cast<std::size_t>(start_.size());
+  const Lagrangian& lagrangian = *problem_.lagrangian;
+  const Duration& given = problem_.duration;
+  const auto scale = [&](Eigen::VectorXd& v) {
+    return scale_to_energy(lagrangian, {start_.data(), n}, *given.energy, {v.data(), n});
+  };
+  const bool first = !arrivals_;
+  if (first) {
+    const Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(search_.ends().data() + n, start_.size());
+    double speed = farthest;
+    if (given.free) {
+      Eigen::VectorXd v = inverse_root_ * Eigen::VectorXd::Unit(start_.size(), 0);
+      if (!scale(v)) return false;
+      speed = (root_ * v).norm();
+    }
+    arrivals_ = std::make_unique<Arrivals>(lagrangian, start_, end, root_, speed, given.value);
+  }
+  arrivals_->count_by(more);
+  const auto take = [&](const Arrivals::Arrival& arrival) {
+    const Eigen::VectorXd v = inverse_root_ * arrival.w;
+    const Guess motion =
+        motion_from(lagrangian, {start_.data(), n}, {v.data(), n}, arrival.time, [] { return true; });
+    if (motion.given()) visit(motion, arrival.time);
+  };
+  if (given.free) {
+    for (const Arrivals::Arrival& arrival : arrivals_->sweep(1, farthest, scale)) take(arrival);
+    return more(0);
+  }
+  const int levels = (first ? first_levels : further_levels) * (n == 1 ? denser_in_one : 1);
+  for (int k = 0; k < levels && more(0); ++k) {
+    // Denser towards the least energies, where motions take longest.
+    const double root_part = (k + 0.5) / levels, part = root_part * root_part;
+    const double speed = std::sqrt(nearest * nearest + part * (farthest * farthest - nearest * nearest));
+    for (const Arrivals::Arrival& seed : arrivals_->sweep(speed, seed_until * given.value))
+      if (more(0) && !arrivals_->followed(seed))
+        for (const Arrivals::Arrival& arrival :
+             arrivals_->along(seed, follow_beyond * farthest, follow_until * given.value))
+          take(arrival);
+  }
+  return more(0);
 }
 
 bool MotionScan::next(double reach) {

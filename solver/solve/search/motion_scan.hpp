@@ -2,9 +2,11 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <memory>
 #include <random>
 #include <span>
 
+#include "solve/search/arrivals.hpp"
 #include "solve/search/search.hpp"
 
 /// \file Motions from the start of a problem.
@@ -20,11 +22,13 @@ Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::
                   double duration, const std::function<bool()>& count);
 
 inline constexpr const char* from_motion = "homotopy in the ends from a motion";
+inline constexpr const char* from_arrival = "newton from a motion that arrives";
 
-/// Motions whose velocities at the start fill a ball evenly, each led to the end that it misses. A velocity
-/// is an extremal's name: all of those with velocities in the ball are led to, some by more motions than
-/// others. Its radius, the reach, is in the norm of ∂²L/∂q'∂q' at the start; or, where the energy is given
-/// and the duration free, the longest duration.
+/// Motions from the start whose velocities lie in a ball. A velocity is an extremal's name. The radius of the
+/// ball, the reach, is in the norm of ∂²L/∂q'∂q' at the start; or, where the energy is given and the duration
+/// free, the longest duration. In up to two coordinates curves of arrivals are followed. In more, motions
+/// fill the ball evenly, and each is led to the end that it misses: all extremals with velocities in the ball
+/// are led to, some by more motions than others.
 class MotionScan {
  public:
   MotionScan(const Problem& problem, Search& search);
@@ -34,10 +38,22 @@ class MotionScan {
   double reach_of(const Solution& solution) const;
   double least_reach(double extent) const;
 
-  /// The next motion in reach; whether it is led to an extremal, which the search's path nearly is then.
+  /// Whether curves of arrivals can be followed.
+  bool has_curves() const;
+  /// The least reach of motions whose energy suffices for the end. q'·∂L/∂q' − L grows along q' where L is
+  /// convex in q': so at the end it is at least −L(q(T), 0).
+  double slowest() const;
+  /// Visits the motions that meet the end, whose curves come through a reach between two. False if there were
+  /// not enough integrator steps: `more` is told how many were taken.
+  bool all(double nearest, double farthest, const std::function<bool(int steps)>& more,
+           const std::function<void(const Guess& motion, double duration)>& visit);
+
+  /// The next of motions that fill the ball; whether it is led to an extremal, which the search's path nearly
+  /// is then.
   bool next(double reach);
 
  private:
+  static constexpr int most_followed = 2;
   double unit();
   Eigen::VectorXd direction();
 
@@ -46,6 +62,7 @@ class MotionScan {
   bool usable_;
   Eigen::VectorXd start_;
   Eigen::MatrixXd root_, inverse_root_;  ///< of the matrix of the norm
+  std::unique_ptr<Arrivals> arrivals_;
   std::mt19937_64 random_{20240229};
 };
 

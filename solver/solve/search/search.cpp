@@ -9,6 +9,7 @@
 #include "solve/homotopy/duration_homotopy.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/periodic/equilibrium.hpp"
+#include "solve/search/balance.hpp"
 #include "solve/search/continuum.hpp"
 #include "solve/search/descent.hpp"
 #include "solve/search/limits.hpp"
@@ -67,6 +68,15 @@ Search::Pursuit Search::pursue(const char* strategy) {
   const auto doubted = !problem_.has_ends() ? Refinement::Result::failed : Refinement::Result::unreachable;
   if (converged && doubtful) return {doubted, doubtful};
   return {converged && acceptance_ ? accepted() : result, doubtful};
+}
+
+/// Doubles are faster, and often good enough.
+Search::Pursuit Search::pursue_guess() {
+  Pursuit result = pursue(from_guess);
+  if (result.result == Refinement::Result::converged || options_.deadline.passed()) return result;
+  if (!follow_with_double_digits()) return result;
+  refinement_.allow(allowance_);
+  return pursue(from_guess);
 }
 
 /// Whether the path that meets the tolerance is an extremal: if not, another guess may lead to one.
@@ -153,10 +163,9 @@ bool Search::from_line() {
   return result;
 }
 
-/// Between fixed ends that are conjugate: the member nearest to the guess, where there is a family.
+/// Where the second variation is singular: the member nearest to the guess, if there is a family.
 bool Search::on_family() {
-  if (problem_.ends.free > 0 || problem_.duration.free || !problem_.has_ends() || problem_.paired)
-    return false;
+  if (problem_.duration.free || !problem_.has_ends()) return false;
   if (problem_.lagrangian->kinks()) return false;
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   const std::string failure = outcome_.message;
@@ -180,8 +189,17 @@ bool Search::on_family() {
   // The path that was found may be a member, or near one.
   const bool finite = std::ranges::all_of(found.nodes(), [](double x) { return std::isfinite(x); });
   const std::vector<double> mesh(found.mesh().begin(), found.mesh().end());
-  if ((finite && nearest_of_family(problem_, options_, w_, mesh, fill, resample, count, outcome_)) ||
-      nearest_of_family(problem_, options_, w_, mesh_, fill, fill, count, outcome_)) {
+  const auto not_reached = FamilySearch::not_reached;
+  const FamilySearch there = finite ? nearest_of_family(problem_, options_, w_, mesh, fill, resample, count,
+                                                        outcome_)
+                                    : not_reached,
+                     near_guess =
+                         there == FamilySearch::found
+                             ? there
+                             : nearest_of_family(problem_, options_, w_, mesh_, fill, fill, count, outcome_);
+  no_family_ = there == FamilySearch::none || near_guess == FamilySearch::none;
+  // A shift between rests that changes the action by less than roundoff makes no family.
+  if (near_guess == FamilySearch::found && !Balance(problem_, path_).exists()) {
     outcome_.status = Status::converged;
     if (!acceptance_ || accepted() == Refinement::Result::converged) return true;
   }
@@ -191,6 +209,17 @@ bool Search::on_family() {
   outcome_.message = failure;
   refinement_.rebind();
   return false;
+}
+
+/// The path that was accepted may be one of a family, and another member nearer to the guess.
+void Search::nearest_to_guess() {
+  if (!acceptance_ || acceptance_->nullity() == 0 || !problem_.has_ends() || problem_.manifold ||
+      problem_.phase || outcome_.shifts_held)
+    return;
+  const Outcome accepted = outcome_;
+  if (on_family()) return;
+  outcome_ = accepted;
+  refinement_.rebind();
 }
 
 const ElementTables& Search::open(const std::vector<double>& mesh, int degree) {
@@ -245,8 +274,9 @@ Search::GuessKind Search::prepare() {
 
 const Outcome& Search::run_near_guess() {
   if (prepare() == GuessKind::undefined) return outcome_;
-  outcome_.first_range = scales(path_, refinement_.tables()).range;
-  const auto [result, doubtful] = pursue(from_guess);
+  // Between fixed ends a path may well be at rest.
+  if (problem_.ends.free > 0) outcome_.first_range = scales(path_, refinement_.tables()).range;
+  const auto [result, doubtful] = pursue_guess();
   outcome_.hidden = result == Refinement::Result::unreachable && !doubtful;
   if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
   return outcome_;
@@ -256,10 +286,12 @@ const Outcome& Search::run(Acceptance* acceptance) {
   const GuessKind guess = prepare();
   if (guess == GuessKind::undefined) return outcome_;
   acceptance_ = acceptance;
-  auto [result, doubtful] = pursue(from_guess);
+  auto [result, doubtful] = pursue_guess();
   if (result != Refinement::Result::converged && on_family()) {
     result = Refinement::Result::converged;
     doubtful = false;
+  } else if (result == Refinement::Result::converged) {
+    nearest_to_guess();
   }
   if (result == Refinement::Result::failed) {
     const std::string failure = outcome_.message;
@@ -288,11 +320,16 @@ const Outcome& Search::run(Acceptance* acceptance) {
     }
   }
   if (result == Refinement::Result::converged) outcome_.status = Status::converged;
-  if (result != Refinement::Result::converged && doubtful && problem_.has_ends()) {
+  if (result != Refinement::Result::converged && (doubtful || no_family_) && problem_.has_ends()) {
     outcome_.status = Status::conjugate_ends;
     outcome_.message =
-        "the second variation is singular or nearly so: the ends may be conjugate, and there is no extremal "
-        "or a family of them; move an end or change the duration";
+        no_family_
+            ? "the ends are conjugate along a path near the guess: its second variation is singular, and a "
+              "force along its null directions remains that no step removes, so that there is neither an "
+              "extremal nor a family of them near; move an end, change the duration, or try another guess"
+            : "the second variation is singular or nearly so: the ends may be conjugate, and there is no "
+              "extremal "
+              "or a family of them; move an end or change the duration";
   }
   if (outcome_.status != Status::converged && options_.deadline.passed()) {
     outcome_.status = Status::iteration_limit;

@@ -40,6 +40,8 @@ class Search {
   /// Leads a motion from the start, which misses the end, through extremals with other ends to those of the
   /// problem: path() is nearly one of it then. False if it does not come there. Only for ends that are fixed.
   bool connect(const Guess& motion, double duration);
+  /// Pursues a motion from the start that nearly meets the end; whether an extremal was found.
+  bool refine_motion(const Guess& motion, double duration, const char* strategy);
   /// Leaves a saddle along its direction of most negative curvature, to either `side` (−1, 1), for a
   /// minimiser.
   bool descend_from(const Trajectory& saddle, double side);
@@ -79,9 +81,11 @@ class Search {
   GuessKind prepare();
   GuessKind begin();
   bool mesh_of_motion();
+  bool follow_with_double_digits();
   void end_at_kinks_of_guess();
   bool resolve_guess();
   Pursuit pursue(const char* strategy);
+  Pursuit pursue_guess();
   bool collapsed() const;
   Refinement::Result accepted();
   bool found(const char* strategy);
@@ -98,6 +102,7 @@ class Search {
   bool from_motions();
   bool from_noise(unsigned tries);
   bool on_family();
+  void nearest_to_guess();
 
   const Problem& problem_;
   const Problem* guess_;  ///< whose guess is started from
@@ -112,6 +117,7 @@ class Search {
   int allowance_ = 0;           ///< of Newton steps
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others
+  bool no_family_ = false;      ///< the ends are conjugate near the guess, without a family
   unsigned seed_ = 0;
   std::set<Met> met_;
 };

@@ -55,7 +55,8 @@ Several::Several(const Problem& problem, const SolveOptions& options, Workspace&
       search_(problem, options, workspace),
       path_(search_.path()),
       loops_(problem, options, workspace, search_),
-      motions_(problem, search_) {}
+      motions_(problem, search_),
+      starts_(problem) {}
 
 /// Whether an orbit is one of a shorter period, run through several times. One that a symmetry of L closes
 /// after m segments may repeat itself after any number of these.
@@ -93,9 +94,11 @@ int Several::add(Solution candidate, bool held) {
     return -1;
   }
   const bool closed = problem_.periodic && problem_.lagrangian->structure().autonomous;
+  const bool adrift = !problem_.periodic && problem_.boundary.rows == 0 && problem_.boundary.momenta.empty();
   const int number = find([&](const Solution& other) {
-    return closed ? same_orbit(candidate, other, options_.tolerance)
-                  : !held && same_continuum(candidate, other, options_.tolerance);
+    return closed   ? same_orbit(candidate, other, options_.tolerance)
+           : adrift ? same_but_for_place(candidate, other, options_.tolerance)
+                    : !held && same_continuum(candidate, other, options_.tolerance);
   });
   if (number >= 0) return number;
   found_.push_back(std::move(candidate));
@@ -328,6 +331,82 @@ bool Several::leads_to_known() {
          }) >= 0;
 }
 
+/// All motions that meet the end, of growing reach, until enough are found or no more seem to be in reach.
+/// Whether that can be told.
+bool Several::follow_arrivals() {
+  const Deadline deadline = options_.deadline.share(arrivals_share);
+  double nearest = motions_.slowest();
+  double farthest = reach_beyond * std::max(wanted_reach(), nearest);
+  for (int growths = 0; growths < most_growths;) {
+    const std::size_t before = found_.size();
+    const auto more = [&](int steps) {
+      scan_steps_ += steps;
+      return scan_steps_ < most_scan_steps && !deadline.passed();
+    };
+    const bool complete = motions_.all(nearest, farthest, more, [&](const Guess& motion, double duration) {
+      search_.renew(patience);
+      ++scanned_;
+      if (search_.refine_motion(motion, duration, from_arrival)) keep();
+    });
+    if (!complete) return false;
+    const bool enough = static_cast<int>(found_.size()) >= most_;
+    nearest = farthest;
+    if (enough && farthest >= wanted_reach()) return true;
+    farthest = enough ? reach_beyond * wanted_reach() : farthest * growth_of_arrivals;
+    growths = found_.size() > before ? 0 : growths + 1;
+  }
+  return true;
+}
+
+/// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.
+/// Whether that can be told.
+bool Several::scan_starts() {
+  const Deadline deadline = options_.deadline.share(arrivals_share);
+  const double centre = problem_.ends.fixed[0] ? 0 : search_.ends()[0];
+  const auto more = [&](int steps) {
+    scan_steps_ += steps;
+    return scan_steps_ < most_scan_steps && !deadline.passed();
+  };
+  const auto known = [&] {
+    double reach = 0, v = 0, q = 0;
+    for (const Solution& s : found_) {
+      s.trajectory.at(0, {&q, 1}, {&v, 1});
+      const double w = std::abs(starts_.unknown({q, v}) - centre);
+      if (std::isfinite(w)) reach = std::max(reach, w);
+    }
+    return reach;
+  };
+  const auto unit = [&] {
+    if (!problem_.ends.fixed[0]) return scale_;
+    const double q = search_.ends()[0];
+    return std::abs(starts_.unknown({q, scale_ / problem_.duration.value}) - starts_.unknown({q, 0}));
+  };
+  double nearest = 0, farthest = reach_beyond * std::max(known(), unit());
+  if (!(farthest > 0) || !std::isfinite(farthest)) return false;
+  for (int growths = 0; growths < most_growths; farthest *= growth_of_arrivals) {
+    std::vector<double> zeros;
+    if (!starts_.zeros(centre + nearest, centre + farthest, more, zeros) ||
+        !starts_.zeros(centre - nearest, centre - farthest, more, zeros))
+      return false;
+    const std::size_t before = found_.size();
+    std::ranges::sort(zeros, {}, [&](double w) { return std::abs(w - centre); });
+    for (const double w : zeros) {
+      const std::optional<StartScan::State> start = starts_.state(w);
+      if (!start) continue;
+      const double q = start->q, v = start->v;
+      const Guess motion =
+          motion_from(*problem_.lagrangian, {&q, 1}, {&v, 1}, problem_.duration.value, [] { return true; });
+      search_.renew(patience);
+      ++scanned_;
+      if (motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start)) keep();
+    }
+    nearest = farthest;
+    if (static_cast<int>(found_.size()) >= most_) return true;
+    growths = found_.size() > before ? 0 : growths + 1;
+  }
+  return true;
+}
+
 /// Motions to where no extremal between those wanted is likely to be missing; where there are too few, to
 /// where none is likely to be in reach.
 void Several::scan() {
@@ -389,14 +468,18 @@ std::vector<Solution> Several::run(int most) {
   const bool begun = converged && add(solution) >= 0;
   std::optional<Solution> failed;
   if (!begun) failed = repeating_ ? std::move(*repeating_) : std::move(solution);
-  if (!begun && !loops_.usable()) return {std::move(*failed)};
+  if (!begun && !loops_.usable() && !motions_.has_curves() && !starts_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
   if (begun) descend();
-  if (begun) deflate();
-  guess();
-  while (wanted())
-    if (!trace_families()) guess();
-  descend();
+  const bool told = (most_ > 1 || !begun) &&
+                    ((motions_.has_curves() && follow_arrivals()) || (starts_.usable() && scan_starts()));
+  if (!told && (!found_.empty() || loops_.usable())) {
+    if (begun) deflate();
+    guess();
+    while (wanted())
+      if (!trace_families()) guess();
+    descend();
+  }
   if (found_.empty()) {
     if (failed->converged())
       failed->message += fmt::format(
@@ -406,7 +489,7 @@ std::vector<Solution> Several::run(int most) {
     failed->seconds_solve = solving();
     return {std::move(*failed)};
   }
-  if (most_ > 1 && motions_.usable()) scan();
+  if (most_ > 1 && motions_.usable() && !told) scan();
   sort_by_action(found_);
   const std::size_t all = found_.size();
   if (all > static_cast<std::size_t>(most_)) found_.resize(most_);

@@ -11,6 +11,7 @@
 #include "solve/search/loop_search.hpp"
 #include "solve/search/motion_scan.hpp"
 #include "solve/search/search.hpp"
+#include "solve/search/start_scan.hpp"
 
 /// \file Several extremals of one problem.
 
@@ -58,6 +59,8 @@ class Several {
   void trace_family(std::size_t solution, int family);
   std::unique_ptr<Homotopy> leave(int family, bool onward);
   void load(const Solution& solution);
+  bool follow_arrivals();
+  bool scan_starts();
   void scan();
   double wanted_reach() const;
   int within(double reach) const;
@@ -71,6 +74,7 @@ class Several {
   Path& path_;  ///< of the search
   LoopSearch loops_;
   MotionScan motions_;
+  StartScan starts_;
   std::vector<Solution> found_;
   std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times
   double scale_ = 1;                   ///< size of the problem
@@ -79,6 +83,7 @@ class Several {
   unsigned seed_ = 0;       ///< of the next guess
   unsigned enough_at_ = 0;  ///< guess after which there were as many extremals as are wanted
   int returns_ = 0;         ///< loops since the last find that led to known orbits
+  long scan_steps_ = 0;     ///< of integrators
   int scanned_ = 0;         ///< motions
   int families_ = 0;
   std::size_t descended_ = 0;              ///< extremals that were left downhill where they are saddles

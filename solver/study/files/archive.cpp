@@ -34,8 +34,10 @@ uLong read(void*, void* stream, void* into, uLong count) {
 
 uLong write(void*, void* stream, const void* from, uLong count) {
   Memory& m = memory(stream);
-  m.bytes.resize(std::max<std::size_t>(m.bytes.size(), m.at + count));
-  std::memcpy(m.bytes.data() + m.at, from, count);
+  const auto* const first = static_cast<const char*>(from);
+  const std::size_t known = std::min<std::size_t>(count, m.bytes.size() - m.at);
+  std::copy_n(first, known, m.bytes.data() + m.at);
+  m.bytes.append(first + known, count - known);
   m.at += count;
   return count;
 }
@@ -72,21 +74,25 @@ void require(bool fine, const char* what) {
 std::string archive(const std::vector<ArchiveMember>& members) {
   constexpr std::size_t piece = std::size_t{1} << 30;  // the library counts in 32 bits
   Memory m;
-  for (const ArchiveMember& member : members) m.bytes.reserve(m.bytes.capacity() + member.content.size());
-  m.bytes.clear();
+  constexpr std::size_t beside = 512;  // what the archive says of a member
+  std::size_t size = beside;
+  for (const ArchiveMember& member : members) size += member.head.size() + member.content.size() + beside;
+  m.bytes.reserve(size);
   zlib_filefunc64_def f = functions(m);
   const zipFile file = zipOpen2_64(nullptr, APPEND_STATUS_CREATE, nullptr, &f);
   require(file != nullptr, "an archive cannot be begun");
   zip_fileinfo info{};
   info.tmz_date = {0, 0, 0, 1, 0, 1980};  // the same bytes on every day
   for (const ArchiveMember& member : members) {
-    const int large = member.content.size() >= piece;
+    const int large = member.head.size() + member.content.size() >= piece;
     bool fine = zipOpenNewFileInZip64(file, member.name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, 0, 0,
                                       large) == ZIP_OK;
-    for (std::size_t at = 0; fine && at < member.content.size(); at += piece) {
-      const std::string_view part = member.content.substr(at, piece);
-      fine = zipWriteInFileInZip(file, part.data(), static_cast<unsigned>(part.size())) == ZIP_OK;
-    }
+    for (std::string_view rest : {std::string_view(member.head), member.content})
+      while (fine && !rest.empty()) {
+        const std::string_view part = rest.substr(0, piece);
+        fine = zipWriteInFileInZip(file, part.data(), static_cast<unsigned>(part.size())) == ZIP_OK;
+        rest.remove_prefix(part.size());
+      }
     require(fine && zipCloseFileInZip(file) == ZIP_OK, "an archive cannot be written");
   }
   require(zipClose(file, nullptr) == ZIP_OK, "an archive cannot be ended");

@@ -9,9 +9,9 @@
 
 namespace extremal {
 
-/// Names and contents, in this order, stored as they are.
+/// Names and contents, in this order, stored as they are: of each its head, then what is only looked at.
 struct ArchiveMember {
-  std::string name;
+  std::string name, head;
   std::string_view content;
 };
 

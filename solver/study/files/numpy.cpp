@@ -135,14 +135,11 @@ std::map<std::string, NumpyArray> read_npz(std::string_view bytes, std::size_t m
 }
 
 std::string npz(const std::vector<std::pair<std::string, std::span<const double>>>& arrays) {
-  std::vector<std::string> contents;
-  for (const auto& [name, values] : arrays) {
-    std::string& content = contents.emplace_back(header_of(values.size()));
-    content.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-  }
   std::vector<ArchiveMember> members;
-  for (std::size_t k = 0; k < arrays.size(); ++k)
-    members.push_back({arrays[k].first + std::string(suffix), contents[k]});
+  for (const auto& [name, values] : arrays)
+    members.push_back({name + std::string(suffix),
+                       header_of(values.size()),
+                       {reinterpret_cast<const char*>(values.data()), values.size_bytes()}});
   return archive(members);
 }
 

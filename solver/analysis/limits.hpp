@@ -1,0 +1,50 @@
+#pragma once
+
+/// \file The numbers that decide in the analysis of large systems.
+
+namespace extremal::limits {
+
+namespace falling_form {
+
+/// Chebyshev's points at which a form is sampled, and the error that they may leave at the end of its
+/// interval, relative: with the value there the error inside is some ten times smaller, and that of the
+/// zeros.
+inline constexpr int form_samples = 16;
+inline constexpr double most_form_error = 3e-10;
+/// Of a zero, relative to the end of the interval.
+inline constexpr double zero_resolution = 1e-13;
+/// Steps of safeguarded iteration to one zero: they converge quadratically, so that after a small one nothing
+/// is left.
+inline constexpr int most_zero_steps = 16;
+inline constexpr double small_zero_step = 1e-11;
+
+}  // namespace falling_form
+
+namespace jacobi {
+
+/// From so many coordinates on, forms are eliminated by blocks, and conjugate times in a piece found
+/// together.
+inline constexpr int least_large = 48;
+/// Vectors and steps of inverse iteration to the eigenvalue that is nearest zero at the end.
+inline constexpr int end_vectors = 4, end_steps = 6;
+
+}  // namespace jacobi
+
+namespace variation {
+
+/// Doubles of the forms of all pieces, and of a batch of elements on which they are evaluated, at most. If
+/// there are more pieces, forms are evaluated when they are needed.
+inline constexpr double most_forms = 1 << 27, most_batch = 1 << 28;
+
+}  // namespace variation
+
+namespace windows {
+
+/// Up to so many coordinates all conjugate times are found; for more where their number times the cube of the
+/// coordinates is no more than this: about half a minute.
+inline constexpr int always_found = 128;
+inline constexpr double most_work = 1e11;
+
+}  // namespace windows
+
+}  // namespace extremal::limits

@@ -1,0 +1,443 @@
+#include "problem/singular_ends.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "problem/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::singular_ends;
+
+namespace {
+
+bool finite_at(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v, double t) {
+  Scratch scratch;
+  return std::isfinite(evaluate_at(lagrangian, q, v, t, Order::value, scratch).value);
+}
+
+/// One end of a problem, with the mean velocity between the ends.
+struct End {
+  bool at_end = false;
+  std::vector<double> q, mean;
+  std::vector<char> fixed;
+  double time = 0;
+};
+
+End end_of(const Problem& problem, bool at_end) {
+  const std::size_t n = problem.coordinates();
+  const double T = problem.duration.value;
+  End end{.at_end = at_end, .q = {}, .mean = {}, .fixed = {}, .time = at_end ? T : 0};
+  const std::vector<double>& offset = problem.ends.offset;
+  const std::vector<char>& fixed = problem.ends.fixed;
+  for (std::size_t a = 0; a < n; ++a) {
+    const bool both = fixed[a] && fixed[n + a];
+    end.q.push_back(offset[at_end ? n + a : a]);
+    end.fixed.push_back(fixed[at_end ? n + a : a]);
+    end.mean.push_back(both ? (offset[n + a] - offset[a]) / T : 0);
+    // A coordinate that is free here is where its other end is.
+    if (!end.fixed.back()) end.q.back() = offset[at_end ? a : n + a];
+  }
+  return end;
+}
+
+/// Coordinates that are free at an end may be elsewhere.
+bool infinite_at(const Lagrangian& lagrangian, const End& end, double way) {
+  const std::vector<double> rest(end.q.size(), 0);
+  if (finite_at(lagrangian, end.q, rest, end.time) || finite_at(lagrangian, end.q, end.mean, end.time))
+    return false;
+  if (std::ranges::all_of(end.fixed, [](char fixed) { return fixed != 0; })) return true;
+  std::vector<double> q(end.q.size());
+  for (const double side : {-1.0, 1.0}) {
+    for (std::size_t a = 0; a < q.size(); ++a) q[a] = end.q[a] + (end.fixed[a] ? 0 : side * way);
+    if (finite_at(lagrangian, q, rest, end.time)) return false;
+  }
+  return true;
+}
+
+/// p·q' − L with q_a at a distance from its level and its velocity v, that of the others the mean one.
+class EnergyBeside {
+ public:
+  EnergyBeside(const Lagrangian& lagrangian, const End& end, std::size_t a, double side)
+      : lagrangian_(lagrangian), end_(end), a_(a), side_(side), q_(end.q), v_(end.mean) {}
+
+  double operator()(double distance, double speed) {
+    q_[a_] = end_.q[a_] + side_ * distance;
+    v_[a_] = speed * (end_.at_end ? -side_ : side_);
+    const PointValues at = evaluate_at(lagrangian_, q_, v_, end_.time, Order::gradient, scratch_);
+    double energy = -at.value;
+    for (std::size_t b = 0; b < v_.size(); ++b) energy += at.dv[b] * v_[b];
+    return energy;
+  }
+
+  /// The speed at which the energy is the given one, which rises with the speed; 0 if there is none.
+  double speed(double distance, double energy, double guess) {
+    double low = guess, high = guess;
+    for (int k = 0; k < most_quadruplings && !((*this)(distance, low) < energy); ++k) low /= 4;
+    for (int k = 0; k < most_quadruplings && !((*this)(distance, high) > energy); ++k) high *= 4;
+    if (!((*this)(distance, low) < energy && (*this)(distance, high) > energy)) return 0;
+    for (int k = 0; k < bisections; ++k) {
+      const double middle = std::sqrt(low * high);
+      ((*this)(distance, middle) < energy ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
+  }
+
+ private:
+  const Lagrangian& lagrangian_;
+  const End& end_;
+  std::size_t a_;
+  double side_;
+  std::vector<double> q_, v_;
+  Scratch scratch_;
+};
+
+/// γ of d' ~ d^−γ; 0 if no motion leaves the level, or not by a power.
+double exponent(const Lagrangian& lagrangian, const End& end, std::size_t a, double side, double way,
+                double duration) {
+  EnergyBeside energy(lagrangian, end, a, side);
+  double speed = way / duration;
+  const double level = energy(first_distance * way, speed);
+  if (!std::isfinite(level)) return 0;
+  std::vector<double> slopes;
+  for (int k = 0; k < distances; ++k) {
+    const double next = energy.speed(way * first_distance * std::pow(nearer, k + 1), level, speed);
+    if (!(next > 0) || !std::isfinite(next)) return 0;
+    slopes.push_back(-std::log(next / speed) / std::log(nearer));
+    speed = next;
+  }
+  // They differ from γ by a power of the distance: Aitken's extrapolation.
+  const double last = slopes[distances - 1], change = last - slopes[distances - 2],
+               before = slopes[distances - 2] - slopes[distances - 3];
+  if (!(std::abs(change) <= settled)) return 0;
+  return std::abs(change) < 0.9 * std::abs(before) ? last + change * change / (before - change) : last;
+}
+
+struct Powers {
+  double m = 0, time = 0;
+};
+
+/// The simple fraction that an exponent is but for its error; else the exponent.
+double simplified(double gamma, int& denominator) {
+  for (denominator = 2; denominator <= largest_power; ++denominator)
+    if (const double p = std::round(gamma * denominator);
+        p >= 1 && std::abs(gamma - p / denominator) <= whole)
+      return p / denominator;
+  denominator = 0;
+  return gamma;
+}
+
+/// m and m (1 + γ). With m = 1/(1 − γ) the part of L that is infinite becomes w', and what is left powers of
+/// w^2γm: smooth where that is a whole number. Else w is a root with which all powers are whole; or twice m.
+std::optional<Powers> powers_of(double measured) {
+  int denominator = 0;
+  const double gamma = simplified(measured, denominator);
+  if (!(gamma > least_exponent && gamma < largest_exponent)) return std::nullopt;
+  const double m = 1 / (1 - gamma), left = 2 * gamma * m;
+  if (std::abs(left - std::round(left)) < roundoff) return Powers{m, m * (1 + gamma)};
+  if (denominator > 0) return Powers{1.0 * denominator, denominator * (1 + gamma)};
+  return Powers{2 * m, 2 * m * (1 + gamma)};
+}
+
+/// The way between the ends; where there is none, that in which the action is least against it.
+double way_of(const Problem& problem, std::size_t a) {
+  const std::size_t n = problem.coordinates();
+  const std::vector<double>& x = problem.ends.offset;
+  if (problem.ends.fixed[a] && problem.ends.fixed[n + a] && x[a] != x[n + a])
+    return std::abs(x[n + a] - x[a]);
+  return problem.duration.value;
+}
+
+/// To which side of its level L is finite: that of the guess, of the other end, or the only one.
+double side_of(const Problem& problem, const End& end, std::size_t a) {
+  const std::size_t n = problem.coordinates();
+  const double way = way_of(problem, a) * first_distance;
+  const auto allowed = [&](double side) {
+    std::vector<double> q = end.q, v(n, 0);
+    q[a] += side * way;
+    return finite_at(*problem.lagrangian, q, v, end.time);
+  };
+  double towards = 0;
+  if (problem.guess.given()) {
+    std::vector<double> q(n);
+    problem.guess.at(0.5, q);
+    towards = q[a] - end.q[a];
+  } else if (problem.ends.fixed[a] && problem.ends.fixed[n + a]) {
+    towards = problem.ends.offset[end.at_end ? a : n + a] - end.q[a];
+  }
+  if (towards != 0) return allowed(std::copysign(1, towards)) ? std::copysign(1, towards) : 0;
+  return allowed(1) ? 1 : allowed(-1) ? -1 : 0;
+}
+
+/// Whether a row of the relation has more than one end value.
+bool coupled(const BoundaryRelation& relation) {
+  std::vector<int> entries(relation.rows, 0);
+  for (const Triplet& entry : relation.matrix) ++entries[entry.row];
+  return std::ranges::any_of(entries, [](int count) { return count != 1; });
+}
+
+bool supported(const Problem& problem) {
+  if (!problem.has_ends() || problem.initial || problem.paired || problem.copies || problem.pair ||
+      problem.manifold || problem.phase || problem.extension || problem.inequalities)
+    return false;
+  const std::size_t n = problem.coordinates();
+  if (n > most_coordinates || !problem.boundary.momenta.empty() || !problem.boundary.costs.empty())
+    return false;
+  return !coupled(problem.boundary);
+}
+
+/// The one coordinate of an end that is at a level, and the side of it on which L is finite; −1 where there
+/// is none, or more than one.
+std::pair<int, double> level_of(const Problem& problem, const End& end) {
+  int coordinate = -1;
+  double side = 0;
+  for (std::size_t a = 0; a < end.q.size(); ++a) {
+    const double towards = end.fixed[a] ? side_of(problem, end, a) : 0;
+    if (towards == 0) continue;
+    if (coordinate >= 0) return {-1, 0};
+    coordinate = static_cast<int>(a);
+    side = towards;
+  }
+  return {coordinate, side};
+}
+
+}  // namespace
+
+std::optional<InfiniteLagrangian> infinite_lagrangian(const Problem& problem) {
+  if (!problem.has_ends() || problem.initial || problem.paired || problem.manifold || problem.phase ||
+      coupled(problem.boundary))
+    return std::nullopt;
+  for (const bool at_end : {false, true}) {
+    const End end = end_of(problem, at_end);
+    if (!infinite_at(*problem.lagrangian, end, problem.duration.value)) continue;
+    InfiniteLagrangian found{.at_end = at_end, .q = end.q};
+    const auto [coordinate, side] = level_of(problem, end);
+    found.coordinate = coordinate;
+    // Where free coordinates are is not known.
+    if (coordinate < 0 && std::ranges::count(end.fixed, 0) > 0) continue;
+    if (coordinate >= 0)
+      found.beside = end.q[coordinate] + side * first_distance * way_of(problem, coordinate);
+    return found;
+  }
+  return std::nullopt;
+}
+
+double EndVariables::time(double s) const {
+  const double x = std::clamp(s / duration, 0.0, 1.0);
+  if (!singular(true)) return duration * std::pow(x, start);
+  return duration - remaining(s);
+}
+
+double EndVariables::remaining(double s) const {
+  const double x = std::clamp(s / duration, 0.0, 1.0), y = 1 - x;
+  if (!singular(true)) return duration * (1 - std::pow(x, start));
+  const double b = std::pow(y, end);
+  return singular(false) ? duration * b / (std::pow(x, start) + b) : duration * b;
+}
+
+double EndVariables::rate(double s) const {
+  const double x = std::clamp(s / duration, 0.0, 1.0), y = 1 - x;
+  if (!singular(true)) return start * std::pow(x, start - 1);
+  if (!singular(false)) return end * std::pow(y, end - 1);
+  const double sum = std::pow(x, start) + std::pow(y, end);
+  return std::pow(x, start - 1) * std::pow(y, end - 1) * (start * y + end * x) / (sum * sum);
+}
+
+double EndVariables::time_inverse(double t) const {
+  if (!singular(true)) return duration * std::pow(std::clamp(t / duration, 0.0, 1.0), 1 / start);
+  if (!singular(false)) return duration - remaining_inverse(duration - t);
+  double low = 0, high = duration;
+  for (int k = 0; k < bisections; ++k) {
+    const double middle = 0.5 * (low + high), x = middle / duration;
+    const double a = std::pow(x, start), b = std::pow(1 - x, end);
+    (duration * a / (a + b) < t ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double EndVariables::remaining_inverse(double rest) const {
+  if (!singular(false)) return duration * std::pow(std::clamp(rest / duration, 0.0, 1.0), 1 / end);
+  EndVariables mirrored = *this;
+  std::swap(mirrored.start, mirrored.end);
+  return mirrored.time_inverse(rest);
+}
+
+double EndVariables::coordinate_at(double w) const { return level + side * std::pow(w, power); }
+
+double EndVariables::variable_at(double q) const {
+  return std::pow(std::max(0.0, side * (q - level)), 1.0 / power);
+}
+
+double EndVariables::rounded(double w, double q) const {
+  const double distance = side * (q - level);
+  return level != 0 && w > 0 && distance > 0 ? std::pow(distance, 1.0 / power) : w;
+}
+
+std::optional<EndVariables> singular_ends(const Problem& problem) {
+  if (!supported(problem)) return std::nullopt;
+  const Lagrangian& lagrangian = *problem.lagrangian;
+  const End ends[] = {end_of(problem, false), end_of(problem, true)};
+  std::optional<EndVariables> found;
+  for (const End& end : ends) {
+    if (!infinite_at(lagrangian, end, problem.duration.value)) continue;
+    const auto [coordinate, side] = level_of(problem, end);
+    if (coordinate < 0) return std::nullopt;
+    const auto a = static_cast<std::size_t>(coordinate);
+    const auto powers =
+        powers_of(exponent(lagrangian, end, a, side, way_of(problem, a), problem.duration.value));
+    if (!powers) return std::nullopt;
+    EndVariables variables{.coordinate = coordinate,
+                           .level = end.q[a],
+                           .side = side,
+                           .power = powers->m,
+                           .duration = problem.duration.value};
+    if (found && (found->coordinate != variables.coordinate || found->level != variables.level ||
+                  found->side != variables.side || found->power != variables.power))
+      return std::nullopt;
+    if (!found) found = variables;
+    (end.at_end ? found->end : found->start) = powers->time;
+  }
+  return found;
+}
+
+namespace {
+
+/// A guess given by the user, with a distance from the level that rises as that of motions does.
+class ShapedGuess {
+ public:
+  ShapedGuess(const Problem& problem, const EndVariables& variables)
+      : problem_(problem), x_(variables), q_(problem.coordinates()) {
+    for (int k = 0; k <= guess_samples; ++k)
+      most_ = std::max(most_, distance(static_cast<double>(k) / guess_samples));
+    if (x_.singular(false)) start_ = factor(rise(beside, 2 * beside), x_.power / x_.start);
+    if (x_.singular(true)) end_ = factor(rise(1 - beside, 1 - 2 * beside), x_.power / x_.end);
+  }
+
+  double variable(double tau) {
+    const double power = start_ + tau * (end_ - start_);
+    return most_ > 0 ? std::pow(most_ * std::pow(distance(tau) / most_, power), 1.0 / x_.power) : 0;
+  }
+
+ private:
+  double distance(double tau) {
+    problem_.guess.at(tau, q_);
+    return std::max(0.0, x_.side * (q_[x_.coordinate] - x_.level));
+  }
+  double rise(double near, double far) { return std::log2(distance(far) / distance(near)); }
+  /// Only slower rises are made faster.
+  static double factor(double rise, double wanted) { return rise > wanted ? wanted / rise : 1; }
+
+  const Problem& problem_;
+  const EndVariables& x_;
+  std::vector<double> q_;
+  double most_ = 0, start_ = 1, end_ = 1;
+};
+
+/// The guess in w and s, the coordinate of the level `size` times as far from it.
+Guess guess_of(const Problem& problem, const EndVariables& variables, double size) {
+  const std::size_t n = problem.coordinates(), a = variables.coordinate;
+  const double T = variables.duration;
+  const std::vector<double>& x = problem.ends.offset;
+  const std::vector<char>& fixed = problem.ends.fixed;
+  Guess guess;
+  std::vector<double> q(n);
+  std::optional<ShapedGuess> shaped;
+  if (problem.guess.given()) shaped.emplace(problem, variables);
+  for (int k = 0; k <= guess_samples; ++k) {
+    const double tau = static_cast<double>(k) / guess_samples, t = variables.time(tau * T) / T;
+    if (shaped) {
+      problem.guess.at(t, q);
+      q[a] = shaped->variable(t);
+    } else {
+      for (std::size_t b = 0; b < n; ++b) {
+        const double from = fixed[b]       ? x[b]
+                            : fixed[n + b] ? x[n + b]
+                                           : 0,
+                     to = fixed[n + b] ? x[n + b] : from;
+        q[b] = from + t * (to - from);
+      }
+      const double far = std::pow(size, 1.0 / variables.power);
+      const double ends[] = {fixed[a] ? variables.variable_at(x[a]) : far,
+                             fixed[n + a] ? variables.variable_at(x[n + a]) : far};
+      q[a] = ends[0] + tau * (ends[1] - ends[0]);
+      const bool both = variables.singular(false) && variables.singular(true);
+      // An arch whose height is a power of 4 t (T − t)/T².
+      if (both)
+        q[a] = far * std::pow(4 * t * (1 - t), 1 / variables.start);
+      else if (fixed[a] && fixed[n + a])
+        q[a] += far * 4 * tau * (1 - tau);
+    }
+    guess.tau.push_back(tau);
+    guess.q.insert(guess.q.end(), q.begin(), q.end());
+  }
+  return guess;
+}
+
+/// ∫ L̃ ds of a guess by the midpoint rule.
+double action_of(const Lagrangian& lagrangian, const Guess& guess, double duration) {
+  const std::size_t n = lagrangian.structure().coordinates;
+  std::vector<double> q(n), v(n);
+  Scratch scratch;
+  double sum = 0;
+  for (std::size_t k = 0; k + 1 < guess.tau.size(); ++k) {
+    const double step = (guess.tau[k + 1] - guess.tau[k]) * duration;
+    for (std::size_t a = 0; a < n; ++a) {
+      const double before = guess.q[k * n + a], after = guess.q[(k + 1) * n + a];
+      q[a] = 0.5 * (before + after);
+      v[a] = (after - before) / step;
+    }
+    const double t = 0.5 * (guess.tau[k] + guess.tau[k + 1]) * duration;
+    sum += step * evaluate_at(lagrangian, q, v, t, Order::value, scratch).value;
+  }
+  return sum;
+}
+
+/// How far the path leaves its level between the ends, or where it is free: with that the action is least.
+Guess best_guess(const Problem& problem, const EndVariables& variables, const Lagrangian& lagrangian) {
+  if (problem.guess.given()) return guess_of(problem, variables, 0);
+  const std::size_t n = problem.coordinates(), a = variables.coordinate;
+  const bool both = variables.singular(false) && variables.singular(true);
+  const bool between = !both && problem.ends.fixed[a] && problem.ends.fixed[n + a];
+  const double T = problem.duration.value;
+  Guess best = guess_of(problem, variables, between ? 0 : T);
+  double least = between ? action_of(lagrangian, best, T) : INFINITY;
+  const Guess straight = best;
+  for (int k = -scanned_sizes; k <= scanned_sizes; ++k) {
+    Guess guess = guess_of(problem, variables, T * std::pow(2.0, k));
+    const double action = action_of(lagrangian, guess, T);
+    if (!(action < least)) continue;
+    // It may fall without bound.
+    if (k == scanned_sizes) return straight;
+    least = action;
+    best = std::move(guess);
+  }
+  return best;
+}
+
+}  // namespace
+
+Problem smoothed(const Problem& problem, const EndVariables& variables) {
+  Problem result = problem;
+  const auto lagrangian = std::make_shared<SmoothedLagrangian>(problem.lagrangian, variables);
+  const int n = problem.coordinates();
+  for (const Triplet& entry : problem.boundary.matrix)
+    if (entry.column % n == variables.coordinate)
+      result.boundary.value[entry.row] =
+          entry.value * variables.variable_at(problem.boundary.value[entry.row] / entry.value);
+  result.ends = solve_relation(result.boundary);
+  result.guess = best_guess(problem, variables, *lagrangian);
+  result.lagrangian = lagrangian;
+  result.symmetries.clear();
+  result.reduction = nullptr;
+  result.curvature.reset();
+  result.duration.free = false;
+  result.duration.energy.reset();
+  result.duration.where = nullptr;
+  return result;
+}
+
+}  // namespace extremal

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "problem/problem.hpp"
+#include "system/open_ends.hpp"
+
+/// \file Ends at which L is infinite but its integral is not, as of a fall from rest itself.
+///
+/// At such an end one coordinate is at a level beside which L is finite. On motions of energy E its distance
+/// d from the level has d' ~ d^−γ, so d ~ t^(1/(1+γ)), and ∫ L dt is finite if γ < 1. Let γ = p/m. Then
+///   d = w^m,  t = T φ(s/T),  φ ~ (s/T)^(m + p)
+/// make w(s) a smooth function, which rises like s, and L̃(w, w', s) = φ' L a smooth Lagrangian along it. The
+/// extremals, the action and the momenta of the other coordinates stay what they are.
+
+namespace extremal {
+
+/// The variables (w, s) of one coordinate and of the time.
+struct EndVariables {
+  int coordinate = 0;
+  double level = 0, side = 1;  ///< q = level + side w^m
+  double power = 1;            ///< m
+  double start = 1, end = 1;   ///< exponents of φ at both ends; 1: that end is regular
+  double duration = 0;         ///< T
+
+  bool singular(bool at_end) const { return (at_end ? end : start) > 1; }
+  /// Whether L̃ vanishes at the start or at the end, and the second variation beside it.
+  bool fades() const {
+    const auto by = [this](double exponent) { return std::abs(2 * power - exponent - 1) > 1e-3; };
+    return (singular(false) && by(start)) || (singular(true) && by(end));
+  }
+  double time(double s) const;
+  double rate(double s) const;       ///< dt/ds
+  double remaining(double s) const;  ///< T − t, to its last digits
+  double time_inverse(double t) const;
+  double remaining_inverse(double rest) const;  ///< T − s by T − t
+  double coordinate_at(double w) const;
+  double variable_at(double q) const;  ///< w
+  /// The w of q(w) as it is rounded: next to its level q has few digits, and derivatives by w are to be those
+  /// at the same point.
+  double rounded(double w, double q) const;
+};
+
+/// L̃.
+class SmoothedLagrangian : public Lagrangian, public OpenEnds {
+ public:
+  SmoothedLagrangian(std::shared_ptr<const Lagrangian> base, const EndVariables& variables);
+  void evaluate(const Points& points, Order order, double* out, Scratch& scratch) const override;
+  void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const override;
+
+ private:
+  std::shared_ptr<const Lagrangian> base_;
+  EndVariables variables_;
+};
+
+/// An end at which L is not finite, whatever the velocity.
+struct InfiniteLagrangian {
+  bool at_end = false;
+  std::vector<double> q;
+  int coordinate = -1;  ///< that is at a level; −1: not known
+  double beside = 0;    ///< where that is on the way, near the level
+};
+
+/// The first such end of a problem with ends that are fixed or free.
+std::optional<InfiniteLagrangian> infinite_lagrangian(const Problem& problem);
+
+/// Nothing if L is finite at the ends, if its integral is not, or if more than one coordinate makes it
+/// infinite. Only between ends of which each coordinate is fixed or free. Of a free duration T is the guess.
+std::optional<EndVariables> singular_ends(const Problem& problem);
+
+/// The problem in w and s, with its guess.
+Problem smoothed(const Problem& problem, const EndVariables& variables);
+
+}  // namespace extremal

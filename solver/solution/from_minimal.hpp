@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "problem/minimal_problem.hpp"
+#include "solution/solution.hpp"
+
+/// \file Solutions with constraints, which are found in minimal coordinates.
+
+namespace extremal {
+
+/// The solution in all coordinates; nodes are on the manifold to roundoff. Nothing where its error exceeds
+/// the tolerance, which is relative to the largest range of a coordinate.
+std::optional<Solution> from_minimal(const Problem& problem, const MinimalProblem& minimal, Solution solution,
+                                     double tolerance);
+
+}  // namespace extremal

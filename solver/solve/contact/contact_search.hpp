@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solve/contact/arcs.hpp"
+#include "solve/contact/contact_check.hpp"
+#include "solve/contact/junctions.hpp"
+
+/// \file From one first path to a minimiser.
+
+namespace extremal {
+
+/// One start of the search for a minimiser.
+class ContactSearch {
+ public:
+  /// With `several`, whether a solution belongs to a continuum. Keeps references to options and `solve`.
+  ContactSearch(const Problem& problem, const SolveOptions& options, const ArcSolve& solve, bool several);
+
+  /// From the nodes of a path of the coarsest elements.
+  Solution run(std::vector<double> z);
+
+  /// Whether what was found last is stationary, but no minimum.
+  bool saddle() const { return saddle_; }
+  /// Whether minima of no duration satisfy what closes it; others may.
+  bool no_duration() const { return no_duration_; }
+  /// Whether momenta do not determine all junctions of what was found: it belongs to a continuum.
+  bool singular() const { return singular_; }
+
+ private:
+  std::optional<Solution> join(std::vector<Interval> intervals);
+  bool take_away_touch(const Junctions& path, std::vector<Interval>& intervals) const;
+  std::string describe(const Violation& violation) const;
+  std::optional<Solution> accept(Junctions& path);
+  std::optional<Solution> accept_free(const Junctions& path);
+  std::vector<Interval> coarse_intervals(int elements, std::vector<double> z,
+                                         std::vector<double> multipliers);
+  void refuse(Status status, std::string message);
+
+  Problem problem_;  ///< a free duration is that of the path found last
+  const SolveOptions& options_;
+  const ArcSolve& solve_;
+  Arcs arcs_;
+  bool several_;
+  Guess guess_;
+  Solution failure_;
+  bool singular_ = false, saddle_ = false, no_duration_ = false;
+};
+
+}  // namespace extremal

@@ -1,0 +1,332 @@
+#include "solve/search/arrivals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "motion/dop853.hpp"
+#include "motion/point.hpp"
+#include "solve/search/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::arrivals;
+
+namespace {
+
+using Vector = Arrivals::Vector;
+
+std::span<double> span_of(Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
+
+/// Of length one, where the slope does nothing.
+Vector null_direction(const Eigen::MatrixXd& slope) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slope, Eigen::ComputeFullV);
+  return svd.matrixV().col(slope.cols() - 1);
+}
+
+}  // namespace
+
+Arrivals::Arrivals(const Lagrangian& lagrangian, Vector start, Vector end, Eigen::MatrixXd root, double speed,
+                   double time)
+    : lagrangian_(lagrangian),
+      flow_(lagrangian),
+      n_(static_cast<int>(start.size())),
+      cost_(lagrangian.structure().quadratic ? 1 : implicit_cost),
+      start_(std::move(start)),
+      end_(std::move(end)),
+      root_(std::move(root)),
+      inverse_root_(root_.inverse()),
+      speed_(speed),
+      time_(time),
+      extent_(std::max((root_ * (end_ - start_)).norm(), (root_ * end_).norm())) {
+  if (!(extent_ > 0)) extent_ = speed_ * time_;
+}
+
+/// w by the unit of speed, and the logarithm of the time by its unit.
+Vector Arrivals::unknowns(const Arrival& arrival) const {
+  Vector u(n_ + 1);
+  u.head(n_) = arrival.w / speed_;
+  u[n_] = std::log(arrival.time / time_);
+  return u;
+}
+
+Arrivals::Arrival Arrivals::arrival(const Vector& u) const {
+  return {speed_ * u.head(n_), time_ * std::exp(u[n_])};
+}
+
+/// The motion with its variations by w.
+bool Arrivals::fly(const Vector& u, Miss& miss) {
+  const Arrival goal = arrival(u);
+  Vector v = inverse_root_ * goal.w, q = start_;
+  Vector y = Vector::Zero(2 * n_ * (1 + n_));
+  Scratch scratch;
+  const PointValues at = evaluate_at(lagrangian_, span_of(q), span_of(v), 0, Order::hessian, scratch);
+  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n_, n_);
+  y.head(n_) = start_;
+  if (!flow_.momentum(span_of(q), span_of(v), 0, span_of(y).subspan(n_, n_))) return false;
+  const Eigen::MatrixXd momenta = speed_ * mass * inverse_root_;
+  for (int k = 0; k < n_; ++k) y.segment(2 * n_ * (k + 1) + n_, n_) = momenta.col(k);
+  if (!y.allFinite()) return false;
+  DormandPrince<double> method(
+      [this](double t, std::span<const double> x, std::span<double> slope) {
+        return flow_.slope_with_variations(t, x, slope);
+      },
+      static_cast<int>(y.size()));
+  IntegrationOptions options;
+  options.tolerance = fine_step;
+  options.block = n_;
+  options.controlled = 2 * n_;
+  options.max_steps = most_integrator_steps;
+  double t = 0;
+  const Integrated result = method.advance(t, span_of(y), goal.time, options);
+  if (!counted_(variations_cost * cost_ * (method.steps() + method.rejected())) || result != Integrated::done)
+    return false;
+  if (!flow_.velocity(span_of(y).first(n_), span_of(y).subspan(n_, n_), t, span_of(v))) return false;
+  miss.miss = root_ * (y.head(n_) - end_) / extent_;
+  miss.slope.resize(n_, n_ + 1);
+  for (int k = 0; k < n_; ++k) miss.slope.col(k) = root_ * y.segment(2 * n_ * (k + 1), n_) / extent_;
+  miss.slope.col(n_) = root_ * v * (goal.time / extent_);
+  return miss.miss.allFinite() && miss.slope.allFinite();
+}
+
+/// Newton's method across the normal.
+bool Arrivals::meet(Vector& u, const Vector& normal, Eigen::MatrixXd& slope, int& steps) {
+  double before = INFINITY;
+  for (steps = 0; steps < most_newton_steps; ++steps) {
+    Miss at;
+    if (!fly(u, at)) return false;
+    slope = at.slope;
+    if (at.miss.norm() <= least_miss) return true;
+    Eigen::MatrixXd matrix(n_ + 1, n_ + 1);
+    matrix << at.slope, normal.transpose();
+    Vector right = Vector::Zero(n_ + 1);
+    right.head(n_) = -at.miss;
+    const Vector step = matrix.partialPivLu().solve(right);
+    const double size = step.norm();
+    if (!(size < before * contraction) || !(size < longest_correction * (1 + u.head(n_).norm())))
+      return false;
+    before = size;
+    u += step;
+  }
+  return false;
+}
+
+/// Arrivals at the time between two points of a curve, where its cubic interpolation crosses it.
+void Arrivals::cross(const Vector& a, const Vector& slope_a, const Vector& b, const Vector& slope_b,
+                     double length, std::vector<Arrival>& found) {
+  const auto between = [&](double x) -> Vector {
+    const double y = 1 - x;
+    return y * y * (1 + 2 * x) * a + x * x * (1 + 2 * y) * b + length * x * y * (y * slope_a - x * slope_b);
+  };
+  Vector last = a;
+  for (int k = 1; k <= crossing_samples; ++k) {
+    const Vector next = between(static_cast<double>(k) / crossing_samples);
+    if ((last[n_] < 0) != (next[n_] < 0)) {
+      Vector u = last + (next - last) * (last[n_] / (last[n_] - next[n_]));
+      u[n_] = 0;
+      Eigen::MatrixXd slope;
+      int steps = 0;
+      if (meet(u, Vector::Unit(n_ + 1, n_), slope, steps)) found.push_back(arrival(u));
+    }
+    last = next;
+  }
+}
+
+/// One way along a curve; whether it closes.
+bool Arrivals::trace(const Vector& seed, double sense, double fastest, double longest,
+                     std::vector<Arrival>& found) {
+  Miss at;
+  if (!fly(seed, at)) return false;
+  std::vector<Point>& curve = curves_.emplace_back();
+  Vector u = seed, tangent = sense * null_direction(at.slope);
+  curve.push_back({u, tangent});
+  double length = first_length, last_length = 0;
+  Vector last_tangent = tangent;
+  for (int k = 0; k < most_points && length > least_length; ++k) {
+    // The parabola through the tangents here and before.
+    Vector next = u + length * tangent;
+    if (last_length > 0) next += length * length / (2 * last_length) * (tangent - last_tangent);
+    int steps = 0;
+    if (!meet(next, tangent, at.slope, steps)) {
+      if (!counted_(0)) return false;
+      length *= 0.4;
+      continue;
+    }
+    Vector onward = null_direction(at.slope);
+    double cosine = onward.dot(tangent);
+    if (cosine < 0) {
+      onward = -onward;
+      cosine = -cosine;
+    }
+    if (cosine < sharpest_turn) {
+      length *= 0.4;
+      continue;
+    }
+    cross(u, tangent, next, onward, (next - u).norm(), found);
+    const bool closed = k > 2 && (next - seed).norm() < length;
+    last_length = (next - u).norm();
+    u = next;
+    last_tangent = std::exchange(tangent, onward);
+    curve.push_back({u, tangent});
+    if (closed) return true;
+    if (u.head(n_).norm() * speed_ > fastest || u[n_] > std::log(longest / time_)) return false;
+    if (steps <= 2 && cosine > mild_turn)
+      length = std::min(1.6 * length, longest_length * (1 + u.head(n_).norm()));
+  }
+  return false;
+}
+
+std::vector<Arrivals::Arrival> Arrivals::along(const Arrival& seed, double fastest, double longest) {
+  std::vector<Arrival> found;
+  const Vector u = unknowns(seed);
+  if (!trace(u, 1, fastest, longest, found)) trace(u, -1, fastest, longest, found);
+  return found;
+}
+
+/// A chord of length h is off the curve by h/8 times the angle by which it turns.
+bool Arrivals::followed(const Arrival& arrival) const {
+  const Vector u = unknowns(arrival);
+  for (const std::vector<Point>& curve : curves_)
+    for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
+      const Vector along = curve[k + 1].u - curve[k].u;
+      const double length = along.norm();
+      if (!(length > 0)) continue;
+      const double part = std::clamp((u - curve[k].u).dot(along) / (length * length), 0.0, 1.0);
+      const double turn = (curve[k + 1].tangent - curve[k].tangent).norm();
+      if ((u - curve[k].u - part * along).norm() < length * (turn / 4 + near_curve)) return true;
+    }
+  return false;
+}
+
+/// Where the motion passes q1: with one coordinate the side is 0.
+std::vector<Arrivals::Passage> Arrivals::passages(const Vector& w, double until) {
+  Vector y(2 * n_), v = inverse_root_ * w;
+  y.head(n_) = start_;
+  if (!flow_.momentum(span_of(y).first(n_), span_of(v), 0, span_of(y).subspan(n_, n_))) return {};
+  DormandPrince<double> method([this](double t, std::span<const double> x,
+                                      std::span<double> slope) { return flow_.slope(t, x, slope); },
+                               2 * n_);
+  IntegrationOptions options;
+  options.tolerance = coarse_step;
+  options.block = n_;
+  std::vector<Passage> found;
+  std::vector<Vector> away;  // from q1, the last three
+  std::vector<double> times;
+  const auto add = [&](double t, const Vector& q) {
+    away.push_back(root_ * (q - end_));
+    times.push_back(t);
+    const std::size_t k = away.size() - 1;
+    if (n_ == 1 && k > 1 && (away[k][0] < 0) != (away[k - 1][0] < 0)) {
+      const double a = away[k - 1][0], b = away[k][0];
+      found.push_back({times[k - 1] + (times[k] - times[k - 1]) * a / (a - b), 0});
+    }
+    if (n_ == 1 || k < 2) return;
+    const double before = away[k - 2].norm(), middle = away[k - 1].norm(), after = away[k].norm();
+    if (!(middle < before && middle <= after)) return;
+    const Vector along = (away[k] - away[k - 2]).normalized();
+    const double back = away[k - 1].dot(along);
+    const double speed = (away[k] - away[k - 2]).norm() / (times[k] - times[k - 2]);
+    found.push_back({times[k - 1] - back / speed, along[0] * away[k - 1][1] - along[1] * away[k - 1][0]});
+  };
+  add(0, start_);
+  double t = 0;
+  Vector between(n_);
+  while (t < until) {
+    const double from = t;
+    if (method.steps() >= most_integrator_steps ||
+        method.accept_step(t, span_of(y), until, options) != Integrated::done ||
+        !method.prepare_interpolation(span_of(y), 2 * n_))
+      break;
+    for (int k = 1; k <= samples_a_step; ++k) {
+      const double part = static_cast<double>(k) / samples_a_step;
+      method.interpolate(part, span_of(between));
+      add(from + part * (t - from), between);
+    }
+  }
+  counted_(cost_ * (method.steps() + method.rejected()));
+  return found;
+}
+
+Arrivals::Flight Arrivals::flight(Vector w, double until, const Scale& scale) {
+  if (scale) {
+    Vector v = inverse_root_ * w;
+    if (!scale(v)) return {};
+    w = root_ * v;
+  }
+  return {w, passages(w, until)};
+}
+
+/// Adds the arrival near a motion that has this length of w.
+void Arrivals::land(const Vector& w, double time, std::vector<Arrival>& found) {
+  if (!(time > 0)) return;
+  Vector u = unknowns({w, time}), normal = Vector::Zero(n_ + 1);
+  normal.head(n_) = w.normalized();
+  Eigen::MatrixXd slope;
+  int steps = 0;
+  if (meet(u, normal, slope, steps)) found.push_back(arrival(u));
+}
+
+/// Arrivals between two neighbours that pass q1 on different sides. Where these are not near to it or to each
+/// other, a motion between tells more.
+void Arrivals::compare(const Flight& one, const Flight& other, double until, const Scale& scale, int halvings,
+                       std::vector<Arrival>& found) {
+  const auto nearest = [](const std::vector<Passage>& all, double time) -> const Passage* {
+    const Passage* best = nullptr;
+    for (const Passage& p : all)
+      if (!best || std::abs(p.time - time) < std::abs(best->time - time)) best = &p;
+    return best;
+  };
+  bool resolved = true;
+  std::vector<std::pair<const Passage*, const Passage*>> pairs;
+  for (const Passage& a : one.passages) {
+    const Passage* const b = nearest(other.passages, a.time);
+    const bool mutual = b && nearest(one.passages, b->time) == &a;
+    if (!mutual)
+      resolved &= std::abs(a.side) > far_passage * extent_;
+    else if ((a.side < 0) != (b->side < 0))
+      pairs.emplace_back(&a, b);
+  }
+  for (const Passage& b : other.passages) {
+    const Passage* const a = nearest(one.passages, b.time);
+    if (!a || nearest(other.passages, a->time) != &b) resolved &= std::abs(b.side) > far_passage * extent_;
+  }
+  for (const auto& [a, b] : pairs) resolved &= std::abs(a->side - b->side) < near_passage * extent_;
+  if (!resolved && halvings < most_halvings && counted_(0)) {
+    const double length = (one.w.norm() + other.w.norm()) / 2;
+    const Flight middle = flight(length * (one.w + other.w).normalized(), until, scale);
+    if (middle.w.size() == 0) return;
+    compare(one, middle, until, scale, halvings + 1, found);
+    compare(middle, other, until, scale, halvings + 1, found);
+    return;
+  }
+  for (const auto& [a, b] : pairs) {
+    const double part = a->side / (a->side - b->side);
+    const double length = (1 - part) * one.w.norm() + part * other.w.norm();
+    land(length * (one.w + part * (other.w - one.w)).normalized(), a->time + part * (b->time - a->time),
+         found);
+  }
+}
+
+std::vector<Arrivals::Arrival> Arrivals::sweep(double speed, double until, const Scale& scale) {
+  std::vector<Arrival> found;
+  if (n_ == 1) {
+    for (double side : {1.0, -1.0}) {
+      const Flight there = flight(Vector::Constant(1, side * speed), until, scale);
+      for (const Passage& passage : there.passages) land(there.w, passage.time, found);
+    }
+    return found;
+  }
+  std::vector<Flight> flights;
+  for (int k = 0; k < sectors && counted_(0); ++k) {
+    const double angle = 2 * std::numbers::pi * k / sectors;
+    flights.push_back(flight(speed * Eigen::Vector2d(std::cos(angle), std::sin(angle)), until, scale));
+  }
+  for (std::size_t k = 0; k < flights.size() && counted_(0); ++k) {
+    const Flight& next = flights[(k + 1) % flights.size()];
+    if (flights[k].w.size() > 0 && next.w.size() > 0) compare(flights[k], next, until, scale, 0, found);
+  }
+  return found;
+}
+
+}  // namespace extremal

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "motion/flow.hpp"
+
+/// \file Motions from a point that come by another one.
+
+namespace extremal {
+
+/// Motions leave q0 at t = 0 with velocities root⁻¹ w. One that comes by q1 at a time T meets
+///   root (q(T; w) − q1) = 0,
+/// as many equations as coordinates for one unknown more. So arrivals form curves, and the motions that
+/// arrive at a given time are where curves cross it. Curves are met on motions of given |w|: with one
+/// coordinate q passes q1; with two, neighbours pass it on different sides. Only for these.
+class Arrivals {
+ public:
+  using Vector = Eigen::VectorXd;
+  struct Arrival {
+    Vector w;
+    double time;
+  };
+  /// Gives a velocity another size; false if none suits.
+  using Scale = std::function<bool(Vector& velocity)>;
+
+  /// `root` is symmetric and positive, of the norm of velocities; `speed` and `time` are the units of w and
+  /// of times.
+  Arrivals(const Lagrangian& lagrangian, Vector start, Vector end, Eigen::MatrixXd root, double speed,
+           double time);
+  /// To be called with the steps of each integration; false if there may be no more.
+  void count_by(std::function<bool(int steps)> counted) { counted_ = std::move(counted); }
+
+  /// Of motions whose w have this length, or have been changed by `scale`, those that arrive until then.
+  std::vector<Arrival> sweep(double speed, double until, const Scale& scale = {});
+  /// Along the curve of an arrival, both ways, to where motions are too fast or too long, or where it closes:
+  /// its arrivals at the time that is the unit.
+  std::vector<Arrival> along(const Arrival& seed, double fastest, double longest);
+  /// Whether it is on a curve that was followed.
+  bool followed(const Arrival& arrival) const;
+
+ private:
+  struct Miss {
+    Vector miss;            ///< by the extent
+    Eigen::MatrixXd slope;  ///< by the unknowns
+  };
+  struct Passage {
+    double time, side;  ///< where it is nearest to q1; its distance, positive to the left of q1
+  };
+  struct Point {
+    Vector u, tangent;  ///< unknowns
+  };
+  struct Flight {
+    Vector w;  ///< empty if there is none
+    std::vector<Passage> passages;
+  };
+
+  Vector unknowns(const Arrival& arrival) const;
+  Arrival arrival(const Vector& u) const;
+  bool fly(const Vector& u, Miss& miss);
+  bool meet(Vector& u, const Vector& normal, Eigen::MatrixXd& slope, int& steps);
+  bool trace(const Vector& seed, double sense, double fastest, double longest, std::vector<Arrival>& found);
+  void cross(const Vector& a, const Vector& slope_a, const Vector& b, const Vector& slope_b, double length,
+             std::vector<Arrival>& found);
+  Flight flight(Vector w, double until, const Scale& scale);
+  void land(const Vector& w, double time, std::vector<Arrival>& found);
+  void compare(const Flight& one, const Flight& other, double until, const Scale& scale, int halvings,
+               std::vector<Arrival>& found);
+  std::vector<Passage> passages(const Vector& w, double until);
+
+  const Lagrangian& lagrangian_;
+  Flow flow_;
+  int n_, cost_;
+  Vector start_, end_;
+  Eigen::MatrixXd root_, inverse_root_;
+  double speed_, time_, extent_;
+  std::function<bool(int)> counted_;
+  std::vector<std::vector<Point>> curves_;
+};
+
+}  // namespace extremal

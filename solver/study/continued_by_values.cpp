@@ -1,0 +1,233 @@
+#include "study/continued_by_values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "problem/singular_ends.hpp"
+#include "solve/solve.hpp"
+
+namespace extremal {
+namespace {
+
+/// A step is at least this part of the way; steps grow by this factor after each that succeeds.
+constexpr double least_step = 1e-4, growth_of_steps = 1.5;
+/// Where a path is nearer to its equilibrium than this part of its range, its guess for the next one ends.
+constexpr double at_rest = 1e-4;
+constexpr int samples = 1024, element_samples = 8;
+/// With a scheme, how far a path may move in a step, relative to its range; and, where the index changes, in
+/// the shortest one: at a branch point hardly, beyond a fold far.
+constexpr double most_moved = 0.5, most_moved_at_change = 0.05;
+constexpr int compared = 64;  ///< places along both paths
+
+/// Times between which a path is away from its equilibria.
+std::pair<double, double> away_from_rest(const Problem& problem, const Trajectory& trajectory) {
+  const std::size_t n = trajectory.coordinates;
+  const double T = trajectory.duration();
+  std::vector<double> q(n), v(n), low(n, INFINITY), high(n, -INFINITY);
+  std::vector<std::vector<double>> path;
+  for (int k = 0; k <= samples; ++k) {
+    trajectory.at(T * k / samples, q, v);
+    for (std::size_t a = 0; a < n; ++a) {
+      low[a] = std::min(low[a], q[a]);
+      high[a] = std::max(high[a], q[a]);
+    }
+    path.push_back(q);
+  }
+  double range = 0;
+  for (std::size_t a = 0; a < n; ++a) range = std::max(range, high[a] - low[a]);
+  const auto rests = [&](const std::vector<double>& x, const std::vector<double>& at) {
+    for (std::size_t a = 0; a < n; ++a)
+      if (std::abs(x[a] - at[a]) > at_rest * range) return false;
+    return true;
+  };
+  int first = 0, last = samples;
+  const InfiniteEnds& infinite = *problem.infinite;
+  while (!infinite.start.empty() && first + 2 < last && rests(path[first + 1], infinite.start)) ++first;
+  while (!infinite.end.empty() && first + 2 < last && rests(path[last - 1], infinite.end)) --last;
+  return {T * first / samples, T * last / samples};
+}
+
+/// A path in τ at points of each of its elements, which become short towards an end where L is infinite.
+Guess sampled_by_elements(const Trajectory& trajectory) {
+  const std::size_t n = trajectory.coordinates;
+  Guess guess;
+  std::vector<double> q(n), v(n);
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (int i = 0; i < element_samples; ++i) {
+      const double part = static_cast<double>(i) / element_samples;
+      const double tau = (trajectory.times[k] + part * trajectory.length(k)) / trajectory.duration();
+      if (!guess.tau.empty() && !(tau > guess.tau.back() && tau < 1)) continue;
+      trajectory.in_element(k, part, q, v);
+      guess.tau.push_back(tau);
+      guess.q.insert(guess.q.end(), q.begin(), q.end());
+    }
+  trajectory.at(trajectory.duration(), q, v);
+  guess.tau.push_back(1);
+  guess.q.insert(guess.q.end(), q.begin(), q.end());
+  return guess;
+}
+
+/// Gives a problem the part of a path that is away from rest as its guess.
+void guess_by(const Problem& before, const Trajectory& trajectory, Problem& problem) {
+  if (!problem.infinite) {
+    if (problem.duration.free) problem.duration.value = trajectory.duration();
+    problem.guess = sampled_by_elements(trajectory);
+    return;
+  }
+  const auto [from, to] = away_from_rest(before, trajectory);
+  const std::size_t n = trajectory.coordinates;
+  std::vector<double> q(n), v(n);
+  problem.duration.value = to - from;
+  problem.guess = {};
+  for (int k = 0; k <= samples; ++k) {
+    const double tau = static_cast<double>(k) / samples;
+    trajectory.at(std::min(from + tau * (to - from), trajectory.duration()), q, v);
+    problem.guess.tau.push_back(tau);
+    problem.guess.q.insert(problem.guess.q.end(), q.begin(), q.end());
+  }
+}
+
+/// The problem with this value of what varies, if there is one.
+std::optional<Problem> problem_at(const ProblemFamily& family, double value) {
+  if (family.varied == Varied::parameter) return family.at(value);
+  Problem problem = family.problem;
+  if (family.varied == Varied::duration)
+    problem.duration.value = value;
+  else
+    problem.duration.energy = value;
+  return problem;
+}
+
+/// Of paths of the same problem for two values: the most that a coordinate moves, relative to the largest
+/// range of one.
+double distance(const Trajectory& a, const Trajectory& b) {
+  const std::size_t n = a.coordinates;
+  std::vector<double> qa(n), qb(n), v(n), low(n, INFINITY), high(n, -INFINITY);
+  double most = 0, range = 0;
+  for (int k = 0; k <= compared; ++k) {
+    a.at(a.duration() * k / compared, qa, v);
+    b.at(b.duration() * k / compared, qb, v);
+    for (std::size_t i = 0; i < n; ++i) {
+      most = std::max(most, std::abs(qa[i] - qb[i]));
+      low[i] = std::min({low[i], qa[i], qb[i]});
+      high[i] = std::max({high[i], qa[i], qb[i]});
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) range = std::max(range, high[i] - low[i]);
+  return range > 0 ? most / range : 0;
+}
+
+/// Whether an extremal of a scheme is the next one on the branch of another.
+bool continues(const Solution& before, const Solution& found, bool shortest) {
+  const double moved = distance(before.trajectory, found.trajectory);
+  if (found.morse_index == before.morse_index) return moved <= most_moved;
+  return shortest && moved <= most_moved_at_change;
+}
+
+/// What make_problem() fills in: symmetries, and with forces both copies. Nothing where it is refused.
+std::optional<Problem> checked(std::optional<Problem> problem) {
+  if (!problem) return std::nullopt;
+  try {
+    return make_problem(*std::move(problem));
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+/// Why there is no step from an extremal to one of the problem `there`.
+std::string obstacle(const std::optional<Problem>& there, const Solution& found, const Solution& from) {
+  if (!there) return "an end is at no equilibrium that is approached exponentially";
+  if (found.converged() && found.morse_index != from.morse_index)
+    return "the index changes there, at a fold or a branch point";
+  return found.converged() ? "the branch may turn back there"
+                           : "the branch may turn back there, or end: " + found.message;
+}
+
+BranchPoint point_of(double parameter, const Solution& solution) {
+  BranchPoint point{.parameter = parameter, .kind = PointKind::regular, .branch = 0, .solution = solution};
+  point.solution.windows.clear();
+  point.solution.conjugate_times.clear();
+  point.solution.conjugate_times_known = false;
+  point.solution.certificate = Certificate::none;
+  return point;
+}
+
+}  // namespace
+
+bool continued_by_values(const Problem& problem, const SolveOptions& options) {
+  return options.scheme || problem.infinite.has_value() || singular_ends(problem).has_value();
+}
+
+FollowedBranch follow_by_values(const Study& study, const Continued& continued,
+                                const std::function<void(const BranchPoint&)>& progress) {
+  FollowedBranch followed;
+  followed.title = study.title;
+  followed.parameter = continued.parameter;
+  followed.names = study.problem.names;
+  BranchRecord& record = followed.branches.emplace_back();
+  record.worst_action_slope.reset();
+  record.worst_momentum.reset();
+  SolveOptions options = study.options;
+  options.deadline = deadline_of(study);
+  const bool of_scheme = options.scheme && !study.problem.infinite;
+  Solver solver;
+  Problem here = study.problem;
+  Solution solution = solver.solve(here, options);
+  const auto finish = [&](BranchEnd end, std::string message) {
+    record.end = end;
+    record.message = std::move(message);
+    if (of_scheme && !followed.points.empty())
+      record.message += fmt::format(
+          "; each point is an extremal of {}, from the one before: folds end the branch, and "
+          "branch points and period doublings are not looked for",
+          options.scheme->name);
+    record.points = static_cast<int>(followed.points.size());
+    return std::move(followed);
+  };
+  if (!solution.converged())
+    return finish(BranchEnd::not_started, "no extremal to begin with: " + solution.message);
+  const auto add = [&](double value) {
+    followed.points.push_back(point_of(value, solution));
+    if (progress) progress(followed.points.back());
+  };
+  const double from = continued.family.from, to = continued.family.to;
+  const double longest = (to - from) / std::max(1, continued.points - 1);
+  double value = from, step = longest;
+  add(value);
+  while (value != to) {
+    if (static_cast<int>(followed.points.size()) >= continued.points)
+      return finish(BranchEnd::points, fmt::format("{} points, as many as were asked for", continued.points));
+    if (options.deadline.passed()) return finish(BranchEnd::budget, "the budget of time is spent");
+    const double next = std::abs(to - value) <= 1.001 * std::abs(step) ? to : value + step;
+    std::optional<Problem> there = problem_at(continued.family, next);
+    Solution found;
+    if (there) {
+      guess_by(here, solution.trajectory, *there);
+      if (of_scheme) there = checked(std::move(there));
+      if (there) found = solver.solve(*there, options);
+    }
+    const bool shortest = std::abs(step) / 2 <= least_step * std::abs(to - from);
+    const bool near = found.converged() && found.strategy == "newton from the guess";
+    if (!near ||
+        !(of_scheme ? continues(solution, found, shortest) : found.morse_index == solution.morse_index)) {
+      step /= 2;
+      if (!shortest) continue;
+      return finish(there ? BranchEnd::too_short : BranchEnd::limit,
+                    fmt::format("beyond {} = {:.10g} Newton's method does not lead on: {}",
+                                continued.parameter, value, obstacle(there, found, solution)));
+    }
+    here = *std::move(there);
+    solution = std::move(found);
+    value = next;
+    add(value);
+    step = std::copysign(std::min(std::abs(longest), growth_of_steps * std::abs(step)), step);
+  }
+  return finish(BranchEnd::target, fmt::format("{} is {:.10g}", continued.parameter, to));
+}
+
+}  // namespace extremal

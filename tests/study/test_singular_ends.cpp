@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scenes.hpp"
+#include "solution/observe.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+using std::numbers::pi;
+
+namespace {
+
+constexpr double g = 9.81;
+const std::string fall = "sqrt((1 + y'^2)/(2*9.81*y))";
+
+std::string singular_scene(const std::string& lagrangian, const std::string& boundary,
+                           const std::string& more = "", const std::string& coordinates = "\"y\"") {
+  return "[system]\ncoordinates = [" + coordinates + "]\nlagrangian = \"" + lagrangian + "\"\n[boundary]\n" +
+         boundary + "\n" + more;
+}
+
+/// Time of the fastest fall from rest to (x, y): of the cycloid x = R (a − sin a), y = R (1 − cos a).
+double time_of_fall(double x, double y) {
+  double low = 1e-6, high = 2 * pi - 1e-6;
+  for (int k = 0; k < 200; ++k) {
+    const double a = 0.5 * (low + high);
+    ((a - std::sin(a)) / (1 - std::cos(a)) < x / y ? low : high) = a;
+  }
+  return low * std::sqrt(y / (1 - std::cos(low)) / g);
+}
+
+/// ∫ of √(1 + y'²)/y^c over the arch from 0 back to 0 in T: by the first integral y^−c/√(1 + y'²).
+double action_of_arch(double c, double T) {
+  const auto beta = [](double a, double b) { return std::tgamma(a) * std::tgamma(b) / std::tgamma(a + b); };
+  const double height = T * c / beta(0.5 + 0.5 / c, 0.5);
+  return std::pow(height, 1 - c) / c * beta(0.5 / c - 0.5, 0.5);
+}
+
+}  // namespace
+
+class SingularEnds : public Scenes {
+ protected:
+  Solution solved(const std::string& content) { return run(study(content)); }
+};
+
+TEST_F(SingularEnds, FallsFromRestItself) {
+  struct Case {
+    std::string lagrangian, boundary;
+    double action;
+  };
+  const Case cases[] = {
+      {fall, "start = { y = 0 }\nend = { y = 5 }\nduration = 10", time_of_fall(10, 5)},
+      {fall, "start = { y = 5 }\nend = { y = 0 }\nduration = 10", time_of_fall(10, 5)},
+      {fall, "start = { y = 0 }\nend = { y = 1 }\nduration = 1", time_of_fall(1, 1)},
+      {fall, "start = { y = 0 }\nend = { y = 0.1 }\nduration = 1", time_of_fall(1, 0.1)},
+      {fall, "start = { y = 0 }\nend = { y = 10 }\nduration = 1", time_of_fall(1, 10)},
+      {fall, "start = { y = 0 }\nend = { y = 0 }\nduration = 10", std::sqrt(2 * pi * 10 / g)},
+      {fall, "start = { y = 0 }\nduration = 10", std::sqrt(pi * 10 / g)},
+      // A level at which coordinates have few digits.
+      {"sqrt((1 + y'^2)/(2*9.81*(3 - y)))", "start = { y = 3 }\nend = { y = 1 }\nduration = 2",
+       time_of_fall(2, 2)},
+  };
+  for (const Case& c : cases) {
+    const Solution found = solved(singular_scene(c.lagrangian, c.boundary));
+    ASSERT_TRUE(found.converged()) << c.boundary << ": " << found.message;
+    EXPECT_NEAR(found.action, c.action, 1e-10) << c.boundary;
+    EXPECT_EQ(found.morse_index, 0) << c.boundary;
+    ASSERT_TRUE(found.energy && found.energy_drift) << c.boundary;
+    EXPECT_LT(*found.energy_drift, 1e-7) << c.boundary;
+    EXPECT_NE(found.message.find("L is infinite at the"), std::string::npos) << found.message;
+  }
+}
+
+TEST_F(SingularEnds, TheTrajectoryIsTheCycloid) {
+  const Solution found = solved(singular_scene(fall, "start = { y = 0 }\nend = { y = 0 }\nduration = 10"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double radius = 10 / (2 * pi);
+  std::vector<double> y(1), slope(1);
+  for (const double a : {1e-4, 0.01, 0.3, 1.0, 3.0, 5.0, 6.0, 6.28}) {
+    found.trajectory.at(radius * (a - std::sin(a)), y, slope);
+    EXPECT_NEAR(y[0], radius * (1 - std::cos(a)), 1e-9) << a;
+    EXPECT_NEAR(slope[0] * (1 - std::cos(a)) / std::sin(a), 1, 1e-5) << a;
+  }
+}
+
+TEST_F(SingularEnds, MediaOfOtherPowers) {
+  for (const auto& [power, c] : {std::pair("^(1/3)", 1.0 / 3), {"^(1/4)", 0.25}}) {
+    const Solution found = solved(singular_scene(std::string("sqrt(1 + y'^2)/y") + power,
+                                                 "start = { y = 0 }\nend = { y = 0 }\nduration = 3"));
+    ASSERT_TRUE(found.converged()) << found.message;
+    EXPECT_NEAR(found.action, action_of_arch(c, 3), 1e-9) << power;
+  }
+}
+
+TEST_F(SingularEnds, InSeveralCoordinatesAndFromGuesses) {
+  // Along the diagonal the way is √(10² + 3²) long.
+  const Solution slanted = solved(
+      singular_scene("sqrt((1 + y'^2 + z'^2)/(2*9.81*y))",
+                     "start = { y = 0, z = 0 }\nend = { y = 5, z = 3 }\nduration = 10", "", "\"y\", \"z\""));
+  ASSERT_TRUE(slanted.converged()) << slanted.message;
+  EXPECT_NEAR(slanted.action, time_of_fall(std::hypot(10, 3), 5), 1e-10);
+  const Solution guessed = solved(singular_scene(fall, "start = { y = 0 }\nend = { y = 0 }\nduration = 10",
+                                                 "[guess]\ny = \"t*(10 - t)/10\"\n"));
+  ASSERT_TRUE(guessed.converged()) << guessed.message;
+  EXPECT_NEAR(guessed.action, std::sqrt(2 * pi * 10 / g), 1e-10);
+}
+
+TEST_F(SingularEnds, ARadialCollisionOfKepler) {
+  const Solution found =
+      solved(singular_scene("r'^2/2 + 1/r", "start = { r = 0 }\nend = { r = 1 }\nduration = 1", "", "\"r\""));
+  ASSERT_TRUE(found.converged()) << found.message;
+  // r = a (1 − cos η), t = a^{3/2} (η − sin η).
+  const double a = -0.5 / *found.energy, eta = std::acos(1 - 1 / a);
+  EXPECT_NEAR(std::pow(a, 1.5) * (eta - std::sin(eta)), 1, 1e-8);
+}
+
+TEST_F(SingularEnds, LayersThinnerThanTheDigitsOfTheTime) {
+  for (const double mu : {50.0, 70.0, 100.0}) {
+    const std::string lagrangian = fmt::format("y'^2/2 + cosh({}*y)", mu);
+    for (const bool late : {true, false}) {
+      const Solution found = solved(singular_scene(
+          lagrangian,
+          fmt::format("start = {{ y = {} }}\nend = {{ y = {} }}\nduration = 1", late ? 0 : 1, late ? 1 : 0)));
+      ASSERT_TRUE(found.converged()) << mu << ": " << found.message;
+      // ∫ √(2 (cosh(μ y) − 1)) dy + T.
+      EXPECT_NEAR(found.action / (4 / mu * (std::cosh(mu / 2) - 1) + 1), 1, 1e-9) << mu;
+      const double slope = late ? found.momentum_end[0] : -found.momentum_start[0];
+      EXPECT_NEAR(slope / std::sqrt(2 * std::cosh(mu) - 2), 1, 1e-9) << mu;
+      EXPECT_EQ(found.morse_index, 0) << mu;
+      std::vector<double> y(1), v(1);
+      for (const double t : {0.0, 1.0}) {
+        found.trajectory.at(t, y, v);
+        EXPECT_NEAR(y[0], (t == 1) == late, 1e-12) << mu << " at " << t;
+      }
+    }
+  }
+}
+
+TEST_F(SingularEnds, WithoutAFiniteActionThereIsNone) {
+  for (const char* lagrangian : {"y'^2/2 + 1/y^2", "y'^2/2 - 1/y", "sqrt(1 + y'^2)/y"}) {
+    const Solution found =
+        solved(singular_scene(lagrangian, "start = { y = 0 }\nend = { y = 1 }\nduration = 1"));
+    EXPECT_FALSE(found.converged()) << lagrangian;
+    EXPECT_NE(found.message.find("L is not finite at the start"), std::string::npos) << found.message;
+  }
+}
+
+TEST_F(SingularEnds, DurationsThatTheEnergyCloses) {
+  for (const double T : {2.0, 10.0}) {
+    const std::string ends = "start = { y = 0 }\nend = { y = 1 }\n";
+    const Solution given = solved(singular_scene(fall, ends + fmt::format("duration = {}", T)));
+    ASSERT_TRUE(given.converged()) << given.message;
+    const Solution free = solved(
+        singular_scene(fall, ends + fmt::format("duration = \"free\"\nenergy = {:.17g}", *given.energy),
+                       fmt::format("[guess]\nduration = {}\n", 0.9 * T)));
+    ASSERT_TRUE(free.converged()) << free.message;
+    EXPECT_NEAR(free.duration(), T, 1e-8 * T);
+    EXPECT_NEAR(free.action, given.action, 1e-9);
+    EXPECT_LT(free.error_estimate, 1e-8 * T);
+  }
+}
+
+/// Where the free end comes to a given level.
+TEST_F(SingularEnds, DurationsThatAConditionCloses) {
+  const Solution found = solved(singular_scene(
+      fall, "start = { y = 0 }\nduration = \"free\"\nwhere = \"y(T) = 2\"", "[guess]\nduration = 10\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  // Half an arch of a cycloid of radius 1.
+  EXPECT_NEAR(found.duration(), pi, 1e-8);
+  EXPECT_NEAR(found.action, std::sqrt(pi * pi / g), 1e-9);
+}
+
+TEST_F(SingularEnds, FamiliesFromValueToValue) {
+  const std::string ends = "start = { y = 0 }\nend = { y = 5 }\n";
+  const Study in_time = study(singular_scene(
+      fall, ends + "duration = 10", "[continuation]\nparameter = \"duration\"\nto = 4\npoints = 4\n"));
+  for (const BranchPoint& point : follow(in_time).points)
+    EXPECT_NEAR(point.solution.action, time_of_fall(point.parameter, 5), 1e-9) << point.parameter;
+  EXPECT_EQ(follow(in_time).points.size(), 4u);
+  std::string heavier = singular_scene("sqrt((1 + y'^2)/(2*w*y))", ends + "duration = 10",
+                                       "[continuation]\nparameter = \"w\"\nto = 39.24\npoints = 4\n");
+  heavier.replace(heavier.find("lagrangian"), 0, "parameters = { w = 9.81 }\n");
+  const FollowedBranch branch = follow(study(heavier));
+  EXPECT_EQ(branch.branches.front().end, BranchEnd::target) << branch.branches.front().message;
+  EXPECT_NEAR(branch.points.back().solution.action, time_of_fall(10, 5) / 2, 1e-9);
+}
+
+TEST_F(SingularEnds, WhatIsNotAvailableIsRefused) {
+  const std::string ends = "start = { y = 0 }\nend = { y = 5 }\nduration = 10";
+  const auto refused = [&](const std::string& boundary, const std::string& more, const std::string& place,
+                           const std::string& part) {
+    const std::string text = message(singular_scene(fall, boundary, more));
+    EXPECT_EQ(text.find("scene.toml:" + place + ": L is infinite at the start, y = 0, and there " + part), 0u)
+        << text;
+    EXPECT_NE(text.find(", or move the start aside, to y = 0.0"), std::string::npos) << text;
+  };
+  refused(ends, "[search]\nsolutions = 2\n", "9:13", "[search] is not available; leave it out");
+  refused(ends, "[solve]\nscheme = \"midpoint\"\n", "9:11", "elements of 'midpoint' are not adapted");
+  refused(ends, "[solve]\nscheme = \"simpson\"\nelements = 9\n", "9:11",
+          "'simpson' evaluates it; write gauss(s)");
+  refused(ends, "[path]\nconstraints = [\"y <= 6\"]\n", "8:1", "[path] is not available");
+  refused(ends + "\nintegrals = [\"y = 30\"]", "", "8:15", "integrals are not available");
+  refused("start = { y = 0 }\nend = { p_y = 0.1 }\nduration = 10", "", "6:9", "momenta at ends");
+  EXPECT_EQ(message(singular_scene(fall, "start = { y = 0.005 }\nend = { y = 5 }\nduration = 10",
+                                   "[search]\nsolutions = 2\n")),
+            "");
+  // Gauss's rule has no point at the ends.
+  const Solution pinned =
+      solved(singular_scene(fall, ends, "[solve]\nscheme = \"gauss(3)\"\nelements = 200\n"));
+  ASSERT_TRUE(pinned.converged()) << pinned.message;
+  EXPECT_NEAR(pinned.action, time_of_fall(10, 5), 0.2);
+}
