@@ -196,7 +196,7 @@ std::optional<std::vector<double>> FallingForm::zeros(int count, bool first_only
   Search search;
   search.first_only = first_only;
   if (!find({from_, before_}, {to_, before_ + count}, search)) return std::nullopt;
-  if (first_only && !search.found.empty()) search.found.resize(1);
+  if (first_only && !search.found.empty()) search.found = {search.found.front()};
   std::sort(search.found.begin(), search.found.end());
   return std::move(search.found);
 }

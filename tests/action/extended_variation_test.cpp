@@ -60,7 +60,9 @@ TEST(ExtendedVariation, IsThatOfDoublesToRoundoff) {
             const double below = at(n + i, j) - at(n + i, n + j), scale = 10 + std::abs(at(n + i, n + i));
             EXPECT_NEAR(c.action.condensed(k, n + i, j), below, 1e-13 * scale);
             EXPECT_NEAR(at(i, n + j), at(n + j, i), 1e-13 * scale);
-            if (j <= i) EXPECT_NEAR(c.action.condensed(k, n + i, n + j), at(n + i, n + j), 1e-13 * scale);
+            if (j <= i) {
+              EXPECT_NEAR(c.action.condensed(k, n + i, n + j), at(n + i, n + j), 1e-13 * scale);
+            }
           }
     }
 }

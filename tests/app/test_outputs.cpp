@@ -147,7 +147,9 @@ TEST_F(Outputs, AnInterruptEndsEveryVerbAtOnceAndLeavesNothing) {
       ::kill(child, signal);
       const Outcome o = finish(child);
       EXPECT_LT(Clock::now() - sent, 1s) << verb;  // a busy machine
-      if (writes) EXPECT_EQ(o.exit, 128 + signal) << verb << o.error;
+      if (writes) {
+        EXPECT_EQ(o.exit, 128 + signal) << verb << o.error;
+      }
       EXPECT_TRUE(fs::is_empty(folder / "temporary"));
       EXPECT_FALSE(fs::exists(folder / "r.json")) << verb;
     }

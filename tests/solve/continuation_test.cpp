@@ -413,8 +413,9 @@ TEST(Continuation, IndexAgreesWithMultipliers) {
       const std::optional<int> index = point.solution.morse_index;
       if (index) {
         EXPECT_TRUE(!before || event || *index == *before) << point.parameter;
-        if (std::abs(determinant) > 1e-9)
+        if (std::abs(determinant) > 1e-9) {
           EXPECT_EQ(*index % 2 == 1, determinant.real() > 0) << point.parameter;
+        }
         EXPECT_TRUE(std::abs(determinant) < 1e-9 || point.solution.nullity == 0) << point.parameter;
       }
       before = index;

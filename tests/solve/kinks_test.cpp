@@ -216,8 +216,9 @@ TEST(Kinks, GrazingIsNoCrossing) {
   const double T = 2 * std::sqrt(2.0);
   Solver solver;
   const Solution s = solver.solve(fixed_ends(lagrangian, {0}, {0}, T), within(1e-9));
-  if (s.converged())
+  if (s.converged()) {
     EXPECT_LT(distance(s.trajectory, [&](double t) { return Values{t * (T - t) / 2}; }), 1e-8);
+  }
 }
 
 /// x'' = −x to the right of 0, −(1 + k) x to the left: from x, v at 0 on, arc by arc.

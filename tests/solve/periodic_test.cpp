@@ -146,7 +146,7 @@ TEST(Periodic, DrivenOrbitsThatShrinkToRestAreNone) {
 
 /// The collinear point L2 of the elliptic restricted problem in a frame that pulsates, where it rests.
 TEST(Periodic, PointsOfLibrationAreNoOrbits) {
-  constexpr double mu = 0.01215, e = 0.0549;
+  static constexpr double mu = 0.01215, e = 0.0549;
   const auto elliptic = trace(2, [](auto q, auto v, auto t) {
     const auto far = sqrt((q[0] + mu) * (q[0] + mu) + q[1] * q[1]),
                near = sqrt((q[0] - 1 + mu) * (q[0] - 1 + mu) + q[1] * q[1]);

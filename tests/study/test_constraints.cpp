@@ -42,7 +42,9 @@ void expect_same(const Solution& constrained, const Solution& minimal, double ac
   ASSERT_TRUE(minimal.converged()) << minimal.message;
   EXPECT_NEAR(constrained.action, minimal.action, accuracy * std::abs(minimal.action));
   ASSERT_EQ(constrained.energy.has_value(), minimal.energy.has_value());
-  if (minimal.energy) EXPECT_NEAR(*constrained.energy, *minimal.energy, 1e3 * accuracy);
+  if (minimal.energy) {
+    EXPECT_NEAR(*constrained.energy, *minimal.energy, 1e3 * accuracy);
+  }
   EXPECT_EQ(constrained.morse_index, minimal.morse_index);
   EXPECT_EQ(constrained.nullity, minimal.nullity);
   ASSERT_EQ(constrained.windows.size(), minimal.windows.size());

@@ -294,6 +294,8 @@ TEST_F(Scenes, ToursThroughAPointDiffer) {
     EXPECT_TRUE(found[i].converged());
     EXPECT_NEAR(at(found[i], 3, 0), -0.5, 1e-9);
     EXPECT_NEAR(at(found[i], 3, 1), 0.8, 1e-9);
-    if (i > 0) EXPECT_GT(found[i].action, found[i - 1].action + 1e-6);
+    if (i > 0) {
+      EXPECT_GT(found[i].action, found[i - 1].action + 1e-6);
+    }
   }
 }

@@ -18,8 +18,8 @@ using Block = Eigen::Map<const Matrix>;
 
 }  // namespace
 
-Descent::Descent(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count)
-    : problem_(problem), path_(path), w_(workspace), count_(std::move(count)) {}
+Descent::Descent(Path& path, Workspace& workspace, std::function<bool()> count)
+    : path_(path), w_(workspace), count_(std::move(count)) {}
 
 /// Cholesky along the nodes; one whose pivot block is not positive definite ends a window.
 bool Descent::find_windows() {

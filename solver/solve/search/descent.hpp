@@ -17,7 +17,7 @@ namespace extremal {
 class Descent {
  public:
   /// `count` is called for each factorisation and says whether there may be more.
-  Descent(const Problem& problem, Path& path, Workspace& workspace, std::function<bool()> count);
+  Descent(Path& path, Workspace& workspace, std::function<bool()> count);
 
   /// Takes the path near an extremal on its elements. False if it does not arrive there, or
   /// if the action is not even convex over one element.
@@ -31,7 +31,6 @@ class Descent {
   double slope();
   bool shorten(double slope, double before, double longest);
 
-  const Problem& problem_;
   Path& path_;
   Workspace& w_;
   std::function<bool()> count_;

@@ -102,7 +102,7 @@ bool Search::by_descent(const std::vector<double>& mesh) {
   start(mesh, bend_);
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   int steps = refinement_.steps_left() / 2;  // others may need fewer
-  Descent descent(problem_, path_, w_, [&] { return refinement_.count_step() && --steps > 0; });
+  Descent descent(path_, w_, [&] { return refinement_.count_step() && --steps > 0; });
   return descent.run(refinement_.tables()) && found("minimisation in windows");
 }
 
