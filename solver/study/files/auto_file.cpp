@@ -37,7 +37,8 @@ class Words {
     std::string word(next());
     std::replace(word.begin(), word.end(), 'D', 'E');
     const std::size_t sign = word.find_first_of("+-", 1);
-    if (sign != std::string::npos && word[sign - 1] != 'E' && word[sign - 1] != 'e') word.insert(sign, 1, 'E');
+    if (sign != std::string::npos && word[sign - 1] != 'E' && word[sign - 1] != 'e')
+      word.insert(sign, 1, 'E');
     const char* begin = word.data() + (word.front() == '+');
     double value = 0;
     const auto [stop, error] = std::from_chars(begin, word.data() + word.size(), value);
