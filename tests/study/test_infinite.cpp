@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -141,4 +142,32 @@ TEST_F(InfiniteEndsOf, RestIsNoResult) {
       solved(scene_of(one, "x'^2/2 + x^2/2 + x^4/4", "start = { x = 0 }\nend = { x = 0 }\n",
                       "[guess]\nx = \"1/cosh(t - T/2)\"\n"));
   EXPECT_FALSE(found.converged());
+}
+
+/// W = x − x³/3 − k x y² with V = |∇W|²/2 (Bazeia): all walls from (−1, 0) to (1, 0) have the action
+/// W(1, 0) − W(−1, 0) = 4/3 and minimise. x = tanh(2kt), y = √(1/k − 2)/cosh(2kt) is one of them.
+TEST_F(InfiniteEndsOf, OneOfAFamilyOfWallsIsTheNearestToTheGuess) {
+  for (const double k : {0.3, 0.42}) {
+    const double rate = 2 * k, height = std::sqrt(1 / k - 2);
+    const Solution found = solved(scene_of(
+        R"(["x", "y"])", fmt::format("(x'^2 + y'^2)/2 + ((1 - x^2 - {0}*y^2)^2 + (2*{0}*x*y)^2)/2", k),
+        "start = { x = -1, y = 0 }\nend = { x = 1, y = 0 }\n",
+        fmt::format(
+            "[guess]\nx = \"tanh({0}*(t - T/2))\"\ny = \"{1:.17g}/cosh({0}*(t - T/2))\"\nduration = 50\n",
+            rate, height)));
+    ASSERT_TRUE(found.converged()) << found.message;
+    EXPECT_NEAR(found.action, 4.0 / 3, 1e-10);
+    EXPECT_EQ(found.morse_index, 0);
+    EXPECT_EQ(found.nullity, 2) << "the shift in time, and the height";
+    EXPECT_TRUE(found.minimizing);
+    EXPECT_TRUE(found.conjugate_times.empty());
+    EXPECT_NE(found.message.find("one of a family"), std::string::npos) << found.message;
+    std::vector<double> q(2), v(2);
+    double highest = 0;
+    for (int j = 0; j <= 1000; ++j) {
+      found.trajectory.at(found.duration() * j / 1000, q, v);
+      highest = std::max(highest, q[1]);
+    }
+    EXPECT_NEAR(highest, height, 1e-4 * height);
+  }
 }

@@ -242,6 +242,18 @@ void leave_out_times_at_end(const Problem& problem, double size, Solution& solut
   std::erase_if(solution.conjugate_times, [&](double t) { return t >= solution.duration() - within; });
 }
 
+/// An infinite end is conjugate by each null direction. On a part of the time axis the error of the path may
+/// move that to a time in the tail, where fields are roundoff: times beyond the index.
+void leave_out_infinity(Solution& solution) {
+  const std::size_t index = solution.morse_index.value_or(0);
+  if (solution.nullity.value_or(0) == 0 || solution.conjugate_times.size() <= index) return;
+  solution.conjugate_times.resize(index);
+  std::vector<std::array<double, 2>>& windows = solution.windows;
+  if (windows.size() <= index + 1) return;
+  windows.resize(index + 1);
+  windows.back()[1] = solution.duration();
+}
+
 /// A solution that is refused has no path.
 Solution without_path(const Solution& solution) {
   Solution refused;
@@ -273,6 +285,7 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
     else
       leave_out_end(solution);
     leave_out_times_at_end(problem, scales(path, *found.tables).q, solution);
+    if (problem.infinite) leave_out_infinity(solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
   if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);

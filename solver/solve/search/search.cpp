@@ -12,6 +12,7 @@
 #include "solve/search/balance.hpp"
 #include "solve/search/continuum.hpp"
 #include "solve/search/descent.hpp"
+#include "solve/search/family.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -164,8 +165,8 @@ bool Search::from_line() {
 }
 
 /// Where the second variation is singular: the member nearest to the guess, if there is a family.
-bool Search::on_family() {
-  if (problem_.duration.free || !problem_.has_ends()) return false;
+bool Search::on_family(bool resolved) {
+  if (problem_.duration.free || problem_.periodic) return false;
   if (problem_.lagrangian->kinks()) return false;
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   const std::string failure = outcome_.message;
@@ -186,20 +187,24 @@ bool Search::on_family() {
   const auto resample = [&](const ElementTables& tables, const std::vector<double>& mesh, Path& path) {
     path.resample_from(found, tables, mesh);
   };
-  // The path that was found may be a member, or near one.
+  const auto from = [&](const std::vector<double>& mesh, const FillGuess& start) {
+    const FamilySearch result = nearest_of_family(problem_, options_, w_, mesh, fill, start, count, outcome_);
+    no_family_ = no_family_ || result == FamilySearch::none;
+    return result == FamilySearch::found;
+  };
+  // The guess may be a member, or near one; so may the path that was found. Where that is an extremal, its
+  // elements resolve both.
   const bool finite = std::ranges::all_of(found.nodes(), [](double x) { return std::isfinite(x); });
   const std::vector<double> mesh(found.mesh().begin(), found.mesh().end());
-  const auto not_reached = FamilySearch::not_reached;
-  const FamilySearch there = finite ? nearest_of_family(problem_, options_, w_, mesh, fill, resample, count,
-                                                        outcome_)
-                                    : not_reached,
-                     near_guess =
-                         there == FamilySearch::found
-                             ? there
-                             : nearest_of_family(problem_, options_, w_, mesh_, fill, fill, count, outcome_);
-  no_family_ = there == FamilySearch::none || near_guess == FamilySearch::none;
-  // A shift between rests that changes the action by less than roundoff makes no family.
-  if (near_guess == FamilySearch::found && !Balance(problem_, path_).exists()) {
+  no_family_ = false;
+  const bool one_of_family = !finite    ? from(mesh_, fill)
+                             : resolved ? from(mesh, fill) || from(mesh, resample)
+                                        : from(mesh, resample) || from(mesh_, fill);
+  // A shift between rests that changes the action by less than roundoff makes no family. From rest to rest in
+  // infinite time it is a symmetry.
+  const bool shift_alone =
+      problem_.infinite ? outcome_.family <= problem_.shifts_in_time() : Balance(problem_, path_).exists();
+  if (one_of_family && !shift_alone) {
     outcome_.status = Status::converged;
     if (!acceptance_ || accepted() == Refinement::Result::converged) return true;
   }
@@ -211,13 +216,24 @@ bool Search::on_family() {
   return false;
 }
 
+/// Whether steps leave open more than a shift in time. The eigenvalues of such a path on a part of the time
+/// axis are roundoff, of either sign.
+bool Search::leaves_open() {
+  const auto count = [this] { return refinement_.count_step(); };
+  ExtremalFamily family(problem_, count);
+  family.reset(refinement_.tables(), path_);
+  const bool known = family.find_null(path_, limits::continuum::null_eigenvalue);
+  refinement_.rebind();
+  return known && family.null_directions() > problem_.shifts_in_time();
+}
+
 /// The path that was accepted may be one of a family, and another member nearer to the guess.
 void Search::nearest_to_guess() {
   if (!acceptance_ || acceptance_->nullity() == 0 || !problem_.has_ends() || problem_.manifold ||
       problem_.phase || outcome_.shifts_held)
     return;
   const Outcome accepted = outcome_;
-  if (on_family()) return;
+  if (on_family(true)) return;
   outcome_ = accepted;
   refinement_.rebind();
 }
@@ -276,7 +292,11 @@ const Outcome& Search::run_near_guess() {
   if (prepare() == GuessKind::undefined) return outcome_;
   // Between fixed ends a path may well be at rest.
   if (problem_.ends.free > 0) outcome_.first_range = scales(path_, refinement_.tables()).range;
-  const auto [result, doubtful] = pursue_guess();
+  auto [result, doubtful] = pursue_guess();
+  if (problem_.infinite) {
+    const bool converged = result == Refinement::Result::converged;
+    if ((!converged || leaves_open()) && on_family(converged)) result = Refinement::Result::converged;
+  }
   outcome_.hidden = result == Refinement::Result::unreachable && !doubtful;
   if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
   return outcome_;
@@ -287,7 +307,7 @@ const Outcome& Search::run(Acceptance* acceptance) {
   if (guess == GuessKind::undefined) return outcome_;
   acceptance_ = acceptance;
   auto [result, doubtful] = pursue_guess();
-  if (result != Refinement::Result::converged && on_family()) {
+  if (result != Refinement::Result::converged && on_family(false)) {
     result = Refinement::Result::converged;
     doubtful = false;
   } else if (result == Refinement::Result::converged) {

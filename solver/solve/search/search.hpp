@@ -101,7 +101,8 @@ class Search {
   bool from_line();
   bool from_motions();
   bool from_noise(unsigned tries);
-  bool on_family();
+  bool on_family(bool resolved);
+  bool leaves_open();
   void nearest_to_guess();
 
   const Problem& problem_;
