@@ -36,6 +36,11 @@ HardGroup minimisers() {
   for (const auto& [T, action] :
        {std::pair(12.0, 0.50000016872650062), {15.0, 0.50000000309154295}, {40.0, 0.5}, {100.0, 0.5}})
     add("against the drift", own + "against-the-drift.toml", T, action);
+  // By quadrature at the energy, or at that of the lower well.
+  for (const auto& [T, action] : {std::pair(100.0, 0.00765007826860316), {200.0, 0.00765000000006518}})
+    add("drift with a rest in between", own + "weak-drift.toml", T, action);
+  add("between two wells", own + "between-wells.toml", 1e4, 4.0 / 3);
+  add("tilted double well", own + "tilted-well.toml", 1e4, -1010.6164511210920);
   // By minimisation in intervals of 60 to 200. In an interval of 12 the action differs from it.
   constexpr double escape = 0.34004140333;
   for (const double T : {12, 30, 100})

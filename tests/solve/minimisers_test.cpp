@@ -125,6 +125,59 @@ TEST(Minimisers, RestsThatThePathTurnsBackFrom) {
                    2 * (w(1) - w(0.9)), 1e-8);
 }
 
+/// Between -1/2 and 1/2 two such paths have the action 4/3; one end is beside the rest that the path turns
+/// back from, and slower than its tails.
+TEST(Minimisers, RestsBesideTheEnds) {
+  const auto well = trace(1, [](auto q, auto v, auto) {
+    const auto u = 1.0 - q[0] * q[0];
+    return (v[0] * v[0] + u * u) / 2.0;
+  });
+  const auto w = [](double x) { return x - x * x * x / 3; };
+  for (const double T : {150.0, 1e4, 1e5})
+    expect_minimum(solve(fixed_ends(well, {-0.5}, {0.5}, T), within(1e-8)), 4.0 / 3, 1e-8);
+  for (const double T : {300.0, 1e4})
+    expect_minimum(solve(fixed_ends(well, {-0.99}, {0.9999}, T), within(1e-9)),
+                   2 * w(1) - w(0.9999) + w(0.99), 1e-9);
+}
+
+/// The drift u (u - 1) (u - 0.3) is overcome to 0.3 only. In a rest at each of its zeros the energy is about
+/// 1e-8 or 1e-14: digits of second derivatives are lost, but it is not hidden. Energies by quadrature of
+/// T = ∫ du / √(f² + 2E).
+TEST(Minimisers, WeaklyHeldPathsAreBalanced) {
+  const auto drift = trace(1, [](auto q, auto v, auto) {
+    const auto f = q[0] * (q[0] - 1.0) * (q[0] - 0.3);
+    return (v[0] * v[0] + f * f) / 2.0;
+  });
+  const std::pair<double, double> energies[] = {{100, 1.09490783653211834e-8},
+                                                {200, 9.12537667048072505e-15}};
+  for (const auto& [T, energy] : energies) {
+    const Solution s = solve(fixed_ends(drift, {0}, {1}, T), within(1e-9));
+    expect_minimum(s, T < 150 ? 0.0409834116019365 : 0.0409833333333985, 1e-12);
+    EXPECT_NEAR(s.energy.value(), energy, 1e-6 * energy) << T;
+    EXPECT_EQ(s.nullity, 0);
+  }
+}
+
+/// A rest where L is larger than at another gives its time to that. Actions by quadrature at the energy of
+/// the lower equilibrium.
+TEST(Minimisers, RestsThatCostMore) {
+  const auto tilted = trace(1, [](auto q, auto v, auto) {
+    const auto u = 1.0 - q[0] * q[0];
+    return (v[0] * v[0] + u * u) / 2.0 + 0.1 * q[0];
+  });
+  for (const auto& [T, action] : {std::pair{3e3, -302.0749309142135}, {1e4, -1010.616451121092}})
+    expect_minimum(solve(fixed_ends(tilted, {-0.9}, {0.9}, T), within(1e-9)), action, 1e-9 * T);
+  const auto valleys = trace(2, [](auto q, auto v, auto) {
+    const auto x = q[0] * q[0] - 1.0, y = q[1] * q[1] - 1.0;
+    return (v[0] * v[0] + v[1] * v[1] + x * x + y * y) / 2.0 + 0.1 * q[0] * q[0] * q[1] * q[1];
+  });
+  // All rests cost 1/11; what is beyond that does not change with the duration.
+  const double beyond = 5.94105170866 - 40.0 / 11;
+  for (const double T : {60.0, 200.0, 400.0})
+    expect_minimum(solve(fixed_ends(valleys, {-1, -0.95}, {0.9, 0.9}, T), within(1e-9)), T / 11 + beyond,
+                   1e-8);
+}
+
 TEST(Minimisers, SaddlesAreLeftBothWays) {
   const Problem paraboloid = fixed_ends(trace(2,
                                               [](auto q, auto v, auto) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -30,6 +31,11 @@ class Refinement {
     most_steps_ = outcome_.attempts + steps;
     cost_ = 0;
     share_ = share;
+  }
+  /// The same, unless more is left.
+  void allow_at_least(int steps, double share) {
+    most_steps_ = std::max(most_steps_, outcome_.attempts + steps);
+    share_ = std::max(share_, cost_ / most_cost_ + share);
   }
   int steps_left() const { return most_steps_ - outcome_.attempts; }
   bool exhausted() const {

@@ -68,6 +68,22 @@ std::vector<double> halved(const std::vector<double>& mesh) {
   return result;
 }
 
+std::vector<double> graded(std::vector<double> mesh, double ratio) {
+  for (std::size_t before = 0; before < mesh.size();) {
+    before = mesh.size();
+    std::vector<double> finer{mesh.front()};
+    for (std::size_t k = 0; k + 1 < before; ++k) {
+      const double length = mesh[k + 1] - mesh[k];
+      const double left = k > 0 ? mesh[k] - mesh[k - 1] : length;
+      const double right = k + 2 < before ? mesh[k + 2] - mesh[k + 1] : length;
+      if (length > ratio * std::min(left, right)) finer.push_back(0.5 * (mesh[k] + mesh[k + 1]));
+      finer.push_back(mesh[k + 1]);
+    }
+    mesh = std::move(finer);
+  }
+  return mesh;
+}
+
 std::vector<double> with_nodes(std::span<const double> mesh, std::span<const double> times) {
   constexpr double near = 0.3;
   std::vector<double> result(times.begin(), times.end());

@@ -31,6 +31,8 @@ class Density {
 
 std::vector<double> uniform_mesh(int elements);
 std::vector<double> halved(const std::vector<double>& mesh);
+/// Elements are halved until none is longer than `ratio` times one beside it, a ratio of 2 or more.
+std::vector<double> graded(std::vector<double> mesh, double ratio);
 
 /// A mesh that has these times, ascending in (0, 1), as nodes: nodes that are near one, by the length of the
 /// elements there, give way to it. Between two of them there is another node: two crossings of a surface that

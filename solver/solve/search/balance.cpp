@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
 #include "solution/solution.hpp"
 #include "solve/search/limits.hpp"
 
@@ -81,6 +82,14 @@ class Balance::Speeds {
     return slower;
   }
 
+  /// The time on the way from sample `slowest` to `faster`, by samples between, at which the speed is
+  /// `tail`; or that of `faster` if the path ends slower than that. at() is left there.
+  double tail_end(std::size_t slowest, std::size_t faster, double tail) {
+    if (!(values[faster] < tail)) return crossing(faster < slowest ? faster + 1 : faster - 1, faster, tail);
+    at(times[faster]);
+    return times[faster];
+  }
+
   std::vector<double> times, values;
   double fastest = 0;
 
@@ -89,9 +98,56 @@ class Balance::Speeds {
   std::vector<double> q_, v_;
 };
 
+/// The equilibrium beside the slowest sample of a rest, where L is stationary in q without velocity.
+class Balance::Equilibrium {
+ public:
+  Equilibrium(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest)
+      : lagrangian_(lagrangian), none_(speeds.v().size(), 0) {
+    speeds.at(speeds.times[slowest]);
+    std::vector<double> q = speeds.q();
+    const auto n = static_cast<Eigen::Index>(q.size());
+    for (int step = 0;; ++step) {
+      values_ = evaluate_at(lagrangian, q, none_, 0, Order::hessian, scratch_);
+      if (step == newton_steps) return;
+      const Eigen::Map<const Eigen::VectorXd> force(values_.dq.data(), n);
+      const Eigen::Map<const Eigen::MatrixXd> stiffness(values_.qq.data(), n, n);
+      Eigen::Map<Eigen::VectorXd>(q.data(), n) -= Eigen::VectorXd(solved(stiffness, force));
+    }
+  }
+
+  double mass(const std::vector<double>& a, const std::vector<double>& b) const {
+    return form(a, values_.vv, b);
+  }
+  double rate(const std::vector<double>& v) const { return std::sqrt(form(v, values_.qq, v) / mass(v, v)); }
+  /// L there.
+  double cost() const { return values_.value; }
+  /// Whether the path is there at this sample: elsewhere it is accelerated, against the speed that it has.
+  bool holds(Speeds& speeds, std::size_t sample) {
+    const double speed = speeds.at(speeds.times[sample]);
+    const PointValues at = evaluate_at(lagrangian_, speeds.q(), none_, 0, Order::gradient, scratch_);
+    const std::vector<double>& v = speeds.v();
+    double force = 0;
+    for (std::size_t a = 0; a < v.size(); ++a) force += at.dq[a] * v[a];
+    const double acceleration = std::abs(force) / mass(v, v) * length(v);
+    return !(acceleration > off_equilibrium * rate(v) * std::max(speed, speed_roundoff * speeds.fastest));
+  }
+
+ private:
+  const Lagrangian& lagrangian_;
+  const std::vector<double> none_;
+  PointValues values_;
+  Scratch scratch_;
+};
+
 Balance::Balance(const Problem& problem, const Path& path) {
   if (problem.ends.free > 0 || !problem.lagrangian->structure().autonomous) return;
   Speeds speeds(path);
+  const auto fastest = std::ranges::max_element(speeds.values) - speeds.values.begin();
+  Scratch scratch;
+  speeds.at(speeds.times[fastest]);
+  kinetic_ = form(speeds.v(),
+                  evaluate_at(*problem.lagrangian, speeds.q(), speeds.v(), 0, Order::hessian, scratch).vv,
+                  speeds.v());
   const double slow = resting * speeds.fastest;
   const std::size_t count = speeds.times.size();
   bool all = true;
@@ -117,40 +173,29 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   std::size_t before = slowest, after = slowest;
   while (before > 0 && speeds.values[before] < tail) --before;
   while (after < last && speeds.values[after] < tail) ++after;
-  const bool begins = speeds.values[before] < tail, ends = speeds.values[after] < tail;
+  Equilibrium equilibrium(lagrangian, speeds, slowest);
+  // A tail ends where the path does; an end beside the equilibrium has none.
+  const bool begins = speeds.values[before] < tail && equilibrium.holds(speeds, 0);
+  const bool ends = speeds.values[after] < tail && equilibrium.holds(speeds, last);
   if (begins && ends) return std::nullopt;
-  Rest rest{{0, speeds.times[last]}, {0, speeds.times[last]}, 0, 0, true};
+  Rest rest{{0, speeds.times[last]}, {0, speeds.times[last]}, 0, 0, true, equilibrium.cost()};
   std::vector<double> in, out;
   if (!begins) {
-    rest.span.from = speeds.crossing(before + 1, before, tail);
+    rest.span.from = speeds.tail_end(slowest, before, tail);
     in = speeds.v();
   }
   if (!ends) {
-    rest.span.to = speeds.crossing(after - 1, after, tail);
+    rest.span.to = speeds.tail_end(slowest, after, tail);
     out = speeds.v();
   }
   if (begins) in = out;
   if (ends) out = in;
-  speeds.at(speeds.times[begins ? 0 : ends ? last : slowest]);
-  const std::vector<double> none(in.size(), 0);
-  Scratch scratch;
-  const PointValues values = evaluate_at(lagrangian, speeds.q(), none, 0, Order::hessian, scratch);
-  const auto rate = [&](const std::vector<double>& v) {
-    return std::sqrt(form(v, values.qq, v) / form(v, values.vv, v));
-  };
-  const double kinetic = form(in, values.vv, in) * form(out, values.vv, out),
-               r = 0.5 * (rate(in) + rate(out));
+  const double kinetic = equilibrium.mass(in, in) * equilibrium.mass(out, out),
+               r = 0.5 * (equilibrium.rate(in) + equilibrium.rate(out));
   if (!(r > 0) || !(kinetic > 0)) return std::nullopt;
-  // An end beside the equilibrium has a part A of its own.
-  double force = 0;
-  for (std::size_t a = 0; a < in.size(); ++a) force += values.dq[a] * in[a];
-  const double acceleration = std::abs(force) / form(in, values.vv, in) * length(in);
-  const bool at_end = begins || ends;
-  if (at_end && acceleration > off_equilibrium * r * std::max(least, speed_roundoff * speeds.fastest))
-    return std::nullopt;
-  rest.stiffness = at_end ? 2 * r : r;
+  rest.stiffness = begins || ends ? 2 * r : r;
   rest.log_energy = 0.5 * std::log(kinetic) - rest.stiffness * rest.span.length();
-  rest.positive = form(in, values.vv, out) > 0;
+  rest.positive = equilibrium.mass(in, out) > 0;
   while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
   while (after < last && speeds.values[after] < moving * speeds.fastest) ++after;
   rest.slow = {speeds.times[before], speeds.times[after]};
@@ -173,34 +218,51 @@ void Balance::balance() {
     shift += longer;
     shifts_.push_back(shift);
     largest_shift_ = std::max(largest_shift_, std::abs(longer) * rest.stiffness);
-    exists_ = exists_ && rest.span.length() + longer > 0;
+    // With tails that are faster than those measured there may still be a rest.
+    const bool long_enough = rest.span.length() + longer > still_long * rest.span.length();
+    stretched_.push_back(long_enough ? rest.span : rest.slow);
+    exists_ = exists_ && stretched_.back().length() + longer > 0;
   }
   shifts_.back() = 0;
 }
 
-std::vector<Balance::Span> Balance::spans() const {
-  std::vector<Span> spans;
-  for (const Rest& rest : rests_) spans.push_back(rest.span);
-  return spans;
+bool Balance::apply(Path& path) const {
+  return exists_ && stretch(stretched_, shifts_, shortest_element, path);
 }
 
-bool Balance::apply(Path& path) const { return exists_ && stretch(spans(), shifts_, shortest_element, path); }
-
-bool Balance::falls() const {
-  return rests_.size() > 1 && !std::ranges::all_of(rests_, [](const Rest& rest) { return rest.positive; });
+/// By how much the energy of a rest is less than the largest, as far as L at its equilibrium tells.
+double Balance::excess(const Rest& rest) const {
+  double least = INFINITY, digits = 0;
+  for (const Rest& other : rests_) {
+    least = std::min(least, other.cost);
+    digits = std::max(digits, std::abs(other.cost));
+  }
+  const double excess = rest.cost - least;
+  return excess > 2 * std::exp(rest.log_energy) + cost_roundoff * (digits + kinetic_) ? excess : 0;
 }
+
+std::size_t Balance::falling() const {
+  std::size_t gone = rests_.size();
+  if (rests_.size() < 2) return gone;
+  for (std::size_t j = 0; j < rests_.size(); ++j) {
+    if (rests_[j].positive && excess(rests_[j]) == 0) continue;
+    const bool worse =
+        gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
+        (excess(rests_[j]) == excess(rests_[gone]) && rests_[j].log_energy > rests_[gone].log_energy);
+    if (worse) gone = j;
+  }
+  return gone;
+}
+
+bool Balance::falls() const { return falling() < rests_.size(); }
 
 bool Balance::fall(Path& path) const {
-  std::vector<Span> spans = this->spans();
-  std::size_t gone = rests_.size();
-  double others = 0;
-  for (std::size_t j = 0; j < rests_.size(); ++j) {
-    others += spans[j].length();
-    if (rests_[j].positive || (gone < j && rests_[gone].log_energy > rests_[j].log_energy)) continue;
-    gone = j;
-  }
+  std::vector<Span> spans;
+  for (const Rest& rest : rests_) spans.push_back(rest.span);
+  const std::size_t gone = falling();
   if (gone == rests_.size()) return false;
-  others -= spans[gone].length();
+  double others = 0;
+  for (std::size_t j = 0; j < rests_.size(); ++j) others += j == gone ? 0 : spans[j].length();
   spans[gone] = rests_[gone].slow;
   const double shorter = spans[gone].length() - std::min(spans[gone].length(), 1 / rests_[gone].stiffness);
   std::vector<double> shifts;

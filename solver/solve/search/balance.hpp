@@ -29,9 +29,10 @@ class Balance {
   /// Shifts the parts of `path`, by stretching and compressing the elements of the rests. False, and nothing
   /// is done, if those are too short.
   bool apply(Path& path) const;
-  /// Whether the action falls as a rest becomes shorter, between parts or at an end: its energy is negative,
-  /// as where a path turns back. For ∂S/∂t of a part is the energy after it less that before, and energies
-  /// fall in size as rests become longer.
+  /// Whether the action falls as a rest becomes shorter, between parts or at an end: L is larger at its
+  /// equilibrium than at that of another rest, or its energy is negative, as where a path turns back. For
+  /// ∂S/∂t of a part is the energy after it less that before, and what is above −L at the equilibrium falls
+  /// in size as rests become longer.
   bool falls() const;
   /// Gives the time of the rest that falls most to the others: the parts beside it meet.
   bool fall(Path& path) const;
@@ -47,15 +48,19 @@ class Balance {
     double log_energy;  ///< but for a constant
     double stiffness;   ///< −∂(log_energy)/∂(length of span): r, or 2r at an end of the path
     bool positive;      ///< energy
+    double cost;        ///< L at the equilibrium
   };
   class Speeds;
+  class Equilibrium;
   static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest);
   void balance();
-  std::vector<Span> spans() const;
+  double excess(const Rest& rest) const;
+  std::size_t falling() const;
 
   std::vector<Rest> rests_;
-  std::vector<double> shifts_;  ///< of the parts after the rests; the last is 0
-  double rest_speed_ = 0, largest_shift_ = 0;
+  std::vector<Span> stretched_;  ///< of the rests, to shift what is between
+  std::vector<double> shifts_;   ///< of the parts after the rests; the last is 0
+  double rest_speed_ = 0, largest_shift_ = 0, kinetic_ = 0;
   bool exists_ = false;
 };
 

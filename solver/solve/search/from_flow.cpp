@@ -69,37 +69,35 @@ bool Search::flow_from(double away, double side) {
   });
   flow.prefer(side);
   if (!flow.run(away * flow_limits::kick)) return false;
-  // Between long rests the action may fall by less than the flow sees.
-  for (int falls = 0; falls < rest_limits::most_falls; ++falls) {
-    const Balance balance(problem_, path_);
-    if (!balance.falls() || !balance.fall(path_)) break;
-    if (!flow.run()) return false;
-  }
   // Newton's method may have spent all on long intervals, where its equations are nearly singular.
-  if (refinement_.exhausted())
-    refinement_.allow(std::min(allowance_, most - outcome_.attempts), flow_limits::share);
+  const auto renew = [&] {
+    refinement_.allow_at_least(std::min(allowance_, most - outcome_.attempts), flow_limits::share);
+  };
   MonotoneCubic curve;
   curve.fit(path_);
   const std::span<const double> nodes = curve.mesh();
   std::vector<double> mesh;
   for (std::size_t k = 0; k + 1 < nodes.size(); k += flow_limits::nodes_an_element) mesh.push_back(nodes[k]);
   mesh.push_back(1);
+  mesh = graded(std::move(mesh), flow_limits::steepest_grading);
   const auto reopen = [&] {
     refinement_.open(mesh, Refinement::first_degree);
     curve.fill(refinement_.tables(), path_);
   };
   reopen();
+  renew();
   if (found(strategy)) return true;
   reopen();
-  return held_in_time(strategy);
+  return held_in_time(strategy, renew);
 }
 
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
 /// shifted to where energies in all rests agree, and tried without and, where roundoff hides those, with its
 /// shifts held.
-bool Search::held_in_time(const char* strategy) {
+bool Search::held_in_time(const char* strategy, const std::function<void()>& renew) {
   Acceptance* const acceptance = std::exchange(acceptance_, nullptr);
   const auto again = [&](bool held) {
+    renew();
     refinement_.take(refinement_.tables());
     outcome_.shifts_held = held;
     refinement_.rebind();
@@ -108,7 +106,8 @@ bool Search::held_in_time(const char* strategy) {
   bool balance_found = false;
   double speed = 1;
   for (int pass = 0; pass < rest_limits::most_balances; ++pass) {
-    if (!again(true) || w_.iteration.held_shifts() == 0) break;
+    again(true);  // where the balance is far off, elements may disagree
+    if (w_.iteration.held_shifts() == 0) break;
     const Balance balance(problem_, path_);
     speed = balance.rest_speed();
     balance_found = balance.exists() && !balance.falls();
@@ -126,6 +125,7 @@ bool Search::held_in_time(const char* strategy) {
   refinement_.take(tables);
   if (speed > rest_limits::loose) {
     refinement_.keep_mesh();
+    refinement_.set_digits(Refinement::Digits::doubled_where_lost);
     if (found(strategy)) return true;
     path_ = balanced_path;
     refinement_.take(tables);

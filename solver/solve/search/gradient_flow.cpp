@@ -7,6 +7,7 @@
 #include "solve/guess/first_path.hpp"
 #include "solve/mesh/resolution.hpp"
 #include "solve/newton/ends.hpp"
+#include "solve/search/balance.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -162,21 +163,23 @@ void GradientFlow::apply(double factor) {
 /// One step downhill from a path that was evaluated, and stays so.
 GradientFlow::Result GradientFlow::step() {
   measure_curvature();
-  const double before = value();
+  const double before = value(), ordered = faithful * curvature_;
   double size = 0;
+  range_ = scales(path_, tables_).q;
   for (;;) {
     if (!count_()) return Result::failed;
     shift_to(wanted_);
-    if (factor()) {
-      size = solve();
-      if (std::isfinite(size)) break;
-    }
-    wanted_ = std::max(cut * wanted_, least_shift * stiffness_);
+    const bool definite = factor();
+    if (definite) size = solve();
+    const bool too_long = wanted_ < ordered && size > short_step * range_;
+    if (definite && std::isfinite(size) && !too_long) break;
+    const double longer =
+        definite && std::isfinite(size) ? std::clamp(size / (short_step * range_), least_cut, cut) : cut;
+    wanted_ = std::max(longer * wanted_, least_shift * stiffness_);
     if (!(wanted_ < most_shift * std::max(stiffness_, 1 / (path_.duration() * path_.duration()))))
       return Result::failed;
   }
   const double descent = slope();
-  range_ = scales(path_, tables_).q;
   size_ = size;
   // Stationary, or nearly so along the directions that a shift leaves.
   if (size * std::max(wanted_, final_shift * stiffness_) <= close * range_ * final_shift * stiffness_)
@@ -194,8 +197,8 @@ GradientFlow::Result GradientFlow::step() {
     return Result::moved;
   }
   // Steps that are short relative to the path may be longer in time than the curvature allows.
-  const double followed = faithful * curvature_ * std::min(1.0, size / (short_step * range_));
-  wanted_ = std::max(wanted_ / growth, followed);
+  const double part = size / (short_step * range_);
+  wanted_ = part > 1 ? std::max(wanted_ / growth, ordered) : wanted_ * std::max(1 / growth, std::sqrt(part));
   return Result::moved;
 }
 
@@ -206,20 +209,36 @@ bool GradientFlow::run(double away) {
   wanted_ = faithful * curvature_;
   const double first = scales(path_, tables_).magnitude;
   const int affordable = affordable_steps(path_.coordinates(), path_.elements());
+  double range_before = INFINITY;
   for (int steps = 1, left = 0; steps <= affordable; ++steps) {
     const Result result = step();
     if (result == Result::failed) return false;
     if (result == Result::minimal) {
-      if (!leave_saddle(side_ * kick)) return true;
+      if (!leave_saddle(side_ * kick) && !shorten_rest()) return true;
       left = steps;
       continue;
     }
     if (scales(path_, tables_).magnitude > runaway * std::max(first, range_)) return false;
-    // The action may have no minimum.
-    if (steps - left > patient_steps && curvature_ > 0 && size_ > short_step * range_) return false;
+    if ((steps - left) % patient_steps == 0) {
+      // The action may have no minimum.
+      if (curvature_ > 0 && range_ > growing * range_before && size_ > short_step * range_) return false;
+      range_before = range_;
+      shorten_rest();
+    }
     if (steps % steps_a_mesh == 0 && !redistribute()) return false;
   }
   return false;
+}
+
+/// Gives the time of a rest to others, if the action falls then: by less than the flow sees between long
+/// rests, or as slowly as an interface moves. Whether it did; the path is evaluated then.
+bool GradientFlow::shorten_rest() {
+  if (rests_shortened_ == most_falls) return false;
+  const Balance balance(problem_, path_);
+  if (!balance.falls() || !balance.fall(path_) || !evaluate()) return false;
+  ++rests_shortened_;
+  wanted_ = faithful * curvature_;
+  return true;
 }
 
 /// Nodes where the path is bent; the values move along a monotone cubic.

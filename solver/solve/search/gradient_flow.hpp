@@ -14,7 +14,7 @@ namespace extremal {
 /// Implicit steps (W/τ + S''_h) δ = −S'_h of the gradient flow of the action, W the mass of the nodes: for
 /// large τ Newton's, for small τ along the gradient (pseudo-transient continuation; Kelley and Keyes, SIAM J.
 /// Numer. Anal. 35 (1998) 508). As long as 1/τ exceeds the negative curvature of L in q, the flow keeps the
-/// order of paths, and monotone paths monotone; τ grows beyond that only as steps become short. The action
+/// order of paths, and monotone paths monotone; τ grows beyond that as long as steps are short. The action
 /// falls at every step. Elements are redistributed by the curvature of the path, so that thin layers and
 /// kinks in long intervals are resolved. A saddle is left along the direction of most negative curvature.
 class GradientFlow {
@@ -50,6 +50,7 @@ class GradientFlow {
   double slope() const;
   void apply(double factor);
   Result step();
+  bool shorten_rest();
   bool redistribute();
   double lowest_eigenvalue();
   bool leave_saddle(double size);
@@ -72,6 +73,7 @@ class GradientFlow {
   double stiffness_ = 0;         ///< of the curvature in q, by the mass: the largest
   double range_ = 0, size_ = 0;  ///< of the path and of the last step
   double side_ = 1;
+  int rests_shortened_ = 0;
 };
 
 }  // namespace extremal

@@ -40,19 +40,23 @@ namespace balance {
 inline constexpr int speed_samples = 4, halvings = 60;
 /// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
 /// equations, large against errors, and so many times the least that one exponential function is left.
-inline constexpr double resting = 3e-3, tail_speed = 1e-4, tail_growth = 10;
+inline constexpr double resting = 1e-2, tail_speed = 1e-4, tail_growth = 10;
 /// Faster than this, by the largest, a part is no tail of a rest.
 inline constexpr double moving = 0.1;
 /// Acceleration at an end by the rate and the speed: more shows that it is not at the equilibrium. The speed
 /// has roundoff.
 inline constexpr double off_equilibrium = 0.1, speed_roundoff = 1e-12;
+/// Steps from a rest to the equilibrium; and roundoff of L there, by its size and the kinetic energy of the
+/// path.
+inline constexpr int newton_steps = 3;
+inline constexpr double cost_roundoff = 1e-14;
+/// Of a rest between its tails, what must remain if only that is to be compressed.
+inline constexpr double still_long = 0.3;
 /// An element of a rest becomes no shorter than this part of itself.
 inline constexpr double shortest_element = 0.02;
 /// A shift by the rate, after which the tails need not be measured again; and passes at most.
 inline constexpr double balanced = 1e-5;
 inline constexpr int most_balances = 4;
-/// Rests that are given up, one by one.
-inline constexpr int most_falls = 8;
 /// Rests slower than this, by the largest speed, hold what lies between them in time by forces of 1e-12.
 inline constexpr double loose = 1e-6;
 
@@ -142,20 +146,22 @@ inline constexpr int most_steps = 250, steps_a_mesh = 4, least_steps = 100;
 inline constexpr double most_work = 1.5e9;
 /// Of the effort of one solve, where that is spent already.
 inline constexpr double share = 0.5;
-/// Where L is not convex in q, steps are short after so many if there is a minimiser near.
-inline constexpr int patient_steps = 40;
+/// The action has no minimum, it seems, where the path grows by this factor in so many steps, and on. Where
+/// one is rather reached as a rest becomes shorter, that is done, so often.
+inline constexpr int patient_steps = 40, most_falls = 8;
+inline constexpr double growing = 1.5;
 /// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
 inline constexpr int smoothings = 4;
 inline constexpr double floor = 0.5;
 /// 1/τ by the negative curvature of L in q: the flow keeps the order of paths from 1 on.
 inline constexpr double faithful = 2;
-/// A step shorter than this, relative to the range, is near enough to a stationary path that τ may grow as
-/// steps shrink; by this factor at most after each step.
+/// τ grows beyond that as long as steps are shorter than this, relative to the range; by this factor at most
+/// after each step.
 inline constexpr double short_step = 0.02, growth = 4;
-/// 1/τ grows by the first where the second variation is indefinite or the action does not fall; by the
-/// largest curvature of L in q it is then at least the second, at most the third; and near a minimiser below
-/// the last.
-inline constexpr double cut = 4, least_shift = 1e-3, most_shift = 1e6, final_shift = 0.1;
+/// 1/τ grows by the first where the second variation is indefinite or the action does not fall, by at least
+/// the second where a step is too long; by the largest curvature of L in q it is then at least the third, at
+/// most the fourth; and near a minimiser below the last.
+inline constexpr double cut = 4, least_cut = 1.5, least_shift = 1e-3, most_shift = 1e6, final_shift = 0.1;
 /// Relative to the range: the longest change of a step, and one below which the path is nearly minimal.
 inline constexpr double longest_step = 0.3, close = 1e-3;
 inline constexpr int mass_samples = 32;
@@ -169,8 +175,10 @@ inline constexpr double negative = 0.02;
 inline constexpr int inverse_iterations = 12;
 /// A path this much larger than at first has run away.
 inline constexpr double runaway = 1e3;
-/// Nodes of one element of higher degree.
+/// Nodes of one element of higher degree; and elements by those beside them: tails of a path reach into the
+/// elements of a rest.
 inline constexpr int nodes_an_element = 4;
+inline constexpr double steepest_grading = 4;
 
 }  // namespace gradient_flow
 

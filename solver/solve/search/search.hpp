@@ -95,7 +95,7 @@ class Search {
   bool refine_from(const Path& other, const char* strategy);
   bool by_gradient_flow(double side = 1);
   bool flow_from(double away, double side);
-  bool held_in_time(const char* strategy);
+  bool held_in_time(const char* strategy, const std::function<void()>& renew);
   bool by_descent(const std::vector<double>& mesh);
   bool from_finer_elements();
   bool from_line();
