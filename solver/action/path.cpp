@@ -90,10 +90,26 @@ void Path::set_element(int k, const double* q) {
     set_node(k, a, first[a]);
     set_node(k + 1, a, last[a]);
   }
+  set_inner(k, q);
+}
+
+void Path::set_inner(int k, const double* q) {
+  const double *first = q, *last = q + static_cast<std::size_t>(degree_) * n_;
   double* x = this->x(k / lanes_) + k % lanes_;
   for (int j = 1; j < degree_; ++j)
     for (int a = 0; a < n_; ++a)
       x[((j - 1) * n_ + a) * lanes_] = q[j * n_ + a] - (first[a] + lobatto_[j] * (last[a] - first[a]));
+}
+
+void Path::set_apart(int k, const double* q) {
+  const double *first = q, *last = q + static_cast<std::size_t>(degree_) * n_;
+  set_inner(k, q);
+  double* to = x(k / lanes_) + static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes_ + k % lanes_;
+  for (int a = 0; a < n_; ++a) {
+    to[a * lanes_] = first[a];
+    to[(n_ + a) * lanes_] = last[a] - first[a];
+  }
+  if (k == elements_ - 1) repeat_last();
 }
 
 void Path::set_image(int k, const Path& other, int j, const SignedPermutation& map, bool backwards) {
@@ -149,7 +165,11 @@ void Path::load_ends() {
       to[(n_ + a) * lanes_] = (high_[e + n_ + a] - high_[e + a]) + (low_[e + n_ + a] - low_[e + a]);
     }
   }
-  // Idle lanes repeat the last element, so that nothing they compute is exceptional.
+  repeat_last();
+}
+
+/// Idle lanes repeat the last element, so that nothing they compute is exceptional.
+void Path::repeat_last() {
   for (int k = elements_; k < batches_ * lanes_; ++k) {
     double* last = x(batches_ - 1);
     const int from = (elements_ - 1) % lanes_, to = k % lanes_;

@@ -34,6 +34,8 @@ class Path {
 
   /// Sets the values at the s + 1 Lobatto nodes of element k from q[(j)*n + a].
   void set_element(int k, const double* q);
+  /// The same in the lanes alone, so that it need not meet its neighbours; not after load_ends().
+  void set_apart(int k, const double* q);
   /// Element k becomes the image under `map` of element j of `other`, which is of the same degree, or of that
   /// run backwards. Exact; load_ends() is to follow.
   void set_image(int k, const Path& other, int j, const SignedPermutation& map, bool backwards);
@@ -91,6 +93,8 @@ class Path {
  private:
   void values(int k, int count, const double* tau, double* q) const;
   void measure_mesh();
+  void set_inner(int k, const double* q);
+  void repeat_last();
 
   int lanes_ = simd_lanes();
   int n_ = 0, degree_ = 0, elements_ = 0, batches_ = 0, unknowns_ = 0;

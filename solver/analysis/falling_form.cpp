@@ -8,6 +8,7 @@
 
 #include "analysis/limits.hpp"
 #include "linear/dense.hpp"
+#include "linear/symmetric_elimination.hpp"
 
 namespace extremal {
 
@@ -42,12 +43,10 @@ const Chebyshev& chebyshev() {
   return points;
 }
 
-using Shares = std::array<double, nodes>;
-
 /// Shares of the nodes in the value at `at` in (0, 1].
-Shares shares(double at, const Shares& weights) {
+std::array<double, nodes> shares(double at, const std::array<double, nodes>& weights) {
   const Chebyshev& c = chebyshev();
-  Shares result{};
+  std::array<double, nodes> result{};
   double sum = 0;
   for (int j = 0; j < nodes; ++j) {
     if (at == c.points[j] && weights[j] != 0) {
@@ -61,36 +60,40 @@ Shares shares(double at, const Shares& weights) {
   return result;
 }
 
-void load(const MatrixXd& m, SymmetricElimination& to, int rest) {
-  const int n = static_cast<int>(m.rows());
+/// The rows of the upper triangle, one after the other.
+VectorXd packed(const MatrixXd& m) {
+  const Eigen::Index n = m.rows();
+  VectorXd rows(n * (n + 1) / 2);
+  for (Eigen::Index i = 0, at = 0; i < n; at += n - i++) rows.segment(at, n - i) = m.col(i).tail(n - i);
+  return rows;
+}
+
+MatrixXd unpacked(const VectorXd& rows, int n) {
+  MatrixXd m(n, n);
+  for (Eigen::Index i = 0, at = 0; i < n; at += n - i++) m.col(i).tail(n - i) = rows.segment(at, n - i);
+  return m;
+}
+
+/// xᵀMx.
+double quadratic_form(const VectorXd& rows, const VectorXd& x) {
+  const Eigen::Index n = x.size();
+  double sum = 0;
+  for (Eigen::Index i = 0, at = 0; i < n; at += n - i++)
+    sum += x[i] * (2 * rows.segment(at, n - i).dot(x.tail(n - i)) - rows[at] * x[i]);
+  return sum;
+}
+
+void load(const VectorXd& rows, int n, SymmetricElimination& to, int rest) {
   to.resize(n, rest);
-  for (int i = 0; i < n; ++i) std::copy_n(m.col(i).data() + i, n - i, to.pivot_row(i) + i);
-}
-
-void load_coupled(const MatrixXd& columns, SymmetricElimination& to) {
-  for (int i = 0; i < columns.rows(); ++i)
-    for (int j = 0; j < columns.cols(); ++j) to.coupled_row(i)[j] = columns(i, j);
-}
-
-MatrixXd coupled(SymmetricElimination& from, int rows, int columns) {
-  MatrixXd m(rows, columns);
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) m(i, j) = from.coupled_row(i)[j];
-  return m;
-}
-
-/// Columns that favour no direction.
-MatrixXd spread(int rows, int columns) {
-  MatrixXd m(rows, columns);
-  for (int j = 0; j < columns; ++j)
-    for (int i = 0; i < rows; ++i) m(i, j) = std::cos(1 + 2.4 * i + 0.7 * j + 1.3 * i * j);
-  return m;
+  const double* from = rows.data();
+  for (int i = 0; i < n; from += n - i++) std::copy_n(from, n - i, to.pivot_row(i) + i);
 }
 
 }  // namespace
 
 struct FallingForm::Search {
   SymmetricElimination elimination;
+  std::array<VectorXd, 2> form_and_slope;
   std::vector<double> found;
   bool first_only = false;
 };
@@ -103,71 +106,91 @@ std::optional<FallingForm> FallingForm::of(double from, double to, int before, s
   form.from_ = from;
   form.to_ = to;
   form.before_ = before;
-  form.values_ = std::move(samples);
-  form.last_ = last;
-  for (int j = 0; j < form_samples; ++j) form.values_[j] *= form.time(j);
-  form.values_.push_back(to * last);
-  const Shares inside = shares(1, chebyshev().weights_inside);
-  const double error = (form.sum(inside) / to - last).cwiseAbs().maxCoeff();
-  if (!(error * to <= most_form_error)) return std::nullopt;
+  form.size_ = static_cast<int>(last.rows());
+  for (int j = 0; j < form_samples; ++j) form.values_.push_back(form.time(j) * packed(samples[j]));
+  form.values_.push_back(to * packed(last));
+  VectorXd inside(form.values_.back().size());
+  const Shares of_inside = shares(1, chebyshev().weights_inside);
+  form.sum({&of_inside, 1}, {&inside, 1});
+  const double error = (inside - form.values_.back()).cwiseAbs().maxCoeff();
+  if (!(error <= most_form_error)) return std::nullopt;
   return form;
 }
 
-MatrixXd FallingForm::sum(std::span<const double> share) const {
-  static_assert(nodes % 4 == 1);
-  MatrixXd sum = share[form_samples] * values_[form_samples];
-  for (int j = 0; j < form_samples; j += 4)
-    sum += share[j] * values_[j] + share[j + 1] * values_[j + 1] + share[j + 2] * values_[j + 2] +
-           share[j + 3] * values_[j + 3];
-  return sum;
+/// Of the nodes in F(tau).
+FallingForm::Shares FallingForm::shares_at(double tau) const {
+  Shares result = shares((tau - from_) / (to_ - from_), chebyshev().weights);
+  for (double& share : result) share /= tau;
+  return result;
 }
 
-MatrixXd FallingForm::at(double tau) const {
-  return sum(shares((tau - from_) / (to_ - from_), chebyshev().weights)) / tau;
+/// Of the nodes in F'(tau), by a difference: its error slows the iteration to a zero, but not more.
+FallingForm::Shares FallingForm::shares_of_slope(double tau) const {
+  const double step = slope_step * (tau - from_);
+  Shares result = shares_at(tau + step);
+  const Shares before = shares_at(tau - step);
+  for (int j = 0; j < nodes; ++j) result[j] = (result[j] - before[j]) / (2 * step);
+  return result;
+}
+
+/// Sums over the nodes with these shares. Part by part, so that what is read serves all of them.
+void FallingForm::sum(std::span<const Shares> shares, std::span<VectorXd> sums) const {
+  static_assert(nodes % 4 == 1);
+  constexpr Eigen::Index part = 256;
+  const Eigen::Index all = values_[0].size();
+  for (VectorXd& s : sums) s.resize(all);
+  for (Eigen::Index from = 0; from < all; from += part) {
+    const Eigen::Index count = std::min(part, all - from);
+    const auto value = [&](int j) { return values_[j].segment(from, count); };
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const Shares& share = shares[k];
+      auto to = sums[k].segment(from, count);
+      to = share[form_samples] * value(form_samples);
+      for (int j = 0; j < form_samples; j += 4)
+        to += share[j] * value(j) + share[j + 1] * value(j + 1) + share[j + 2] * value(j + 2) +
+              share[j + 3] * value(j + 3);
+    }
+  }
 }
 
 std::optional<int> FallingForm::negative_at(double tau, Search& search) const {
-  const MatrixXd form = at(tau);
-  load(form, search.elimination, 0);
+  VectorXd& form = search.form_and_slope[0];
+  const Shares shares = shares_at(tau);
+  sum({&shares, 1}, {&form, 1});
+  load(form, size_, search.elimination, 0);
   if (search.elimination.eliminate()) return search.elimination.inertia().negative;
   if (!form.allFinite()) return std::nullopt;
-  return static_cast<int>((symmetric_eigenvalues(form).array() < 0).count());
+  return static_cast<int>((symmetric_eigenvalues(unpacked(form, size_)).array() < 0).count());
 }
 
 /// One zero between two times: the time at which the form of an approximate null vector vanishes is off by
-/// the square of the vector's error (Voss, BIT Numer. Math. 44 (2004) 387, on safeguarded iteration).
+/// the square of the vector's error (Voss, BIT Numer. Math. 44 (2004) 387, on safeguarded iteration). With
+/// F z = x the form of z at tau is zᵀx. After a step d the error is about d² over the distance of other
+/// zeros, and so over the width of the interval, if the vector has settled.
 std::optional<double> FallingForm::single(Place low, Place high, Search& search) const {
+  const double enough = zero_resolution * to_ * (high.tau - low.tau);
   double tau = (low.tau + high.tau) / 2;
-  MatrixXd x = spread(size(), 1);
+  SymmetricElimination& elimination = search.elimination;
+  const auto& [form, slope] = search.form_and_slope;
+  VectorXd x(size_), z(size_);
+  for (int i = 0; i < size_; ++i) x[i] = std::cos(1 + (2.4 + 0.37 * i) * i);  // of no frequency
+  x.normalize();
   for (int step = 0; step < most_zero_steps; ++step) {
-    load(at(tau), search.elimination, 1);
-    load_coupled(x, search.elimination);
-    const bool trusted = search.elimination.eliminate();
-    if (!search.elimination.completed()) return step > 0 ? std::optional(tau) : std::nullopt;
-    if (trusted) (search.elimination.inertia().negative > low.negative ? high : low).tau = tau;
-    search.elimination.substitute();
-    x = coupled(search.elimination, size(), 1).normalized();
-    if (!x.allFinite()) return std::nullopt;
-    Shares along;
-    for (int j = 0; j < nodes; ++j) along[j] = x.col(0).dot(values_[j] * x.col(0));
-    const auto value = [&](double t) {
-      const Shares share = shares((t - from_) / (to_ - from_), chebyshev().weights);
-      double sum = 0;
-      for (int j = 0; j < nodes; ++j) sum += share[j] * along[j];
-      return sum;
-    };
-    double a = low.tau, b = high.tau;
-    if (!(value(b) < 0) || (a > from_ && !(value(a) > 0))) {
-      tau = (a + b) / 2;
-      continue;
-    }
-    while (b - a > zero_resolution * to_ / 4) {
-      const double middle = (a + b) / 2;
-      if (middle <= a || middle >= b) break;
-      (value(middle) > 0 ? a : b) = middle;
-    }
-    const double next = (a + b) / 2;
-    if (std::abs(next - tau) <= small_zero_step * to_) return next;
+    const std::array both = {shares_at(tau), shares_of_slope(tau)};
+    sum(both, search.form_and_slope);
+    load(form, size_, elimination, 1);
+    for (int i = 0; i < size_; ++i) elimination.coupled_row(i)[0] = x[i];
+    const bool trusted = elimination.eliminate();
+    if (!elimination.completed()) return step > 0 ? std::optional(tau) : std::nullopt;
+    if (trusted) (elimination.inertia().negative > low.negative ? high : low).tau = tau;
+    elimination.substitute();
+    for (int i = 0; i < size_; ++i) z[i] = elimination.coupled_row(i)[0];
+    if (!z.allFinite()) return std::nullopt;
+    const double along = z.dot(x), length = z.norm();
+    double next = tau - along / quadratic_form(slope, z);
+    if (!(next >= low.tau && next <= high.tau)) next = (low.tau + high.tau) / 2;
+    if ((next - tau) * (next - tau) <= enough && std::abs(along) > least_along * length) return next;
+    x = z / length;
     tau = next;
   }
   return std::nullopt;

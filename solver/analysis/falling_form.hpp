@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <functional>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "linear/symmetric_elimination.hpp"
+#include "analysis/limits.hpp"
 
 /// \file Symmetric matrices that fall with time, and the times at which they are singular.
 
@@ -35,18 +35,18 @@ class FallingForm {
     double tau;
     int negative;
   };
+  using Shares = std::array<double, limits::falling_form::form_samples + 1>;
   double time(int sample) const { return from_ + points()[sample] * (to_ - from_); }
-  int size() const { return static_cast<int>(last_.rows()); }
-  Eigen::MatrixXd sum(std::span<const double> shares) const;
-  Eigen::MatrixXd at(double tau) const;
+  Shares shares_at(double tau) const;
+  Shares shares_of_slope(double tau) const;
+  void sum(std::span<const Shares> shares, std::span<Eigen::VectorXd> sums) const;
   std::optional<int> negative_at(double tau, Search& search) const;
   bool find(Place low, Place high, Search& search) const;
   std::optional<double> single(Place low, Place high, Search& search) const;
 
   double from_ = 0, to_ = 1;
-  int before_ = 0;
-  std::vector<Eigen::MatrixXd> values_;  ///< τ F at each sample and at the end
-  Eigen::MatrixXd last_;
+  int size_ = 0, before_ = 0;
+  std::vector<Eigen::VectorXd> values_;  ///< τ F at each sample and at the end: rows of the upper triangle
 };
 
 }  // namespace extremal

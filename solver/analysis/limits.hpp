@@ -13,10 +13,12 @@ inline constexpr int form_samples = 16;
 inline constexpr double most_form_error = 3e-10;
 /// Of a zero, relative to the end of the interval.
 inline constexpr double zero_resolution = 1e-13;
-/// Steps of safeguarded iteration to one zero: they converge quadratically, so that after a small one nothing
-/// is left.
+/// Steps of safeguarded iteration to one zero: they converge quadratically, once the cosine of the angle
+/// between a vector and the next is so large.
 inline constexpr int most_zero_steps = 16;
-inline constexpr double small_zero_step = 1e-11;
+inline constexpr double least_along = 0.5;
+/// Of the differences for the slope of a form, relative to the time since the start of its interval.
+inline constexpr double slope_step = 1e-4;
 
 }  // namespace falling_form
 
@@ -24,7 +26,7 @@ namespace jacobi {
 
 /// From so many coordinates on, forms are eliminated by blocks, and conjugate times in a piece found
 /// together.
-inline constexpr int least_large = 48;
+inline constexpr int least_large = 12;
 /// Vectors and steps of inverse iteration to the eigenvalue that is nearest zero at the end.
 inline constexpr int end_vectors = 4, end_steps = 6;
 
@@ -43,7 +45,7 @@ namespace windows {
 /// Up to so many coordinates all conjugate times are found; for more where their number times the cube of the
 /// coordinates is no more than this: about half a minute.
 inline constexpr int always_found = 128;
-inline constexpr double most_work = 1e11;
+inline constexpr double most_work = 2e11;
 
 }  // namespace windows
 

@@ -166,9 +166,8 @@ void SecondVariation::evaluate(std::span<const Part> parts) {
       const double tau = part.tau0 + scheme_->lobatto[j] * (part.tau1 - part.tau0);
       interpolate(lobatto_barycentric(s), tau, nodes, n, values_.data() + j * n);
     }
-    path_.set_element(k, values_.data());
+    path_.set_apart(k, values_.data());
   }
-  path_.load_ends();
   action_.reset(*lagrangian_, tables_, count, false);
   action_.evaluate(path_);
 }
