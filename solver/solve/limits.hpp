@@ -40,9 +40,9 @@ inline constexpr double shrunk = 1e-4;
 
 namespace phase_space {
 
-/// What stationary paths may leave of Hamilton's equations, at least and in tolerances. Paths that are no
-/// motions leave far more.
-inline constexpr double least_defect = 1e-6, defect_tolerances = 1e3;
+/// What stationary paths may leave of Hamilton's equations, at least, in tolerances, and at most. Paths that
+/// are no motions leave far more.
+inline constexpr double least_defect = 1e-6, defect_tolerances = 1e3, most_defect = 0.05;
 /// Momenta may err by so many tolerances of their range. A solve for their sake has no tighter tolerance.
 inline constexpr double momentum_tolerances = 10, tightest_for_momenta = 1e-13;
 

@@ -73,7 +73,7 @@ class PhaseSpaceSolve {
     Solution solution = solve_(problem, options, near_guess);
     if (!solution.converged()) return solution;
     const double defect = phase_defect(problem, solution.trajectory, solution.degree);
-    const double allowed = std::max(least_defect, defect_tolerances * options.tolerance);
+    const double allowed = std::clamp(defect_tolerances * options.tolerance, least_defect, most_defect);
     if (defect <= allowed) return solution;
     Solution refused;
     refused.status = Status::no_solution_near;

@@ -39,7 +39,7 @@ TEST(Descent, ActionFallsAtEveryStep) {
   const Problem problem = convex(60);
   Begun begun(problem, 16);
   std::vector<double> actions;
-  Descent descent(problem, begun.path, begun.w, [&] {
+  Descent descent(begun.path, begun.w, [&] {
     actions.push_back(begun.w.iteration.action().action());
     return true;
   });
@@ -55,7 +55,7 @@ TEST(Descent, ArrivesAtASaddle) {
   const Problem problem = guessed(fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 20),
                                   [](double tau) { return Values{0.5 - tau}; });
   Begun begun(problem, 40);
-  Descent descent(problem, begun.path, begun.w, [] { return true; });
+  Descent descent(begun.path, begun.w, [] { return true; });
   ASSERT_TRUE(descent.run(*begun.tables));
   const double slope = (0.3 - 0.5 * std::cos(20.0)) / std::sin(20.0);
   for (int k = 0; k <= 40; ++k) {
@@ -68,7 +68,7 @@ TEST(Descent, ArrivesAtASaddle) {
 TEST(Descent, NeedsElementsWithinAWindow) {
   const Problem problem = fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 20);
   Begun begun(problem, 4);
-  Descent descent(problem, begun.path, begun.w, [] { return true; });
+  Descent descent(begun.path, begun.w, [] { return true; });
   EXPECT_FALSE(descent.run(*begun.tables));
 }
 
@@ -76,7 +76,7 @@ TEST(Descent, StopsWhenToldTo) {
   const Problem problem = convex(60);
   Begun begun(problem, 16);
   int left = 5;
-  Descent descent(problem, begun.path, begun.w, [&] { return --left > 0; });
+  Descent descent(begun.path, begun.w, [&] { return --left > 0; });
   EXPECT_FALSE(descent.run(*begun.tables));
   EXPECT_EQ(left, 0);
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -252,6 +254,22 @@ TEST_F(PhaseSpaceScenes, QuarticMomentum) {
   EXPECT_LT(*solution.energy_drift, 1e-7);
   const Point end = at(s, solution, 3);
   EXPECT_NEAR(std::pow(end.p[0], 4) / 4 + end.q[0] * end.q[0] / 2, 0.5, 1e-8);
+}
+
+/// Its period at the energy 1/2 is 2^(1/4) B(1/2, 1/4). What is loosely stationary is no orbit yet.
+TEST_F(PhaseSpaceScenes, OrbitsOfLooseTolerancesSolveHamiltonsEquations) {
+  const double period = std::pow(2, 0.25) * std::sqrt(pi) * std::tgamma(0.25) / std::tgamma(0.75);
+  for (const double tolerance : {1e-2, 1e-3, 1e-5}) {
+    const Solution solution =
+        run(study(fmt::format("[system]\ncoordinates = [\"x\"]\nhamiltonian = \"p_x^4/4 + x^2/2\"\n"
+                              "[boundary]\nperiodic = true\nduration = \"free\"\nenergy = 0.5\n"
+                              "[guess]\nx = \"cos(2*pi*t/T)\"\np_x = \"-sin(2*pi*t/T)\"\nduration = 6\n"
+                              "[solve]\ntolerance = {}\n",
+                              tolerance)));
+    if (!solution.converged()) continue;
+    EXPECT_NEAR(solution.duration(), period, 10 * tolerance * period) << tolerance;
+    EXPECT_NEAR(*solution.energy, 0.5, 10 * tolerance) << tolerance;
+  }
 }
 
 /// Three vortices in a row turn, and are unstable at the rate √3 Ω.
