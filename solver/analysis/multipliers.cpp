@@ -243,8 +243,9 @@ std::vector<double> doubling_tests(const Floquet& floquet) {
   bool first_of_two = false;  // of a pair at −1
   for (const Complex& value : floquet.multipliers) {
     const double x = value.real(), y = value.imag();
-    if (y > 0 && std::abs(std::norm(value) - 1) < same_modulus) tests.push_back(2 + 2 * x);
-    if (y == 0 && std::abs(x) > 1) tests.push_back((1 + x) * (1 + 1 / x) / std::abs(x));
+    if (y > 0 && std::abs(std::norm(value) - 1) < same_modulus)
+      tests.push_back(std::asinh(x) + std::asinh(1));
+    if (y == 0 && std::abs(x) > 1) tests.push_back(std::asinh(0.5 * (x + 1 / x)) + std::asinh(1));
     if (value == -1.0 && (first_of_two = !first_of_two)) tests.push_back(0);
   }
   std::sort(tests.begin(), tests.end());

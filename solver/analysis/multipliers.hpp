@@ -39,8 +39,9 @@ std::optional<Floquet> floquet_in_phase_space(const SecondVariation& variation, 
 void sort_multipliers(Floquet& floquet);
 
 /// With forces Π (1 + λ)/(1 + |λ|), which changes its sign where one multiplier passes −1. Without,
-/// λ + 1/λ + 2 of every pair on the unit circle or real, divided by |λ| >= 1; ascending. One changes its sign
-/// where its pair passes −1. Pairs at 1 are left out.
+/// asinh(μ/2) + asinh 1 with μ = λ + 1/λ for every pair on the unit circle or real; ascending. One changes
+/// its sign where its pair passes −1. It is a smooth function of the orbit, and grows like log |λ|. Pairs at
+/// 1 are left out.
 std::vector<double> doubling_tests(const Floquet& floquet);
 
 }  // namespace extremal

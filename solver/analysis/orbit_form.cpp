@@ -5,6 +5,7 @@
 
 #include "analysis/symplectic.hpp"
 #include "linear/dense.hpp"
+#include "linear/symmetric_elimination.hpp"
 
 namespace extremal {
 
@@ -75,6 +76,35 @@ std::vector<int> OrbitForm::iterates(int most, double threshold) const {
     result.push_back(sum);
   }
   return result;
+}
+
+/// Pieces add up in the nodes where they begin; the last one ends in −R η(0).
+int antiperiodic_index(const SecondVariation& variation, const MatrixXd& map) {
+  const int pieces = variation.count(), n = static_cast<int>(variation.piece(0).a.rows());
+  const VectorXd unit = symplectic_units(variation), inverse = unit.cwiseInverse();
+  const auto scaled = [&](const auto& matrix) -> MatrixXd {
+    return inverse.asDiagonal() * matrix * inverse.asDiagonal();
+  };
+  const MatrixXd closing = map.size() == 0 ? MatrixXd(-MatrixXd::Identity(n, n))
+                                           : -(unit.asDiagonal() * map * inverse.asDiagonal());
+  MatrixXd sum = MatrixXd::Zero(pieces * n, pieces * n);
+  for (int k = 0; k < pieces; ++k) {
+    const Piece piece = variation.piece(k);
+    const bool last = k + 1 == pieces;
+    const int here = k * n, next = last ? 0 : here + n;
+    const MatrixXd a = scaled(piece.a), b = scaled(piece.b), d = scaled(piece.d);
+    const MatrixXd coupled = last ? MatrixXd(closing.transpose() * b) : b;
+    sum.block(here, here, n, n) += a;
+    sum.block(next, next, n, n) += last ? MatrixXd(closing.transpose() * d * closing) : d;
+    sum.block(next, here, n, n) += coupled;
+    sum.block(here, next, n, n) += coupled.transpose();
+  }
+  SymmetricElimination elimination;
+  elimination.resize(pieces * n, 0);
+  for (int i = 0; i < pieces * n; ++i)
+    for (int j = i; j < pieces * n; ++j) elimination.pivot_row(i)[j] = sum(i, j);
+  if (elimination.eliminate()) return elimination.inertia().negative;
+  return static_cast<int>((symmetric_eigenvalues(sum).array() < 0).count());
 }
 
 VectorXcd OrbitForm::eigenvector(std::complex<double> lambda) const {

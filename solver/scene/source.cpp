@@ -88,13 +88,14 @@ void check_characters(const std::shared_ptr<const Source>& source) {
   }
 }
 
-/// Refuses a file that does not exist, with the names of those beside it.
-[[noreturn]] void refuse_missing(const std::shared_ptr<const Source>& source) {
-  const fs::path path = source->name, folder = path.parent_path();
-  const Location whole{source, 0, 0};
+/// Refuses a file that does not exist, with the names of those beside it, as they are to be written in
+/// `folder_as_named`.
+[[noreturn]] void refuse_missing(const fs::path& path, const Location& at, const std::string& message,
+                                 const fs::path& folder_as_named) {
+  const fs::path folder = path.parent_path();
   std::error_code error;
   if (!folder.empty() && !fs::is_directory(folder, error))
-    throw SceneError(whole, fmt::format("no such file; there is no folder '{}'", folder.string()));
+    throw SceneError(at, fmt::format("{}; there is no folder '{}'", message, folder.string()));
   std::vector<std::string> files;
   const fs::path here = folder.empty() ? "." : folder;
   for (fs::directory_iterator it(here, error), end; !error && it != end; it.increment(error))
@@ -103,8 +104,8 @@ void check_characters(const std::shared_ptr<const Source>& source) {
   std::sort(files.begin(), files.end());
   const std::string name = path.filename().string(), completed = name + ".toml";
   const bool exists = std::binary_search(files.begin(), files.end(), completed);
-  throw UnknownName(whole, "no such file", exists ? completed : name, files,
-                    folder.empty() ? "" : (folder / "").string());
+  throw UnknownName(at, message, exists ? completed : name, files,
+                    folder_as_named.empty() ? "" : (folder_as_named / "").string());
 }
 
 /// Moves over one character of content as it is written; returns the bytes it stands for.
@@ -141,7 +142,8 @@ std::shared_ptr<Source> read_bytes(const std::string& path, std::size_t most) {
   }
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) refuse_missing(source);
+  if (status.type() == fs::file_type::not_found)
+    refuse_missing(path, {source, 0, 0}, "no such file", fs::path(path).parent_path());
   if (!fs::exists(status)) refuse(fmt::format("cannot be found: {}", error.message()));
   if (fs::is_directory(status)) refuse("is a directory; a file is needed");
   if (!fs::is_regular_file(status)) refuse("is not a regular file");
@@ -179,6 +181,14 @@ Location position(const Text& text, std::size_t offset) {
   while (cursor.peek() == '\\' && quote == '"' && long_string && std::strchr("\r\n", cursor.peek(1)))
     skip_content(cursor, true, true);
   return {text.at.source, cursor.line, cursor.column};
+}
+
+void require_file(const std::string& path, const Text& name) {
+  if (name.value.empty()) throw SceneError(name.at, "the name of the file is empty");
+  std::error_code error;
+  if (fs::status(path, error).type() == fs::file_type::not_found)
+    refuse_missing(path, name.at, fmt::format("no such file: '{}'", name.value),
+                   fs::path(name.value).parent_path());
 }
 
 std::shared_ptr<const Source> read_source(const std::string& path) {

@@ -65,6 +65,9 @@ inline constexpr std::size_t largest_binary = std::size_t{256} << 20;  ///< byte
 /// text.
 std::shared_ptr<const Source> read_source(const std::string& path);
 
+/// Throws SceneError where a scene names a file that does not exist, UnknownName with the files beside it.
+void require_file(const std::string& path, const Text& name);
+
 /// Reads a file of any bytes, up to `largest_binary`. Throws as read_source() does.
 std::shared_ptr<const Source> read_binary(const std::string& path);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -22,6 +23,15 @@ bool wholly_fixed(const EndMap& ends, bool at_end) {
   const std::size_t n = ends.fixed.size() / 2;
   const auto begin = ends.fixed.begin() + (at_end ? n : 0);
   return std::all_of(begin, begin + n, [](char fixed) { return fixed; });
+}
+
+/// Of the chord through the neighbours of sample k of the guess.
+double velocity_at(const Problem& problem, int k, int a) {
+  const Guess& guess = problem.guess;
+  const std::size_t n = problem.coordinates();
+  const int before = std::max(k - 1, 0), after = std::min(k + 1, static_cast<int>(guess.tau.size()) - 1);
+  const double span = (guess.tau[after] - guess.tau[before]) * problem.duration.value;
+  return (guess.q[after * n + a] - guess.q[before * n + a]) / span;
 }
 
 /// Samples of the guess in batches, as structure of arrays, and the value of L's remainder there.
@@ -48,16 +58,12 @@ class GuessValues {
   }
 
  private:
-  /// Sample k into lane i, with the velocity of the chord through its neighbours.
+  /// Sample k into lane i.
   void load(int k, int i) {
     const Guess& guess = problem_.guess;
-    const int last = static_cast<int>(guess.tau.size()) - 1;
-    const int before = std::max(k - 1, 0), after = std::min(k + 1, last);
-    const double span = (guess.tau[after] - guess.tau[before]) * problem_.duration.value;
     for (int a = 0; a < n_; ++a) {
       rows_[a * stride_ + i] = guess.q[std::size_t(k) * n_ + a];
-      rows_[(n_ + a) * stride_ + i] =
-          (guess.q[std::size_t(after) * n_ + a] - guess.q[std::size_t(before) * n_ + a]) / span;
+      rows_[(n_ + a) * stride_ + i] = velocity_at(problem_, k, a);
     }
     rows_[2 * n_ * stride_ + i] = guess.tau[k] * problem_.duration.value;
   }
@@ -82,14 +88,20 @@ int first_not_finite(const Problem& problem) {
 
 bool is_finite_on_guess(const Problem& problem) { return first_not_finite(problem) < 0; }
 
-void check_guess_finite(const Problem& problem, const Location& at) {
+void check_guess_finite(const Problem& problem, const Location& at, bool by_momenta) {
   const Guess& guess = problem.guess;
   const int k = first_not_finite(problem);
-  if (k >= 0)
-    throw SceneError(
-        at,
-        fmt::format("L is not finite on the guess at t = {:.6g}: {}", guess.tau[k] * problem.duration.value,
-                    point_text(problem, guess.q.data() + std::size_t(k) * problem.coordinates())));
+  if (k < 0) return;
+  // The Lagrangian of a Hamiltonian has the velocities in the range of H_p alone.
+  std::string velocities;
+  if (by_momenta)
+    for (int a = 0; a < problem.coordinates(); ++a)
+      velocities += fmt::format(", {}' = {:.6g}", problem.names[a], velocity_at(problem, k, a));
+  throw SceneError(
+      at,
+      fmt::format("L is not finite on the guess at t = {:.6g}: {}{}{}", guess.tau[k] * problem.duration.value,
+                  point_text(problem, guess.q.data() + std::size_t(k) * problem.coordinates()), velocities,
+                  velocities.empty() ? "" : "; momenta may not reach these velocities, ∂H/∂p"));
 }
 
 void check_energy_at_ends(const Problem& problem, const Location& at) {

@@ -7,9 +7,10 @@
 
 namespace extremal {
 
-/// Throws SceneError at `at` if the Lagrangian is not finite somewhere on the guess, with the values there.
-/// An end that the boundary relation fixes wholly is not the guess's.
-void check_guess_finite(const Problem& problem, const Location& at);
+/// Throws SceneError at `at`, with the velocities if L is that of a Hamiltonian (`by_momenta`), if the
+/// Lagrangian is not finite somewhere on the guess, with the values there. An end that the boundary relation
+/// fixes wholly is not the guess's.
+void check_guess_finite(const Problem& problem, const Location& at, bool by_momenta);
 
 /// Whether it would not.
 bool is_finite_on_guess(const Problem& problem);

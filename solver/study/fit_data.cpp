@@ -158,7 +158,9 @@ Observations read_observations(const FitTable& table, const std::string& scene, 
           fmt::format("'{}' is a name of the system already; choose another one for the observation",
                       observation.name));
   }
-  const auto source = read_source(beside(scene, table.data.value));
+  const std::string path = beside(scene, table.data.value);
+  require_file(path, table.data);
+  const auto source = read_source(path);
   const Location whole{source, 0, 0};
   const CsvFile file = read_csv(source);
   if (file.header.empty()) throw SceneError(whole, "the file has no columns; write a column t and others");

@@ -157,9 +157,10 @@ std::string beside(const std::string& scene, const std::string& file) {
 void read_guess(const Scene& scene, const System& system, const Deadline& deadline, Problem& problem) {
   const GuessTable& table = scene.guess;
   if (table.file) {
-    if (table.file->value.empty()) throw SceneError(table.file->at, "the name of the file is empty");
+    const std::string path = beside(scene.path, table.file->value);
+    require_file(path, *table.file);
     bool incomplete = false;
-    GuessFile file = read_states(table, beside(scene.path, table.file->value), system, incomplete);
+    GuessFile file = read_states(table, path, system, incomplete);
     if (problem.duration.free || scene.boundary.infinite)
       problem.duration.value = guessed_duration(table, system, file.duration);
     if (!file.start_q.empty())

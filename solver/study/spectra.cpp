@@ -64,7 +64,11 @@ SpectrumRequest read_spectrum(const SpectrumTable& table, const std::string& sce
                               const std::vector<std::string>& names) {
   SpectrumRequest request;
   if (table.lines) request.lines = static_cast<int>(table.lines->value);
-  if (table.against) request.against = read_measures(beside(scene, table.against->value), names);
+  if (table.against) {
+    const std::string path = beside(scene, table.against->value);
+    require_file(path, *table.against);
+    request.against = read_measures(path, names);
+  }
   return request;
 }
 

@@ -197,7 +197,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   if (!problem.manifold || !has_regular_chart(problem)) {
     problem.lagrangian = as_made(std::move(problem.lagrangian));
     check_regular(problem, scene.system);
-    check_guess_finite(problem, scene.guess.at);
+    check_guess_finite(problem, scene.guess.at, legendre);
   }
   if (problem.duration.where && problem.ends.free == 0)
     throw SceneError(position(*scene.boundary.where, 0),

@@ -90,7 +90,7 @@ TEST_F(CommandLine, MissingFilesNameTheNearest) {
   expect({{"check", "sub/othre.toml"}, "sub/othre.toml: no such file; did you mean 'sub/other.toml'?"});
   expect({{"solve", "nowhere/mine.toml"}, "nowhere/mine.toml: no such file; there is no folder 'nowhere'"});
   expect({{"solve", "scene.toml", "--set", "guess.file=scnee.toml"},
-          "scnee.toml: no such file; did you mean 'scene.toml'?"});
+          "--set guess.file: no such file: 'scnee.toml'; did you mean 'scene.toml'?"});
 }
 
 TEST_F(CommandLine, AMissingSceneOfTheLibraryIsNamed) {

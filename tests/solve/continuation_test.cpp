@@ -108,6 +108,24 @@ TEST(Continuation, BucklingLoads) {
   EXPECT_TRUE(values(points, PointKind::fold).empty());
 }
 
+/// A load that passes the buckling load π² by little and falls again: between two points the index rises and
+/// falls.
+TEST(Continuation, TwoBranchPointsOnOneStep) {
+  for (const double excess : {1e-2, 1e-3, 1e-4}) {
+    const auto problem = [=](double lambda) {
+      const double load = pi * pi + excess - lambda * lambda;
+      return fixed_ends(trace(1, [=](auto q, auto v, auto) { return v[0] * v[0] / 2 + load * cos(q[0]); }),
+                        {0}, {0}, 1);
+    };
+    Continuation branch(varied(problem, -1, 1.1), {within(1e-9), 30});
+    const std::vector<double> found = values(follow(branch), PointKind::branch);
+    EXPECT_EQ(branch.end(), BranchEnd::target) << branch.message();
+    ASSERT_EQ(found.size(), 2u) << excess;
+    EXPECT_NEAR(found[0], -std::sqrt(excess), 1e-7);
+    EXPECT_NEAR(found[1], std::sqrt(excess), 1e-7);
+  }
+}
+
 /// q'' = −ω²q from 0 to 1 in the time 1: q'(0) = ω/sin ω.
 TEST(Continuation, OscillatorInItsFrequency) {
   const auto problem = [](double omega) {

@@ -212,6 +212,39 @@ TEST(Families, StraightOrbitsOfHenonAndHeiles) {
   EXPECT_LE(branch.worst_momentum(), 1e-8);
 }
 
+/// Pairs of period doublings and of branch points follow each other ever faster towards the escape energy,
+/// also between two points of the branch. Periods by shooting: x'' = −(1 + 2y)x integrated beside the
+/// straight orbit from its lowest point (scipy 1.10, DOP853, rtol 1e-13), and its trace −2 or 2 solved for by
+/// Brent's method.
+TEST(Families, PairsOfDoublingsBetweenPoints) {
+  const double doubled[] = {11.373631182579159, 12.212370152115128, 14.998491461641953, 15.839654809370632,
+                            18.625987677676743, 19.4672322816835,   22.25358288041727,  23.094830106223544},
+               crossed[] = {9.571048223713762,  10.398753594791692, 13.185142938601773, 14.025928731053837,
+                            16.812204487525676, 17.653436675590015, 20.439784063306107, 21.281030882487677};
+  ProblemFamily family = family_scene("henon-heiles-line-family").continuation->family;
+  family.to = 0.18;
+  for (const int most : {30, 100}) {
+    Continuation branch(family, {.solve = within(1e-9), .points = most});
+    std::vector<double> doublings, crossings;
+    double last = 0;
+    for (const BranchPoint& point : follow(branch)) {
+      last = point.solution.duration();
+      if (last < 9) continue;
+      if (point.kind == PointKind::period_doubling) doublings.push_back(last);
+      if (point.kind == PointKind::branch) crossings.push_back(last);
+    }
+    EXPECT_GT(last, 17) << most;
+    const auto compare = [&](const std::vector<double>& found, std::span<const double> expected) {
+      const auto passed = std::ranges::count_if(expected, [&](double period) { return period < last; });
+      ASSERT_GE(std::ssize(found), passed) << most;
+      for (std::size_t k = 0; k < std::min(found.size(), expected.size()); ++k)
+        EXPECT_NEAR(found[k], expected[k], 1e-5) << most;
+    };
+    compare(doublings, doubled);
+    compare(crossings, crossed);
+  }
+}
+
 /// Every orbit that begins at one of those points leads on to the energy wanted.
 TEST(Families, OrbitsThatBeginAtStraightOnes) {
   const Study study = family_scene("henon-heiles-line-family");

@@ -302,3 +302,27 @@ TEST_F(Scenes, DurationsFollowTheDrive) {
     EXPECT_NE(fixed.find("as a formula of w"), std::string::npos) << fixed;
   }
 }
+
+/// q'' = −4q + sin t: sin t/3 + a cos 2t + b sin 2t for all a and b. The nearest to the guess has its a and
+/// b.
+TEST_F(Scenes, OrbitsOfAFamilyThatIsDriven) {
+  const std::string driven =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - 2*x^2 + x*sin(t)\"\n"
+      "[boundary]\nperiodic = true\nduration = \"2*pi\"\n";
+  const Solution found = run(study(driven + "[guess]\nx = \"0.3*sin(t) + 0.2*cos(2*t)\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NE(found.message.find("one of a family of orbits"), std::string::npos) << found.message;
+  EXPECT_EQ(found.nullity, 2);
+  double q = 0, v = 0;
+  found.trajectory.at(1, {&q, 1}, {&v, 1});
+  EXPECT_NEAR(q, std::sin(1.0) / 3 + 0.2 * std::cos(2.0), 1e-8);
+}
+
+/// q'' = −q + sin t has no orbit of the period 2π: sin t does work on the motions without it.
+TEST_F(Scenes, ResonanceIsTold) {
+  const Solution found =
+      run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2 + x*sin(t)\"\n"
+                "[boundary]\nperiodic = true\nduration = \"2*pi\"\n[guess]\nx = \"0.3*sin(t)\"\n"));
+  EXPECT_EQ(found.status, Status::no_solution_near);
+  EXPECT_NE(found.message.find("in resonance"), std::string::npos) << found.message;
+}

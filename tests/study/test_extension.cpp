@@ -299,3 +299,14 @@ TEST_F(Scenes, ToursThroughAPointDiffer) {
     }
   }
 }
+
+/// Ellipses of the period 6 have μ = a³(π/3)²; those with x(0) = 1.1 have any a > 0.55.
+TEST_F(Scenes, ConstantsOfAContinuumAreTold) {
+  const std::string ellipses =
+      system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 + mu/sqrt(x^2 + y^2)", "parameters = { mu = 1.0 }\n") +
+      "[boundary]\nperiodic = true\nduration = 6.0\nunknowns = { mu = 1.0 }\nwhere = [\"x(0) = 1.1\"]\n"
+      "[guess]\nx = \"1.1*cos(2*pi*t/T)\"\ny = \"sin(2*pi*t/T)\"\n";
+  const Solution found = run(study(ellipses));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NE(found.message.find("they do not determine 'mu'"), std::string::npos) << found.message;
+}

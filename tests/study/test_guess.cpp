@@ -96,7 +96,8 @@ TEST_F(Scenes, GuessFilesThatAreWrong) {
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n"), "g.csv: found 1 samples; need at least 2");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"),
             "g.csv: the times must increase; found 0 after 0");
-  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"), "none.csv: no such file");
+  EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"),
+            "scene.toml:11:8: no such file: 'none.csv'");
 }
 
 TEST_F(Scenes, GuessFromAState) {

@@ -346,5 +346,13 @@ TEST_F(OneElement, IsAStepOfSymplecticMethods) {
   EXPECT_NEAR(r0 + h * flow(q1, r0).second, r1, 1e-15);
 }
 
+/// |∂H/∂p| < 1.
+TEST_F(Scenes, VelocitiesOutOfReachOfMomentaAreNamed) {
+  const std::string text = message(
+      "[system]\ncoordinates = [\"q\"]\nhamiltonian = \"sqrt(1 + p_q^2) + q^2/2\"\n[boundary]\n"
+      "start = { q = 0 }\nend = { q = 1 }\nduration = 2\n[guess]\nq = \"t/T + 2*sin(pi*t/T)\"\n");
+  EXPECT_NE(text.find("q' = 3.64"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace extremal::test

@@ -278,6 +278,7 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
                            problem.paired ? Definite::paired : Definite::none);
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
     if (found.family == 0) explain_nullity(problem, solution);
+    if (found.family == 0) tell_continuum(problem, solution);
     if (found.shifts_held)
       tell_soft_shift(solution);
     else if (found.family == 0)

@@ -1,6 +1,7 @@
 #include "solve/bordered/bordered_judge.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -186,6 +187,22 @@ void read_variation(const Problem& problem, const SolveOptions& options, const B
   read_stability(held, variation, size, solution);
 }
 
+/// Conditions may leave a continuum of solutions, and constants open with it.
+void tell_continuum(const Problem& problem, BorderedEquations& equations, BorderedState state,
+                    Solution& solution) {
+  const Freedom freedom = freedom_of(equations, state);
+  std::vector<std::string> open;
+  for (std::size_t k = 0; k < freedom.moves.size(); ++k)
+    if (freedom.moves[k]) open.push_back(fmt::format("'{}'", problem.extension->names[k]));
+  if (!open.empty())
+    solution.message += fmt::format(
+        "; solutions beside this one meet the conditions as well, in {} direction{}: they do not "
+        "determine {}, and this is one of a continuum near the guess; another condition selects one",
+        freedom.directions, freedom.directions > 1 ? "s" : "", fmt::join(open, ", "));
+  else if (freedom.directions > 0 && problem.periodic)
+    solution.message += one_of_a_continuum(freedom.directions);
+}
+
 }  // namespace
 
 Solution judge(const Problem& problem, const SolveOptions& options, BorderedEquations& equations,
@@ -247,6 +264,7 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
     }
   }
   read_variation(problem, options, state, size, solution);
+  tell_continuum(problem, equations, state, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned)
     solution.element_energies = element_energies(*solution.extension->lagrangian, own.scheme().node,

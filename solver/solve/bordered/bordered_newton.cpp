@@ -72,6 +72,21 @@ class BorderedNewton {
 
   const std::string& failure() const { return failure_; }
 
+  /// At the state, unless derivatives are not finite there.
+  Freedom freedom() {
+    if (!equations_.evaluate(state_, true)) return {};
+    const BorderedEquations::Matrix matrix = equations_.matrix();
+    set_units(matrix);
+    NullDirections found;
+    if (!found.find(scaled(matrix), null_direction)) return {};
+    Freedom freedom{static_cast<int>(found.directions().cols()), {}};
+    const double largest = found.directions().cwiseAbs().maxCoeff();
+    for (int k = 0; k < equations_.extension().unknowns(); ++k)
+      freedom.moves.push_back(found.directions().row(equations_.first_constant() + k).norm() >
+                              takes_part * largest);
+    return freedom;
+  }
+
   /// Beside a family the second variation is not singular, but steps along the family may be far too long.
   /// Its softest directions are then left out, until the path is near. False if they are left out already.
   bool leave_soft_directions_out() {
@@ -103,6 +118,16 @@ class BorderedNewton {
     }
     for (int c = equations_.first_time(); c < equations_.first_held(); ++c) units_[c] = state_.times.back();
   }
+  /// The matrix by the units of its unknowns, rows of size one.
+  BorderedEquations::Matrix scaled(const BorderedEquations::Matrix& matrix) {
+    const Eigen::Index size = matrix.rows();
+    row_units_.setZero(size);
+    for (Eigen::Index c = 0; c < size; ++c)
+      for (BorderedEquations::Matrix::InnerIterator it(matrix, c); it; ++it)
+        row_units_[it.row()] = std::max(row_units_[it.row()], std::abs(it.value()) * units_[c]);
+    for (double& unit : row_units_) unit = unit > 0 ? 1 / unit : 1;
+    return row_units_.asDiagonal() * matrix * units_.asDiagonal();
+  }
   /// A singular matrix belongs to a family of solutions: of all steps the shortest is taken. It shows in a
   /// solution that is much larger than its right-hand side.
   void find_null_directions(const BorderedEquations::Matrix& matrix) {
@@ -111,21 +136,16 @@ class BorderedNewton {
     const Eigen::Index size = matrix.rows();
     const bool dense = size <= most_dense;
     if (!dense && null_below_ > null_direction) return;
-    row_units_.setZero(size);
-    for (Eigen::Index c = 0; c < size; ++c)
-      for (BorderedEquations::Matrix::InnerIterator it(matrix, c); it; ++it)
-        row_units_[it.row()] = std::max(row_units_[it.row()], std::abs(it.value()) * units_[c]);
-    for (double& unit : row_units_) unit = unit > 0 ? 1 / unit : 1;
+    const BorderedEquations::Matrix in_units = scaled(matrix);
     const Eigen::VectorXd probe = NullDirections::probe(size, 0);
     if (lu_.info() == Eigen::Success) {
       const Eigen::VectorXd answer = lu_.solve(probe.cwiseQuotient(row_units_)).cwiseQuotient(units_);
       if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_below_) return;
     }
-    const BorderedEquations::Matrix scaled = row_units_.asDiagonal() * matrix * units_.asDiagonal();
     if (dense) {
       least_norm_.emplace(size, size);
-      least_norm_->setThreshold(null_below_).compute(Eigen::MatrixXd(scaled));
-    } else if (NullDirections found; found.find(scaled, null_below_)) {
+      least_norm_->setThreshold(null_below_).compute(Eigen::MatrixXd(in_units));
+    } else if (NullDirections found; found.find(in_units, null_below_)) {
       across_ = std::move(found);
     }
   }
@@ -205,6 +225,10 @@ BorderedReport converge(BorderedEquations& equations, BorderedState& state,
   }
   report.failure = fmt::format("{} Newton steps did not converge", report.steps);
   return report;
+}
+
+Freedom freedom_of(BorderedEquations& equations, BorderedState& state) {
+  return BorderedNewton(equations, state).freedom();
 }
 
 void estimate_multipliers(BorderedEquations& equations, BorderedState& state, const Problem& problem) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "solve/bordered/bordered_equations.hpp"
 
@@ -21,6 +22,13 @@ struct BorderedReport {
 /// whether there may be more.
 BorderedReport converge(BorderedEquations& equations, BorderedState& state,
                         const std::function<bool(double step, double damping)>& on_step);
+
+/// Directions in which solutions move to others, to first order: where the derivatives are singular.
+struct Freedom {
+  int directions = 0;
+  std::vector<char> moves;  ///< whether they change a constant k
+};
+Freedom freedom_of(BorderedEquations& equations, BorderedState& state);
 
 /// ν and η that balance the equations of the path best, in the sense of least squares.
 void estimate_multipliers(BorderedEquations& equations, BorderedState& state, const Problem& problem);

@@ -55,6 +55,7 @@ bool NullDirections::find(const Matrix& a, double threshold) {
     right = orthonormal(v.topRows(size));
     if (!(MatrixXd(a * right).colwise().norm().maxCoeff() < threshold)) return false;
     if (!factor(a, left, right)) continue;
+    directions_ = right;
     const VectorXd answer = solve(probe(size, 0));
     if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / threshold) return true;
   }

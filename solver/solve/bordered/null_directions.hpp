@@ -23,6 +23,9 @@ class NullDirections {
   /// of A are of size 1.
   bool find(const Matrix& a, double threshold);
 
+  /// Columns that span them, orthonormal; after find().
+  const Eigen::MatrixXd& directions() const { return directions_; }
+
   /// The solution of least norm.
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
 
@@ -34,6 +37,7 @@ class NullDirections {
   bool factor(const Matrix& a, const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
 
   std::unique_ptr<Eigen::SparseLU<Matrix>> bordered_;
+  Eigen::MatrixXd directions_;
   int count_ = 0;
 };
 

@@ -60,7 +60,7 @@ BranchPoint read_point(Tracker& tracker, PointKind kind);
 
 /// Tests of the tracker's state, by multipliers as they are, however near to −1: zero where a period doubles.
 /// NaN if they are not known.
-std::vector<double> read_doubling_tests(Tracker& tracker);
+DoublingTests read_doubling_tests(Tracker& tracker);
 
 /// Folds on a step.
 std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step);
@@ -80,6 +80,7 @@ std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, c
 /// Whether there may be any on a step, as its ends show.
 bool may_fold(const BranchStep& step);
 bool may_double(const BranchStep& step);
+bool may_cross(const BranchStep& step);
 /// A change of the index alone is a fold of the duration, or of the number that varies.
 bool branches_cross(const BranchState& a, const BranchState& b);
 

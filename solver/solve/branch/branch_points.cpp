@@ -214,24 +214,13 @@ Located find_branch_point(Tracker& tracker, const ProblemFamily& family, const B
   return {at, side.singular};
 }
 
-}  // namespace
-
-bool branches_cross(const BranchState& a, const BranchState& b) {
-  return a.orientation != b.orientation || std::abs(a.index - b.index) >= 2;
-}
-
-Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
-  const auto& [from, to, length] = step;
-  Crossings found{.change = to.index - from.index};
-  if (!branches_cross(from, to)) return found;
-  found.complete = false;
-  if (!tracker.reach(from, length, true)) return found;
-  const BranchState after = tracker.state;
-  BranchState before = from;
-  double low = 0;
+/// Points between low, where the branch is as `before`, and high, where it is as `after`; to the last of them
+/// both move. False where the search is at its end.
+bool find_between(Tracker& tracker, const EventSearch& search, const BranchState& from, BranchState& before,
+                  const BranchState& after, double low, double high, Crossings& found) {
   for (int k = 0; k < most_points && branches_cross(before, after); ++k) {
-    const Located first = find_branch_point(tracker, search.family, from, before, after, low, length);
-    if (!std::isfinite(first.at)) return found;
+    const Located first = find_branch_point(tracker, search.family, from, before, after, low, high);
+    if (!std::isfinite(first.at)) return false;
     Located point = first;
     BranchState base = from;
     if (auto finer = tracker.resolved_for(from, first.singular.front())) {
@@ -239,29 +228,70 @@ Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const 
       Located again;
       if (begins)
         again =
-            find_branch_point(tracker, search.family, *finer, BranchState(tracker.state), after, low, length);
-      if (begins && !std::isfinite(again.at)) return found;  // on those elements alone
+            find_branch_point(tracker, search.family, *finer, BranchState(tracker.state), after, low, high);
+      if (begins && !std::isfinite(again.at)) return false;  // on those elements alone
       if (begins) {
         base = *std::move(finer);
         point = std::move(again);
       }
     }
-    FoundBranchPoint read = branch_point_at(tracker, base, point.at, length, point.singular);
-    if (!read.point) return found;
+    FoundBranchPoint read = branch_point_at(tracker, base, point.at, high, point.singular);
+    if (!read.point) return false;
     if (!read.balanced) {
       found.leaps = true;
-      return found;
+      return false;
     }
     if (!of_squares_alone(tracker, point.singular.front()))
       found.events.push_back(
           {first.at,
            {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at)}});
-    low = first.at + beyond_it * length;
-    if (!(low < length) || !tracker.reach(from, low, true)) return found;
+    low = first.at + beyond_it * high;
+    if (!(low < high) || !tracker.reach(from, low, true)) return false;
     before = tracker.state;
   }
-  found.change = after.index - from.index;
-  found.complete = !branches_cross(before, after);
+  return true;
+}
+
+std::vector<Sample> crossings_on(const BranchStep& step) {
+  return samples_on(
+      step, [](const auto& state) { return state.crossing; }, step.to.crossing);
+}
+
+}  // namespace
+
+bool branches_cross(const BranchState& a, const BranchState& b) {
+  return a.orientation != b.orientation || std::abs(a.index - b.index) >= 2;
+}
+
+bool may_cross(const BranchStep& step) {
+  return branches_cross(step.from, step.to) || may_dip(crossings_on(step));
+}
+
+Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
+  const auto& [from, to, length] = step;
+  Crossings found{.change = to.index - from.index};
+  std::vector<Sample> samples = crossings_on(step);
+  std::size_t left = most_samples;
+  resolve(samples, [&](double at) {
+    return left > 0 && left-- && tracker.reach(step.from, at, true) ? tracker.state.crossing : NAN;
+  });
+  const bool dips = std::ranges::any_of(samples, [&](const Sample& sample) {
+    return sample.at > 0 && sample.at < step.length && changes_sign(sample.value, step.from.crossing);
+  });
+  if (!branches_cross(from, to) && !dips) return found;
+  found.complete = false;
+  BranchState before = from;
+  double low = 0;
+  for (const Sample& sample : samples) {
+    if (sample.at <= low) continue;
+    if (!tracker.reach(from, sample.at, true)) return found;
+    const BranchState after = tracker.state;
+    if (!find_between(tracker, search, from, before, after, low, sample.at, found)) return found;
+    found.change = after.index - from.index;
+    found.complete = !branches_cross(before, after);
+    before = after;
+    low = sample.at;
+  }
   return found;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solve/branch/branch.hpp"
@@ -7,6 +8,18 @@
 /// \file A state on a branch: a path with its tangent, and all that the next step needs.
 
 namespace extremal {
+
+/// Of a periodic orbit, where its period may double.
+struct DoublingTests {
+  std::vector<double> values;     ///< of the multipliers; see doubling_tests()
+  std::optional<int> index = {};  ///< see doubling_index()
+};
+
+/// What is zero at events, at a state so far back: see the fields of these names of BranchState.
+struct EarlierTests {
+  double back, crossing;
+  DoublingTests doubling;
+};
 
 struct BranchState {
   Path path;
@@ -22,8 +35,9 @@ struct BranchState {
   double action_rate = 0;   ///< ∂S/∂s as its derivatives give it
   double energy_time = 0;   ///< |E T|
   int orientation = 1, index = 0;
-  /// Of the multipliers; see doubling_tests(). Those of the state before.
-  std::vector<double> doubling_tests, doubling_tests_before;
+  double crossing = 0;  ///< zero where branches cross; of the sign of the orientation
+  DoublingTests doubling;
+  std::vector<EarlierTests> earlier;  ///< of the states before, the nearest first, in the units of this one
 
   void scale(double factor);
   /// From the state, so far along the tangent.

@@ -210,7 +210,6 @@ bool Continuation::step() {
   BranchPoint next = read_point(tracker_, PointKind::regular);
   // Quadratures agree on a path whose forces they all overlook.
   if (!next.resolved) return retry(length);
-  state.doubling_tests_before = from_.doubling_tests;
   if (++steps_ % unchecked == 0) check_action();
   std::swap(state, to_);
   StepEvents events =

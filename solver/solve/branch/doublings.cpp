@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <numeric>
 
 #include "solve/branch/branch_point.hpp"
@@ -17,60 +19,103 @@ double product(const std::vector<double>& x) {
   return std::accumulate(x.begin(), x.end(), 1.0, std::multiplies());
 }
 
-/// Where on a step test k may pass zero twice: it keeps its sign, and would not if it continued as before,
-/// but bends away from zero. Where the parabola through its last three values is level.
-std::optional<double> level_point(const BranchStep& step, std::size_t k) {
-  const auto& [from, to, length] = step;
-  if (from.doubling_tests_before.size() != from.doubling_tests.size()) return std::nullopt;
-  const double test = from.doubling_tests[k], change = to.doubling_tests[k] - test;
-  const double before = (test - from.doubling_tests_before[k]) / from.back;
-  if (!(test * to.doubling_tests[k] > 0 && test * (test + before * length) <= 0)) return std::nullopt;
-  const double bend = (change / length - before) / (length + from.back);
-  const double level = 0.5 * (length - change / (length * bend));
-  return std::clamp(level, 0.1 * length, 0.9 * length);
+/// All tests at points of a step, by how far along the tangent.
+using DoublingSamples = std::map<double, DoublingTests>;
+
+/// How many tests of a step are followed: one, the product of all, where pairs of multipliers have met or
+/// parted.
+std::size_t test_count(const BranchStep& step) {
+  const std::size_t count = step.from.doubling.values.size();
+  return count == step.to.doubling.values.size() ? count : 1;
+}
+
+/// Test k of so many.
+double test_of(const DoublingTests& tests, std::size_t k, std::size_t count) {
+  if (tests.values.size() == count) return tests.values[k];
+  return count == 1 ? product(tests.values) : NAN;
+}
+
+/// Whether by the index more pairs of multipliers pass −1 between two points than tests change their signs.
+bool hides_doublings(const DoublingTests& a, const DoublingTests& b, std::size_t count) {
+  if (!a.index || !b.index) return false;
+  int seen = 0;
+  for (std::size_t k = 0; k < count; ++k) seen += changes_sign(test_of(a, k, count), test_of(b, k, count));
+  return std::abs(*a.index - *b.index) >= seen + 2;
+}
+
+/// Test k before and on a step, and at points of it.
+std::vector<Sample> tests_on(const BranchStep& step, std::size_t k, const DoublingSamples& between) {
+  const std::size_t count = test_count(step);
+  const auto test = [&](const auto& state) { return test_of(state.doubling, k, count); };
+  std::vector<Sample> samples = samples_on(step, test, test(step.to));
+  for (const auto& [at, tests] : between)
+    if (const double value = test_of(tests, k, count); std::isfinite(value))
+      samples.insert(samples.end() - 1, {at, value});
+  return samples;
+}
+
+/// Points of a step between which the signs of the tests explain how the index changes.
+DoublingSamples divided_by_index(Tracker& tracker, const BranchStep& step) {
+  const std::size_t count = test_count(step);
+  DoublingSamples all = {{0, step.from.doubling}, {step.length, step.to.doubling}};
+  while (all.size() < most_samples) {
+    const auto hides = [&](const auto& a, const auto& b) {
+      return hides_doublings(a.second, b.second, count);
+    };
+    const auto low = std::ranges::adjacent_find(all, hides);
+    if (low == all.end()) break;
+    const double at = 0.5 * (low->first + std::next(low)->first);
+    if (!tracker.reach(step.from, at)) break;
+    all[at] = read_doubling_tests(tracker);
+  }
+  all.erase(all.begin());
+  all.erase(std::prev(all.end()));
+  return all;
 }
 
 }  // namespace
 
-std::vector<double> read_doubling_tests(Tracker& tracker) {
+DoublingTests read_doubling_tests(Tracker& tracker) {
   const Problem& problem = tracker.branch().problem();
   const Trajectory trajectory = trajectory_of(tracker.state.path);
   SecondVariation& variation = tracker.workspace().variation;
   if (!variation.assemble(problem.lagrangian, trajectory, tracker.condensed(), nullptr,
                           problem.paired ? Definite::paired : Definite::positive))
-    return {NAN};
+    return {{NAN}};
   const std::optional<Floquet> found =
       multipliers_of(problem, variation, closed_orbit(problem, trajectory, 0));
-  return found ? doubling_tests(*found) : std::vector<double>{NAN};
+  return {found ? doubling_tests(*found) : std::vector<double>{NAN}, doubling_index(problem, variation)};
 }
 
 bool may_double(const BranchStep& step) {
-  const std::vector<double>&from = step.from.doubling_tests, &to = step.to.doubling_tests;
-  if (from.size() != to.size()) return changes_sign(product(from), product(to));
-  for (std::size_t k = 0; k < from.size(); ++k)
-    if (changes_sign(from[k], to[k]) || level_point(step, k)) return true;
+  const std::size_t count = test_count(step);
+  if (hides_doublings(step.from.doubling, step.to.doubling, count)) return true;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::vector<Sample> samples = tests_on(step, k, {});
+    if (changes_sign(samples.end()[-2].value, samples.back().value) || may_dip(samples)) return true;
+  }
   return false;
 }
 
-/// Test by test, in their order; all together where pairs of multipliers have met or parted.
+/// Test by test, in their order; all together where pairs of multipliers have met or parted. Where the index
+/// does not tell, samples look for two zeros of a test.
 std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   const auto& from = step.from;
-  const auto& to = step.to;
-  const bool same = from.doubling_tests.size() == to.doubling_tests.size();
-  const std::size_t count = same ? from.doubling_tests.size() : 1;
+  const std::size_t count = test_count(step);
   std::vector<Event> found;
+  DoublingSamples between = divided_by_index(tracker, step);
+  const bool divided = !between.empty();
   for (std::size_t k = 0; k < count; ++k) {
-    const auto of = [&](const std::vector<double>& tests) {
-      return same && tests.size() == count ? tests[k] : product(tests);
-    };
-    const auto test = [&] { return of(read_doubling_tests(tracker)); };
-    std::vector<Sample> samples = {{0, of(from.doubling_tests)}, {step.length, of(to.doubling_tests)}};
-    if (const auto level = same ? level_point(step, k) : std::nullopt)
-      if (const auto between = dip(tracker, from, samples[0], samples[1], *level, test))
-        samples.insert(samples.begin() + 1, *between);
-    std::optional<Sample> before;
-    if (from.back > 0) before = {-from.back, of(from.doubling_tests_before)};
-    find_roots(tracker, search.family, from, samples, before, test, [&](double at) {
+    const auto test = [&] { return test_of(read_doubling_tests(tracker), k, count); };
+    std::vector<Sample> samples = tests_on(step, k, divided ? between : DoublingSamples{});
+    if (!divided)
+      resolve(samples, [&](double at) {
+        if (const auto known = between.find(at); known != between.end())
+          return test_of(known->second, k, count);
+        if (between.size() == most_samples || !tracker.reach(from, at)) return double(NAN);
+        return test_of(between[at] = read_doubling_tests(tracker), k, count);
+      });
+    find_roots(tracker, search.family, from, samples, std::nullopt, test, [&](double at) {
       BranchPoint point = read_point(tracker, PointKind::period_doubling);
       found.push_back(
           {at, {std::move(point), branch_start(tracker, search, PointKind::period_doubling, from, at)}});

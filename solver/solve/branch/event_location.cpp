@@ -165,8 +165,7 @@ StepEvents locate_events(Tracker& tracker, const EventSearch& search, const Bran
   const bool may_end = passes(search.family, search.family.to, start.varied, to.varied) ||
                        passes(search.family, search.first.varied, start.varied, to.varied);
   std::optional<BranchState> aimed;
-  if (may_fold(step) || may_double(step) || branches_cross(start, to) || may_end)
-    aimed = tracker.with_cubic(step);
+  if (may_fold(step) || may_double(step) || may_cross(step) || may_end) aimed = tracker.with_cubic(step);
   const BranchStep along{aimed ? *aimed : start, to, length};
   SpecialPoints found = find_special_points(tracker, search, along);
   if (found.leaps) return {.missed = true};

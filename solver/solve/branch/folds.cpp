@@ -42,9 +42,12 @@ std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const
   std::vector<Sample> samples = {{0, from.rate}, {length, to.rate * to.back / length}};
   const auto rate = [&] { return tracker.state.rate; };
   const auto [extremum, middle] = rates_on(step);
-  if (from.rate * to.rate > 0 && from.rate * extremum.value < 0)
-    if (const auto between = dip(tracker, from, samples[0], samples[1], extremum.at, rate))
-      samples.insert(samples.begin() + 1, *between);
+  if (from.rate * to.rate > 0 && from.rate * extremum.value < 0) {
+    std::size_t left = most_samples;
+    resolve_doubts(samples, {{0, extremum.at, length}}, least_interval * length, [&](double at) {
+      return left > 0 && left-- && tracker.reach_smoothly(step.from, at) ? rate() : NAN;
+    });
+  }
   const double error = std::max(from.varied_error, to.varied_error);
   for (std::size_t k = 1; k < samples.size(); ++k) {
     const Sample &a = samples[k - 1], &b = samples[k];

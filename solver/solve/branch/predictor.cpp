@@ -52,6 +52,11 @@ void Tracker::predict(const BranchState& before, double length) {
   const Move tangent = transferred(before.tangent, before.path);
   const double unit = std::sqrt(branch_.dot(tangent, tangent));  // of lengths before
   state.back = unit * length;
+  state.earlier = {{state.back, before.crossing, before.doubling}};
+  if (!before.earlier.empty()) {
+    EarlierTests& first = state.earlier.emplace_back(before.earlier.front());
+    first.back = state.back + unit * first.back;
+  }
   Move& turning = state.turning = state.tangent;
   turning.add(tangent, -1 / branch_.dot(state.tangent, tangent));
   turning.scale(1 / state.back);

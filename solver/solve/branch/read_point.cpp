@@ -109,7 +109,8 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
     }
   }
   read_stability(problem, variation, tracker.sizes().q, solution, false);
-  state.doubling_tests = solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN};
+  state.doubling = {solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN},
+                    solution.morse_index ? doubling_index(problem, variation) : std::nullopt};
   return point;
 }
 

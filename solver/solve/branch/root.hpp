@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -19,6 +20,10 @@ struct Sample {
 
 /// Events are located to this, relative to the distance wanted, and to so much of the tangent.
 inline constexpr double located = 1e-11, located_length = 1e-8;
+
+/// Two zeros are looked for down to this share of a step, by at most so many samples.
+inline constexpr double least_interval = 1e-3;
+inline constexpr std::size_t most_samples = 12;
 
 /// A test that is zero counts as positive: of two steps that end there one finds it.
 inline bool changes_sign(double a, double b) { return (a < 0) != (b < 0) && std::isfinite(a + b); }
@@ -71,53 +76,73 @@ double root(Tracker& tracker, const BranchState& from, Sample low, Sample high, 
   return NAN;
 }
 
-/// All zeros of a test between samples of opposite signs; use(at) is called at each. `beside`: a sample that
-/// is known or predicted.
+/// The test at the states before a step and at both ends of it: value(state) of an EarlierTests or a
+/// BranchState, and `last`, the one at the end in the units of the beginning. Values that are not known are
+/// left out.
+template <class Value>
+std::vector<Sample> samples_on(const BranchStep& step, const Value& value, double last) {
+  std::vector<Sample> samples;
+  for (auto before = step.from.earlier.rbegin(); before != step.from.earlier.rend(); ++before)
+    if (const double known = value(*before); std::isfinite(known)) samples.push_back({-before->back, known});
+  samples.push_back({0, value(step.from)});
+  samples.push_back({step.length, last});
+  return samples;
+}
+
+/// Whether the test may pass zero twice between the last two samples, which are of one sign: by its
+/// interpolant, less what that errs by, or if it changes twice as fast there as between any samples.
+bool may_dip(const std::vector<Sample>& samples);
+
+/// Where, between neighbours of one sign, interpolants do not exclude that the test has the other sign: their
+/// value after a sample was added, less by what that changed.
+std::optional<double> unresolved(const std::vector<Sample>& before, const std::vector<Sample>& after,
+                                 double low, double high);
+
+/// A place between neighbouring samples where another one is wanted.
+struct Doubt {
+  double low, at, high;
+};
+
+/// Samples where there are doubts, the first ones first, and where these leave doubts, down to intervals of
+/// `least`. read(at): the test there; NaN if it is not known, or enough are.
+template <class Read>
+void resolve_doubts(std::vector<Sample>& samples, std::deque<Doubt> doubts, double least, const Read& read) {
+  for (; !doubts.empty(); doubts.pop_front()) {
+    const Doubt& doubt = doubts.front();
+    const Sample sample{doubt.at, read(doubt.at)};
+    if (!std::isfinite(sample.value)) return;
+    const std::vector<Sample> before = samples;
+    samples.insert(std::ranges::find_if(samples, [&](const Sample& each) { return each.at > sample.at; }),
+                   sample);
+    const std::pair<double, double> halves[] = {{doubt.low, doubt.at}, {doubt.at, doubt.high}};
+    for (const auto& [left, right] : halves)
+      if (right - left > least)
+        if (const auto at = unresolved(before, samples, left, right)) doubts.push_back({left, *at, right});
+  }
+}
+
+/// Samples between the last two where the test may pass zero twice; see resolve_doubts().
+template <class Read>
+void resolve(std::vector<Sample>& samples, const Read& read) {
+  const double length = samples.back().at;
+  if (may_dip(samples)) resolve_doubts(samples, {{0, 0.5 * length, length}}, least_interval * length, read);
+}
+
+/// All zeros of a test beyond zero between samples of opposite signs; use(at) is called at each. `beside`: a
+/// sample that is predicted.
 template <class Test, class Use>
 void find_roots(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
                 const std::vector<Sample>& samples, std::optional<Sample> beside, const Test& test,
                 const Use& use) {
   for (std::size_t k = 1; k < samples.size(); ++k) {
-    if (!changes_sign(samples[k - 1].value, samples[k].value)) continue;
-    const std::optional<Sample> third =
-        samples.size() == 2 ? beside : samples[k + 1 < samples.size() ? k + 1 : k - 2];
+    if (samples[k].at <= 0 || !changes_sign(samples[k - 1].value, samples[k].value)) continue;
+    std::optional<Sample> third = beside;
+    if (!third && k + 1 < samples.size()) third = samples[k + 1];
+    if (!third && k > 1) third = samples[k - 2];
     const double at = root(tracker, from, samples[k - 1], samples[k], third, test,
                            [&](double, double change) { return is_located(tracker, family, change); });
     if (std::isfinite(at)) use(at);
   }
-}
-
-/// A sample of a test whose sign differs from that at both ends, on the way to its least size: from `at`, by
-/// parabolas through three samples. Nothing where they predict that it keeps off zero.
-template <class Test>
-std::optional<Sample> dip(Tracker& tracker, const BranchState& from, const Sample& low, const Sample& high,
-                          double at, const Test& test) {
-  constexpr int most_trials = 12;
-  constexpr double clear = 0.5, near = 1e-3;
-  const double sign = std::copysign(1.0, low.value), length = high.at - low.at;
-  Sample left = low, right = high;
-  std::optional<Sample> middle;
-  for (int k = 0; k < most_trials; ++k) {
-    if (!tracker.reach(from, at)) return std::nullopt;
-    Sample next = {at, test()};
-    if (std::isnan(next.value)) return std::nullopt;
-    if (sign * next.value < 0) return next;
-    if (!middle) {
-      middle = next;
-    } else {
-      if (sign * next.value < sign * middle->value) std::swap(next, *middle);
-      (next.at < middle->at ? left : right) = next;
-    }
-    const double a = left.at - middle->at, b = right.at - middle->at;
-    const double u = (left.value - middle->value) / a, v = (right.value - middle->value) / b;
-    const double bend = (v - u) / (b - a), slope = u - a * bend, off = -0.5 * slope / bend;
-    const bool turns = sign * bend > 0 && off > a && off < b;
-    if (!turns || std::abs(off) <= near * length) return std::nullopt;
-    if (k > 0 && sign * (middle->value + 0.5 * slope * off) > clear * sign * middle->value)
-      return std::nullopt;
-    at = middle->at + off;
-  }
-  return std::nullopt;
 }
 
 }  // namespace extremal

@@ -126,7 +126,16 @@ bool Tracker::update_tangent(bool first) {
   state.energy_time = std::abs(branch_.energy() * path_.duration());
   state.orientation = branch_.orientation(onward);
   state.index = branch_.inertia().negative;
+  state.crossing = crossing_test();
   return true;
+}
+
+/// The response to a load grows without bound towards a branch point. The load is no force in units of the
+/// path, which change from state to state.
+double Tracker::crossing_test() {
+  Move response;
+  branch_.respond(state.tangent, response);
+  return state.orientation / (state.units.extent * std::sqrt(branch_.dot(response, response)));
 }
 
 bool Tracker::respond(Move& response) {

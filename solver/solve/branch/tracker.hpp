@@ -91,6 +91,7 @@ class Tracker {
   enum class Fit { fine, changed, too_many };
   bool correct(double length, const double* landing);
   bool update_tangent(bool first = false);
+  double crossing_test();
   bool resolve_forces(double length, const double* landing);
   Fit fit_elements();
   Plan plan_for(const Scales& size);

@@ -247,8 +247,22 @@ class Fit {
     solution.iterations += before + path_.iterations();
     solution.message = fmt::format("{}, fitted to {} values: chi squared {:.6g}", solution.message,
                                    task_.data.count(), result_.chi_squared);
+    explain_misfit();
     solution.strategy = "least squares around " + solution.strategy;
     return std::move(result_);
+  }
+
+  /// χ² of ν degrees of freedom has the mean ν and the variance 2ν where the data scatter by their standard
+  /// deviations.
+  void explain_misfit() {
+    const double freedom = task_.data.count() - static_cast<double>(task_.unknowns.size());
+    if (!task_.data.sigmas || !(freedom > 0)) return;
+    if (!(result_.chi_squared > freedom + most_deviations * std::sqrt(2 * freedom))) return;
+    result_.solution.message += fmt::format(
+        "; chi squared per degree of freedom is {:.3g}: residuals are {:.3g} times the standard "
+        "deviations that the data give, so that the model does not explain them: start from other values if "
+        "this is a minimum far from the best one",
+        result_.chi_squared / freedom, std::sqrt(result_.chi_squared / freedom));
   }
 
   const FitTask& task_;

@@ -16,6 +16,8 @@ inline constexpr double undetermined = 1e-9;
 inline constexpr double without_effect = 1e-12;
 /// Unknowns with at least this part of the largest in a direction that is not determined are named.
 inline constexpr double named = 0.05;
+/// χ² above its mean by so many of its standard deviations is no scatter of the data.
+inline constexpr double most_deviations = 10;
 /// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part
 /// of their size there.
 inline constexpr double fallen = 0.5;

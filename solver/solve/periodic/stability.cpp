@@ -43,6 +43,11 @@ bool one_of_a_family(const ClosedOrbit& orbit, const Floquet& floquet) {
 
 }  // namespace
 
+std::optional<int> doubling_index(const Problem& problem, const SecondVariation& variation) {
+  if (problem.paired || problem.phase || variation.count() == 0) return std::nullopt;
+  return antiperiodic_index(variation, map_of(problem));
+}
+
 double distinct_distance(const Solution& solution, double size) {
   constexpr double distinct = 1e-6;
   return std::max(10 * solution.error_estimate, distinct * size);
@@ -91,6 +96,23 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     if (solution.floquet && vectors && !problem.paired && !problem.phase)
       add_vectors(variation, orbit, *solution.floquet);
   }
+}
+
+std::string one_of_a_continuum(int directions) {
+  return fmt::format(
+      "; orbits beside this one close as well, to first order, in {} direction{} that no symmetry explains: "
+      "it is one of a continuum, near the guess, or at a bifurcation",
+      directions, directions > 1 ? "s" : "");
+}
+
+void tell_continuum(const Problem& problem, Solution& solution) {
+  if (!problem.periodic || problem.paired || problem.duration.free || !solution.nullity) return;
+  const bool autonomous = problem.lagrangian->structure().autonomous;
+  const Trajectory& path = solution.trajectory;
+  const auto moves = [](double v) { return v != 0; };
+  const bool shifts = autonomous && std::ranges::any_of(path.slopes, moves);
+  const int beside = *solution.nullity - shifts - moving_symmetries(problem.symmetries, path, shifts);
+  if (beside > 0) solution.message += one_of_a_continuum(beside);
 }
 
 std::vector<int> iterate_indices(const Problem& problem, const Solution& solution, int most) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "analysis/multipliers.hpp"
 #include "analysis/variation.hpp"
 #include "problem/problem.hpp"
@@ -17,6 +19,10 @@ ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, d
 std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariation& variation,
                                       const ClosedOrbit& orbit);
 
+/// Negative squares of a second variation, whose pieces are minimising, on fields that turn their sign after
+/// a period: it changes where a pair of multipliers passes −1. Nothing where it cannot be told.
+std::optional<int> doubling_index(const Problem& problem, const SecondVariation& variation);
+
 /// Distances along a solution of `size` above this are not zero.
 double distinct_distance(const Solution& solution, double size);
 
@@ -25,6 +31,12 @@ double distinct_distance(const Solution& solution, double size);
 /// relative to.
 void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors = true);
+
+/// Of a periodic orbit beside which others close, in so many independent directions that no symmetry
+/// explains.
+std::string one_of_a_continuum(int directions);
+/// Says so of a converged solution whose period is given, without forces.
+void tell_continuum(const Problem& problem, Solution& solution);
 
 /// Morse indices of a solution of a periodic problem run through 1, 2, … most times. Empty where they cannot
 /// be told: see OrbitForm. Throws std::invalid_argument for another problem, or for a negative number.

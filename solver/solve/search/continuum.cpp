@@ -81,6 +81,8 @@ FamilySearch reach_nearest(ExtremalFamily& family, Path& path, double unit) {
 }
 
 const char* family_message(const Problem& problem) {
+  if (problem.periodic)
+    return "converged; this is one of a family of orbits of this period, the nearest to the guess";
   return problem.ends.free == 0
              ? "converged; the ends are conjugate, and this is one of a family of extremals with these ends, "
                "the nearest to the guess"

@@ -164,9 +164,17 @@ bool Search::from_line() {
   return result;
 }
 
+/// Extremals between ends, and orbits that neither a shift in time nor a symmetry moves: null directions are
+/// then those of a family.
+bool Search::may_be_family() const {
+  if (problem_.has_ends()) return true;
+  return problem_.periodic && !problem_.lagrangian->structure().autonomous && problem_.symmetries.empty() &&
+         !problem_.paired;
+}
+
 /// Where the second variation is singular: the member nearest to the guess, if there is a family.
 bool Search::on_family(bool resolved) {
-  if (problem_.duration.free || problem_.periodic) return false;
+  if (problem_.duration.free || (!problem_.infinite && !may_be_family())) return false;
   if (problem_.lagrangian->kinks()) return false;
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   const std::string failure = outcome_.message;
@@ -229,7 +237,7 @@ bool Search::leaves_open() {
 
 /// The path that was accepted may be one of a family, and another member nearer to the guess.
 void Search::nearest_to_guess() {
-  if (!acceptance_ || acceptance_->nullity() == 0 || !problem_.has_ends() || problem_.manifold ||
+  if (!acceptance_ || acceptance_->nullity() == 0 || !may_be_family() || problem_.manifold ||
       problem_.phase || outcome_.shifts_held)
     return;
   const Outcome accepted = outcome_;
@@ -350,6 +358,13 @@ const Outcome& Search::run(Acceptance* acceptance) {
             : "the second variation is singular or nearly so: the ends may be conjugate, and there is no "
               "extremal "
               "or a family of them; move an end or change the duration";
+  }
+  if (result != Refinement::Result::converged && no_family_ && problem_.periodic) {
+    outcome_.status = Status::no_solution_near;
+    outcome_.message =
+        "the second variation is singular along a path near the guess, and a force along its null directions "
+        "remains that no step removes: what drives the motion is in resonance, and there is neither an orbit "
+        "of this period nor a family of them near; change the duration or the force";
   }
   if (outcome_.status != Status::converged && options_.deadline.passed()) {
     outcome_.status = Status::iteration_limit;

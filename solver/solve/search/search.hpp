@@ -101,6 +101,7 @@ class Search {
   bool from_line();
   bool from_motions();
   bool from_noise(unsigned tries);
+  bool may_be_family() const;
   bool on_family(bool resolved);
   bool leaves_open();
   void nearest_to_guess();
