@@ -1,11 +1,12 @@
 #include "analysis/orbit_form.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "analysis/symplectic.hpp"
+#include "linear/chain.hpp"
 #include "linear/dense.hpp"
-#include "linear/symmetric_elimination.hpp"
 
 namespace extremal {
 
@@ -78,33 +79,49 @@ std::vector<int> OrbitForm::iterates(int most, double threshold) const {
   return result;
 }
 
-/// Pieces add up in the nodes where they begin; the last one ends in −R η(0).
-int antiperiodic_index(const SecondVariation& variation, const MatrixXd& map) {
+/// Pieces add up in the nodes where they begin; the last one ends in −R η(0). Folded, the ring of nodes is a
+/// chain: block j has the nodes j and P − 1 − j. The middle node of an odd number stands alone, beside the
+/// identity.
+std::optional<int> antiperiodic_index(const SecondVariation& variation, const MatrixXd& map) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const int pieces = variation.count(), n = static_cast<int>(variation.piece(0).a.rows());
   const VectorXd unit = symplectic_units(variation), inverse = unit.cwiseInverse();
   const auto scaled = [&](const auto& matrix) -> MatrixXd {
     return inverse.asDiagonal() * matrix * inverse.asDiagonal();
   };
+  Chain chain;
+  chain.resize((pieces + 1) / 2, 2 * n);
+  const auto block_of = [&](int node) { return std::min(node, pieces - 1 - node); };
+  const auto place_in = [&](int node) { return 2 * node < pieces ? 0 : n; };
+  const auto diagonal = [&](int block) { return Eigen::Map<Rows>(chain.diagonal(block), 2 * n, 2 * n); };
+  const auto lower = [&](int block) { return Eigen::Map<Rows>(chain.lower(block), 2 * n, 2 * n); };
+  for (int k = 0; k < chain.blocks(); ++k) {
+    diagonal(k).setZero();
+    if (k + 1 < chain.blocks()) lower(k).setZero();
+  }
+  if (pieces % 2 == 1) diagonal(chain.blocks() - 1).bottomRightCorner(n, n).setIdentity();
+  const auto add = [&](int row, int column, const MatrixXd& entries) {
+    const int r = block_of(row), c = block_of(column);
+    if (r < c) return;  // the mirror image
+    (r == c ? diagonal(r) : lower(c)).block(place_in(row), place_in(column), n, n) += entries;
+  };
   const MatrixXd closing = map.size() == 0 ? MatrixXd(-MatrixXd::Identity(n, n))
                                            : -(unit.asDiagonal() * map * inverse.asDiagonal());
-  MatrixXd sum = MatrixXd::Zero(pieces * n, pieces * n);
   for (int k = 0; k < pieces; ++k) {
     const Piece piece = variation.piece(k);
     const bool last = k + 1 == pieces;
-    const int here = k * n, next = last ? 0 : here + n;
-    const MatrixXd a = scaled(piece.a), b = scaled(piece.b), d = scaled(piece.d);
+    const int next = last ? 0 : k + 1;
+    const MatrixXd b = scaled(piece.b), d = scaled(piece.d);
     const MatrixXd coupled = last ? MatrixXd(closing.transpose() * b) : b;
-    sum.block(here, here, n, n) += a;
-    sum.block(next, next, n, n) += last ? MatrixXd(closing.transpose() * d * closing) : d;
-    sum.block(next, here, n, n) += coupled;
-    sum.block(here, next, n, n) += coupled.transpose();
+    add(k, k, scaled(piece.a));
+    add(next, next, last ? MatrixXd(closing.transpose() * d * closing) : d);
+    add(next, k, coupled);
+    add(k, next, coupled.transpose());
   }
-  SymmetricElimination elimination;
-  elimination.resize(pieces * n, 0);
-  for (int i = 0; i < pieces * n; ++i)
-    for (int j = i; j < pieces * n; ++j) elimination.pivot_row(i)[j] = sum(i, j);
-  if (elimination.eliminate()) return elimination.inertia().negative;
-  return static_cast<int>((symmetric_eigenvalues(sum).array() < 0).count());
+  chain.factor();
+  if (chain.inertia().negative + chain.inertia().positive + chain.inertia().zero != chain.order())
+    return std::nullopt;
+  return chain.inertia().negative;
 }
 
 VectorXcd OrbitForm::eigenvector(std::complex<double> lambda) const {

@@ -44,6 +44,7 @@ class OrbitForm {
 };
 
 /// Negative squares on fields with η(T) = −R η(0), also where the ends of pieces are conjugate to the start.
-int antiperiodic_index(const SecondVariation& variation, const Eigen::MatrixXd& map);
+/// Nothing if the pieces are not finite.
+std::optional<int> antiperiodic_index(const SecondVariation& variation, const Eigen::MatrixXd& map);
 
 }  // namespace extremal

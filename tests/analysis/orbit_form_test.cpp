@@ -35,6 +35,24 @@ TEST(OrbitForm, IteratesOfRest) {
   }
 }
 
+/// Fields that turn their sign after T at rest: cos and sin of (2k + 1)πt/T, slower than ω. The map turns the
+/// plane by an angle φ, so that they turn by φ + (2k + 1)π.
+TEST(OrbitForm, FieldsThatTurnTheirSign) {
+  const auto lagrangian = trace(
+      2, [](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - q[1] * q[1]) / 2; });
+  for (const double T : {0.7, 2.0, 5.1, 11.0})
+    for (const double angle : {0.0, 0.6}) {
+      const Problem problem = guessed(periodic(lagrangian, T), [](double) { return Values{0, 0}; });
+      SecondVariation variation;
+      ASSERT_TRUE(variation.assemble(lagrangian, solve(problem, within(1e-9)).trajectory));
+      Eigen::MatrixXd map(2, 2);
+      map << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+      int expected = 0;
+      for (int k = -10; k < 10; ++k) expected += 2 * (std::abs(angle + (2 * k + 1) * pi) < T);
+      EXPECT_EQ(antiperiodic_index(variation, map), expected) << T << " " << angle;
+    }
+}
+
 /// The trajectory of a periodic orbit run through several times.
 Trajectory repeated(const Trajectory& once, int times) {
   Trajectory result = once;
@@ -49,7 +67,8 @@ Trajectory repeated(const Trajectory& once, int times) {
 }
 
 /// Librations of a pendulum have periods that grow with the energy: k of them, with 2k zeros of q', have
-/// 2k − 1 negative squares. So says the form of the whole as well.
+/// 2k − 1 negative squares. So says the form of the whole as well. Those of 2k are those of k and of the
+/// fields that turn their sign after k.
 TEST(OrbitForm, IteratesOfLibrations) {
   for (const double T : {6.5, 8.0, 12.0}) {
     const Problem once = guessed(periodic(systems::pendulum(), T),
@@ -64,6 +83,7 @@ TEST(OrbitForm, IteratesOfLibrations) {
       const Trajectory whole = repeated(solution.trajectory, times);
       ASSERT_TRUE(variation.assemble(systems::pendulum(), whole));
       EXPECT_EQ(OrbitForm::make(variation, {})->index(0), 2 * times - 1) << T;
+      EXPECT_EQ(antiperiodic_index(variation, {}), 2 * times) << T;
     }
   }
 }
