@@ -130,8 +130,8 @@ bool Tracker::update_tangent(bool first) {
   return true;
 }
 
-/// The response to a load grows without bound towards a branch point. The load is no force in units of the
-/// path, which change from state to state.
+/// The response to a load grows without bound towards a branch point. Its sign is that of the orientation,
+/// which changes there. Lengths are divided by the extent, since units change from state to state.
 double Tracker::crossing_test() {
   Move response;
   branch_.respond(state.tangent, response);
