@@ -146,8 +146,9 @@ TEST(Periodic, DrivenOrbitsThatShrinkToRestAreNone) {
 
 /// The collinear point L2 of the elliptic restricted problem in a frame that pulsates, where it rests.
 TEST(Periodic, PointsOfLibrationAreNoOrbits) {
-  static constexpr double mu = 0.01215, e = 0.0549;
+  static constexpr double mu = 0.01215;
   const auto elliptic = trace(2, [](auto q, auto v, auto t) {
+    constexpr double e = 0.0549;
     const auto far = sqrt((q[0] + mu) * (q[0] + mu) + q[1] * q[1]),
                near = sqrt((q[0] - 1 + mu) * (q[0] - 1 + mu) + q[1] * q[1]);
     return (v[0] * v[0] + v[1] * v[1]) / 2 + q[0] * v[1] - q[1] * v[0] +
