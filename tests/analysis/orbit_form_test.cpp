@@ -43,8 +43,9 @@ TEST(OrbitForm, FieldsThatTurnTheirSign) {
   for (const double T : {0.7, 2.0, 5.1, 11.0})
     for (const double angle : {0.0, 0.6}) {
       const Problem problem = guessed(periodic(lagrangian, T), [](double) { return Values{0, 0}; });
+      const Solution rest = solve(problem, within(1e-9));
       SecondVariation variation;
-      ASSERT_TRUE(variation.assemble(lagrangian, solve(problem, within(1e-9)).trajectory));
+      ASSERT_TRUE(variation.assemble(lagrangian, rest.trajectory));
       Eigen::MatrixXd map(2, 2);
       map << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
       int expected = 0;

@@ -284,10 +284,10 @@ Inertia NodeSystem::inertia(double threshold) const {
   // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
   // those of the directions across, and as many positive ones.
   const PhaseConditions held = phases_ ? independent(*phases_) : PhaseConditions{};
-  // Between fixed ends roundoff may give the chain an eigenvalue of either sign along a direction that is
+  // Roundoff may give the chain, whose ends are held, an eigenvalue of either sign along a direction that is
   // held. A spring σ at the node that it moves most, and a column e with the corner 1/σ, which takes the
   // spring back, leave the inertia but for one positive eigenvalue.
-  const int springs = free_ == 0 ? held.count : 0, columns = free_ + held.count + springs;
+  const int springs = right_.empty() ? 0 : held.count, columns = free_ + held.count + springs;
   Chain chain = *chain_;
   Border ends;
   ends.resize(static_cast<int>(right_.size()), columns);
@@ -308,12 +308,12 @@ Inertia NodeSystem::inertia(double threshold) const {
   }
   for (int j = 0; j < springs; ++j) {
     Eigen::Index row = 0;
-    block.col(j).cwiseAbs().maxCoeff(&row);
+    block.col(free_ + j).cwiseAbs().maxCoeff(&row);
     double& entry = chain.diagonal(static_cast<int>(row / n_))[row % n_ * (n_ + 1)];
     const double spring = entry != 0 ? std::abs(entry) : 1;
     entry += spring;
-    block(row, held.count + j) = 1;
-    corner(held.count + j, held.count + j) = 1 / spring;
+    block(row, free_ + held.count + j) = 1;
+    corner(free_ + held.count + j, free_ + held.count + j) = 1 / spring;
   }
   ends.factor(chain, std::max(threshold, zero_eigenvalue));
   // With more null directions than can be afforded: as for steps.
