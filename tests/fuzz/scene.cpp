@@ -25,14 +25,14 @@ constexpr double budget = 0.1;  // s
 constexpr int most_coordinates = 12;
 
 /// The bytes as a file without a name.
-class SceneFile {
+class FileInMemory {
  public:
-  SceneFile(const std::uint8_t* data, std::size_t size) : descriptor_(memfd_create("scene", 0)) {
+  FileInMemory(const std::uint8_t* data, std::size_t size) : descriptor_(memfd_create("scene", 0)) {
     if (descriptor_ < 0 || ::write(descriptor_, data, size) != static_cast<ssize_t>(size)) std::abort();
   }
-  ~SceneFile() { ::close(descriptor_); }
-  SceneFile(const SceneFile&) = delete;
-  SceneFile& operator=(const SceneFile&) = delete;
+  ~FileInMemory() { ::close(descriptor_); }
+  FileInMemory(const FileInMemory&) = delete;
+  FileInMemory& operator=(const FileInMemory&) = delete;
   std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
  private:
@@ -73,7 +73,7 @@ void solve(Study study) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const SceneFile file(data, size);
+  const FileInMemory file(data, size);
   try {
     Study study = load(file.path(), {"solve.budget=" + std::to_string(budget)});
     if (study.problem.coordinates() > most_coordinates) return 0;
