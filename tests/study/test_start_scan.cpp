@@ -37,3 +37,27 @@ TEST_F(StartScanScenes, MomentaAtBothEnds) {
       std::ranges::count_if(found, [](const Solution& s) { return std::abs(s.trajectory.nodes[0]) < 4; }),
       17);
 }
+
+/// Two pendula that know nothing of each other: the extremals are all pairs of those of one. In T = 7 each
+/// rests below or above, or begins one half swing or two on either side.
+TEST_F(StartScanScenes, PairsOfSwings) {
+  const std::vector<Solution> found =
+      run_all(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 + cos(x) + "
+                    "cos(y)\"\n[boundary]\nduration = 7\n[search]\nsolutions = 60\n"));
+  EXPECT_EQ(found.size(), 36);
+}
+
+/// A driven motion with a momentum given at either end. A scan by RK4 on 400 x 400 starts, each zero found by
+/// Newton's method, has 25 with p_x(0) and y(0) in this range.
+TEST_F(StartScanScenes, FixedEndsAndMomentaInTurn) {
+  const std::vector<Solution> found = run_all(study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - x^4/4 - y^4/4 - x*y/2 + "
+      "0.3*x*cos(t)\"\n[boundary]\nstart = { x = 0.5, p_y = 0.2 }\nend = { y = 1, p_x = -0.3 }\n"
+      "duration = 4\n[search]\nsolutions = 50\n"));
+  EXPECT_EQ(std::ranges::count_if(found,
+                                  [](const Solution& s) {
+                                    return std::abs(s.momentum_start[0]) < 2 &&
+                                           std::abs(s.trajectory.nodes[1]) < 6;
+                                  }),
+            25);
+}

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "motion/point.hpp"
 #include "problem/point_range.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/search/limits.hpp"
@@ -51,6 +52,29 @@ double action_size(const Solution& a) {
   return std::abs(a.action) + momentum * extent(a.trajectory);
 }
 
+/// Whether the shift from a to b leaves L the same at points between them and beyond.
+bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const Trajectory& b) {
+  const std::size_t n = a.coordinates;
+  std::vector<double> here(n), there(n), v(n);
+  Scratch scratch;
+  double change = 0, least = INFINITY, most = -INFINITY;
+  for (int k = 0; k < a.elements(); ++k)
+    for (const double part : shifted) {
+      a.at(a.times[k], here, v);
+      for (std::size_t i = 0; i < n; ++i) {
+        const double shift = b.nodes[i] - a.nodes[i];
+        here[i] += part * shift;
+        there[i] = here[i] + shift;
+      }
+      const double value = evaluate_at(lagrangian, here, v, a.times[k], Order::value, scratch).value;
+      const double moved = evaluate_at(lagrangian, there, v, a.times[k], Order::value, scratch).value;
+      change = std::max(change, std::abs(moved - value));
+      least = std::min({least, value, moved});
+      most = std::max({most, value, moved});
+    }
+  return change <= unchanged * (most - least) + roundoff * std::max(std::abs(most), std::abs(least));
+}
+
 }  // namespace
 
 bool same_path(const Solution& a, const Solution& b, double tolerance, double scale) {
@@ -75,7 +99,8 @@ bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
          agree(a.action, b.action, std::max(action_size(a), action_size(b)), error);
 }
 
-bool same_but_for_place(const Solution& a, const Solution& b, double tolerance) {
+bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b,
+                        double tolerance) {
   if (!same_orbit(a, b, tolerance)) return false;
   Solution moved = b;
   const std::size_t n = a.trajectory.coordinates;
@@ -83,7 +108,8 @@ bool same_but_for_place(const Solution& a, const Solution& b, double tolerance) 
     moved.trajectory.nodes[k] += a.trajectory.nodes[k % n] - b.trajectory.nodes[k % n];
   const double size = std::max(extent(a.trajectory), extent(b.trajectory));
   const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
-  return near(a.trajectory, moved.trajectory, allowed) && near(moved.trajectory, a.trajectory, allowed);
+  return near(a.trajectory, moved.trajectory, allowed) && near(moved.trajectory, a.trajectory, allowed) &&
+         invariant(lagrangian, a.trajectory, b.trajectory);
 }
 
 bool same_discrete(const Solution& a, const Solution& b) {

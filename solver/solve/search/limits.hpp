@@ -90,6 +90,9 @@ namespace distinct {
 inline constexpr double margin = 10;
 /// Of the size of the problem: a path smaller than this is at rest.
 inline constexpr double rest = 1e-3;
+/// Where a shift is tried, in parts of itself; and what it may change of L, by the range of L and by its size.
+inline constexpr double shifted[] = {-0.618, 0.382, 0.7};
+inline constexpr double unchanged = 1e-6, roundoff = 1e-12;
 
 }  // namespace distinct
 
@@ -318,17 +321,25 @@ inline constexpr unsigned spare_loops = 1;
 
 namespace start_scan {
 
-/// Of an integrator's step, relative.
-inline constexpr double step_error = 1e-8;
-inline constexpr int most_integrator_steps = 2000;
-/// Of one range; and how often an interval is halved where the middle is off the mean of its ends by more
-/// than this part of them.
-inline constexpr int samples = 96, most_halvings = 6;
-inline constexpr double straight = 0.1;
-/// Zeros are known to this part of the interval, or of the values at its ends; where the integrator fails, at
-/// least to the second.
+inline constexpr int most_coordinates = 2;
+/// Of an integrator's step, relative: near zeros, and of samples in two coordinates. A step with variations by
+/// that of a motion alone; and one where velocities follow from momenta by Newton's method.
+inline constexpr double fine_step = 1e-8, coarse_step = 1e-5;
+inline constexpr int most_integrator_steps = 2000, variations_cost = 2, implicit_cost = 6;
+/// Cells of a box along a coordinate, and how often they are halved where values are off what the corners
+/// tell by more than this part of the largest; and how often besides where Newton's method fails from them.
+inline constexpr int cells_in_one = 192, cells_in_two = 16, most_halvings = 4, further_halvings = 6;
+inline constexpr double nearly_linear = 0.1;
+/// A value that keeps its sign by so many times its curvature has no zero in the cell.
+inline constexpr double sure = 2;
+/// Zeros are known to this part of a cell, or of the values at its corners; where the integrator fails, at
+/// least to the second, and those nearer to each other are one.
 inline constexpr double met = 1e-7, nearly_met = 1e-3;
 inline constexpr int most_sections = 60;
+/// Newton's method begins where a linear function is zero, as far as this beyond the triangle that it is
+/// taken from, and ends further away than so many cells; zeros of slopes nearer to singular are of families.
+inline constexpr double beyond_triangle = 0.2, strays = 3, isolated = 1e-10;
+inline constexpr int most_newton_steps = 10;
 
 }  // namespace start_scan
 

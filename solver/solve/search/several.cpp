@@ -97,7 +97,7 @@ int Several::add(Solution candidate, bool held) {
   const bool adrift = !problem_.periodic && problem_.boundary.rows == 0 && problem_.boundary.momenta.empty();
   const int number = find([&](const Solution& other) {
     return closed   ? same_orbit(candidate, other, options_.tolerance)
-           : adrift ? same_but_for_place(candidate, other, options_.tolerance)
+           : adrift ? same_but_for_place(*problem_.lagrangian, candidate, other, options_.tolerance)
                     : !held && same_continuum(candidate, other, options_.tolerance);
   });
   if (number >= 0) return number;
@@ -362,45 +362,38 @@ bool Several::follow_arrivals() {
 /// Whether that can be told.
 bool Several::scan_starts() {
   const Deadline deadline = options_.deadline.share(arrivals_share);
-  const double centre = problem_.ends.fixed[0] ? 0 : search_.ends()[0];
   const auto more = [&](int steps) {
     scan_steps_ += steps;
     return scan_steps_ < most_scan_steps && !deadline.passed();
   };
-  const auto known = [&] {
-    double reach = 0, v = 0, q = 0;
-    for (const Solution& s : found_) {
-      s.trajectory.at(0, {&q, 1}, {&v, 1});
-      const double w = std::abs(starts_.unknown({q, v}) - centre);
-      if (std::isfinite(w)) reach = std::max(reach, w);
-    }
-    return reach;
-  };
-  const auto unit = [&] {
-    if (!problem_.ends.fixed[0]) return scale_;
-    const double q = search_.ends()[0];
-    return std::abs(starts_.unknown({q, scale_ / problem_.duration.value}) - starts_.unknown({q, 0}));
-  };
-  double nearest = 0, farthest = reach_beyond * std::max(known(), unit());
-  if (!(farthest > 0) || !std::isfinite(farthest)) return false;
-  for (int growths = 0; growths < most_growths; farthest *= growth_of_arrivals) {
-    std::vector<double> zeros;
-    if (!starts_.zeros(centre + nearest, centre + farthest, more, zeros) ||
-        !starts_.zeros(centre - nearest, centre - farthest, more, zeros))
-      return false;
+  StartScan::Shell shell = starts_.around(search_.ends(), scale_);
+  double known = 1;
+  const auto n = static_cast<std::size_t>(problem_.coordinates());
+  std::vector<double> q(n), v(n);
+  for (const Solution& s : found_) {
+    s.trajectory.at(0, q, v);
+    const double reach = shell.reach(starts_.unknown(q, v));
+    if (std::isfinite(reach)) known = std::max(known, reach);
+  }
+  shell.nearest = 0;
+  shell.farthest = reach_beyond * known;
+  if (!(shell.unit.minCoeff() > 0) || !shell.unit.allFinite()) return false;
+  for (int growths = 0; growths < most_growths; shell.farthest *= growth_of_arrivals) {
+    std::vector<Eigen::VectorXd> zeros;
+    // Beyond the last extremals it has been looked in vain.
+    if (!starts_.zeros(shell, more, zeros)) return growths > 0;
     const std::size_t before = found_.size();
-    std::ranges::sort(zeros, {}, [&](double w) { return std::abs(w - centre); });
-    for (const double w : zeros) {
+    std::ranges::sort(zeros, {}, [&](const Eigen::VectorXd& w) { return shell.reach(w); });
+    for (const Eigen::VectorXd& w : zeros) {
       const std::optional<StartScan::State> start = starts_.state(w);
       if (!start) continue;
-      const double q = start->q, v = start->v;
       const Guess motion =
-          motion_from(*problem_.lagrangian, {&q, 1}, {&v, 1}, problem_.duration.value, [] { return true; });
+          motion_from(*problem_.lagrangian, start->q, start->v, problem_.duration.value, [] { return true; });
       search_.renew(patience);
       ++scanned_;
       if (motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start)) keep();
     }
-    nearest = farthest;
+    shell.nearest = shell.farthest;
     if (static_cast<int>(found_.size()) >= most_) return true;
     growths = found_.size() > before ? 0 : growths + 1;
   }

@@ -1,49 +1,79 @@
 #pragma once
 
+#include <Eigen/Dense>
+#include <array>
 #include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
 
-/// \file Motions of one coordinate from all starts that the conditions there allow.
+/// \file Motions from all starts that the conditions there allow, in one and two coordinates.
 
 namespace extremal {
 
 inline constexpr const char* from_start = "newton from a motion that meets the end";
 
-/// With one coordinate, of which an end is natural or has a given momentum, the condition at the start leaves
-/// one number w: the momentum where q(0) is fixed, q(0) where it is not. The motions that meet the condition
-/// at T are the zeros of one function of w.
+/// Where an end is natural or has a given momentum, the conditions at the start leave one number a
+/// coordinate: w_a is p_a where q_a(0) is fixed, q_a(0) where it is not. As many conditions hold at T, so the
+/// motions sought are the zeros of a function of w with as many values. A box of w is cut into cells until
+/// the function is nearly linear in those that may hold a zero.
 class StartScan {
  public:
+  using Vector = Eigen::VectorXd;
   struct State {
-    double q, v;
+    std::vector<double> q, v;
+  };
+  /// The w whose largest |w_a − centre_a| / unit_a is between the reaches.
+  struct Shell {
+    Vector centre, unit;
+    double nearest, farthest;
+
+    double reach(const Vector& w) const;
   };
 
   explicit StartScan(const Problem& problem);
   bool usable() const { return usable_; }
 
+  /// About the starts of paths between `ends` that go as far as `extent` in the duration.
+  Shell around(std::span<const double> ends, double extent);
   /// w of a motion with this state at the start.
-  double unknown(State start);
+  Vector unknown(std::span<const double> q, std::span<const double> v);
   /// The state of a motion at the start; nothing if no velocity belongs to w.
-  std::optional<State> state(double w);
-  /// The w of motions that meet the condition at the end, between two values. False if there were not enough
-  /// integrator steps: `more` is told how many were taken.
-  bool zeros(double from, double to, const std::function<bool(int steps)>& more, std::vector<double>& found);
+  std::optional<State> state(const Vector& w);
+  /// The w of motions that meet the conditions at the end; of families of such none. False if there were not
+  /// enough integrator steps: `more` is told how many were taken.
+  bool zeros(const Shell& shell, const std::function<bool(int steps)>& more, std::vector<Vector>& found);
 
  private:
-  struct Sample {
-    double w, miss;  ///< not finite where there is no motion until T
+  using Place = std::array<int, 2>;  ///< on the finest lattice of a shell
+  struct Cell {
+    Place corner;
+    int width;
   };
-  Sample sample(double w);
-  void divide(const Sample& a, const Sample& b, int halvings, std::vector<double>& found);
-  void enclose(Sample a, Sample b, std::vector<double>& found);
+
+  Vector start(const Vector& w) const;
+  Vector miss(const Vector& state) const;
+  Vector at(Place place) const;
+  const Vector& sample(Place place);
+  Vector fly(const Vector& w);
+  bool fly(const Vector& w, Vector& miss, Eigen::MatrixXd& slope);
+  std::vector<Place> lattice(const Cell& cell) const;
+  void divide(const Cell& cell, int halvings, std::vector<Vector>& found);
+  bool search(const Cell& cell, const std::vector<Place>& lattice, std::vector<Vector>& found);
+  void enclose(Vector a, Vector b, std::vector<Vector>& found);
+  bool approach(Vector w, double width, std::vector<Vector>& found);
 
   const Problem& problem_;
+  int n_, cost_;
   bool usable_;
   std::optional<Flow> flow_;
+  Shell shell_;
+  int cells_;  ///< of the box, along each coordinate
+  std::map<Place, Vector> samples_;
   std::function<bool(int)> more_;
 };
 
