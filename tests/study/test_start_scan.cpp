@@ -53,7 +53,7 @@ TEST_F(StartScanScenes, FixedEndsAndMomentaInTurn) {
   const std::vector<Solution> found = run_all(study(
       "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - x^4/4 - y^4/4 - x*y/2 + "
       "0.3*x*cos(t)\"\n[boundary]\nstart = { x = 0.5, p_y = 0.2 }\nend = { y = 1, p_x = -0.3 }\n"
-      "duration = 4\n[search]\nsolutions = 50\n"));
+      "duration = 4\n[search]\nsolutions = 200\n"));
   EXPECT_EQ(std::ranges::count_if(found,
                                   [](const Solution& s) {
                                     return std::abs(s.momentum_start[0]) < 2 &&

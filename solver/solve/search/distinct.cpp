@@ -52,18 +52,19 @@ double action_size(const Solution& a) {
   return std::abs(a.action) + momentum * extent(a.trajectory);
 }
 
-/// Whether the shift from a to b leaves L the same at points between them and beyond.
+/// Whether the shift from a to b leaves L the same at points between them and beyond, also beside the line
+/// that it is along.
 bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const Trajectory& b) {
   const std::size_t n = a.coordinates;
   std::vector<double> here(n), there(n), v(n);
   Scratch scratch;
   double change = 0, least = INFINITY, most = -INFINITY;
   for (int k = 0; k < a.elements(); ++k)
-    for (const double part : shifted) {
+    for (std::size_t j = 0; j < std::size(shifted); ++j) {
       a.at(a.times[k], here, v);
       for (std::size_t i = 0; i < n; ++i) {
         const double shift = b.nodes[i] - a.nodes[i];
-        here[i] += part * shift;
+        here[i] += shifted[(i + j) % std::size(shifted)] * shift;
         there[i] = here[i] + shift;
       }
       const double value = evaluate_at(lagrangian, here, v, a.times[k], Order::value, scratch).value;
@@ -101,7 +102,6 @@ bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
 
 bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b,
                         double tolerance) {
-  if (!same_orbit(a, b, tolerance)) return false;
   Solution moved = b;
   const std::size_t n = a.trajectory.coordinates;
   for (std::size_t k = 0; k < moved.trajectory.nodes.size(); ++k)

@@ -90,7 +90,8 @@ namespace distinct {
 inline constexpr double margin = 10;
 /// Of the size of the problem: a path smaller than this is at rest.
 inline constexpr double rest = 1e-3;
-/// Where a shift is tried, in parts of itself; and what it may change of L, by the range of L and by its size.
+/// Where a shift is tried, in parts of itself; and what it may change of L, by the range of L and by its
+/// size.
 inline constexpr double shifted[] = {-0.618, 0.382, 0.7};
 inline constexpr double unchanged = 1e-6, roundoff = 1e-12;
 
@@ -322,13 +323,14 @@ inline constexpr unsigned spare_loops = 1;
 namespace start_scan {
 
 inline constexpr int most_coordinates = 2;
-/// Of an integrator's step, relative: near zeros, and of samples in two coordinates. A step with variations by
-/// that of a motion alone; and one where velocities follow from momenta by Newton's method.
+/// Of an integrator's step, relative: near zeros, and of samples in two coordinates. A step with variations
+/// by that of a motion alone; and one where velocities follow from momenta by Newton's method.
 inline constexpr double fine_step = 1e-8, coarse_step = 1e-5;
 inline constexpr int most_integrator_steps = 2000, variations_cost = 2, implicit_cost = 6;
 /// Cells of a box along a coordinate, and how often they are halved where values are off what the corners
 /// tell by more than this part of the largest; and how often besides where Newton's method fails from them.
-inline constexpr int cells_in_one = 192, cells_in_two = 16, most_halvings = 4, further_halvings = 6;
+inline constexpr int cells_in_one = 192, cells_in_two = 16;
+inline constexpr int halvings_in_one = 6, halvings_in_two = 4, further_halvings = 6;
 inline constexpr double nearly_linear = 0.1;
 /// A value that keeps its sign by so many times its curvature has no zero in the cell.
 inline constexpr double sure = 2;

@@ -366,7 +366,8 @@ bool Several::scan_starts() {
     scan_steps_ += steps;
     return scan_steps_ < most_scan_steps && !deadline.passed();
   };
-  StartScan::Shell shell = starts_.around(search_.ends(), scale_);
+  const double cycles = std::max(1.0, w_.frequency.phase());
+  StartScan::Shell shell = starts_.around(search_.ends(), scale_, cycles * scale_ / problem_.duration.value);
   double known = 1;
   const auto n = static_cast<std::size_t>(problem_.coordinates());
   std::vector<double> q(n), v(n);

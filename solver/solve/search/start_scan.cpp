@@ -17,7 +17,7 @@ namespace {
 using Vector = StartScan::Vector;
 
 /// Of the finest lattice, in a cell.
-constexpr int finest = 1 << (most_halvings + further_halvings + 1);
+constexpr int finest = 1 << (halvings_in_one + further_halvings + 1);
 
 std::span<double> span_of(Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
 
@@ -47,7 +47,7 @@ double StartScan::Shell::reach(const Vector& w) const {
   return ((w - centre).array() / unit.array()).abs().maxCoeff();
 }
 
-StartScan::Shell StartScan::around(std::span<const double> ends, double extent) {
+StartScan::Shell StartScan::around(std::span<const double> ends, double extent, double speed) {
   const std::span<const double> q = ends.first(n_);
   Shell shell{Vector::Zero(n_), Vector::Constant(n_, extent), 0, 1};
   std::vector<double> v(n_, 0);
@@ -57,7 +57,7 @@ StartScan::Shell StartScan::around(std::span<const double> ends, double extent) 
       shell.centre[a] = q[a];
       continue;
     }
-    v[a] = extent / problem_.duration.value;
+    v[a] = speed;
     shell.unit[a] = std::abs(unknown(q, v)[a] - rest[a]);
     v[a] = 0;
   }
@@ -163,14 +163,13 @@ std::vector<StartScan::Place> StartScan::lattice(const Cell& cell) const {
 /// Halves a cell until the function is nearly linear. It is off the values that its corners tell in the
 /// middles between them by its curvature; where one of its values keeps its sign by more than that, the cell
 /// holds no zero, nor where there are no motions until T.
-void StartScan::divide(const Cell& cell, int halvings, std::vector<Vector>& found) {
-  if (!more_(0)) return;
+void StartScan::divide(const Cell& cell, std::deque<Cell>& cells, std::vector<Vector>& found) {
   const std::vector<Place> places = lattice(cell);
   const auto lasts = [&](Place place) { return sample(place).allFinite(); };
   bool straight = true, may_vanish = std::ranges::any_of(places, lasts);
   for (int value = 0; value < n_; ++value) {
     const auto of = [&](int k) { return sample(places[k])[value]; };
-    double size = 0, least = INFINITY, most = -INFINITY, bend = 0;
+    double least = INFINITY, most = -INFINITY, bend = 0;
     for (int k = 0; k < static_cast<int>(places.size()); ++k) {
       const int column = k % 3, row = n_ == 1 ? 0 : k / 3 * 3;
       // The mean of the corners on whose side, edge or face the point is; a corner itself.
@@ -182,17 +181,16 @@ void StartScan::divide(const Cell& cell, int halvings, std::vector<Vector>& foun
       most = std::max(most, of(k));
       if (!std::isfinite(of(k))) bend = INFINITY;
     }
-    size = std::max(std::abs(least), std::abs(most));
+    const double size = std::max(std::abs(least), std::abs(most));
     straight = straight && bend <= nearly_linear * size;
     may_vanish = may_vanish && !(least > sure * bend) && !(-most > sure * bend);
   }
   if (!may_vanish) return;
-  if ((straight || halvings >= most_halvings) &&
-      (search(cell, places, found) || halvings == most_halvings + further_halvings))
-    return;
+  const int fine = finest >> (n_ == 1 ? halvings_in_one : halvings_in_two), finer = fine >> further_halvings;
+  if ((straight || cell.width <= fine) && (search(cell, places, found) || cell.width <= finer)) return;
   const int half = cell.width / 2;
   for (int k = 0; k < (1 << n_); ++k)
-    divide({{cell.corner[0] + k % 2 * half, cell.corner[1] + k / 2 * half}, half}, halvings + 1, found);
+    cells.push_back({{cell.corner[0] + k % 2 * half, cell.corner[1] + k / 2 * half}, half});
 }
 
 /// Zeros in a cell that is not divided further: between samples of other signs, or of the linear functions of
@@ -279,15 +277,18 @@ bool StartScan::zeros(const Shell& shell, const std::function<bool(int steps)>& 
   shell_ = shell;
   samples_.clear();
   const double inside = shell.nearest / shell.farthest;
-  for (int k = 0; k < (n_ == 1 ? cells_ : cells_ * cells_) && more(0); ++k) {
+  std::deque<Cell> cells;
+  for (int k = 0; k < (n_ == 1 ? cells_ : cells_ * cells_); ++k) {
     const Place number{k % cells_, k / cells_};
     const auto within = [&](int a) {
       return std::max(std::abs(2.0 * number[a] / cells_ - 1), std::abs(2.0 * (number[a] + 1) / cells_ - 1)) <=
              inside;
     };
     if (within(0) && (n_ == 1 || within(1))) continue;
-    divide({{number[0] * finest, n_ == 1 ? 0 : number[1] * finest}, finest}, 0, found);
+    cells.push_back({{number[0] * finest, n_ == 1 ? 0 : number[1] * finest}, finest});
   }
+  // Large cells first: what steps are enough for is then spread over the box.
+  for (; !cells.empty() && more(0); cells.pop_front()) divide(Cell(cells.front()), cells, found);
   return more(0);
 }
 

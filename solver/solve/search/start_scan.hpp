@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -38,8 +39,8 @@ class StartScan {
   explicit StartScan(const Problem& problem);
   bool usable() const { return usable_; }
 
-  /// About the starts of paths between `ends` that go as far as `extent` in the duration.
-  Shell around(std::span<const double> ends, double extent);
+  /// About the starts of paths between `ends` that go as far as `extent`, and as fast as `speed`.
+  Shell around(std::span<const double> ends, double extent, double speed);
   /// w of a motion with this state at the start.
   Vector unknown(std::span<const double> q, std::span<const double> v);
   /// The state of a motion at the start; nothing if no velocity belongs to w.
@@ -62,7 +63,7 @@ class StartScan {
   Vector fly(const Vector& w);
   bool fly(const Vector& w, Vector& miss, Eigen::MatrixXd& slope);
   std::vector<Place> lattice(const Cell& cell) const;
-  void divide(const Cell& cell, int halvings, std::vector<Vector>& found);
+  void divide(const Cell& cell, std::deque<Cell>& cells, std::vector<Vector>& found);
   bool search(const Cell& cell, const std::vector<Place>& lattice, std::vector<Vector>& found);
   void enclose(Vector a, Vector b, std::vector<Vector>& found);
   bool approach(Vector w, double width, std::vector<Vector>& found);
