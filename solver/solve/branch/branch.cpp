@@ -106,6 +106,7 @@ double Branch::drift(const Move& tangent) const {
 bool Branch::linearise(Factors factors) {
   if (factors == Factors::anew) {
     inertia_.reset();
+    with_duration_.reset();
     measure_phases(problem_, path_, tables_->scheme(), true, phases_);
     for (const Move& direction : held_) hold_along(direction);
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
@@ -175,6 +176,8 @@ bool Branch::linearise_duration(Factors factors) {
     direction.add(correction, -1);
   }
   along_ = by_energy ? energy_unit_ : energy_change(direction);
+  const double length = std::sqrt(dot(direction, direction));
+  free_ = {direction.parameter / (units_.duration * length), along_ / (energy_unit_ * length)};
   off_ = by_energy
              ? 0
              : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
@@ -186,7 +189,7 @@ bool Branch::linearise_duration(Factors factors) {
 double Branch::energy_change(const Move& move) const {
   const NodeEquations& nodes = w_.iteration.action().nodes;
   return -std::inner_product(move.step.nodes.begin(), move.step.nodes.end(), nodes.border.begin(),
-                             nodes.corner * move.parameter);
+                             nodes.corner * (by_duration() ? move.parameter : move.step.duration));
 }
 
 /// Where the energy has an extremum along the branch, the equations that it closes are singular. So are those
@@ -213,11 +216,20 @@ bool Branch::linearise_parameter() {
   model.solve(action, closing, correction.step);
   if (!folds_) folds_ = model.left_out() == 0;
   correction.parameter = 0;
-  closing_sign_ = 1;
+  free_ = {};
   if (closing) {
-    equation.value -= 1 + std::abs(equation.value);
+    const double growth = 1 + std::abs(equation.value);
+    equation.value -= growth;
     model.solve(action, closing, direction.step);
-    closing_sign_ = direction.step.duration - correction.step.duration < 0 ? -1 : 1;
+    direction.parameter = 0;
+    direction.add(correction, -1);
+    const double length = std::sqrt(dot(direction, direction));
+    free_.duration = direction.step.duration / (units_.duration * length);
+    energy_unit_ = energy_unit(action, path_.duration());
+    if (closing->row.empty())
+      free_.energy = -growth / (energy_unit_ * length);
+    else if (tables_->unknowns() <= most_dense_unknowns)
+      free_.energy = energy_change(direction) / (energy_unit_ * length);
   }
   Move before;
   const double by = small * unit_;
@@ -292,10 +304,32 @@ double Branch::change(bool along) const {
   return along ? direction.parameter : correction.parameter;
 }
 
+/// Where the duration hardly changes along the extremals of all durations, as that of isochronous orbits, the
+/// second variation with T held is nearly singular, and that by T as well is not.
+bool Branch::told_by_energy() const { return std::abs(free_.energy) > std::abs(free_.duration); }
+
+const Inertia& Branch::inertia_with_duration() const {
+  if (!with_duration_)
+    with_duration_ = w_.iteration.model().inertia(errors_.null, VariedBy::path_and_duration);
+  return *with_duration_;
+}
+
+/// With K the second variation, T held, and B that by T as well, det K = (B⁻¹)_TT det B, and (B⁻¹)_TT is
+/// −∂T/∂E: where it is zero, K has a null direction.
 const Inertia& Branch::inertia() const {
   if (problem_.paired) inertia_ = Inertia{};
-  if (!inertia_) inertia_ = w_.iteration.model().inertia(threshold_);
-  return *inertia_;
+  if (inertia_) return *inertia_;
+  if (!told_by_energy()) return inertia_.emplace(w_.iteration.model().inertia(errors_.null));
+  Inertia found = inertia_with_duration();
+  const double by_energy = free_.duration / free_.energy;
+  if (std::abs(free_.duration) <= std::max(errors_.path, zero_eigenvalue)) {
+    --found.negative;
+    --found.positive;
+    ++found.zero;
+  } else {
+    --(by_energy > 0 ? found.negative : found.positive);
+  }
+  return inertia_.emplace(found);
 }
 
 double Branch::varied_unit() const {
@@ -338,8 +372,12 @@ int Branch::orientation(double onward) const {
                                  closing_equation(problem_, path_, equation));
     return sign == 0 || (sign < 0) == (onward * direction.parameter < 0) ? 1 : -1;
   }
-  const bool negative = (inertia().negative % 2 != 0) != (onward * direction.parameter * closing_sign_ < 0);
-  return negative ? -1 : 1;
+  // det (K b; r 0) is det K ∂T/∂r, and det B −∂E/∂r, r the row that closes the duration.
+  const bool by_energy = told_by_energy();
+  const int count = by_energy ? inertia_with_duration().negative : inertia().negative;
+  const double closing = by_energy ? -free_.energy : free_.duration;
+  const double along = by_duration() ? 1 : direction.parameter;
+  return (count % 2 != 0) != (onward * along * closing < 0) ? -1 : 1;
 }
 
 /// Of node k in the mean over τ.

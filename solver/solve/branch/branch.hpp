@@ -88,9 +88,13 @@ class Branch : public ExtremalCurve {
   /// The sign of the determinant of the equations with the tangent `onward`·direction as their last row: it
   /// changes where branches cross, but not at folds.
   int orientation(double onward) const;
-  /// Of the second variation, duration and parameter held; eigenvalues within `threshold` of zero are null.
-  void set_null_threshold(double threshold) { threshold_ = threshold; }
+  /// Of the second variation, duration and parameter held.
   const Inertia& inertia() const;
+  /// Eigenvalues within `null` of zero, relative, are null; the path is known to `path`, relative.
+  struct Errors {
+    double null = zero_eigenvalue, path = 0;
+  };
+  void set_errors(const Errors& errors) { errors_ = errors; }
 
   /// ∂S/∂s along onward·direction from the derivatives of the action: −E ∂T/∂s + ∂S/∂p ∂p/∂s.
   double action_slope() const { return action_slope_; }
@@ -115,6 +119,8 @@ class Branch : public ExtremalCurve {
   void hold_along(const Move& direction);
   void negate_second(std::vector<double>& nodes) const;
   double energy_change(const Move& move) const;
+  bool told_by_energy() const;
+  const Inertia& inertia_with_duration() const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);
   void note_action();
@@ -128,15 +134,20 @@ class Branch : public ExtremalCurve {
   Problem problem_;
   Levels beside_;
   const ElementTables* tables_ = nullptr;
-  double coordinate_ = 0, unit_, threshold_ = zero_eigenvalue;
+  double coordinate_ = 0, unit_;
+  Errors errors_;
   bool defined_ = true, factored_ = false;
   std::optional<bool> folds_;  ///< its null directions are those of folds, not of a degenerate family
   Units units_;
   ClosingEquation closing_;     ///< where the duration or the energy varies
   double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction
   double action_ = 0, energy_ = 0, residual_ = 0, energy_unit_ = 1, action_slope_ = 0;
-  int closing_sign_ = 1;
-  mutable std::optional<Inertia> inertia_;  ///< of the last linearisation, once asked for
+  /// Along the extremals of all durations, the parameter held: relative, by a direction of length one along
+  /// which the closing equation grows. NaN: not known.
+  struct ByDuration {
+    double duration = 1, energy = NAN;
+  } free_;
+  mutable std::optional<Inertia> inertia_, with_duration_;  ///< of the last linearisation, once asked for
   Path at_;
   PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
   std::vector<Move> held_;

@@ -53,8 +53,8 @@ class CondensedModel final : public SecondVariationModel {
 
   int left_out() const override { return system_.left_out(); }
 
-  Inertia inertia(double threshold) override {
-    Inertia result = system_.inertia(threshold);
+  Inertia inertia(double threshold, VariedBy by) override {
+    Inertia result = system_.inertia(threshold, by);
     result.negative += negative_;
     return result;
   }

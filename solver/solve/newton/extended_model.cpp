@@ -72,8 +72,8 @@ class ExtendedModel final : public SecondVariationModel {
     loaded_ = true;
   }
 
-  Inertia inertia(double threshold) override {
-    Inertia result = system_.inertia(threshold);
+  Inertia inertia(double threshold, VariedBy by) override {
+    Inertia result = system_.inertia(threshold, by);
     result.negative += negative_;
     return result;
   }

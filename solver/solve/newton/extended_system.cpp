@@ -230,12 +230,12 @@ void ExtendedSystem::solve(const Load& load, const ClosingEquation* closing, Ste
 
 /// Sylvester's law: that of the chain and of its Schur complement. A border of r directions adds r negative
 /// eigenvalues to those across them, and as many positive ones.
-Inertia ExtendedSystem::inertia(double threshold) const {
+Inertia ExtendedSystem::inertia(double threshold, VariedBy by) const {
   Inertia result = chain_.inertia();
   const int held = border_ - free_ - free_duration_;
   std::vector<int> used;
   for (int i = 0; i < border_; ++i)
-    if (!(free_duration_ && i == free_)) used.push_back(i);
+    if (by == VariedBy::path_and_duration || !(free_duration_ && i == free_)) used.push_back(i);
   if (used.empty()) return result;
   const ExtendedRows whole = schur(columns_);
   Eigen::MatrixXd s(std::ssize(used), std::ssize(used));

@@ -31,7 +31,7 @@ class ExtendedSystem {
 
   /// Of the second variation under the boundary relation across the directions that are held, as
   /// NodeSystem::inertia.
-  Inertia inertia(double threshold) const;
+  Inertia inertia(double threshold, VariedBy by) const;
 
  private:
   std::size_t end_index(int e) const { return e < n_ ? e : std::size_t(elements_) * n_ + e - n_; }

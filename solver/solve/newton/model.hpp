@@ -29,6 +29,9 @@ struct Step {
   double duration = 0;
 };
 
+/// What a second variation is taken by: the path alone, T held, or the duration as well.
+enum class VariedBy { path, path_and_duration };
+
 /// The second variation under the boundary relation, or an approximation of it, factored; `closing` is null
 /// where T is fixed. Keeps memory.
 class QuadraticModel {
@@ -52,9 +55,9 @@ class QuadraticModel {
   virtual int left_out() const { return 0; }
   /// Whether solve() refines (the default), or leaves the error that growth of the factors makes.
   void set_refining(bool on) { refining_ = on; }
-  /// Of the second variation, T held. Eigenvalues within `threshold` of zero, relative, count as null, and so
-  /// do the directions that are held: the form is taken across them.
-  virtual Inertia inertia(double threshold) = 0;
+  /// Of the second variation. Eigenvalues within `threshold` of zero, relative, count as null, and so do the
+  /// directions that are held: the form is taken across them.
+  virtual Inertia inertia(double threshold, VariedBy by = VariedBy::path) = 0;
 
  protected:
   bool refining_ = true;

@@ -278,42 +278,44 @@ void NodeSystem::solve_exactly() {
   small_ = all.tail(border_);
 }
 
-Inertia NodeSystem::inertia(double threshold) const {
-  if (elements_ < 2 && free_ == 0) return {};
-  if (free_ == 0 && held_ == 0 && chain_->deflated().empty()) return chain_->inertia();
+Inertia NodeSystem::inertia(double threshold, VariedBy by) const {
+  // The column of the duration follows those of the ends.
+  const int varied = free_ + (by == VariedBy::path_and_duration && free_duration_);
+  if (elements_ < 2 && varied == 0) return {};
+  if (varied == 0 && held_ == 0 && chain_->deflated().empty()) return chain_->inertia();
   // A border of r directions that are null but for the error of the elements adds r negative eigenvalues to
   // those of the directions across, and as many positive ones.
   const PhaseConditions held = phases_ ? independent(*phases_) : PhaseConditions{};
   // Roundoff may give the chain, whose ends are held, an eigenvalue of either sign along a direction that is
   // held. A spring σ at the node that it moves most, and a column e with the corner 1/σ, which takes the
   // spring back, leave the inertia but for one positive eigenvalue.
-  const int springs = right_.empty() ? 0 : held.count, columns = free_ + held.count + springs;
+  const int springs = right_.empty() ? 0 : held.count, columns = varied + held.count + springs;
   Chain chain = *chain_;
   Border ends;
   ends.resize(static_cast<int>(right_.size()), columns);
   Eigen::Map<RowMatrix> block(ends.column_block(), std::ssize(right_), columns),
       corner(ends.corner(), columns, columns);
   block.setZero();
-  block.leftCols(free_) =
-      Eigen::Map<const RowMatrix>(columns_.data(), std::ssize(right_), border_).leftCols(free_);
+  block.leftCols(varied) =
+      Eigen::Map<const RowMatrix>(columns_.data(), std::ssize(right_), border_).leftCols(varied);
   corner.setZero();
-  corner.topLeftCorner(free_, free_) = corner_.topLeftCorner(free_, free_);
+  corner.topLeftCorner(varied, varied) = corner_.topLeftCorner(varied, varied);
   for (int j = 0; j < held.count; ++j) {
     const double* direction = held.direction(j).data();
-    for (Eigen::Index k = 0; k < block.rows(); ++k) block(k, free_ + j) = direction[n_ + k];
+    for (Eigen::Index k = 0; k < block.rows(); ++k) block(k, varied + j) = direction[n_ + k];
     for (const Triplet& z : ends_->z) {
-      corner(z.column, free_ + j) += z.value * direction[end_index(z.row)];
-      corner(free_ + j, z.column) = corner(z.column, free_ + j);
+      corner(z.column, varied + j) += z.value * direction[end_index(z.row)];
+      corner(varied + j, z.column) = corner(z.column, varied + j);
     }
   }
   for (int j = 0; j < springs; ++j) {
     Eigen::Index row = 0;
-    block.col(free_ + j).cwiseAbs().maxCoeff(&row);
+    block.col(varied + j).cwiseAbs().maxCoeff(&row);
     double& entry = chain.diagonal(static_cast<int>(row / n_))[row % n_ * (n_ + 1)];
     const double spring = entry != 0 ? std::abs(entry) : 1;
     entry += spring;
-    block(row, free_ + held.count + j) = 1;
-    corner(free_ + held.count + j, free_ + held.count + j) = 1 / spring;
+    block(row, varied + held.count + j) = 1;
+    corner(varied + held.count + j, varied + held.count + j) = 1 / spring;
   }
   ends.factor(chain, std::max(threshold, zero_eigenvalue));
   // With more null directions than can be afforded: as for steps.

@@ -33,11 +33,11 @@ class NodeSystem {
   void solve(const NodeEquations& nodes, const ClosingEquation* closing, std::vector<double>& step,
              double& duration_step, bool refine = true);
 
-  /// Of the second variation under the boundary relation, T held; the inner unknowns' negative pivots
-  /// are counted by NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
+  /// Of the second variation under the boundary relation; the inner unknowns' negative pivots are counted by
+  /// NodeEquations. Eigenvalues within `threshold` of zero, of the chain or of the scaled
   /// Schur complement that remains, are null. So are the directions that are held: counted is the
   /// form across them.
-  Inertia inertia(double threshold) const;
+  Inertia inertia(double threshold, VariedBy by = VariedBy::path) const;
 
  private:
   /// Of end coordinate e among the nodes.

@@ -111,8 +111,8 @@ void RaisedModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
   }
 }
 
-Inertia RaisedModel::inertia(double threshold) {
-  Inertia result = low_.inertia(threshold);
+Inertia RaisedModel::inertia(double threshold, VariedBy by) {
+  Inertia result = low_.inertia(threshold, by);
   const int per_sign = elements_ * (inner_ - low_inner_);
   for (double m : mass_) (m > 0 ? result.positive : result.negative) += per_sign;
   return result;

@@ -26,7 +26,7 @@ class RaisedModel final : public QuadraticModel {
   void evaluate_gradient(DiscreteAction& action, const Path& path) override;
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
   /// Of the model; the second variation itself may differ.
-  Inertia inertia(double threshold) override;
+  Inertia inertia(double threshold, VariedBy by) override;
 
  private:
   void restrict_batch(const Path& path, int batch, const double* gradient);

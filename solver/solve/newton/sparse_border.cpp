@@ -80,12 +80,12 @@ double SparseBorder::solve(SparseSymmetric& a, std::span<double> x, std::span<co
 
 /// By Haynsworth, of A and of its Schur complement, less 1/κ. A border of directions that are null adds as
 /// many negative eigenvalues and positive ones to those across them.
-Inertia SparseBorder::inertia(SparseSymmetric& a) const {
+Inertia SparseBorder::inertia(SparseSymmetric& a, std::span<const double> first, double corner) const {
   Inertia result = a.inertia();
-  const int h = held();
-  if (h == 0) return result;
-  const Eigen::MatrixXd s =
-      schur(std::vector<double>(solved_.rows(), 0.0), 0).bottomRightCorner(2 * h, 2 * h);
+  const int h = held(), with_first = first.empty() ? 0 : first_, size = with_first + 2 * h;
+  if (size == 0) return result;
+  const std::vector<double> none(with_first > 0 ? 0 : solved_.rows(), 0.0);
+  const Eigen::MatrixXd s = schur(with_first > 0 ? first : none, corner).bottomRightCorner(size, size);
   // The last diagonal entries are zero where H is null along the directions held.
   const Eigen::VectorXd unit = s.rowwise().lpNorm<Eigen::Infinity>().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = unit.asDiagonal() * (s + s.transpose()) * unit.asDiagonal();

@@ -32,8 +32,9 @@ class SparseBorder {
   /// QuadraticModel::set_refining.
   double solve(SparseSymmetric& a, std::span<double> x, std::span<const double> row, double corner,
                double value, bool refine) const;
-  /// Of H across the directions that are held, which count as null; without the first column.
-  Inertia inertia(SparseSymmetric& a) const;
+  /// Of H across the directions that are held, which count as null; with the first column, if it is given,
+  /// and the corner.
+  Inertia inertia(SparseSymmetric& a, std::span<const double> first, double corner) const;
 
  private:
   Eigen::MatrixXd schur(std::span<const double> row, double corner) const;

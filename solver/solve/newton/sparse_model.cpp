@@ -57,6 +57,12 @@ void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
   equations_.expand(right_, step);
 }
 
+Inertia SparseModel::inertia(double, VariedBy by) {
+  const bool with_duration = by == VariedBy::path_and_duration;
+  return border_.inertia(matrix_, with_duration ? equations_.by_duration() : std::span<const double>(),
+                         equations_.corner());
+}
+
 void SparseModel::respond(DiscreteAction& action, const ClosingEquation* closing,
                           std::span<const double> load, Step& step) {
   equations_.load(load);

@@ -20,7 +20,7 @@ class SparseModel final : public SecondVariationModel {
                Step& step) override;
   void put_load(DiscreteAction& action, const Path& path, const AlignedDoubles& load,
                 double on_duration) override;
-  Inertia inertia(double) override { return border_.inertia(matrix_); }
+  Inertia inertia(double, VariedBy by) override;
 
   Equations& equations() { return equations_; }
 
