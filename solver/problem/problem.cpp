@@ -8,6 +8,7 @@
 
 #include "problem/copies.hpp"
 #include "problem/extension.hpp"
+#include "problem/own_symmetries.hpp"
 #include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
 #include "problem/reduction.hpp"
@@ -134,26 +135,6 @@ Problem without_squares(Problem problem) {
   return problem;
 }
 
-/// Those that leave both equilibria where they are.
-std::vector<Generator> symmetries_about_rest(const Problem& problem) {
-  std::vector<Generator> found = continuous_symmetries(problem);
-  const std::size_t n = problem.coordinates();
-  std::erase_if(found, [&](const Generator& generator) {
-    constexpr double roundoff = 1e-9;
-    for (const std::vector<double>* q : {&problem.infinite->start, &problem.infinite->end})
-      for (std::size_t a = 0; a < n; ++a) {
-        double moved = generator.shift[a], size = std::abs(moved);
-        for (std::size_t b = 0; b < n; ++b) {
-          moved += generator.matrix[a * n + b] * (*q)[b];
-          size += std::abs(generator.matrix[a * n + b] * (*q)[b]);
-        }
-        if (std::abs(moved) > roundoff * std::max(size, 1.0)) return true;
-      }
-    return false;
-  });
-  return found;
-}
-
 }  // namespace
 
 Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration) {
@@ -180,19 +161,14 @@ Problem make_problem(Problem problem) {
   if (problem.extension) {
     const Problem other = at_other_multipliers(problem);
     check_recurrence(other);
-    if (problem.periodic) problem.symmetries = continuous_symmetries(other);
+    problem.symmetries = own_symmetries(other);
     return problem;
   }
   check_phase_space(problem);
   const Problem invariant = problem.phase ? without_squares(problem) : problem;
   check_recurrence(invariant);
-  if (problem.periodic)
-    problem.symmetries = problem.phase ? phase_symmetries(problem) : continuous_symmetries(problem);
-  if (problem.infinite && problem.infinite->both()) problem.symmetries = symmetries_about_rest(problem);
-  if (problem.paired)
-    problem.symmetries = symmetries_of_copies(problem.symmetries);
-  else
-    problem.reduction = reduction_of(problem);
+  problem.symmetries = own_symmetries(problem);
+  if (!problem.paired) problem.reduction = reduction_of(problem);
   return problem;
 }
 

@@ -94,7 +94,6 @@ class VariedScene {
       EndPoints near = near_;
       settle_ends(scene_, near, problem);
     }
-    if (problem.phase && problem.periodic) find_symmetries(problem);
     return problem;
   }
 
@@ -128,15 +127,6 @@ class VariedScene {
       leave_infinite_ends(scene_, std::move(infinite), problem);
     }
     return problem;
-  }
-
-  /// Those of phase space may depend on the parameter.
-  void find_symmetries(Problem& problem) const {
-    Problem invariant = problem;
-    invariant.guess = guess_;
-    if (invariant.duration.free) invariant.duration.value = problem_.duration.value;
-    std::vector<Generator> found = phase_symmetries(invariant);
-    if (found.size() == problem_.symmetries.size()) problem.symmetries = std::move(found);
   }
 
   Scene scene_;

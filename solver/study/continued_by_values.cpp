@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "problem/own_symmetries.hpp"
 #include "problem/singular_ends.hpp"
 #include "solve/solve.hpp"
 
@@ -208,7 +209,10 @@ FollowedBranch follow_by_values(const Study& study, const Continued& continued,
     Solution found;
     if (there) {
       guess_by(here, solution.trajectory, *there);
-      if (of_scheme) there = checked(std::move(there));
+      if (of_scheme)
+        there = checked(std::move(there));
+      else
+        there->symmetries = own_symmetries(*there);
       if (there) found = solver.solve(*there, options);
     }
     const bool shortest = std::abs(step) / 2 <= least_step * std::abs(to - from);

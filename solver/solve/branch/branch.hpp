@@ -56,6 +56,8 @@ class Branch : public ExtremalCurve {
   /// that is degenerate; a branch that begins at such a point knows it from the branch that it leaves.
   bool regular() const { return folds_ == true; }
   void set_regular() { folds_ = true; }
+  /// It is to be seen where the equations are linearised next.
+  void ask_regular() { folds_.reset(); }
   /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
   bool defined() const { return defined_; }
   /// Over (q(0), q(T)): a displacement of the ends that had better close the equations near the path that was

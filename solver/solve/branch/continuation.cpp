@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solve/branch/common_symmetries.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/search/search.hpp"
 
@@ -100,10 +101,12 @@ std::optional<double> limit_of_period(const Continuation::PeriodGrowth& before,
 }  // namespace
 
 Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
-    : family_(std::move(family)), options_(std::move(options)), tracker_(family_, options_.solve.tolerance) {}
+    : family_(with_common_symmetries(std::move(family))),
+      options_(std::move(options)),
+      tracker_(family_, options_.solve.tolerance) {}
 
 Continuation::Continuation(ProblemFamily family, ContinuationOptions options, BranchStart start, int side)
-    : family_(std::move(family)),
+    : family_(with_common_symmetries(std::move(family))),
       options_(std::move(options)),
       tracker_(family_, options_.solve.tolerance),
       start_(std::move(start)),
@@ -126,7 +129,7 @@ void Continuation::add(FoundPoint found) {
 
 bool Continuation::advance() {
   if (end_ != BranchEnd::none && found_.empty()) return false;
-  if (!std::exchange(started_, true) && !begin()) return false;
+  if (!std::exchange(started_, true) && !begin() && found_.empty()) return false;
   if (count_ == options_.points) {
     found_.clear();
     return stop(BranchEnd::points, fmt::format("{} points have been found; ask for more", count_));
@@ -144,7 +147,8 @@ bool Continuation::begin() {
   length_ = std::min(first_length, longest_);
   if (!(start_ ? begin_from_start() : begin_from_solve())) return false;
   tracker_.measure_anew();
-  add({read_point(tracker_, PointKind::regular)});
+  FoundPoint point{read_point(tracker_, PointKind::regular)};
+  add(first_point_ ? *std::exchange(first_point_, std::nullopt) : std::move(point));
   first_ = tracker_.state;
   index_ = first_.index;
   check_action();
@@ -163,12 +167,44 @@ bool Continuation::begin_from_solve() {
     return stop(BranchEnd::not_started, "no extremal to begin with: " + outcome.message);
   double at_rest = 0;
   for (const double x : family_.problem.guess.q) at_rest = std::max(at_rest, rest * std::abs(x));
-  const double coordinate = family_.varied == Varied::parameter ? family_.from : outcome.path.duration();
-  if (!tracker_.begin(std::move(search.path()), coordinate, at_rest))
-    return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
+  const bool by_parameter = family_.varied == Varied::parameter;
+  const double coordinate = by_parameter ? family_.from : outcome.path.duration();
+  const std::optional<Problem> first = by_parameter ? family_.at(coordinate) : std::nullopt;
+  const bool alone = first && first->symmetries.size() < family_.problem.symmetries.size();
+  const auto begin = [&] { return !alone && tracker_.begin(search.path(), coordinate, at_rest); };
+  const bool begins = begin() && (!by_parameter || tracker_.branch().regular());
+  if (!begins && !begin_beside(search.path(), at_rest) && !begin()) return end_at_first();
   BranchState& state = tracker_.state;
   if (state.rate * (family_.to - family_.from) < 0) state.scale(-1);
   return true;
+}
+
+/// The first member alone may have symmetries, or other directions, along which its extremals are a family.
+/// Its point is found with these held, and the branch begins beside it: on a branch that leads on from it the
+/// extremal half as far beside is about half as far away.
+bool Continuation::begin_beside(const Path& path, double at_rest) {
+  if (family_.varied != Varied::parameter) return false;
+  const ProblemFamily alone = with_symmetries_of_first(family_);
+  Tracker first(alone, options_.solve.tolerance);
+  if (!first.begin(path, family_.from, at_rest)) return false;
+  first.measure_anew();
+  first_point_ = FoundPoint{read_point(first, PointKind::regular)};
+  const double reach = beside_first * (family_.to - family_.from);
+  const std::optional<double> far = tracker_.begin_beside(first.state, family_.from + reach, at_rest);
+  if (!far) return false;
+  const std::optional<double> near = tracker_.begin_beside(first.state, family_.from + reach / 2, at_rest);
+  return near && *near <= half_as_far * *far;
+}
+
+bool Continuation::end_at_first() {
+  if (!first_point_)
+    return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
+  add(*std::exchange(first_point_, std::nullopt));
+  return stop(
+      BranchEnd::too_short,
+      fmt::format("at {:.8g} the branch cannot be followed: the extremal is one of a family, of which none "
+                  "with another value was found beside it",
+                  family_.from));
 }
 
 /// Along the response of the equations next to where they are singular: it has little of the branch that is

@@ -60,6 +60,8 @@ class Continuation {
  private:
   bool begin();
   bool begin_from_solve();
+  bool begin_beside(const Path& path, double at_rest);
+  bool end_at_first();
   bool begin_from_start();
   bool step();
   bool retry(double length);
@@ -75,6 +77,7 @@ class Continuation {
   Tracker tracker_;
   std::optional<BranchStart> start_;  ///< the branch begins there
   int side_ = 1;
+  std::optional<FoundPoint> first_point_;  ///< where the branch begins beside it
   BranchState first_;
   int index_ = 0, unknown_indices_ = 0;
   PeriodGrowth before_, here_;

@@ -21,10 +21,11 @@ ProblemFamily doubled(const ProblemFamily& family) {
     twice.to *= 2;
   }
   if (family.at)
-    twice.at = [at = family.at](double parameter) -> std::optional<Problem> {
-      const std::optional<Problem> problem = at(parameter);
-      if (!problem) return std::nullopt;
-      return doubled(*problem);
+    twice.at = [at = family.at, duration = family.problem.duration.value](double parameter) {
+      std::optional<Problem> problem = at(parameter);
+      if (problem && problem->duration.free) problem->duration.value = duration;
+      if (problem) problem = doubled(*problem);
+      return problem;
     };
   return twice;
 }
@@ -51,13 +52,10 @@ ProblemFamily by_parameter(ProblemFamily family) {
 ProblemFamily family_of_pairs(const ProblemFamily& family) {
   ProblemFamily pairs = family;
   pairs.problem = *family.problem.pair;
-  pairs.at = [at = family.at,
-              symmetries = pairs.problem.symmetries](double parameter) -> std::optional<Problem> {
-    const std::optional<Problem> problem = at(parameter);
-    if (!problem) return std::nullopt;
-    Problem pair = pair_of(*problem);
-    pair.symmetries = symmetries;
-    return pair;
+  pairs.at = [at = family.at](double parameter) {
+    std::optional<Problem> problem = at(parameter);
+    if (problem) problem = pair_of(*problem);
+    return problem;
   };
   return pairs;
 }

@@ -18,7 +18,7 @@ struct BranchRecord {
   std::string message = {};  ///< why it ended
   int points = 0;
   std::optional<double> worst_action_slope = 0;  ///< see Continuation; none with forces
-  std::optional<double> worst_momentum = 0;       ///< likewise
+  std::optional<double> worst_momentum = 0;      ///< likewise
 };
 
 /// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches

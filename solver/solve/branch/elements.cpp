@@ -29,7 +29,8 @@ Tracker::Fit Tracker::fit_elements() {
   w_.resolution.measure(path_, tables);
   const Resolution::Error error = w_.resolution.at(path_.degree());
   error_ = error.q + unit_roundoff * size.magnitude * std::sqrt(path_.elements() * path_.degree());
-  branch_.set_errors({null_eigenvalue_of_branch(size.q, error_, path_), size.q > 0 ? 2 * error_ / size.q : 0});
+  branch_.set_errors(
+      {null_eigenvalue_of_branch(size.q, error_, path_), size.q > 0 ? 2 * error_ / size.q : 0});
   const double missed = size.q > 0 ? excess(error, size, tolerance_) : 0;
   if (missed <= 1 && (missed == 0 || missed > lavish)) return Fit::fine;
   const Plan plan = plan_for(size);

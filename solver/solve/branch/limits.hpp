@@ -42,6 +42,15 @@ inline constexpr double beside_motion = 1e-4;
 
 }  // namespace branch_points
 
+namespace common_symmetries {
+
+/// Symmetries differ by less than this, relative, if they are the same.
+inline constexpr double same = 1e-6;
+/// A part of the way where a member is like most.
+inline constexpr double between = 0.382;
+
+}  // namespace common_symmetries
+
 namespace chord_steps {
 
 /// A step is refused where corrections shrink less than this, or are longer than this part of it.
@@ -72,6 +81,9 @@ inline constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.95, gr
                         growth_else = 0.8;
 inline constexpr int many_factorisations = 4;
 inline constexpr double growth_if_many = 0.7;
+/// On a branch the extremal half as far from the first one as another is no farther away than this part of
+/// its distance.
+inline constexpr double half_as_far = 0.75;
 /// Of the size of the guess: a path smaller than this is at rest.
 inline constexpr double rest = 1e-9;
 /// The first step onto a branch that crosses another; at least; and the next try.

@@ -1,5 +1,6 @@
 #include "solve/branch/tracker.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "solve/branch/chord_steps.hpp"
@@ -23,6 +24,7 @@ Tracker::Tracker(const ProblemFamily& family, double tolerance)
 
 bool Tracker::begin(Path path, double coordinate, double rest) {
   rest_ = rest;
+  branch_.ask_regular();
   std::swap(path_, path);
   return branch_.set_coordinate(coordinate) && fit_elements() != Fit::too_many && update_tangent(true);
 }
@@ -35,6 +37,23 @@ bool Tracker::begin(const Path& path, double coordinate, const Branch::Units& un
   if (!branch_.set_coordinate(coordinate)) return false;
   branch_.bind();
   return update_tangent(true);
+}
+
+std::optional<double> Tracker::begin_beside(const BranchState& from, double value, double rest) {
+  rest_ = rest;
+  branch_.ask_regular();
+  state.units = from.units;
+  if (!return_to(from) || !branch_.apply(from.predicted((value - from.varied) / from.rate), 1))
+    return std::nullopt;
+  for (int k = 0; k < most_resolutions; ++k) {
+    if (!correct(1, &value)) return std::nullopt;
+    const Fit fit = fit_elements();
+    if (fit == Fit::fine) break;
+    if (fit == Fit::too_many) return std::nullopt;
+  }
+  if (!update_tangent()) return std::nullopt;
+  const Move way = difference_to(from);
+  return std::sqrt(branch_.dot(way, way));
 }
 
 /// The path, its units and its equations are those of a state again.

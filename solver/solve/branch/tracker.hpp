@@ -35,6 +35,10 @@ class Tracker {
   /// Begins next to where branches meet, on the elements that there are, in these units of length.
   bool begin(const Path& path, double coordinate, const Branch::Units& units, double rest);
 
+  /// Begins at the extremal with this value of the number that varies, near that of a state, and to which
+  /// Newton's method leads from where its tangent does. How far that is from the state; nothing if it fails.
+  std::optional<double> begin_beside(const BranchState& from, double value, double rest);
+
   /// So far along the tangent from a state, and back onto the branch; with `landing` to where the number that
   /// varies has that value. On elements that meet the tolerance, or on those of the state. False if it fails.
   bool reach(const BranchState& from, double length, bool same_elements = false,
