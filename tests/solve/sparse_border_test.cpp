@@ -105,7 +105,7 @@ TEST(SparseBorder, InertiaAcrossWhatIsHeld) {
     factor(h, 1, border.pinned(), sparse);
     border.factor(sparse, 1, {});
     const VectorXd values = Eigen::SelfAdjointEigenSolver<MatrixXd>(h).eigenvalues();
-    const Inertia found = border.inertia(sparse);
+    const Inertia found = border.inertia(sparse, {}, 0);
     EXPECT_EQ(found.negative, (values.array() < -1e-6).count());
     EXPECT_EQ(found.positive, (values.array() > 1e-6).count());
     EXPECT_EQ(found.zero, 1);

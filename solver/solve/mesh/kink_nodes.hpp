@@ -14,8 +14,8 @@ namespace extremal {
 /// near 0 and T no element ends for it.
 std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed);
 
-/// The mesh of the path with these crossings as nodes; nothing where they are nodes, to `tolerance` of T, and
-/// where L is smooth.
+/// The mesh of the path with these crossings as nodes, and none of those for which no element ends; nothing
+/// where it is so, to `tolerance` of T, and where L is smooth.
 std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,
                                                  double tolerance);
 

@@ -48,6 +48,8 @@ namespace kinks {
 
 /// Of T: crossings are known no better.
 inline constexpr double least_misplacement = 1e-13;
+/// Of the shorter element beside a node: a crossing nearer than this is that at the node.
+inline constexpr double at_node = 0.1;
 
 }  // namespace kinks
 
