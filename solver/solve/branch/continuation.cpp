@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
+#include "problem/closing.hpp"
 #include "solve/branch/common_symmetries.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/search/search.hpp"
@@ -74,6 +76,25 @@ double share_at_rest(const Path& path) {
   for (int k = 0; k < path.elements(); ++k)
     if (speed(k) < slow * fastest) rest += path.mesh()[k + 1] - path.mesh()[k];
   return rest;
+}
+
+/// Of what is left of two orbits less themselves half a period later: the mean of its product.
+double alternation(const Trajectory& a, const Trajectory& b) {
+  constexpr int samples = 128;
+  const std::size_t n = a.coordinates;
+  std::vector<double> q(n), later(n), v(n), of_a(n);
+  double sum = 0;
+  for (int k = 0; k < samples; ++k) {
+    for (const Trajectory* path : {&a, &b}) {
+      const double t = path->duration() * k / (2 * samples);
+      path->at(t, q, v);
+      path->at(t + path->duration() / 2, later, v);
+      for (std::size_t i = 0; i < n; ++i) q[i] -= later[i];
+      if (path == &a) std::swap(q, of_a);
+    }
+    sum += std::inner_product(q.begin(), q.end(), of_a.begin(), 0.0) / samples;
+  }
+  return sum;
 }
 
 /// Nothing where the period is given.
@@ -253,6 +274,7 @@ bool Continuation::step() {
   if (!events.missed) count_index(events, next);
   std::swap(state, to_);
   if (events.missed) return retry(length);
+  end_at_half_period(events);
   for (FoundPoint& found : events.points) add(std::move(found));
   if (events.end != BranchEnd::none)
     stop(events.end, std::move(events.message));
@@ -269,6 +291,26 @@ bool Continuation::retry(double length) {
   length_ = shortening * length;
   tracker_.fail(StepFailure::rough);
   return step();
+}
+
+/// Where orbits meet those of half their period, run through twice, beyond are the same ones half a period
+/// later: what is left of them less themselves half a period later passes zero there.
+void Continuation::end_at_half_period(StepEvents& events) {
+  const auto met = std::ranges::find_if(
+      events.points, [](const FoundPoint& found) { return found.point.kind == PointKind::branch; });
+  const Problem& problem = family_.problem;
+  if (met == events.points.end() || !problem.periodic || !closing_map(problem).identity()) return;
+  const Trajectory from = trajectory_of(from_.path), to = trajectory_of(to_.path);
+  const double size = half_period * from_.units.extent;
+  if (alternation(from, from) < size * size || alternation(from, to) >= 0) return;
+  const double parameter = met->point.parameter;
+  events.points.erase(met + 1, events.points.end());
+  events.end = BranchEnd::closed;
+  events.message = fmt::format(
+      "the branch is closed: at {:.8g} its orbit repeats one of half the period, and beyond are the same "
+      "ones "
+      "half a period later",
+      parameter);
 }
 
 /// Along a step the index changes by the eigenvalues that pass zero, which are counted on one mesh. Where the

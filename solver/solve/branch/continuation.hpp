@@ -66,6 +66,7 @@ class Continuation {
   bool step();
   bool retry(double length);
   void check_action();
+  void end_at_half_period(StepEvents& events);
   void count_index(StepEvents& events, BranchPoint& next);
   bool end_where_period_diverges(double error);
   void add(FoundPoint found);

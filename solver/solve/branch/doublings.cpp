@@ -54,7 +54,8 @@ std::vector<Sample> tests_on(const BranchStep& step, std::size_t k, const Doubli
   return samples;
 }
 
-/// Points of a step between which the signs of the tests explain how the index changes.
+/// Points of a step between which the signs of the tests explain how the index changes, as far as points
+/// tell; its ends as well.
 DoublingSamples divided_by_index(Tracker& tracker, const BranchStep& step) {
   const std::size_t count = test_count(step);
   DoublingSamples all = {{0, step.from.doubling}, {step.length, step.to.doubling}};
@@ -68,9 +69,23 @@ DoublingSamples divided_by_index(Tracker& tracker, const BranchStep& step) {
     if (!tracker.reach(step.from, at)) break;
     all[at] = read_doubling_tests(tracker);
   }
-  all.erase(all.begin());
-  all.erase(std::prev(all.end()));
   return all;
+}
+
+/// Where two multipliers pass −1 and each other between two points, so that no test changes its sign: there
+/// the index changes by two, and the root of the product of all tests, of the sign that the index tells,
+/// passes zero. NaN if it is not found.
+double find_passing_pair(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
+                         const DoublingSamples::value_type& low, const DoublingSamples::value_type& high) {
+  const double middle = 0.5 * (*low.second.index + *high.second.index);
+  const auto test = [&](const DoublingTests& tests) {
+    if (!tests.index) return double(NAN);
+    return std::copysign(std::sqrt(std::abs(product(tests.values))), *tests.index - middle);
+  };
+  return root(
+      tracker, from, {low.first, test(low.second)}, {high.first, test(high.second)}, std::nullopt,
+      [&] { return test(read_doubling_tests(tracker)); },
+      [&](double, double change) { return is_located(tracker, family, change); });
 }
 
 }  // namespace
@@ -98,29 +113,36 @@ bool may_double(const BranchStep& step) {
 }
 
 /// Test by test, in their order; all together where pairs of multipliers have met or parted. Where the index
-/// does not tell, samples look for two zeros of a test.
+/// does not tell, samples look for two zeros of a test; where it changes without any zero, two multipliers
+/// pass −1 at once.
 std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   const auto& from = step.from;
   const std::size_t count = test_count(step);
   std::vector<Event> found;
-  DoublingSamples between = divided_by_index(tracker, step);
-  const bool divided = !between.empty();
+  const auto add = [&](double at) {
+    BranchPoint point = read_point(tracker, PointKind::period_doubling);
+    found.push_back(
+        {at, {std::move(point), branch_start(tracker, search, PointKind::period_doubling, from, at)}});
+  };
+  const DoublingSamples divided = divided_by_index(tracker, step);
+  DoublingSamples between(std::next(divided.begin()), std::prev(divided.end()));
+  const bool by_index = !between.empty();
   for (std::size_t k = 0; k < count; ++k) {
     const auto test = [&] { return test_of(read_doubling_tests(tracker), k, count); };
-    std::vector<Sample> samples = tests_on(step, k, divided ? between : DoublingSamples{});
-    if (!divided)
+    std::vector<Sample> samples = tests_on(step, k, by_index ? between : DoublingSamples{});
+    if (!by_index)
       resolve(samples, [&](double at) {
         if (const auto known = between.find(at); known != between.end())
           return test_of(known->second, k, count);
         if (between.size() == most_samples || !tracker.reach(from, at)) return double(NAN);
         return test_of(between[at] = read_doubling_tests(tracker), k, count);
       });
-    find_roots(tracker, search.family, from, samples, std::nullopt, test, [&](double at) {
-      BranchPoint point = read_point(tracker, PointKind::period_doubling);
-      found.push_back(
-          {at, {std::move(point), branch_start(tracker, search, PointKind::period_doubling, from, at)}});
-    });
+    find_roots(tracker, search.family, from, samples, std::nullopt, test, add);
   }
+  for (auto low = divided.begin(), high = std::next(low); high != divided.end(); ++low, ++high)
+    if (hides_doublings(low->second, high->second, count))
+      if (const double at = find_passing_pair(tracker, search.family, from, *low, *high); std::isfinite(at))
+        add(at);
   return found;
 }
 

@@ -84,6 +84,8 @@ inline constexpr double growth_if_many = 0.7;
 /// On a branch the extremal half as far from the first one as another is no farther away than this part of
 /// its distance.
 inline constexpr double half_as_far = 0.75;
+/// Of its size: an orbit that differs by less from itself half a period later has half the period.
+inline constexpr double half_period = 1e-6;
 /// Of the size of the guess: a path smaller than this is at rest.
 inline constexpr double rest = 1e-9;
 /// The first step onto a branch that crosses another; at least; and the next try.
