@@ -178,6 +178,7 @@ bool Branch::linearise_duration(Factors factors) {
   along_ = by_energy ? energy_unit_ : energy_change(direction);
   const double length = std::sqrt(dot(direction, direction));
   free_ = {direction.parameter / (units_.duration * length), along_ / (energy_unit_ * length)};
+  if (model.left_out() > 0) free_.energy = NAN;
   off_ = by_energy
              ? 0
              : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
@@ -226,7 +227,9 @@ bool Branch::linearise_parameter() {
     const double length = std::sqrt(dot(direction, direction));
     free_.duration = direction.step.duration / (units_.duration * length);
     energy_unit_ = energy_unit(action, path_.duration());
-    if (closing->row.empty())
+    if (model.left_out() > 0)
+      free_.energy = NAN;
+    else if (closing->row.empty())
       free_.energy = -growth / (energy_unit_ * length);
     else if (tables_->unknowns() <= most_dense_unknowns)
       free_.energy = energy_change(direction) / (energy_unit_ * length);

@@ -145,7 +145,7 @@ class Branch : public ExtremalCurve {
   double along_ = 0, off_ = 0;  ///< changes of the energy by direction and correction
   double action_ = 0, energy_ = 0, residual_ = 0, energy_unit_ = 1, action_slope_ = 0;
   /// Along the extremals of all durations, the parameter held: relative, by a direction of length one along
-  /// which the closing equation grows. NaN: not known.
+  /// which the closing equation grows. NaN: not known, or the equations with it are singular.
   struct ByDuration {
     double duration = 1, energy = NAN;
   } free_;

@@ -194,7 +194,11 @@ bool Continuation::begin_from_solve() {
   const bool alone = first && first->symmetries.size() < family_.problem.symmetries.size();
   const auto begin = [&] { return !alone && tracker_.begin(search.path(), coordinate, at_rest); };
   const bool begins = begin() && (!by_parameter || tracker_.branch().regular());
-  if (!begins && !begin_beside(search.path(), at_rest) && !begin()) return end_at_first();
+  if (!begins) {
+    const bool beside = begin_beside(search.path(), at_rest) && (alone || tracker_.branch().regular());
+    if (!beside && !begin()) return end_at_first();
+    if (!beside) first_point_.reset();
+  }
   BranchState& state = tracker_.state;
   if (state.rate * (family_.to - family_.from) < 0) state.scale(-1);
   return true;

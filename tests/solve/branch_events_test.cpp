@@ -1,0 +1,62 @@
+#include "solve/branches.hpp"
+#include "solve/scenes.hpp"
+
+/// \file Events of branches that signs of tests do not show, and branches that come back to where they began.
+
+namespace extremal::laws {
+namespace {
+
+/// x = cn along y = 0 in the potential (x⁴ + y⁴)/4 + a x²y²/2: over half a period the trace of y'' + a x² y =
+/// 0 is 2√2 cos(π √(1 + 8a)/4) (H. Yoshida, Celest. Mech. 32 (1984) 73). Over the whole period it touches −2
+/// where that is zero.
+TEST(BranchEvents, TwoMultipliersThatPassMinusOneAtOnce) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { a = 0.2 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
+      "(x^4 + "
+      "y^4)/4 - a*x^2*y^2/2\"\n[boundary]\nperiodic = true\nduration = \"free\"\nenergy = 0.25\n[guess]\nx = "
+      "\"cos(2*pi*t/T)\"\ny = \"0\"\nduration = 7.4\n[continuation]\nparameter = \"a\"\nto = 5\npoints = "
+      "40\n"));
+  const std::vector<double> doubled = values(found.points, PointKind::period_doubling);
+  ASSERT_EQ(doubled.size(), 2u);
+  EXPECT_NEAR(doubled[0], 3.0 / 8, 1e-7);
+  EXPECT_NEAR(doubled[1], 35.0 / 8, 1e-7);
+}
+
+/// Orbits of twice the period of the drive that begin at one period doubling and end at another one. Beyond
+/// it they would be the same ones, one period of the drive later.
+TEST(BranchEvents, ABranchThatComesBackToHalfItsPeriod) {
+  const Study study = study_of(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { w = 1.985 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
+      "(x^2 "
+      "+ y^2)/2 - 0.5*x^2*y\"\nforce = { x = \"-0.05*x'\", y = \"-0.05*y' + 0.3*cos(w*t)\" }\n[boundary]\n"
+      "periodic = true\nduration = \"2*pi/w\"\n[guess]\nx = \"0\"\ny = \"-0.1*cos(w*t)\"\n[continuation]\n"
+      "parameter = \"w\"\nto = 2.1\npoints = 100\nswitch = true\n");
+  Diagram diagram(study.continuation->family,
+                  {.solve = study.options, .points = 100, .other_branches = true});
+  std::vector<BranchPoint> points;
+  while (diagram.advance() && diagram.point().branch < 2) points.push_back(diagram.point());
+  std::vector<double> doubled;
+  for (const BranchPoint& point : points)
+    if (point.branch == 0 && point.kind == PointKind::period_doubling) doubled.push_back(point.parameter);
+  ASSERT_EQ(doubled.size(), 2u);
+  EXPECT_EQ(diagram.branches()[1].end, BranchEnd::closed) << diagram.branches()[1].message;
+  EXPECT_NEAR(points.back().parameter, doubled[1], 1e-7);
+}
+
+/// A driven oscillator between stops that it grazes at F = 0.6295, and beyond touches in turn: the crossings
+/// come out of the turning points, and pass the end of the period. The fold by solutions of both linear
+/// equations put together (x(0) = −0.5106955, x'(0) = 0.0970157 there).
+TEST(BranchEvents, OrbitsThatGrazeAStop) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { F = 0.6 }\nlagrangian = \"x'^2/2 - x^2/2 - "
+      "2*max(abs(x) - "
+      "0.5, 0)^2 + F*x*cos(1.5*t)\"\nforce = { x = \"-0.1*x'\" }\n[boundary]\nperiodic = true\nduration = "
+      "\"2*pi/1.5\"\n[guess]\nx = \"-0.47*cos(1.5*t)\"\n[continuation]\nparameter = \"F\"\nto = 1\npoints = "
+      "32\n"));
+  const std::vector<double> folds = values(found.points, PointKind::fold);
+  ASSERT_GE(folds.size(), 1u) << found.branches[0].message;
+  EXPECT_NEAR(folds[0], 0.63523985916457, 1e-9);
+}
+
+}  // namespace
+}  // namespace extremal::laws
