@@ -26,11 +26,11 @@ TEST(BranchEvents, TwoMultipliersThatPassMinusOneAtOnce) {
 /// it they would be the same ones, one period of the drive later.
 TEST(BranchEvents, ABranchThatComesBackToHalfItsPeriod) {
   const Study study = study_of(
-      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { w = 1.985 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { w = 1.5 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
       "(x^2 "
       "+ y^2)/2 - 0.5*x^2*y\"\nforce = { x = \"-0.05*x'\", y = \"-0.05*y' + 0.3*cos(w*t)\" }\n[boundary]\n"
-      "periodic = true\nduration = \"2*pi/w\"\n[guess]\nx = \"0\"\ny = \"-0.1*cos(w*t)\"\n[continuation]\n"
-      "parameter = \"w\"\nto = 2.1\npoints = 100\nswitch = true\n");
+      "periodic = true\nduration = \"2*pi/w\"\n[guess]\nx = \"0\"\ny = \"-0.2*cos(w*t)\"\n[continuation]\n"
+      "parameter = \"w\"\nto = 2.6\npoints = 100\nswitch = true\n");
   Diagram diagram(study.continuation->family,
                   {.solve = study.options, .points = 100, .other_branches = true});
   std::vector<BranchPoint> points;

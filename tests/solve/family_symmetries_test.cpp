@@ -76,7 +76,7 @@ TEST(FamilySymmetries, TheEquatorOfASphere) {
       "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\n"
       "constraints = [\"x^2 + y^2 + z^2/a^2 = 1\"]\n%[boundary]\nperiodic = true\nduration = 1\n"
       "[guess]\nx = \"cos(2*pi*t)\"\ny = \"sin(2*pi*t)\"\nz = \"0\"\n",
-      1, 0.4);
+      1, 0.45);
   expect_index(
       points,
       [](double c) {
