@@ -46,7 +46,11 @@ int index_along_x(double a) {
 }
 
 TEST(FamilySymmetries, ATranslationOfTheFirstMember) {
-  for (const auto& [from, to] : {std::pair(0.0, 12.0), {0.0, -3.0}, {-3.0, 12.0}, {12.0, 0.0}}) {
+  struct Way {
+    double from, to;
+  };
+  for (const Way& way : {Way{0, 12}, {0, -3}, {-3, 12}, {12, 0}}) {
+    const double from = way.from, to = way.to;
     const std::vector<BranchPoint> points = family(along_x + "y = \"0\"\n", from, to);
     EXPECT_EQ(points.front().parameter, from);
     EXPECT_EQ(points.back().parameter, to);
