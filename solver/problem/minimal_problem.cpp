@@ -12,7 +12,7 @@
 #include "problem/limits.hpp"
 #include "problem/manifold.hpp"
 #include "problem/point_range.hpp"
-#include "system/minimal_lagrangian.hpp"
+#include "system/minimal_copies.hpp"
 
 namespace extremal {
 
@@ -25,8 +25,11 @@ using Eigen::VectorXd;
 /// A problem put into the coordinates of a chart.
 class InChart {
  public:
-  InChart(const Problem& problem, std::shared_ptr<const MinimalLagrangian> lagrangian)
-      : problem_(problem), lagrangian_(std::move(lagrangian)), chart_(lagrangian_->chart()) {
+  InChart(const Problem& problem, MinimalSystem system)
+      : problem_(problem),
+        lagrangian_(std::move(system.lagrangian)),
+        copies_(std::move(system.copies)),
+        chart_(lagrangian_->chart()) {
     const int n = chart_.coordinates;
     basis_ = Eigen::Map<const RowMajor>(chart_.basis.data(), n, n);
     const RowMajor inverse = basis_.inverse();
@@ -35,12 +38,13 @@ class InChart {
   }
 
   std::shared_ptr<const MinimalProblem> run(double most_stretch) {
-    if (problem_.extension || problem_.inequalities || problem_.infinite || problem_.copies ||
-        problem_.phase || problem_.duration.where)
+    if (problem_.extension || problem_.inequalities || problem_.infinite || problem_.phase ||
+        problem_.duration.where)
       return nullptr;
     MinimalProblem minimal;
     Problem& u = minimal.problem;
     u.lagrangian = lagrangian_;
+    u.copies = copies_;
     u.periodic = problem_.periodic;
     u.duration = problem_.duration;
     if (!put_ends(u) || !put_guess(minimal) || !(minimal.stretch <= most_stretch)) return nullptr;
@@ -50,7 +54,7 @@ class InChart {
     } catch (const std::exception&) {
       return nullptr;
     }
-    if (u.symmetries.size() != problem_.symmetries.size()) return nullptr;
+    if (symmetries_of(u) != symmetries_of(problem_)) return nullptr;
     return finished(std::move(minimal));
   }
 
@@ -59,6 +63,8 @@ class InChart {
     Problem& u = minimal.problem;
     u = other.problem;
     u.lagrangian = lagrangian_;
+    u.copies = copies_;
+    u.pair = nullptr;
     u.boundary = {};
     u.duration = problem_.duration;
     if (!put_ends(u)) return nullptr;
@@ -72,6 +78,10 @@ class InChart {
   }
 
  private:
+  static std::size_t symmetries_of(const Problem& problem) {
+    return (problem.pair ? *problem.pair : problem).symmetries.size();
+  }
+
   std::shared_ptr<const MinimalProblem> finished(MinimalProblem minimal) const {
     minimal.lagrangian = lagrangian_;
     minimal.whole = problem_.lagrangian;
@@ -309,6 +319,7 @@ class InChart {
 
   const Problem& problem_;
   std::shared_ptr<const MinimalLagrangian> lagrangian_;
+  std::shared_ptr<const Lagrangian> copies_;
   const Chart& chart_;
   MatrixXd basis_;
   std::vector<double> inverse_;              ///< of the basis, row-major
@@ -354,16 +365,15 @@ bool describes(const MinimalProblem& minimal, const Problem& problem) {
          minimal.guess.tau == problem.guess.tau && minimal.guess.q == problem.guess.q;
 }
 
-std::shared_ptr<const MinimalProblem> minimal_problem(const Problem& problem,
-                                                      std::shared_ptr<const MinimalLagrangian> lagrangian,
+std::shared_ptr<const MinimalProblem> minimal_problem(const Problem& problem, MinimalSystem system,
                                                       double most_stretch) {
-  return InChart(problem, std::move(lagrangian)).run(most_stretch);
+  return InChart(problem, std::move(system)).run(most_stretch);
 }
 
-std::shared_ptr<const MinimalProblem> minimal_problem_like(
-    const MinimalProblem& other, Problem problem, std::shared_ptr<const MinimalLagrangian> lagrangian) {
+std::shared_ptr<const MinimalProblem> minimal_problem_like(const MinimalProblem& other, Problem problem,
+                                                           MinimalSystem system) {
   problem.guess = other.guess;
-  return InChart(problem, std::move(lagrangian)).run_like(other);
+  return InChart(problem, std::move(system)).run_like(other);
 }
 
 }  // namespace extremal

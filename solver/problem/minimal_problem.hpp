@@ -11,6 +11,7 @@
 namespace extremal {
 
 class MinimalLagrangian;
+struct MinimalSystem;
 
 /// The same extremals near the guess, as long as they stay in the chart.
 struct MinimalProblem {
@@ -42,12 +43,12 @@ bool describes(const MinimalProblem& minimal, const Problem& problem);
 /// Nothing where the ends of a problem are not ends of u, where it asks for what charts do not have, or where
 /// |∂q/∂u| along the guess exceeds `most_stretch`.
 std::shared_ptr<const MinimalProblem> minimal_problem(const Problem& problem,
-                                                      std::shared_ptr<const MinimalLagrangian> lagrangian,
+                                                      MinimalSystem system,
                                                       double most_stretch);
 
-/// The same with another Lagrangian, other ends and another duration, as where a parameter varies, near the
+/// The same with another system, other ends and another duration, as where a parameter varies, near the
 /// guess of the other. `problem` needs no guess.
 std::shared_ptr<const MinimalProblem> minimal_problem_like(
-    const MinimalProblem& other, Problem problem, std::shared_ptr<const MinimalLagrangian> lagrangian);
+    const MinimalProblem& other, Problem problem, MinimalSystem system);
 
 }  // namespace extremal

@@ -251,7 +251,6 @@ Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 
 Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
-  if (problem.pair) return one_of_copies(problem, solve(*problem.pair, options), options);
   std::vector<Iteration> history;
   history.reserve(32);
   SolveOptions recording = options;
@@ -263,7 +262,9 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   if (problem.manifold && !problem.inequalities) {
     const bool only = problem.manifold->parts().only_minimal;
     const auto solve_there = [&w, only](const Problem& there, const SolveOptions& how) {
-      return there.initial || only ? solve_once(there, how, w) : solve_near_guess(there, how, w);
+      const Problem& solved = there.pair ? *there.pair : there;
+      Solution found = there.initial || only ? solve_once(solved, how, w) : solve_near_guess(solved, how, w);
+      return there.pair ? one_of_copies(there, std::move(found), how) : found;
     };
     if (std::optional<Solution> solution = solve_minimal(problem, recording, solve_there)) {
       solution->history = std::move(history);
@@ -271,6 +272,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     }
     history.clear();
   }
+  if (problem.pair) return one_of_copies(problem, solve(*problem.pair, options), options);
   if (problem.manifold)
     if (auto made = as_made(problem.lagrangian); made != problem.lagrangian) {
       Problem whole = problem;

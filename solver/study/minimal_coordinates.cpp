@@ -15,7 +15,7 @@
 #include "study/modelling.hpp"
 #include "study/polar_frames.hpp"
 #include "study/regularity.hpp"
-#include "system/minimal_lagrangian.hpp"
+#include "system/minimal_copies.hpp"
 
 namespace extremal {
 namespace {
@@ -346,10 +346,11 @@ class ChartChoice {
 
 }  // namespace
 
-void put_minimal_coordinates(const SystemTable& table, bool only, Problem& problem) {
+void put_minimal_coordinates(const SystemTable& table, const System& system, bool only, Problem& problem) {
   if (!problem.manifold || (!problem.initial && !problem.guess.given())) return;
-  const ConstrainedGraph graph = make_constrained(table);
-  if (has_kinks(graph.graph, graph.lagrangian)) return;
+  const ConstrainedGraph graph = make_constrained(table, system);
+  const auto kinked = [&](NodeId f) { return has_kinks(graph.graph, f); };
+  if (kinked(graph.lagrangian) || std::ranges::any_of(graph.forces, kinked)) return;
   const PathPoints path = points_of(problem);
   std::vector<ChosenChart> charts;
   const auto choose = [&](const Frame& frame) {
@@ -367,8 +368,7 @@ void put_minimal_coordinates(const SystemTable& table, bool only, Problem& probl
   std::shared_ptr<const MinimalProblem> best;
   std::size_t most = 0;
   const auto look = [&](const ChosenChart& chosen, double stretch) {
-    auto minimal =
-        minimal_problem(problem, std::make_shared<const MinimalLagrangian>(graph, chosen.chart), stretch);
+    auto minimal = minimal_problem(problem, minimal_system(graph, chosen.chart), stretch);
     if (!minimal) return;
     const std::size_t found = families ? continuous_symmetries(minimal->problem).size() : 0;
     if (best && found <= most) return;

@@ -10,7 +10,7 @@
 #include "study/limits.hpp"
 #include "study/polar_frames.hpp"
 #include "study/study.hpp"
-#include "system/minimal_lagrangian.hpp"
+#include "system/minimal_copies.hpp"
 
 namespace extremal {
 namespace {
@@ -57,8 +57,7 @@ class MinimalFamily {
     if (!bare) return std::nullopt;
     Chart chart = first_->lagrangian->chart();
     keep_invariants(*bare->problem.manifold, chart);
-    auto lagrangian = std::make_shared<const MinimalLagrangian>(bare->graph, std::move(chart));
-    auto minimal = minimal_problem_like(*first_, bare->problem, std::move(lagrangian));
+    auto minimal = minimal_problem_like(*first_, bare->problem, minimal_system(bare->graph, chart));
     if (!minimal) return std::nullopt;
     return Member{std::move(bare->problem), std::move(minimal)};
   }

@@ -192,7 +192,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
     throw SceneError(scene.boundary.at, e.what());
   }
   if (!suited && !only_near_guess(scene, purpose)) refuse_partly_free(scene, problem);
-  if (!parts.extended && !problem.copies) put_minimal_coordinates(scene.system, !suited, problem);
+  if (!parts.extended) put_minimal_coordinates(scene.system, system, !suited, problem);
   if (!suited && !problem.manifold->parts().minimal) refuse_partly_free(scene, problem);
   if (!problem.manifold || !has_regular_chart(problem)) {
     problem.lagrangian = as_made(std::move(problem.lagrangian));

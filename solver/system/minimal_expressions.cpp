@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "system/expression_matrix.hpp"
+#include "system/in_all_coordinates.hpp"
 
 namespace extremal {
 
@@ -16,103 +16,6 @@ using expression_matrix::Factors;
 using expression_matrix::Matrix;
 using expression_matrix::negative;
 using expression_matrix::Row;
-
-/// L and g in y, and their derivatives. Inputs of the graph are y, y', t, then μ, then ν.
-struct InAllCoordinates {
-  InAllCoordinates(const ConstrainedGraph& system, const Chart& chart)
-      : algebra(graph), n(chart.coordinates), d(chart.free), m(n - d) {
-    lagrangian = algebra.import(system.graph, system.lagrangian, inputs_of_system(system, chart, -1));
-    for (const int k : chart.order) {
-      const std::vector<Scaled> inputs = inputs_of_system(system, chart, k);
-      g.push_back(algebra.import(system.graph, system.constraints[k], inputs));
-      g_y.push_back(slopes(g.back(), 0, n));
-      g_t.push_back(slopes(g.back(), 2 * n, 1)[0]);
-      Scaled rate = g_t.back();
-      for (int b = 0; b < n; ++b) add_product(algebra, rate, g_y.back()[b], algebra.input(n + b));
-      rates.push_back(rate);
-      rate_y.push_back(slopes(rate, 0, n));
-    }
-    lagrangian_z = slopes(lagrangian, 0, 2 * n);
-    Scaled sum = lagrangian;
-    for (int k = 0; k < m; ++k) {
-      add_product(algebra, sum, algebra.input(2 * n + 1 + k), g[k]);
-      add_product(algebra, sum, algebra.input(2 * n + 1 + m + k), rates[k]);
-    }
-    first = slopes(sum, 0, 2 * n);
-    for (int z = 0; z < 2 * n; ++z) second.push_back(slopes(first[z], 0, z + 1));
-  }
-
-  /// Whether t is read.
-  bool timed() {
-    const auto zero = [](const Scaled& x) { return x.zero(); };
-    return !std::ranges::all_of(g_t, zero) || !slopes(lagrangian, 2 * n, 1)[0].zero();
-  }
-
-  /// What the system reads, as B z and B z'; of a constraint that does not depend on an angle, at the angle
-  /// 0.
-  std::vector<Scaled> inputs_of_system(const ConstrainedGraph& system, const Chart& chart, int constraint) {
-    std::vector<Scaled> z;
-    for (int b = 0; b < 2 * n; ++b) z.push_back(algebra.input(b));
-    for (const Polar& p : chart.polar) put_polar(p, std::ranges::count(p.invariants, constraint) > 0, z);
-    std::vector<Scaled> inputs;
-    for (const int from : {0, n})
-      for (int a = 0; a < n; ++a) {
-        Scaled sum;
-        for (int b = 0; b < n; ++b)
-          if (const double factor = chart.basis[a * n + b]; factor != 0)
-            add_product(algebra, sum, algebra.constant(factor), z[from + b]);
-        inputs.push_back(sum);
-      }
-    inputs.push_back(algebra.input(2 * n));
-    for (const double parameter : system.parameters) inputs.push_back(algebra.constant(parameter));
-    return inputs;
-  }
-
-  /// (x + r cos φ, y + r sin φ) and its rate.
-  void put_polar(const Polar& p, bool at_zero, std::vector<Scaled>& z) {
-    const Scaled r = algebra.input(p.radius), dr = algebra.input(n + p.radius);
-    const Scaled turn = algebra.multiply(algebra.constant(1 / p.unit), algebra.input(n + p.angle));
-    const Scaled angle = algebra.multiply(algebra.constant(1 / p.unit), algebra.input(p.angle));
-    const Scaled c = at_zero ? algebra.constant(1) : algebra.unary(Op::cos, angle);
-    const Scaled s = at_zero ? Scaled{} : algebra.unary(Op::sin, angle);
-    const Scaled along = algebra.multiply(r, turn);
-    const auto placed = [&](double centre, Scaled direction) {
-      Scaled sum = algebra.constant(centre);
-      add_product(algebra, sum, r, direction);
-      return sum;
-    };
-    const auto moved = [&](Scaled outward, Scaled across) {
-      Scaled sum;
-      add_product(algebra, sum, dr, outward);
-      add_product(algebra, sum, along, across);
-      return sum;
-    };
-    z[p.angle] = placed(p.x, c);
-    z[p.radius] = placed(p.y, s);
-    z[n + p.angle] = moved(c, -s);
-    z[n + p.radius] = moved(s, c);
-  }
-
-  /// ∂f by `count` inputs from `from` on.
-  Row slopes(Scaled f, int from, int count) {
-    Row result(count);
-    if (f.zero()) return result;
-    std::vector<bool> wanted(from + count);
-    std::fill_n(wanted.begin() + from, count, true);
-    for (const Partial& p : differentiate(algebra, f, wanted)) result[p.input - from] = p.value;
-    return result;
-  }
-
-  Graph graph;
-  Algebra algebra;
-  const int n, d, m;
-  Scaled lagrangian;
-  Row g, g_t, rates;   ///< rates: g'
-  Matrix g_y, rate_y;  ///< m × n
-  Row lagrangian_z;    ///< by (y, y')
-  Row first;           ///< of F by (y, y')
-  Matrix second;       ///< lower triangle
-};
 
 /// A constraint, at most quadratic in one coordinate of w, that gives this one after others before it.
 struct Quadratic {
@@ -193,12 +96,14 @@ class Reduced {
     find_start();
     result_.steps = factors_->solve(here(s_.g));
     find_rates();
-    find_multipliers();
+    find_multipliers(false);
     result_.value = here(s_.lagrangian);
     for (int j = 0; j < 2 * d_; ++j)
       if (const Scaled f = here(s_.first[state(j)]); !f.zero())
         result_.gradient.push_back({static_cast<std::uint32_t>(j), f});
+    z_ = directions();
     find_hessian();
+    if (!s_.force.empty()) find_copies();
     settle();
     return std::move(result_);
   }
@@ -276,16 +181,19 @@ class Reduced {
       for (int j = 0; j < d_; ++j) result_.slopes.push_back(by_u_[j][l]);
   }
 
-  void find_multipliers() {
+  /// μ and ν; of a motion `forced` they balance the forces too.
+  void find_multipliers(bool forced) {
     Row by_rate, by_value;
     for (int l = 0; l < m_; ++l) by_rate.push_back(here(s_.lagrangian_z[n_ + d_ + l]));
     const Row nu = negative(factors_->solve_transposed(std::move(by_rate)));
     for (int l = 0; l < m_; ++l) {
       Scaled sum = here(s_.lagrangian_z[d_ + l]);
+      if (forced) sum = algebra_.add(sum, here(s_.force[d_ + l]));
       for (int k = 0; k < m_; ++k) add_product(algebra_, sum, here(s_.rate_y[k][d_ + l]), nu[k]);
       by_value.push_back(sum);
     }
     const Row mu = negative(factors_->solve_transposed(std::move(by_value)));
+    inputs_.resize(2 * n_ + 1);
     inputs_.insert(inputs_.end(), mu.begin(), mu.end());
     inputs_.insert(inputs_.end(), nu.begin(), nu.end());
   }
@@ -310,22 +218,75 @@ class Reduced {
     return result;
   }
 
-  void find_hessian() {
-    const Matrix z = directions();
-    Matrix f(2 * n_, Row(2 * n_));
+  /// Zᵀ ∂²F Z; both triangles.
+  Matrix second_derivatives() {
+    Matrix f(2 * n_, Row(2 * n_)), result(2 * d_, Row(2 * d_));
     for (int a = 0; a < 2 * n_; ++a)
       for (int b = 0; b <= a; ++b) f[a][b] = f[b][a] = here(s_.second[a][b]);
     for (int column = 0; column < 2 * d_; ++column) {
-      Row along(2 * n_);
-      for (int a = 0; a < 2 * n_; ++a)
-        for (int b = 0; b < 2 * n_; ++b) add_product(algebra_, along[a], f[a][b], z[column][b]);
-      for (int row = column; row < 2 * d_; ++row) {
-        Scaled sum;
-        for (int a = 0; a < 2 * n_; ++a) add_product(algebra_, sum, z[row][a], along[a]);
-        if (!sum.zero()) result_.hessian.push_back({row, column, sum});
+      const Row along = product(f, z_[column]);
+      for (int row = column; row < 2 * d_; ++row)
+        result[row][column] = result[column][row] = product(z_[row], along);
+    }
+    return result;
+  }
+
+  void find_hessian() {
+    const Matrix second = second_derivatives();
+    for (int row = 0; row < 2 * d_; ++row)
+      for (int column = 0; column <= row; ++column)
+        if (const Scaled value = second[row][column]; !value.zero())
+          result_.hessian.push_back({row, column, value});
+  }
+
+  /// ∂Q by (u, u'), but for what multipliers contribute; rows of u' vanish.
+  Matrix slopes_of_forces() {
+    Matrix f, result(2 * d_, Row(2 * d_));
+    for (const Row& row : s_.force_z) f.push_back(here(row));
+    for (int column = 0; column < 2 * d_; ++column) {
+      const Row along = product(f, z_[column]);
+      for (int row = 0; row < d_; ++row) {
+        const Row displaced(z_[row].begin(), z_[row].begin() + n_);
+        result[row][column] = product(displaced, along);
       }
     }
-    std::ranges::sort(result_.hessian, {}, [](const auto& e) { return std::pair(e.row, e.column); });
+    return result;
+  }
+
+  /// Of two copies: with ∂/∂q₁ = ½ ∂/∂u + ∂/∂λ, ∂/∂q₂ = ½ ∂/∂u − ∂/∂λ.
+  void find_copies() {
+    find_multipliers(true);
+    for (int j = 0; j < 2 * d_; ++j) {
+      const Scaled value = here(s_.first[state(j)]);
+      result_.motion.push_back(j < d_ ? algebra_.add(value, here(s_.force[j])) : value);
+    }
+    const Matrix second = second_derivatives(), forces = slopes_of_forces();
+    for (int row = 0; row < 4 * d_; ++row)
+      for (int column = 0; column <= row; ++column) {
+        const int a = in_copy(row), b = in_copy(column);
+        const double sign_a = sign_of_copy(row), sign_b = sign_of_copy(column);
+        Scaled value = sign_a == sign_b ? times(sign_a, second[a][b]) : Scaled{};
+        value = algebra_.add(value, times(sign_a / 2, forces[a][b]));
+        value = algebra_.add(value, times(sign_b / 2, forces[b][a]));
+        if (!value.zero()) result_.copies_hessian.push_back({row, column, value});
+      }
+    result_.autonomous_forces = !s_.timed_forces();
+  }
+
+  /// Index in (u, u') of the index in (q₁, q₂, q₁', q₂').
+  int in_copy(int z) const { return z / (2 * d_) * d_ + z % d_; }
+  double sign_of_copy(int z) const { return z / d_ % 2 == 0 ? 1 : -1; }
+  static Scaled times(double factor, Scaled a) { return {factor * a.factor, a.node}; }
+
+  Scaled product(const Row& a, const Row& b) {
+    Scaled sum;
+    for (std::size_t k = 0; k < a.size(); ++k) add_product(algebra_, sum, a[k], b[k]);
+    return sum;
+  }
+  Row product(const Matrix& a, const Row& b) {
+    Row result;
+    for (const Row& row : a) result.push_back(product(row, b));
+    return result;
   }
 
   /// Of each expression only a sign is left beside its node.
@@ -336,8 +297,10 @@ class Reduced {
     };
     settle_one(result_.value);
     for (Partial& p : result_.gradient) settle_one(p.value);
-    for (auto& p : result_.hessian) settle_one(p.value);
-    for (Row* row : {&result_.start, &result_.steps, &result_.pivots, &result_.rates, &result_.slopes})
+    for (auto* entries : {&result_.hessian, &result_.copies_hessian})
+      for (auto& p : *entries) settle_one(p.value);
+    for (Row* row : {&result_.start, &result_.steps, &result_.pivots, &result_.rates, &result_.slopes,
+                     &result_.motion})
       for (Scaled& value : *row) settle_one(value);
     Kernel& kernel = result_.kernel;
     const auto put = [&](Variable kind, int count) {
@@ -359,6 +322,7 @@ class Reduced {
   std::vector<Scaled> inputs_;  ///< of the system's graph, as they are known
   std::optional<Factors> factors_;
   Matrix by_u_;  ///< ∂w/∂u, a row for each of u
+  Matrix z_;     ///< Zᵀ
 };
 
 }  // namespace

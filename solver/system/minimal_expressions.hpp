@@ -13,6 +13,10 @@
 ///   ν = −A⁻ᵀ L_w',  μ = −A⁻ᵀ (L_w + (g')_wᵀ ν),   F = L + μ·g + ν·g',  g' = g_y y' + g_t,
 /// the derivatives of L̂ are those of F, which has none by w and w':
 ///   L̂_u = F_u,  L̂_u' = F_u',  ∂²L̂ = Zᵀ (∂²F by (y, y')) Z  at fixed μ, ν,   Z = ∂(y, y')/∂(u, u').
+///
+/// Forces have the covector K(y, y', t) in y, and Q = (∂y/∂u)ᵀ K in u. With μ = −A⁻ᵀ (L_w + K_w + (g')_wᵀ ν),
+/// which balances them too,
+///   L̂_u + Q = F_u + K_u,   ∂(L̂_u + Q, L̂_u') = Zᵀ (∂²F + (∂K; 0)) Z  at fixed μ, ν.
 
 namespace extremal {
 
@@ -32,6 +36,10 @@ struct MinimalExpressions {
   std::vector<Scaled> rates;   ///< w'
   std::vector<Scaled> slopes;  ///< ∂w/∂u, m × (n − m)
   bool autonomous = true;
+  /// With forces, else empty:
+  std::vector<Scaled> motion;          ///< L̂_u + Q, L̂_u'
+  std::vector<Second> copies_hessian;  ///< by (q₁, q₂, q₁', q₂') of two copies of u where these agree; likewise
+  bool autonomous_forces = true;
 };
 
 MinimalExpressions minimal_expressions(const ConstrainedGraph& system, const Chart& chart);

@@ -17,6 +17,8 @@ constexpr int most_steps_of_w = 24;
 /// A step of this part of w is the last: it squares the error.
 constexpr double last_step_of_w = 1e-9;
 
+}  // namespace
+
 Tape tape_of(const Kernel& kernel, const std::vector<Scaled>& roots) {
   std::vector<int> rows(roots.size());
   for (std::size_t k = 0; k < roots.size(); ++k) rows[k] = static_cast<int>(k);
@@ -24,10 +26,7 @@ Tape tape_of(const Kernel& kernel, const std::vector<Scaled>& roots) {
   return Tape(all, static_cast<int>(roots.size()), {});
 }
 
-}  // namespace
-
-MinimalLagrangian::MinimalLagrangian(const ConstrainedGraph& system, Chart chart) : chart_(std::move(chart)) {
-  const MinimalExpressions made = minimal_expressions(system, chart_);
+MinimalLagrangian::MinimalLagrangian(const MinimalExpressions& made, Chart chart) : chart_(std::move(chart)) {
   structure_.coordinates = chart_.free;
   structure_.autonomous = structure_.harmonic = made.autonomous;
   std::vector<Scaled> roots{made.value};
@@ -83,9 +82,9 @@ void MinimalLagrangian::find(const Points& points, double* y, double* moves, Scr
   }
 }
 
-/// The rows y, and after them as many others; w is found.
-double* MinimalLagrangian::dependent(const Points& points, std::size_t further, Scratch& scratch) const {
-  std::size_t of_tapes = 0;
+double* MinimalLagrangian::dependent(const Points& points, std::size_t doubles, std::size_t further,
+                                     Scratch& scratch) const {
+  std::size_t of_tapes = doubles;
   for (const Tape* tape : {&orders_[0], &orders_[1], &orders_[2], &start_, &moves_, &rates_, &slopes_})
     of_tapes = std::max(of_tapes, tape->doubles(points.count));
   const std::size_t n = chart_.coordinates, m = constraints();
@@ -97,7 +96,7 @@ double* MinimalLagrangian::dependent(const Points& points, std::size_t further, 
 }
 
 void MinimalLagrangian::evaluate(const Points& points, Order order, double* out, Scratch& scratch) const {
-  const double* y = dependent(points, 0, scratch);
+  const double* y = dependent(points, 0, 0, scratch);
   orders_[static_cast<int>(order)].play({points.count, points.stride, y, points.v, points.t}, out, scratch);
 }
 
@@ -121,7 +120,7 @@ MinimalLagrangian::Lifted MinimalLagrangian::lift(std::span<const double> u, std
   }
   Scratch scratch;
   const Points all{static_cast<int>(stride), stride, rows.data(), rates, times};
-  double* const y = dependent(all, static_cast<std::size_t>(m) * d, scratch);
+  double* const y = dependent(all, 0, static_cast<std::size_t>(m) * d, scratch);
   double* const further = y + n * stride;
   const Points at{all.count, stride, y, rates, times};
   Lifted result;

@@ -8,11 +8,14 @@
 
 namespace extremal {
 
+/// What these expressions are, a row of output for each.
+Tape tape_of(const Kernel& kernel, const std::vector<Scaled>& roots);
+
 /// L̂(u, u', t) of minimal_expressions.hpp. w is found at each point by Newton's method from the same start:
 /// nothing is kept between evaluations. Not a number beyond the chart, where a pivot of A vanishes.
 class MinimalLagrangian final : public Lagrangian {
  public:
-  MinimalLagrangian(const ConstrainedGraph& system, Chart chart);
+  MinimalLagrangian(const MinimalExpressions& expressions, Chart chart);
 
   const Chart& chart() const { return chart_; }
   int constraints() const { return chart_.coordinates - chart_.free; }
@@ -29,8 +32,11 @@ class MinimalLagrangian final : public Lagrangian {
   /// u and u' of the points, n − m each, or no u'; and their times.
   Lifted lift(std::span<const double> u, std::span<const double> du, std::span<const double> t) const;
 
+  /// The rows y, with w found for the first rows of the points, and `further` rows. They are in scratch memory
+  /// beyond so many doubles, and beyond what the tapes here take.
+  double* dependent(const Points& points, std::size_t doubles, std::size_t further, Scratch& scratch) const;
+
  private:
-  double* dependent(const Points& points, std::size_t further, Scratch& scratch) const;
   void find(const Points& points, double* y, double* moves, Scratch& scratch) const;
 
   Chart chart_;
