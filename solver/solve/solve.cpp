@@ -10,6 +10,7 @@
 
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
+#include "problem/minimal_problem.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
@@ -29,6 +30,7 @@
 #include "solve/search/several.hpp"
 #include "solve/singular_solve.hpp"
 #include "system/deferred_lagrangian.hpp"
+#include "system/minimal_lagrangian.hpp"
 
 namespace extremal {
 
@@ -231,6 +233,13 @@ Solution one_of_copies(const Problem& problem, Solution pair, const SolveOptions
   return solution;
 }
 
+/// Whether minimal coordinates are those of a search too: angles have no limit.
+bool searched_in_chart(const Problem& problem) {
+  const Manifold::Parts& parts = problem.manifold->parts();
+  return problem.initial || parts.only_minimal ||
+         (parts.minimal && !parts.minimal->lagrangian->chart().polar.empty());
+}
+
 /// On the manifold that the constants of a solution have.
 void on_manifold_found(const Problem& problem, Solution& solution) {
   if (!solution.extension || !solution.extension->manifold) return move_onto_manifold(problem, solution);
@@ -260,10 +269,10 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   };
   Workspace& w = memory_->workspace;
   if (problem.manifold && !problem.inequalities) {
-    const bool only = problem.manifold->parts().only_minimal;
-    const auto solve_there = [&w, only](const Problem& there, const SolveOptions& how) {
+    const bool searched = searched_in_chart(problem);
+    const auto solve_there = [&w, searched](const Problem& there, const SolveOptions& how) {
       const Problem& solved = there.pair ? *there.pair : there;
-      Solution found = there.initial || only ? solve_once(solved, how, w) : solve_near_guess(solved, how, w);
+      Solution found = searched ? solve_once(solved, how, w) : solve_near_guess(solved, how, w);
       return there.pair ? one_of_copies(there, std::move(found), how) : found;
     };
     if (std::optional<Solution> solution = solve_minimal(problem, recording, solve_there)) {
