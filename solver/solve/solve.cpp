@@ -282,12 +282,11 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     history.clear();
   }
   if (problem.pair) return one_of_copies(problem, solve(*problem.pair, options), options);
-  if (problem.manifold)
-    if (auto made = as_made(problem.lagrangian); made != problem.lagrangian) {
-      Problem whole = problem;
-      whole.lagrangian = std::move(made);
-      return solve(whole, options);
-    }
+  if (auto made = as_made(problem.lagrangian); made != problem.lagrangian) {
+    Problem whole = problem;
+    whole.lagrangian = std::move(made);
+    return solve(whole, options);
+  }
   Solution solution = problem.inequalities ? solve_with_inequalities(problem, recording, arc_solve(w))
                       : problem.extension  ? solve_bordered(problem, recording)
                       : problem.phase      ? solve_phase_space(problem, recording, w)

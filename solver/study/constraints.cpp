@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
+#include <utility>
 
 #include "linear/dense.hpp"
 #include "problem/manifold.hpp"
@@ -66,6 +69,37 @@ void put_constraints(const SystemTable& table, const System& system, const Matri
   problem.manifold = std::move(constrained.manifold);
 }
 
+/// What a deferred Lagrangian is taken to be.
+bool may_be_deferred(const ConstrainedGraph& graph, const System& system, const Manifold& manifold) {
+  const auto kinked = [&](NodeId f) { return has_kinks(graph.graph, f); };
+  return graph.parameters.empty() && manifold.autonomous() &&
+         (!system.copies || system.copies->structure().autonomous) && !kinked(graph.lagrangian) &&
+         std::ranges::none_of(graph.forces, kinked);
+}
+
+/// L̃, and the Lagrangian of two copies that it has with the forces.
+class ProjectedWithForces {
+ public:
+  ProjectedWithForces(ConstrainedGraph graph, NormalMotion normal)
+      : graph_(std::move(graph)), normal_(std::move(normal)) {}
+
+  std::shared_ptr<const Lagrangian> lagrangian() { return make_lagrangian(projected_once()); }
+  std::shared_ptr<const Lagrangian> copies() {
+    return make_lagrangian(two_copies(projected_once(), projected_power(graph_, normal_)));
+  }
+
+ private:
+  const LagrangianGraph& projected_once() {
+    std::call_once(once_, [this] { projected_ = projected(graph_, normal_); });
+    return projected_;
+  }
+
+  ConstrainedGraph graph_;
+  NormalMotion normal_;
+  std::once_flag once_;
+  LagrangianGraph projected_;
+};
+
 void check_counts(const SystemTable& table, const System& system) {
   const std::size_t n = system.names.size(), m = table.constraints.size();
   if (m >= n)
@@ -105,18 +139,20 @@ ConstrainedSystem constrained_system(const ConstrainedGraph& graph, const System
   ConstrainedSystem result;
   result.manifold = constrained_values(graph, system, metric, rate);
   if (graph.constraints.size() >= system.names.size()) return result;
-  if (!graph.forces.empty()) {
-    const LagrangianGraph lagrangian = projected(graph, normal);
-    result.lagrangian = make_lagrangian(lagrangian);
-    result.copies = make_lagrangian(two_copies(lagrangian, projected_power(graph, normal)));
+  const auto later = [n = graph.coordinates](int copies, DeferredLagrangian::Make make) {
+    return std::make_shared<const DeferredLagrangian>(copies * n, std::move(make));
+  };
+  deferred = deferred && may_be_deferred(graph, system, *result.manifold);
+  if (graph.forces.empty()) {
+    const auto make = [graph, normal] { return make_lagrangian(projected(graph, normal)); };
+    result.lagrangian = deferred ? later(1, make) : make();
     return result;
   }
-  if (deferred && graph.parameters.empty() && result.manifold->autonomous() &&
-      !has_kinks(graph.graph, graph.lagrangian))
-    result.lagrangian = std::make_shared<const DeferredLagrangian>(
-        graph.coordinates, [graph, normal] { return make_lagrangian(projected(graph, normal)); });
-  else
-    result.lagrangian = make_lagrangian(projected(graph, normal));
+  const auto made = std::make_shared<ProjectedWithForces>(graph, normal);
+  const auto make = [made] { return made->lagrangian(); };
+  const auto make_copies = [made] { return made->copies(); };
+  result.lagrangian = deferred ? later(1, make) : make();
+  result.copies = deferred ? later(2, make_copies) : make_copies();
   return result;
 }
 

@@ -196,6 +196,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   if (!suited && !problem.manifold->parts().minimal) refuse_partly_free(scene, problem);
   if (!problem.manifold || !has_regular_chart(problem)) {
     problem.lagrangian = as_made(std::move(problem.lagrangian));
+    problem.copies = as_made(std::move(problem.copies));
     check_regular(problem, scene.system);
     check_guess_finite(problem, scene.guess.at, legendre);
   }
