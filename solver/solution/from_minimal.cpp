@@ -114,7 +114,7 @@ bool meets(const BoundaryRelation& relation, const Trajectory& trajectory) {
 }  // namespace
 
 std::optional<Solution> from_minimal(const Problem& problem, const MinimalProblem& minimal, Solution solution,
-                                     double tolerance) {
+                                     double tolerance, bool accepted) {
   const Trajectory path = std::move(solution.trajectory);
   const Lift lift(minimal, path);
   double between = 0, error = 0;
@@ -124,7 +124,7 @@ std::optional<Solution> from_minimal(const Problem& problem, const MinimalProble
     const double own = solution.error_estimate * (degree == path.degree ? std::max(stretch, 1.0) : 1);
     if (degree == path.degree) {
       solution.error_estimate = own;
-      error = tolerance * range_of(solution.trajectory);
+      error = std::max(tolerance * range_of(solution.trajectory), accepted ? own : 0);
     }
     between = missed(lift, solution.trajectory);
     if (between <= between_nodes * std::max(own, error) || degree == max_degree) break;

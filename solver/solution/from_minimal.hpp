@@ -10,8 +10,9 @@
 namespace extremal {
 
 /// The solution in all coordinates; nodes are on the manifold to roundoff. Nothing where its error exceeds
-/// the tolerance, which is relative to the largest range of a coordinate.
+/// the tolerance, which is relative to the largest range of a coordinate; `accepted`: where more than the error
+/// that it has in minimal coordinates does.
 std::optional<Solution> from_minimal(const Problem& problem, const MinimalProblem& minimal, Solution solution,
-                                     double tolerance);
+                                     double tolerance, bool accepted = false);
 
 }  // namespace extremal

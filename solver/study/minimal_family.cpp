@@ -44,7 +44,7 @@ class MinimalFamily {
     std::optional<Member> there = varies_parameter() ? at(point.parameter) : Member{problem_, first_};
     if (!there) return false;
     std::optional<Solution> solution =
-        from_minimal(there->problem, *there->minimal, std::move(point.solution), tolerance);
+        from_minimal(there->problem, *there->minimal, std::move(point.solution), tolerance, true);
     if (solution) point.solution = *std::move(solution);
     return solution.has_value();
   }
