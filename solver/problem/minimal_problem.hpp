@@ -42,13 +42,12 @@ bool describes(const MinimalProblem& minimal, const Problem& problem);
 
 /// Nothing where the ends of a problem are not ends of u, where it asks for what charts do not have, or where
 /// |∂q/∂u| along the guess exceeds `most_stretch`.
-std::shared_ptr<const MinimalProblem> minimal_problem(const Problem& problem,
-                                                      MinimalSystem system,
+std::shared_ptr<const MinimalProblem> minimal_problem(const Problem& problem, MinimalSystem system,
                                                       double most_stretch);
 
 /// The same with another system, other ends and another duration, as where a parameter varies, near the
 /// guess of the other. `problem` needs no guess.
-std::shared_ptr<const MinimalProblem> minimal_problem_like(
-    const MinimalProblem& other, Problem problem, MinimalSystem system);
+std::shared_ptr<const MinimalProblem> minimal_problem_like(const MinimalProblem& other, Problem problem,
+                                                           MinimalSystem system);
 
 }  // namespace extremal

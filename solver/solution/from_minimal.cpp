@@ -10,6 +10,7 @@
 #include "problem/point_range.hpp"
 #include "solution/element_point.hpp"
 #include "solution/limits.hpp"
+#include "solution/one_copy.hpp"
 
 namespace extremal {
 
@@ -134,7 +135,10 @@ std::optional<Solution> from_minimal(const Problem& problem, const MinimalProble
     return std::nullopt;
   convert(*problem.manifold, minimal, solution.trajectory, 0, solution.momentum_start);
   convert(*problem.manifold, minimal, solution.trajectory, solution.duration(), solution.momentum_end);
-  if (!problem.manifold->autonomous()) solution.energy = solution.energy_drift = std::nullopt;
+  if (!problem.manifold->autonomous()) {
+    solution.energy = solution.energy_drift = std::nullopt;
+    if (solution.work) solution.work = work_under_constraints(*problem.manifold, solution.trajectory);
+  }
   if (solution.floquet) solution.floquet->vectors.clear();
   return solution;
 }

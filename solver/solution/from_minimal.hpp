@@ -10,8 +10,8 @@
 namespace extremal {
 
 /// The solution in all coordinates; nodes are on the manifold to roundoff. Nothing where its error exceeds
-/// the tolerance, which is relative to the largest range of a coordinate; `accepted`: where more than the error
-/// that it has in minimal coordinates does.
+/// the tolerance, which is relative to the largest range of a coordinate; `accepted`: where more than the
+/// error that it has in minimal coordinates does.
 std::optional<Solution> from_minimal(const Problem& problem, const MinimalProblem& minimal, Solution solution,
                                      double tolerance, bool accepted = false);
 

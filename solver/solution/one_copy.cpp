@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "action/rule.hpp"
+#include "problem/manifold.hpp"
 #include "solution/observe.hpp"
 
 namespace extremal {
@@ -28,55 +31,82 @@ Trajectory one_of(Trajectory pair) {
   return pair;
 }
 
-/// L, and the power F·q' of the forces, at a point.
-class Motion {
+/// The power F·q' of the forces at a point.
+class Power {
  public:
-  explicit Motion(const Problem& problem)
-      : problem_(problem), n_(problem.coordinates()), q_(2 * n_), v_(2 * n_) {}
+  Power(const Lagrangian& lagrangian, const Lagrangian& copies)
+      : lagrangian_(lagrangian), copies_(copies), n_(lagrangian.structure().coordinates) {}
 
-  struct Values {
-    double lagrangian = 0, power = 0, energy = 0;
-  };
   /// Λ by q₁ is ∂L/∂q + F.
-  Values at(const Trajectory& trajectory, int element, double tau) {
-    const std::span<double> q(q_.data(), n_), v(v_.data(), n_);
-    trajectory.in_element(element, tau, q, v);
-    std::copy_n(q_.begin(), n_, q_.begin() + static_cast<std::ptrdiff_t>(n_));
-    std::copy_n(v_.begin(), n_, v_.begin() + static_cast<std::ptrdiff_t>(n_));
-    const double t = trajectory.times[element] + tau * trajectory.length(element);
-    const PointValues l = evaluate_at(*problem_.lagrangian, q, v, t, Order::gradient, scratch_);
-    const PointValues both = evaluate_at(*problem_.copies, q_, v_, t, Order::gradient, scratch_);
-    Values values{.lagrangian = l.value, .power = 0, .energy = -l.value};
-    for (std::size_t a = 0; a < n_; ++a) {
-      values.power += (both.dq[a] - l.dq[a]) * v[a];
-      values.energy += l.dv[a] * v[a];
-    }
-    return values;
+  double at(std::span<const double> q, std::span<const double> v, double t) {
+    q_.assign(q.begin(), q.end());
+    v_.assign(v.begin(), v.end());
+    q_.insert(q_.end(), q.begin(), q.end());
+    v_.insert(v_.end(), v.begin(), v.end());
+    const PointValues l = evaluate_at(lagrangian_, q, v, t, Order::gradient, scratch_);
+    const PointValues both = evaluate_at(copies_, q_, v_, t, Order::gradient, scratch_);
+    double power = 0;
+    for (std::size_t a = 0; a < n_; ++a) power += (both.dq[a] - l.dq[a]) * v[a];
+    return power;
   }
 
  private:
-  const Problem& problem_;
-  std::size_t n_;
+  const Lagrangian &lagrangian_, &copies_;
+  const std::size_t n_;
   std::vector<double> q_, v_;
   Scratch scratch_;
 };
 
+/// The integral of f(q, q', t).
+template <class Function>
+double integral(const Trajectory& trajectory, const Rule& rule, const Function& f) {
+  std::vector<double> q(trajectory.coordinates), v(q);
+  double sum = 0;
+  for (int k = 0; k < trajectory.elements(); ++k)
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+      trajectory.in_element(k, rule.nodes[i], q, v);
+      const double t = trajectory.times[k] + rule.nodes[i] * trajectory.length(k);
+      sum += rule.weights[i] * trajectory.length(k) * f(q, v, t);
+    }
+  return sum;
+}
+
+double work(const Trajectory& trajectory, const Rule& rule, const Lagrangian& lagrangian,
+            const Lagrangian& copies) {
+  Power power(lagrangian, copies);
+  return integral(trajectory, rule,
+                  [&](const auto& q, const auto& v, double t) { return power.at(q, v, t); });
+}
+
+double work_under_constraints(const Manifold& manifold, const Trajectory& trajectory, const Rule& rule) {
+  return work(trajectory, rule, manifold.lagrangian(), *manifold.parts().copies);
+}
+
+Rule fine_rule(const Trajectory& trajectory) {
+  return gauss_rule(std::min(trajectory.degree + 4, max_points));
+}
+
+/// p·q' − L at the start.
+double energy(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+  std::vector<double> q(trajectory.coordinates), v(q);
+  trajectory.in_element(0, 0, q, v);
+  Scratch scratch;
+  const PointValues l = evaluate_at(lagrangian, q, v, trajectory.times[0], Order::gradient, scratch);
+  return std::inner_product(v.begin(), v.end(), l.dv.begin(), -l.value);
+}
+
 /// ∫ L dt and ∫ F·q' dt.
 void integrate(const Problem& problem, const Rule& rule, Solution& solution) {
-  Motion motion(problem);
-  double action = 0, work = 0;
-  for (int k = 0; k < solution.trajectory.elements(); ++k)
-    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-      const auto at = motion.at(solution.trajectory, k, rule.nodes[i]);
-      const double weight = rule.weights[i] * solution.trajectory.length(k);
-      action += weight * at.lagrangian;
-      work += weight * at.power;
-    }
-  solution.action = action;
-  solution.work = work;
+  const Lagrangian& lagrangian = *problem.lagrangian;
+  Scratch scratch;
+  solution.action = integral(solution.trajectory, rule, [&](const auto& q, const auto& v, double t) {
+    return evaluate_at(lagrangian, q, v, t, Order::value, scratch).value;
+  });
+  const Manifold* const manifold = problem.manifold.get();
+  solution.work = manifold ? work_under_constraints(*manifold, solution.trajectory, rule)
+                           : work(solution.trajectory, rule, lagrangian, *problem.copies);
   solution.energy = solution.energy_drift = std::nullopt;
-  if (problem.lagrangian->structure().autonomous)
-    solution.energy = motion.at(solution.trajectory, 0, 0).energy;
+  if (lagrangian.structure().autonomous) solution.energy = energy(lagrangian, solution.trajectory);
 }
 
 }  // namespace
@@ -88,6 +118,10 @@ double difference_of_copies(const Trajectory& pair) {
     for (std::size_t a = row; a < row + n; ++a)
       most = std::max(most, std::abs(pair.nodes[a] - pair.nodes[a + n]));
   return most;
+}
+
+double work_under_constraints(const Manifold& manifold, const Trajectory& trajectory) {
+  return work_under_constraints(manifold, trajectory, fine_rule(trajectory));
 }
 
 Solution one_copy(const Problem& problem, Solution pair, const Scheme* scheme) {
@@ -103,9 +137,8 @@ Solution one_copy(const Problem& problem, Solution pair, const Scheme* scheme) {
   solution.momentum_end.resize(std::min(n, solution.momentum_end.size()));
   if (solution.trajectory.times.empty()) return solution;
   solution.trajectory = one_of(std::move(solution.trajectory));
-  const int degree = solution.trajectory.degree;
   const bool exact = !scheme || scheme->quadrature == Quadrature::exact;
-  const Rule rule = exact ? gauss_rule(std::min(degree + 4, max_points)) : rule_of(*scheme, 0);
+  const Rule rule = exact ? fine_rule(solution.trajectory) : rule_of(*scheme, 0);
   integrate(problem, rule, solution);
   if (solution.pinned && solution.converged())
     solution.element_energies =

@@ -11,6 +11,10 @@ namespace extremal {
 /// none. `scheme`: whose quadrature integrates along the elements; null: a fine one.
 Solution one_copy(const Problem& problem, Solution pair, const Scheme* scheme);
 
+/// ∫ F·q' dt along a trajectory on the manifold of constraints. Where these depend on t its velocity has a
+/// part across the manifold, along which forces work too.
+double work_under_constraints(const Manifold& manifold, const Trajectory& trajectory);
+
 /// The largest difference of the two copies along a trajectory of both.
 double difference_of_copies(const Trajectory& pair);
 

@@ -46,12 +46,13 @@ void MinimalCopies::evaluate_agreeing(const Points& one, Order order, double* ou
   tape.play({one.count, one.stride, y, one.v, one.t}, out + one.stride, scratch);
 }
 
-/// Λ is linear in λ: with ζ half the differences, of opposite signs for the copies, and G, H the derivatives at
-/// the mean, the value is G ζ, the gradient G + H ζ.
+/// Λ is linear in λ: with ζ half the differences, of opposite signs for the copies, and G, H the derivatives
+/// at the mean, the value is G ζ, the gradient G + H ζ.
 void MinimalCopies::evaluate_apart(const Points& points, Order order, double* out, Scratch& scratch) const {
   const std::ptrdiff_t stride = points.stride;
   const int d = one_->chart().free;
-  AlignedDoubles mean(static_cast<std::size_t>(2 * d) * stride), half(static_cast<std::size_t>(4 * d) * stride),
+  AlignedDoubles mean(static_cast<std::size_t>(2 * d) * stride),
+      half(static_cast<std::size_t>(4 * d) * stride),
       rows(static_cast<std::size_t>(this->rows(Order::hessian)) * stride);
   for (int a = 0; a < 2 * d; ++a) {
     const int first = a / d * 2 * d + a % d;

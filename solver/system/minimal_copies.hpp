@@ -9,8 +9,8 @@
 namespace extremal {
 
 /// With the forces Q, of two copies of u: Λ = (L̂_u + Q)·λ + L̂_u'·λ' at the mean of the copies, λ = u₁ − u₂.
-/// That is Λ of system/copies.hpp but for what is of third order in λ. w is searched for once for both. Second
-/// derivatives are those where the copies agree.
+/// That is Λ of system/copies.hpp but for what is of third order in λ. w is searched for once for both.
+/// Second derivatives are those where the copies agree.
 class MinimalCopies final : public Lagrangian {
  public:
   MinimalCopies(std::shared_ptr<const MinimalLagrangian> one, const MinimalExpressions& expressions);

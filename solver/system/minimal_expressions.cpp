@@ -299,8 +299,8 @@ class Reduced {
     for (Partial& p : result_.gradient) settle_one(p.value);
     for (auto* entries : {&result_.hessian, &result_.copies_hessian})
       for (auto& p : *entries) settle_one(p.value);
-    for (Row* row : {&result_.start, &result_.steps, &result_.pivots, &result_.rates, &result_.slopes,
-                     &result_.motion})
+    for (Row* row :
+         {&result_.start, &result_.steps, &result_.pivots, &result_.rates, &result_.slopes, &result_.motion})
       for (Scaled& value : *row) settle_one(value);
     Kernel& kernel = result_.kernel;
     const auto put = [&](Variable kind, int count) {

@@ -37,8 +37,9 @@ struct MinimalExpressions {
   std::vector<Scaled> slopes;  ///< ∂w/∂u, m × (n − m)
   bool autonomous = true;
   /// With forces, else empty:
-  std::vector<Scaled> motion;          ///< L̂_u + Q, L̂_u'
-  std::vector<Second> copies_hessian;  ///< by (q₁, q₂, q₁', q₂') of two copies of u where these agree; likewise
+  std::vector<Scaled> motion;  ///< L̂_u + Q, L̂_u'
+  std::vector<Second>
+      copies_hessian;  ///< by (q₁, q₂, q₁', q₂') of two copies of u where these agree; likewise
   bool autonomous_forces = true;
 };
 

@@ -32,8 +32,8 @@ class MinimalLagrangian final : public Lagrangian {
   /// u and u' of the points, n − m each, or no u'; and their times.
   Lifted lift(std::span<const double> u, std::span<const double> du, std::span<const double> t) const;
 
-  /// The rows y, with w found for the first rows of the points, and `further` rows. They are in scratch memory
-  /// beyond so many doubles, and beyond what the tapes here take.
+  /// The rows y, with w found for the first rows of the points, and `further` rows. They are in scratch
+  /// memory beyond so many doubles, and beyond what the tapes here take.
   double* dependent(const Points& points, std::size_t doubles, std::size_t further, Scratch& scratch) const;
 
  private:

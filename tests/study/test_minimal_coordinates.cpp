@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "charts.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
 #include "scenes.hpp"
@@ -38,16 +39,6 @@ const std::string mechanism =
     "constraints = [\"(x - 0.2*sin(t))^2 + y^2 = 1\", \"s + 0.3*sin(s) = x + u^2/5\"]\n[boundary]\n"
     "start = { x = 0, y = -1, u = 0.3 }\nend = { x = 0.5, u = -0.4 }\nduration = 0.8\n"
     "[guess]\nx = \"0.5*t/T\"\ny = \"-1 + 0.2*t/T\"\nu = \"0.3 - 0.7*t/T\"\ns = \"0.4*t/T\"\n";
-
-const MinimalProblem* minimal(const Study& s) { return s.problem.manifold->parts().minimal.get(); }
-
-/// The solution without minimal coordinates.
-Solution in_all_coordinates(Study s) {
-  Manifold::Parts parts = s.problem.manifold->parts();
-  parts.minimal = nullptr;
-  s.problem.manifold = std::make_shared<const Manifold>(std::move(parts));
-  return run(s);
-}
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "charts.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
 #include "scenes.hpp"
@@ -30,13 +31,6 @@ const std::string sphere =
 const Chart& chart(const Study& s) {
   EXPECT_TRUE(s.problem.manifold->parts().minimal);
   return s.problem.manifold->parts().minimal->lagrangian->chart();
-}
-
-Solution in_all_coordinates(Study s) {
-  Manifold::Parts parts = s.problem.manifold->parts();
-  parts.minimal = nullptr;
-  s.problem.manifold = std::make_shared<const Manifold>(std::move(parts));
-  return run(s);
 }
 
 void expect_same(const Solution& found, const Solution& other, double accuracy = 1e-10) {
