@@ -102,9 +102,9 @@ void integrate(const Problem& problem, const Rule& rule, Solution& solution) {
   solution.action = integral(solution.trajectory, rule, [&](const auto& q, const auto& v, double t) {
     return evaluate_at(lagrangian, q, v, t, Order::value, scratch).value;
   });
-  const Manifold* const manifold = problem.manifold.get();
-  solution.work = manifold ? work_under_constraints(*manifold, solution.trajectory, rule)
-                           : work(solution.trajectory, rule, lagrangian, *problem.copies);
+  const bool moving = problem.manifold && !problem.manifold->autonomous();
+  solution.work = moving ? work_under_constraints(*problem.manifold, solution.trajectory, rule)
+                         : work(solution.trajectory, rule, lagrangian, *problem.copies);
   solution.energy = solution.energy_drift = std::nullopt;
   if (lagrangian.structure().autonomous) solution.energy = energy(lagrangian, solution.trajectory);
 }

@@ -352,6 +352,23 @@ TEST_F(Scenes, ADampedEndThatIsFreeInAChart) {
   expect_same_swing(s, found, angle);
 }
 
+/// An end that is given by its height alone is available in minimal coordinates only.
+TEST_F(Scenes, ADampedEndOfWhichTheHeightIsGiven) {
+  const Solution found =
+      run(study("[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - z\"\n"
+                "constraints = [\"x^2 + y^2 + z^2 = 1\"]\n"
+                "force = { x = \"-0.2*x' - 0.3*y\", y = \"-0.2*y' + 0.3*x\", z = \"-0.2*z'\" }\n[boundary]\n"
+                "start = { x = \"sin(1)\", y = 0, z = \"-cos(1)\" }\nend = { z = -0.8 }\nduration = 0.5\n"
+                "[guess]\nx = 0.6\ny = \"0.2*t/T\"\nz = -0.7\n"));
+  const Solution angles =
+      run(study("[system]\ncoordinates = [\"a\", \"b\"]\nlagrangian = \"(a'^2 + sin(a)^2*b'^2)/2 + cos(a)\"\n"
+                "force = { a = \"-0.2*a'\", b = \"sin(a)^2*(0.3 - 0.2*b')\" }\n[boundary]\n"
+                "start = { a = 1, b = 0 }\nend = { a = \"acos(0.8)\" }\nduration = 0.5\n"));
+  ASSERT_TRUE(found.converged() && angles.converged()) << found.message << angles.message;
+  EXPECT_NEAR(found.action, angles.action, 1e-10);
+  EXPECT_NEAR(*found.work, *angles.work, 1e-10);
+}
+
 /// What charts do not have goes the other way: a force that is not smooth.
 TEST_F(Scenes, DryFrictionHasNoChart) {
   const Study s = study(
