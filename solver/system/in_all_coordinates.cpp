@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "system/derivative.hpp"
+
 namespace extremal {
 
 using expression_matrix::add_product;
