@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "charts.hpp"
@@ -10,6 +11,7 @@
 #include "problem/minimal_problem.hpp"
 #include "scenes.hpp"
 #include "study/continued.hpp"
+#include "study/minimal_family.hpp"
 #include "system/minimal_lagrangian.hpp"
 
 /// \file Forces in minimal coordinates.
@@ -289,6 +291,23 @@ TEST_F(Scenes, TurnsOfADrivenRotorInAChart) {
   EXPECT_NEAR(*found.work, *angle.work, 1e-9);
   ASSERT_TRUE(found.floquet && angle.floquet);
   EXPECT_NEAR(std::abs(found.floquet->multipliers[1] - angle.floquet->multipliers[1]), 0, 1e-8);
+}
+
+/// The saddle's separatrix closes at this torque, by shooting along it from both of its ends. Near it
+/// roundoff moves the turns by more than the tolerance.
+TEST_F(Scenes, FamiliesOfTurnsInAChartUntilTheirPeriodDiverges) {
+  constexpr double closing = 0.5973832003;
+  const Study s =
+      study(pendulum_in_plane(
+                "x = \"-y*(k - 0.5*(x*y' - y*x'))\", y = \"x*(k - 0.5*(x*y' - y*x'))\"",
+                "[boundary]\nperiodic = true\nduration = \"free\"\n[guess]\nduration = 2\n"
+                "x = \"sin(2*pi*t/T)\"\ny = \"-cos(2*pi*t/T)\"\n[continuation]\nparameter = \"k\"\nto = 0.3\n"
+                "points = 60\n"),
+            {"system.parameters.k=1.6"});
+  const std::optional<FollowedBranch> found = follow_in_minimal_coordinates(s, s.options);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->branches.front().end, BranchEnd::infinite_period);
+  EXPECT_NEAR(found->points.back().parameter, closing, 1e-7);
 }
 
 TEST_F(Scenes, DampedChainsAreThoseOfTheirAngles) {
