@@ -23,7 +23,7 @@ double length(const std::vector<double>& x) {
   return largest * std::sqrt(sum);
 }
 
-Independence::Independence(const std::vector<Row>& rows) {
+Independence::Independence(const std::vector<Row>& rows, double threshold) : threshold_(threshold) {
   for (const Row& row : rows)
     for (const auto& entry : row.entries) columns_.push_back(entry.first);
   std::sort(columns_.begin(), columns_.end());
@@ -42,7 +42,7 @@ std::optional<std::vector<double>> Independence::add(const Row& row) {
       subtract_multiple(combination, along, known.combination);
     }
   const double left = length(rest);
-  if (left <= dependence * before) {
+  if (left <= threshold_ * before) {
     combination.pop_back();
     for (double& a : combination) a = -a;
     return combination;

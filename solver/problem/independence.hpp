@@ -18,22 +18,21 @@ struct Row {
 /// Rows made orthonormal one by one (Gram-Schmidt, twice), each with its combination of the rows given.
 class Independence {
  public:
-  explicit Independence(const std::vector<Row>& rows);
+  /// Remainders below `threshold`, relative to the row they are left of, count as zero.
+  explicit Independence(const std::vector<Row>& rows, double threshold);
 
   /// Adds the next of the rows and returns nothing; or, where it depends on those added before, the
   /// coefficients a with row = Σ_j a_j row_j over them.
   std::optional<std::vector<double>> add(const Row& row);
 
  private:
+  double threshold_;
   std::vector<int> columns_;
   struct Direction {
     std::vector<double> entries, combination;
   };
   std::vector<Direction> basis_;
 };
-
-/// Below this, relative to what it was formed from, a remainder counts as zero.
-inline constexpr double dependence = 1e-11;
 
 double length(const std::vector<double>& x);
 

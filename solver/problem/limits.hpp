@@ -6,6 +6,13 @@
 
 namespace extremal::limits {
 
+namespace relation {
+
+/// A remainder this small, relative to what it was formed from, counts as zero.
+inline constexpr double dependence = 1e-11;
+
+}  // namespace relation
+
 namespace infinite_ends {
 
 /// An end this near to an equilibrium, relative to its coordinates, is at it: scenes give as many digits.

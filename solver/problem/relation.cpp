@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "problem/independence.hpp"
+#include "problem/limits.hpp"
 #include "problem/problem.hpp"
 
 /// \file Solves B0 q(0) + B1 q(T) = c. Rows with one end coordinate are taken first, in O(1) each. What then
@@ -210,7 +211,7 @@ class Elimination {
   void solve_group(const std::vector<int>& members) {
     std::vector<Row> rows;
     for (const int index : members) rows.push_back(reduced(rows_[index]));
-    Independence earlier(rows);
+    Independence earlier(rows, limits::relation::dependence);
     for (std::size_t i = 0; i < rows.size(); ++i)
       if (const auto combination = earlier.add(rows[i])) refuse(members, i, *combination);
     Group group = make_group(rows);
@@ -236,13 +237,13 @@ class Elimination {
     int last = row.index;
     for (std::size_t j = 0; j < combination.size(); ++j) {
       const Row& earlier = rows_[members[j]];
-      if (std::abs(combination[j]) * largest(earlier) <= dependence * size) continue;
+      if (std::abs(combination[j]) * largest(earlier) <= limits::relation::dependence * size) continue;
       last = std::max(last, earlier.index);
       value.add(-combination[j] * earlier.value);
       for (const auto& [e, coefficient] : earlier.entries) left[e].add(-combination[j] * coefficient);
     }
     for (const auto& [e, sum] : left) {
-      if (pin_[e] < 0 || std::abs(sum.value) <= dependence * sum.magnitude) continue;
+      if (pin_[e] < 0 || std::abs(sum.value) <= limits::relation::dependence * sum.magnitude) continue;
       last = std::max(last, pin_[e]);
       value.add(-sum.value * map_.offset[e]);
     }

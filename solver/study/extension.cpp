@@ -13,7 +13,6 @@
 #include "problem/manifold.hpp"
 #include "scene/schema.hpp"
 #include "study/constrained_extension.hpp"
-#include "study/independent_conditions.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
 #include "study/polyline.hpp"
@@ -143,15 +142,13 @@ double value_of(const Text& text, const System& system) {
 }
 
 /// Each integrand alone as a Lagrangian, so that its errors are found at their places.
-std::vector<std::shared_ptr<const Lagrangian>> integrands_of(const Scene& scene) {
-  std::vector<std::shared_ptr<const Lagrangian>> integrands;
+void check_integrands(const Scene& scene) {
   for (const Text& text : scene.boundary.integrals) {
     SystemTable table = scene.system;
     table.lagrangian = integral_of(text).integrand;
     table.force.clear();
-    integrands.push_back(make_system(table).lagrangian);
+    make_system(table);
   }
-  return integrands;
 }
 
 std::string unused_name(const std::string& stem, const SystemTable& table) {
@@ -408,7 +405,7 @@ void check_extended(const Scene& scene, Purpose purpose) {
 }
 
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene) {
-  integrands_of(scene);
+  check_integrands(scene);
   return lagrangian_at(scene, first_constants(scene));
 }
 
@@ -466,9 +463,6 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
     for (const Text& text : parts.conditions) texts.push_back(text.value);
     if (!settled.suited) on_manifold->put_relation(texts, problem, *extension);
   }
-  if (scene.boundary.integrals.size() > 1)
-    check_independent_integrals(scene.boundary.integrals, problem, integrands_of(scene));
-  if (!problem.manifold) check_independent_conditions(parts.conditions, problem, *extension);
   problem.extension = std::move(extension);
 }
 

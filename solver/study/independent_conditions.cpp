@@ -1,102 +1,69 @@
 #include "study/independent_conditions.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "linear/dense.hpp"
-#include "problem/nearby.hpp"
-#include "study/limits.hpp"
+#include "solve/bordered/determinacy.hpp"
 
 namespace extremal {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+[[noreturn]] void refuse_condition(const Text& text, const char* mend) {
+  throw SceneError(position(text, 0), fmt::format("the condition '{}' follows from what else is given at the "
+                                                  "ends, or contradicts it; {}",
+                                                  text.value, mend));
+}
 
-/// The first row, of those of length one, that is a sum of multiples of those before it where `onto` leaves
-/// them; -1: there is none. What is zero is one.
-int first_dependent(MatrixXd rows, const MatrixXd& onto) {
-  rows.rowwise().normalize();
-  rows *= onto;
-  MatrixXd basis(rows.cols(), 0);
-  for (Index k = 0; k < rows.rows(); ++k) {
-    VectorXd row = rows.row(k);
-    for (int pass = 0; pass < 2; ++pass) row -= basis * (basis.transpose() * row).eval();
-    if (!(row.norm() > limits::conditions::dependence)) return static_cast<int>(k);
-    basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
-    basis.rightCols(1) = row.normalized();
-  }
-  return -1;
+[[noreturn]] void refuse_unknown(const Scene& scene, const Indeterminacy& found) {
+  const Assignment& unknown = scene.boundary.unknowns[found.last];
+  std::vector<std::string> others;
+  for (const int k : found.constants)
+    if (k != found.last) others.push_back(fmt::format("'{}'", scene.boundary.unknowns[k].name));
+  for (const int j : found.integrals)
+    others.push_back(fmt::format("the multiplier of '{}'", scene.boundary.integrals[j].value));
+  const std::string mend =
+      fmt::format("leave '{}' out of the unknowns, and one condition out of 'where'", unknown.name);
+  if (others.empty())
+    throw SceneError(unknown.name_at,
+                     fmt::format("no equation of the path and no condition contains '{}', so nothing "
+                                 "determines it; {}",
+                                 unknown.name, mend));
+  throw SceneError(
+      unknown.name_at,
+      fmt::format("all equations and conditions contain '{}' and {} in one combination alone, so "
+                  "nothing determines each of them; {}",
+                  unknown.name, fmt::join(others, ", "), mend));
 }
 
 }  // namespace
 
-void check_independent_integrals(const std::vector<Text>& texts, const Problem& problem,
-                                 const std::vector<std::shared_ptr<const Lagrangian>>& integrands) {
-  const Index count = std::ssize(integrands), wanted = count + limits::conditions::points;
-  if (count < 2) return;
-  MatrixXd values(count, wanted);
-  NearbyPoints points(problem);
-  Scratch scratch;
-  std::vector<double> q, v;
-  Index found = 0;
-  for (Index tried = 0; tried < 4 * wanted && found < wanted; ++tried) {
-    const double t = points.next(q, v);
-    for (Index j = 0; j < count; ++j)
-      values(j, found) = evaluate_at(*integrands[j], q, v, t, Order::gradient, scratch).value;
-    found += values.col(found).allFinite();
-  }
-  if (found < wanted) return;
-  const int k = first_dependent(values, MatrixXd::Identity(wanted, wanted));
-  if (k <= 0) return;
-  throw SceneError(
-      position(texts[k], 0),
-      fmt::format("the integrand of '{}' is made of those of the integrals before it, whose values "
-                  "determine or contradict its own; leave it out",
-                  texts[k].value));
-}
-
-void check_independent_conditions(const std::vector<Text>& texts, const Problem& problem,
-                                  const Extension& extension) {
-  const Index count = std::ssize(extension.conditions);
-  if (count == 0) return;
-  const int n = problem.coordinates(), all = n + extension.constants();
-  MatrixXd z = MatrixXd::Zero(2 * n, problem.ends.free);
-  for (const Triplet& entry : problem.ends.z) z(entry.row, entry.column) += entry.value;
-  NearbyPoints points(problem);
-  std::vector<double> start, end, v, gradient(2 * static_cast<std::size_t>(all));
-  const auto put_constants = [&](std::vector<double>& q) {
-    q.insert(q.end(), extension.guess.begin(), extension.guess.end());
-    q.resize(all, 0.0);
-  };
-  int least = -1;
-  for (int k = 0; k < limits::conditions::points; ++k) {
-    points.next(start, v);
-    points.next(end, v);
-    put_constants(start);
-    put_constants(end);
-    MatrixXd slopes(count, 2 * n);
-    for (Index j = 0; j < count; ++j) {
-      extension.conditions[j].function(start, end, gradient, {});
-      for (int a = 0; a < n; ++a) {
-        slopes(j, a) = gradient[a];
-        slopes(j, n + a) = gradient[all + a];
-      }
+void check_determined(const Scene& scene, const ExtendedScene& parts, const Problem& problem) {
+  const std::optional<Indeterminacy> found = indeterminacy(problem);
+  if (!found) return;
+  switch (found->kind) {
+    case Indeterminacy::Kind::integral: {
+      const Text& text = scene.boundary.integrals[found->last];
+      throw SceneError(position(text, 0),
+                       fmt::format("the ends and the integrals before it determine the integral '{}', or "
+                                   "contradict it; leave it out",
+                                   text.value));
     }
-    if (!slopes.allFinite()) continue;
-    const int dependent = first_dependent(slopes, z);
-    if (dependent < 0) return;
-    least = std::max(least, dependent);
+    case Indeterminacy::Kind::condition:
+      // Of a problem with constraints those that are independent are chosen near its guess.
+      if (!problem.manifold) refuse_condition(parts.conditions[found->last], "leave it out");
+      return;
+    case Indeterminacy::Kind::where:
+      refuse_condition(parts.where[found->last],
+                       scene.boundary.unknowns.empty()
+                           ? "give the duration, or 'energy' instead of 'where'"
+                           : "write one that other values of the unknowns break, or fix an unknown");
+    case Indeterminacy::Kind::constant:
+      refuse_unknown(scene, *found);
   }
-  if (least < 0) return;
-  throw SceneError(
-      position(texts[least], 0),
-      fmt::format("the condition '{}' follows from what else is given at the ends, or contradicts it; "
-                  "leave it out",
-                  texts[least].value));
 }
 
 }  // namespace extremal

@@ -1,24 +1,16 @@
 #pragma once
 
-#include <memory>
-#include <vector>
-
-#include "problem/extension.hpp"
 #include "problem/problem.hpp"
 #include "scene/scene.hpp"
+#include "study/extension.hpp"
 
-/// \file Integrals and conditions that follow from each other, or contradict each other, by their formulas.
+/// \file Integrals, conditions and unknowns that formulas leave undetermined.
 
 namespace extremal {
 
-/// `integrands` are the left sides of the integrals as Lagrangians. Throws SceneError where one is a sum of
-/// multiples of those before it at all points tried.
-void check_independent_integrals(const std::vector<Text>& texts, const Problem& problem,
-                                 const std::vector<std::shared_ptr<const Lagrangian>>& integrands);
-
-/// Throws SceneError where the gradient of a condition along the ends that the relation leaves free is made
-/// of those before it at all points tried.
-void check_independent_conditions(const std::vector<Text>& texts, const Problem& problem,
-                                  const Extension& extension);
+/// Throws SceneError where an integral or a condition follows from what else is given, or contradicts it, and
+/// where the equations do not contain an unknown, or contain it in one combination with others alone: on all
+/// paths tried about the guess.
+void check_determined(const Scene& scene, const ExtendedScene& parts, const Problem& problem);
 
 }  // namespace extremal

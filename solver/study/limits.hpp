@@ -77,15 +77,6 @@ inline constexpr double bends[] = {0, 0.1, -0.1, 0.3, -0.3, 1, -1, 3, -3};
 
 }  // namespace extremal::limits::constraints
 
-namespace extremal::limits::conditions {
-
-/// Points at which formulas are compared, more than there are of these.
-inline constexpr int points = 8;
-/// Rows of length one that depend on each other leave so much.
-inline constexpr double dependence = 1e-10;
-
-}  // namespace extremal::limits::conditions
-
 namespace extremal::limits::polar {
 
 /// Points beside the path at which second derivatives of constraints and rotations are compared.

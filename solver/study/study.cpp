@@ -18,6 +18,7 @@
 #include "study/extension.hpp"
 #include "study/fitting.hpp"
 #include "study/guess.hpp"
+#include "study/independent_conditions.hpp"
 #include "study/infinite.hpp"
 #include "study/memory.hpp"
 #include "study/minimal_coordinates.hpp"
@@ -200,6 +201,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
     check_regular(problem, scene.system);
     check_guess_finite(problem, scene.guess.at, legendre);
   }
+  if (parts.extended) check_determined(scene, parts, problem);
   if (problem.duration.where && problem.ends.free == 0)
     throw SceneError(position(*scene.boundary.where, 0),
                      "'where' names ends that are fixed, so it does not determine the duration; give the "

@@ -240,21 +240,6 @@ TEST_F(Scenes, ExtensionsThatAreRefused) {
             0u);
 }
 
-/// Multipliers of integrals that depend on each other are not determined, nor is the index.
-TEST_F(Scenes, IntegralsThatDependOnEachOther) {
-  const auto refusal = [&](const std::string& integrals) {
-    const Solution s = run(study(
-        system("[\"x\"]", "x'^2/2 - x^2/2 - x^4/4") +
-        "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 1\nintegrals = [" + integrals + "]\n"));
-    EXPECT_FALSE(s.converged()) << integrals;
-    return s.message;
-  };
-  EXPECT_EQ(refusal("\"1 = 1\"").find("integral 1 does not change with the path"), 0u);
-  // Their values differ by what no path changes.
-  EXPECT_EQ(refusal("\"x = 0.5\", \"2*x + t = 1.5\"").find("integral 1, integral 2 depend on each other"),
-            0u);
-}
-
 /// Rotations about the origin keep both circles: nothing else leaves the action as it is.
 TEST_F(Scenes, FamilyThatASymmetryMakes) {
   const Solution s =
@@ -309,4 +294,27 @@ TEST_F(Scenes, ConstantsOfAContinuumAreTold) {
   const Solution found = run(study(ellipses));
   ASSERT_TRUE(found.converged()) << found.message;
   EXPECT_NE(found.message.find("they do not determine 'mu'"), std::string::npos) << found.message;
+}
+
+/// From x = 0 an oscillator is at 0 again after π: another waypoint there has no extremal, whatever the other
+/// leg is; 0 has one for every velocity on each leg, of which those of the guess are kept.
+TEST_F(Scenes, LegsWithConjugateEnds) {
+  const auto through = [&](const std::string& at_pi, const std::string& end, const std::string& duration) {
+    return run(study(system("[\"x\"]", "x'^2/2 - x^2/2") +
+                         "[boundary]\nstart = { x = 0 }\nend = { x = " + end + " }\nduration = \"" +
+                         duration + "\"\n[[waypoints]]\nat = \"pi\"\nx = " + at_pi +
+                         "\n[guess]\nx = \"0.5*sin(t) + x_end*t/T\"\n",
+                     {"system.parameters.x_end=" + end}));
+  };
+  for (const auto& [end, duration] : {std::pair{"0", "2*pi"}, {"0.3", "7"}}) {
+    const Solution none = through("0.5", end, duration);
+    EXPECT_EQ(none.status, Status::conjugate_ends) << none.message;
+    EXPECT_LT(none.iterations, 200);
+  }
+  const Solution both = through("0", "0", "2*pi");
+  ASSERT_TRUE(both.converged()) << both.message;
+  EXPECT_EQ(both.nullity, 2);
+  EXPECT_NEAR(at(both, pi / 2, 0), 0.5, 1e-9);
+  EXPECT_NE(both.message.find("one of a family of extremals, in 2 directions"), std::string::npos)
+      << both.message;
 }

@@ -33,6 +33,10 @@ class BorderedEquations {
   /// From now on the integrals, the conditions r and w, in this order, are to have these values beside what
   /// is given; empty: none. Kept by reset().
   void set_offsets(std::vector<double> offsets) { offsets_ = std::move(offsets); }
+  /// Their rows, in this order.
+  std::vector<int> target_rows() const;
+  /// The sizes of their terms, of the state evaluated last.
+  const std::vector<double>& target_sizes() const { return target_sizes_; }
   /// The values that they have, of the state evaluated last.
   std::vector<double> targets() const;
 
@@ -97,7 +101,6 @@ class BorderedEquations {
   void add_element(int k, int lane, const BatchValues& values, const BorderedState& state, bool matrix);
   void add_conditions(const BorderedState& state, bool matrix);
   void add_closing(const BorderedState& state, bool matrix);
-  std::vector<int> target_rows() const;
   double size_of_terms(std::span<const double> start, std::span<const double> end) const;
   void add_held(const BorderedState& state);
   /// Of each unknown, so that entries in the rows of times are as large as those of the path.

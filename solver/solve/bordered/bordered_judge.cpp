@@ -187,23 +187,64 @@ void read_variation(const Problem& problem, const SolveOptions& options, const B
   read_stability(held, variation, size, solution);
 }
 
-/// Conditions may leave a continuum of solutions, and constants open with it.
-void tell_continuum(const Problem& problem, BorderedEquations& equations, BorderedState state,
-                    Solution& solution) {
+/// The largest difference at a node.
+double node_distance(const BorderedState& a, const BorderedState& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.path.nodes().size(); ++i)
+    largest = std::max(largest, std::abs(a.path.nodes()[i] - b.path.nodes()[i]));
+  return largest;
+}
+
+/// Whether there are solutions after a finite step along a null direction to either side.
+bool goes_on(BorderedEquations& equations, const BorderedState& state, const Eigen::VectorXd& direction,
+             const Deadline& deadline) {
+  const auto is_solution_beside = [&](double step) {
+    BorderedState moved = state;
+    if (!equations.apply(moved, direction, step)) return false;
+    BorderedState beside = moved;
+    const auto spent = [&] { return deadline.passed(); };
+    return converge(equations, beside, spent, [](double, double) {}).converged &&
+           equations.residual() <= largest_residual && equations.mismatch() <= largest_mismatch &&
+           node_distance(beside, moved) <= most_pull_back * node_distance(moved, state);
+  };
+  return is_solution_beside(family_step) && is_solution_beside(-family_step);
+}
+
+/// Conditions may leave a continuum of solutions, and constants open with it; conjugate legs another.
+void tell_continuum(const Problem& problem, const SolveOptions& options, BorderedEquations& equations,
+                    BorderedState state, Solution& solution) {
   const Freedom freedom = freedom_of(equations, state);
+  const int count = freedom.count();
+  if (count == 0) return;
   std::vector<std::string> open;
   for (std::size_t k = 0; k < freedom.moves.size(); ++k)
     if (freedom.moves[k]) open.push_back(fmt::format("'{}'", problem.extension->names[k]));
-  if (!open.empty())
+  const char* plural = count > 1 ? "s" : "";
+  if (!open.empty()) {
     solution.message += fmt::format(
         "; solutions beside this one meet the conditions as well, in {} direction{}: they do not "
         "determine {}, and this is one of a continuum near the guess; another condition selects one",
-        freedom.directions, freedom.directions > 1 ? "s" : "", fmt::join(open, ", "));
-  else if (freedom.directions > 0 && problem.periodic)
-    solution.message += one_of_a_continuum(freedom.directions);
+        count, plural, fmt::join(open, ", "));
+  } else if (problem.periodic) {
+    solution.message += one_of_a_continuum(count);
+  } else if (solution.message.find(family_of_symmetries) == std::string::npos) {
+    for (int j = 0; j < count; ++j)
+      if (!goes_on(equations, state, freedom.directions.col(j), options.deadline)) return;
+    solution.message += fmt::format(
+        "; the ends or the waypoints are conjugate, and this is one of a family of extremals, in {} "
+        "direction{}, near the guess",
+        count, plural);
+  }
 }
 
 }  // namespace
+
+std::string residual_remains(double residual) {
+  return fmt::format(
+      "a residual of {:.1e} of the largest momentum remains: there is no extremal near; try "
+      "another guess",
+      residual);
+}
 
 Solution judge(const Problem& problem, const SolveOptions& options, BorderedEquations& equations,
                const BorderedState& state, const ElementTables& own, double error, double first) {
@@ -211,11 +252,7 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   if (!equations.evaluate(state, true)) return refused("the action is not finite along the path found");
   if (!(size < most_growth * first) || !(state.times.back() < most_growth * problem.duration.value))
     return refused("the path ran away from the guess; try another guess");
-  if (!(equations.residual() <= largest_residual))
-    return refused(
-        fmt::format("a residual of {:.1e} of the largest momentum remains: there is no extremal near; "
-                    "try another guess",
-                    equations.residual()));
+  if (!(equations.residual() <= largest_residual)) return refused(residual_remains(equations.residual()));
   if (!(equations.mismatch() <= largest_mismatch))
     return refused(
         std::isfinite(equations.mismatch())
@@ -264,7 +301,7 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
     }
   }
   read_variation(problem, options, state, size, solution);
-  tell_continuum(problem, equations, state, solution);
+  tell_continuum(problem, options, equations, state, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned)
     solution.element_energies = element_energies(*solution.extension->lagrangian, own.scheme().node,

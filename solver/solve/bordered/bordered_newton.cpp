@@ -79,7 +79,9 @@ class BorderedNewton {
     set_units(matrix);
     NullDirections found;
     if (!found.find(scaled(matrix), null_direction)) return {};
-    Freedom freedom{static_cast<int>(found.directions().cols()), {}};
+    Freedom freedom{units_.asDiagonal() * found.directions(), {}};
+    for (Eigen::Index j = 0; j < freedom.directions.cols(); ++j)
+      freedom.directions.col(j) /= found.directions().col(j).lpNorm<Eigen::Infinity>();
     const double largest = found.directions().cwiseAbs().maxCoeff();
     for (int k = 0; k < equations_.extension().unknowns(); ++k)
       freedom.moves.push_back(found.directions().row(equations_.first_constant() + k).norm() >
@@ -166,12 +168,16 @@ class BorderedNewton {
 
 }  // namespace
 
-BorderedReport converge(BorderedEquations& equations, BorderedState& state,
-                        const std::function<bool(double, double)>& on_step) {
+BorderedReport converge(BorderedEquations& equations, BorderedState& state, const Spent& spent,
+                        const std::function<void(double, double)>& on_step) {
   BorderedReport report;
   BorderedNewton newton(equations, state);
   double predicted = 1, before = INFINITY;
   while (report.steps < most_steps) {
+    if (spent()) {
+      report.failure = "the limit of work for one solve is reached";
+      return report;
+    }
     ++report.steps;
     if (!newton.factor()) {
       report.failure = newton.failure();
@@ -205,10 +211,7 @@ BorderedReport converge(BorderedEquations& equations, BorderedState& state,
     }
     if (too_short) continue;
     if (size < near_family) newton.take_all_directions();
-    if (!on_step(size, damping)) {
-      report.failure = "the limit of work for one solve is reached";
-      return report;
-    }
+    on_step(size, damping);
     report.correction = simplified;
     const bool full = damping == 1;
     if (full && simplified < shrinks * size && std::isfinite(simplified)) {

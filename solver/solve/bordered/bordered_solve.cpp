@@ -51,6 +51,12 @@ struct Found {
   double correction = 0;
 };
 
+/// Why an attempt found nothing.
+struct Failure {
+  std::string message;
+  Status status = Status::not_converged;
+};
+
 /// Elements of one degree for the Lagrangian of all coordinates and that of the path.
 struct Elements {
   const ElementTables *tables, *own;
@@ -80,7 +86,7 @@ class BorderedSolve {
     std::vector<Start> starts{{}};
     if (has_targets()) starts.push_back({.led = true});
     std::vector<Solution> found;
-    std::string first_failure;
+    std::optional<Failure> first_failure;
     std::size_t tried = 0;
     for (; tried < starts.size() && !(tried > 0 && spent()); ++tried) {
       if (static_cast<int>(found.size()) >= most) break;
@@ -91,14 +97,14 @@ class BorderedSolve {
         solution.strategy = from.strategy();
         const auto known = [&](const Solution& other) { return same(other, solution); };
         if (std::ranges::none_of(found, known)) found.push_back(timed(std::move(solution), start));
-      } else if (first_failure.empty()) {
-        first_failure = solution.message;
+      } else if (!first_failure) {
+        first_failure = {solution.message, solution.status};
       }
       const bool bent = starts.size() > 2 || starts.back().size != 0;
       const bool wanted = static_cast<int>(found.size()) < most;
       if (tried + 1 == starts.size() && !bent && wanted) add_bent(starts);
     }
-    if (found.empty()) return {timed(failure(first_failure), start)};
+    if (found.empty()) return {timed(failure(*first_failure), start)};
     std::ranges::stable_sort(found, {}, &Solution::action);
     if (static_cast<int>(found.size()) < most)
       found.front().message +=
@@ -118,11 +124,12 @@ class BorderedSolve {
     return extension_.multipliers() > 0 || !extension_.conditions.empty() || !extension_.where.empty();
   }
 
-  Solution failure(const std::string& first_failure) const {
+  Solution failure(const Failure& first) const {
     Solution solution;
-    solution.status = spent() ? Status::iteration_limit : Status::not_converged;
+    solution.status =
+        spent() && first.status == Status::not_converged ? Status::iteration_limit : first.status;
     solution.message =
-        first_failure + (spent() ? "; the budget is spent" : "") +
+        first.message + (spent() ? "; the budget is spent" : "") +
         "; no guess with waves added led to a solution; another guess of the path, of the unknowns or of the "
         "duration may";
     return solution;
@@ -264,23 +271,40 @@ class BorderedSolve {
     return state;
   }
 
-  bool newton(Found& found, std::string& failure) {
+  bool newton(Found& found, Failure& failure) {
     equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
-    const BorderedReport report = converge(equations_, found.state, [&](double step, double damping) {
+    const auto told = [&](double step, double damping) {
       ++iterations_;
       if (options_.progress)
         options_.progress(
             {found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step, damping});
-      return !spent();
-    });
+    };
+    const BorderedReport report = converge(
+        equations_, found.state, [&] { return spent(); }, told);
     found.correction = report.correction;
-    failure = report.failure;
-    return report.converged;
+    failure = {report.failure};
+    return report.converged && is_balanced(found, failure);
   }
 
-  static Solution failed(std::string message) {
+  /// Steps across null directions leave a force along them where no solution is near: other elements leave
+  /// it too.
+  bool is_balanced(Found& found, Failure& failure) {
+    const double residual = equations_.residual();
+    if (residual <= largest_residual) return true;
+    failure.message = residual_remains(residual);
+    if (freedom_of(equations_, found.state).count() > 0)
+      failure = {
+          "the ends or the waypoints are conjugate along a path near the guess: its second variation is "
+          "singular, and a force remains along its null directions, so that there is no extremal; "
+          "move an end or a waypoint, or change a time",
+          Status::conjugate_ends};
+    return false;
+  }
+
+  static Solution failed(Failure failure) {
     Solution solution;
-    solution.message = std::move(message);
+    solution.message = std::move(failure.message);
+    solution.status = failure.status;
     return solution;
   }
 
@@ -363,7 +387,7 @@ class BorderedSolve {
 
   /// Newton's method from the start, of a bent one with the times of waypoints held first; or along the
   /// family of problems with the integrals and conditions that the start has, to those that are given.
-  bool reach(Found& found, const Start& start, std::string& failure) {
+  bool reach(Found& found, const Start& start, Failure& failure) {
     if (start.size != 0 && has_free_waypoints()) {
       equations_.hold_times(true);
       const bool reached = newton(found, failure);
@@ -414,7 +438,7 @@ class BorderedSolve {
   Solution solve_adapted(const Start& start) {
     const Elements coarse = lobatto(first_degree);
     Found found = begin(first_mesh(coarse, start), coarse, start);
-    std::string failure;
+    Failure failure;
     if (!reach(found, start, failure)) return failed(failure);
     for (int round = 0; round < most_refinements && !spent(); ++round) {
       const Scales size = sizes(found);
@@ -436,14 +460,15 @@ class BorderedSolve {
       }
       if (!newton(found, failure)) return failed(failure);
     }
-    return failed(spent() ? "the limit of work for one solve is reached"
-                          : "the elements do not resolve the path to the tolerance; try a larger tolerance");
+    return failed({spent()
+                       ? "the limit of work for one solve is reached"
+                       : "the elements do not resolve the path to the tolerance; try a larger tolerance"});
   }
 
   /// The solution, if elements of a higher degree confirm it.
   std::optional<Solution> compared(const Found& found, double tolerance, double of_v, double truncation) {
     Found finer = moved(found, found.state.mesh, lobatto(compared_with));
-    std::string failure;
+    Failure failure;
     if (!newton(finer, failure)) return std::nullopt;
     const auto [q, v] = differences(found, finer);
     const double size = path_size(found.state.path, n_);
@@ -490,22 +515,22 @@ class BorderedSolve {
     const bool pinned = options_.elements > 0;
     const LegMesh mesh = equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
     Found found = begin(mesh, elements, start);
-    std::string failure;
+    Failure failure;
     if (!reach(found, start, failure)) return failed(failure);
     const double gain = std::pow(2.0, options_.scheme->order) - 1;
     for (;;) {
       Found finer = moved(found, halved(found.state.mesh), elements);
       if (finer.state.mesh.elements() > most_scheme_elements)
         return failed(
-            fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
-                        "scheme of higher order",
-                        found.state.mesh.elements()));
+            {fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
+                         "scheme of higher order",
+                         found.state.mesh.elements())});
       if (!newton(finer, failure)) return failed(failure);
       const double difference = differences(found, finer).first;
       if (pinned) return judged(found, difference * (1 + 1 / gain));
       if (difference * (1 + 1 / gain) <= options_.tolerance * sizes(found).q)
         return judged(found, difference * (1 + 1 / gain));
-      if (spent()) return failed("the limit of work for one solve is reached");
+      if (spent()) return failed({"the limit of work for one solve is reached"});
       found = std::move(finer);
     }
   }

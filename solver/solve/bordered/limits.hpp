@@ -22,6 +22,10 @@ inline constexpr int most_null_directions = 6;
 inline constexpr double soft_direction = 0.02, near_family = 1e-3;
 inline constexpr int most_dense = 400;
 
+/// A step along a null direction, by the size of the path, and what the solution beside it may lie off, by
+/// the step: of a family that is its curvature.
+inline constexpr double family_step = 0.01, most_pull_back = 0.1;
+
 /// Of the damped iteration.
 inline constexpr int most_steps = 60;
 inline constexpr double least_damping = 1e-3;
@@ -53,6 +57,13 @@ inline constexpr double velocity_tolerances = 10;
 /// Derivatives of integrals and conditions, of length one, that are so nearly dependent are so; a small one
 /// is compared with its terms. Of a combination that vanishes, parts beyond the second belong to it.
 inline constexpr double dependent = 1e-6, takes_part = 1e-3;
+
+/// States about the guess at which the equations are compared: their distances, relative to it, and elements
+/// of each leg. Lines of length one that depend on each other in all of them leave at most so much: the
+/// quadrature of exact derivatives on smooth paths.
+inline constexpr std::initializer_list<double> state_distances = {0.3, 0.2, 0.1, 0.03, 0.01, 1e-3};
+inline constexpr int elements_of_state = 8;
+inline constexpr double structural = 1e-9, target_roundoff = 1e-12;
 
 /// Of a result: equations of the path by the largest momentum, conditions by their terms.
 inline constexpr double largest_residual = 1e-9, largest_mismatch = 1e-10;

@@ -1,0 +1,84 @@
+#include "scenes.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+/// \file Conditions that determine nothing, and unknowns that nothing determines, by the formulas alone. The
+/// relations are linear algebra done by hand.
+
+namespace {
+
+const std::string law = "[system]\ncoordinates = [\"x\"]\nparameters = { a = 0.3, b = 0.2 }\nlagrangian = \"";
+
+/// The place and the first words of a refusal.
+void expect_start(const std::string& message, const std::string& start) {
+  EXPECT_EQ(message.substr(0, start.size()), start) << message;
+}
+
+}  // namespace
+
+/// Integrals whose variations depend on each other along all paths: multiples, what no path changes, and
+/// total derivatives, which the ends determine.
+TEST_F(Scenes, IntegralsThatDetermineEachOther) {
+  const auto refused = [&](const std::string& ends, const std::string& integrals) {
+    return message("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2 - x^4/4\"\n[boundary]\n" +
+                   ends + "\nduration = 1\nintegrals = [" + integrals + "]\n[guess]\nx = \"t\"\n");
+  };
+  const std::string fixed = "start = { x = 0 }\nend = { x = 1 }", at_start = "start = { x = 0 }\n";
+  const std::string text = "the ends and the integrals before it determine the integral ";
+  expect_start(refused(fixed, "\"1 = 1\""), "scene.toml:8:15: " + text + "'1 = 1'");
+  expect_start(refused(fixed, "\"x = 0.5\", \"2*x + t = 1.5\""), "scene.toml:8:26: " + text);
+  expect_start(refused(fixed, "\"x^2*x' = 2\""), "scene.toml:8:15: " + text);
+  expect_start(refused(fixed, "\"x^2 = 1\", \"x^2 + sin(x)*x' = 2\""), "scene.toml:8:26: " + text);
+  // A free end and a closed path: the first gives sin(x)x' a meaning, the second takes it.
+  EXPECT_EQ(refused(at_start, "\"x^2 = 1\", \"x^2 + sin(x)*x' = 2\""), "");
+  expect_start(refused("periodic = true", "\"x^2 = 1\", \"x^2 + sin(x)*x' = 2\""),
+               "scene.toml:7:26: " + text);
+}
+
+/// A condition at ends that are given, and one that another implies.
+TEST_F(Scenes, ConditionsThatSelectNoUnknown) {
+  const auto refused = [&](const std::string& unknowns, const std::string& where) {
+    return message(law + "x'^2/2 - (a + b^2)*x^2/2\"\n[boundary]\nstart = { x = 1 }\nduration = 2\n" +
+                   "unknowns = {" + unknowns + "}\nwhere = [" + where + "]\n");
+  };
+  expect_start(refused("a = 0.3", "\"x(0) = 1\""), "scene.toml:9:11: the condition 'x(0) = 1' follows");
+  expect_start(refused("a = 0.3", "\"x(0) = 2\""), "scene.toml:9:11: the condition 'x(0) = 2' follows");
+  expect_start(refused("a = 0.3, b = 0.2", "\"x(T) = 0.7\", \"2*x(T) + x(0) = 2.4\""),
+               "scene.toml:9:25: the condition '2*x(T) + x(0) = 2.4' follows");
+  expect_start(refused("a = 0.3, b = 0.2", "\"x(T) = 0.7\", \"a*x(T) = 0.2\""), "");
+  EXPECT_EQ(refused("a = 0.3", "\"x(T) = 0.7\""), "");
+}
+
+/// One combination of constants: a + b², and a constant with the multiplier of an integral. Of L = … + a cos
+/// t no equation contains a.
+TEST_F(Scenes, UnknownsThatNothingDetermines) {
+  const std::string ends = "[boundary]\nstart = { x = 1 }\nduration = 2\n";
+  expect_start(message(law + "x'^2/2 - x^2/2 + a*cos(t) + b\"\n" + ends +
+                       "unknowns = { a = 0.3 }\nwhere = [\"x(T) = 2\"]\n"),
+               "scene.toml:8:14: no equation of the path and no condition contains 'a'");
+  expect_start(message(law + "x'^2/2 - (a + b^2)*x^2/2\"\n[boundary]\nduration = 2\n" +
+                       "unknowns = { a = 0.3, b = 0.2 }\nwhere = [\"x(0) = 1\", \"x(T) = 0.7\"]\n"),
+               "scene.toml:7:23: all equations and conditions contain 'b' and 'a' in one combination alone");
+  expect_start(message(law + "x'^2/2 - (a + b)*x^2/2 - x^4\"\n" + ends +
+                       "integrals = [\"x^2 = 1.5\"]\nunknowns = { a = 0.3 }\nwhere = [\"x(T) = 0.7\"]\n"),
+               "scene.toml:9:14: all equations and conditions contain 'a' and the multiplier of 'x^2 = 1.5' "
+               "in one combination alone");
+  EXPECT_EQ(message(law + "x'^2/2 - (a + b)*x^2/2 - x^4\"\n" + ends +
+                    "integrals = [\"x^2 = 1.5\"]\nunknowns = { a = 0.3 }\nwhere = [\"a = 0.7\"]\n"),
+            "");
+}
+
+/// Beside constraints: x² + y² = l² holds at the end without being asked for.
+TEST_F(Scenes, ConditionsThatConstraintsImply) {
+  const auto refused = [&](const std::string& where) {
+    return message(
+        "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { l = 1.0, g = 1.0 }\n"
+        "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\nconstraints = [\"x^2 + y^2 = l^2\"]\n[boundary]\n"
+        "start = { x = 0, y = -1 }\nduration = 1\nunknowns = { g = 1.0 }\nwhere = [\"" +
+        where + "\"]\n[guess]\nx = \"sin(t)\"\ny = \"-cos(t)\"\n");
+  };
+  expect_start(refused("x(T)^2 + y(T)^2 = 1"),
+               "scene.toml:10:11: the condition 'x(T)^2 + y(T)^2 = 1' follows");
+  EXPECT_EQ(refused("x(T) = 0.5"), "");
+}
