@@ -109,7 +109,8 @@ class Verifier {
     const Eigen::VectorXd change = correction(check_.pieces(), values_, check_.scales());
     if (change.size() == 0) return {};
     const double largest = largest_change(check_.pieces(), change);
-    result_.distance = largest * check_.scales().q / check_.allowed_q();
+    // Of a path that is zero nothing is allowed.
+    result_.distance = largest > 0 ? largest * check_.scales().q / check_.allowed_q() : 0;
     if (!(*result_.distance <= options_.margin))
       return fmt::format("the extremal is {:.3g} tolerances away", *result_.distance);
     return {};

@@ -122,7 +122,7 @@ class VariedScene {
     set_relation(scene_.boundary, system, problem);
     problem.duration = read_duration(scene_.boundary, system);
     if (problem_.infinite) {
-      InfiniteEnds infinite = read_infinite_ends(scene_, problem);
+      InfiniteEnds infinite = read_infinite_ends(scene_, Purpose::family, problem);
       problem.guess = guess_;
       leave_infinite_ends(scene_, std::move(infinite), problem);
     }

@@ -20,7 +20,11 @@ namespace {
 
 }  // namespace
 
-InfiniteEnds read_infinite_ends(const Scene& scene, Problem& problem) {
+InfiniteEnds read_infinite_ends(const Scene& scene, Purpose purpose, Problem& problem) {
+  if (purpose == Purpose::comparison)
+    throw SceneError(scene.boundary.duration.at,
+                     "with an infinite duration shooting is not available to compare with; give a number, or "
+                     "write 'solve' instead");
   if (problem.initial)
     throw SceneError(
         scene.boundary.duration.at,

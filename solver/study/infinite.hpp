@@ -2,14 +2,15 @@
 
 #include "problem/problem.hpp"
 #include "scene/scene.hpp"
+#include "study/study.hpp"
 
 /// \file duration = "infinite" in [boundary].
 
 namespace extremal {
 
 /// The ends at infinity of a problem that has the relation of its scene; its duration becomes that of the
-/// default guess. Throws SceneError where no end is at a hyperbolic equilibrium.
-InfiniteEnds read_infinite_ends(const Scene& scene, Problem& problem);
+/// default guess. Throws SceneError where no end is at a hyperbolic equilibrium, and for a comparison.
+InfiniteEnds read_infinite_ends(const Scene& scene, Purpose purpose, Problem& problem);
 
 /// Leaves these ends free, once the guess has been read, or gives the default guess. Throws SceneError where
 /// that is the equilibrium itself.

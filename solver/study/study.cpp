@@ -171,7 +171,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   const bool legendre = scene.system.hamiltonian && !system.hamiltonian;
   if (legendre && names_momenta(scene.guess, system) && !has_legendre_transform(problem)) return std::nullopt;
   std::optional<InfiniteEnds> infinite;
-  if (scene.boundary.infinite) infinite = read_infinite_ends(scene, problem);
+  if (scene.boundary.infinite) infinite = read_infinite_ends(scene, purpose, problem);
   bool suited = true;
   EndPoints ends;
   if (constrained)

@@ -117,5 +117,22 @@ TEST(FreeDuration, PendulumReleasedWhereItShould) {
   }
 }
 
+/// At the energy of the largest range R a throw at 45° is the only one, T = √(2R/g): the energy is least in T
+/// there, a double root. It is found within the tolerance, or refused.
+TEST(FreeDuration, DoubleRootAtTheLargestRange) {
+  Problem thrown = fixed_ends(formula({"x", "y"}, "(x'^2 + y'^2)/2 - 9.81*y"), {0, 0}, {10, 0}, 1.4);
+  const double T = std::sqrt(2 * 10 / 9.81);
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-9, 1e-11}) {
+    const Solution s = Solver().solve(at_energy(thrown, 49.05, 1.4), within(tolerance));
+    if (s.converged()) {
+      EXPECT_LE(s.error_estimate, 10 * tolerance);
+      EXPECT_NEAR(s.duration(), T, 10 * tolerance * T);
+    } else {
+      EXPECT_LT(tolerance, 1e-8);
+      EXPECT_NE(s.message.find("double root"), std::string::npos) << s.message;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -47,6 +47,33 @@ TEST(Deviation, OfWhatBreaksOff) {
 
 using Comparing = Scenes;
 
+/// The path that is zero has no range that errors could be relative to; shooting finds it as well.
+TEST_F(Comparing, ThePathThatIsZero) {
+  const CompareOptions options{.tolerances = {1e-4, 1e-8}, .row_seconds = 0, .progress = nullptr};
+  const Comparison found = compare(
+      study(
+          "[system]\ncoordinates = [\"q\"]\nlagrangian = \"(q'^2 - q^2)/2\"\n[boundary]\nstart = { q = 0 }\n"
+          "end = { q = 0 }\nduration = 1\n"),
+      options);
+  ASSERT_TRUE(found.reference) << found.message;
+  EXPECT_TRUE(found.any());
+  EXPECT_EQ(found.rows.front().error, 0);
+}
+
+TEST_F(Comparing, InfiniteDurationsAreRefused) {
+  const std::string kink =
+      "[system]\ncoordinates = [\"u\"]\nlagrangian = \"u'^2/2 + 1 - cos(u)\"\n[boundary]\nstart = { u = 0 }\n"
+      "end = { u = \"2*pi\" }\nduration = \"infinite\"\n";
+  try {
+    load(write("scene.toml", kink), {}, Purpose::comparison);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_NE(std::string(e.what()).find("scene.toml:7:12: with an infinite duration shooting"),
+              std::string::npos)
+        << e.what();
+  }
+}
+
 TEST_F(Comparing, ErrorsFollowTolerances) {
   CompareOptions options{.tolerances = {1e-4, 1e-8}, .row_seconds = 0, .progress = nullptr};
   int shown = 0;

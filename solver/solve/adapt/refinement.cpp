@@ -303,6 +303,8 @@ Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
          result == Attempt::unreachable && (w_.iteration.extend() || newton.remaining < 0.5 * before);) {
       before = newton.remaining;
       newton = converge_to(aim, false);
+      // Where steps fail that have digits to spare, it is the equations that hide the path.
+      if (!newton.reached && !options_.deadline.passed()) break;
       result = judge(newton, aim, nodes);
     }
     if (result == Attempt::converged && !closes_beside_kinks()) {

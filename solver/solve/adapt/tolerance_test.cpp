@@ -159,6 +159,14 @@ Refinement::Attempt Refinement::judge(const NewtonReport& newton, double aim, co
   // Much movement may have been Newton's, not the elements': from this converged path it is not.
   if (at_nodes > truncation && !nodes.from_converged && path_.degree() < highest_degree)
     return Attempt::refine;
+  // Steps at a double root halve what remains, and end at the root of roundoff.
+  if (outcome_.error > outcome_.tolerance) {
+    outcome_.message = fmt::format(
+        "corrections of {:.1e} of the range remain, beyond the tolerance {:.1e}: the equations are nearly "
+        "singular, as at a double root, of which roundoff leaves half of the digits; loosen it",
+        newton.most_remaining, options_.tolerance);
+    return Attempt::unreachable;
+  }
   outcome_.message = "converged";
   return Attempt::converged;
 }
