@@ -63,11 +63,21 @@ VectorXd Manifold::normal_step(const ConstraintValues& values, const VectorXd& g
   return across * a.completeOrthogonalDecomposition().solve(g);
 }
 
+/// The step of one iteration onto the manifold from q; infinite where gradients vanish or depend on each other
+/// so that none leads nearer, by more than the last digits of q are.
+VectorXd Manifold::step_onto(std::span<const double> q, const ConstraintValues& values) const {
+  const VectorXd step = normal_step(values, values.g);
+  const double left = (values.g - values.slopes * step).norm();
+  const double digits = roundoff * values.slopes.norm() * vector(q).norm();
+  if (left <= std::max(0.5 * values.g.norm(), digits)) return step;
+  return VectorXd::Constant(step.size(), INFINITY);
+}
+
 bool Manifold::project(std::span<double> q, double t) const {
   Eigen::Map<VectorXd> point(q.data(), static_cast<Index>(q.size()));
   ConstraintValues values = at(q, t);
   for (int k = 0; k < most_steps && !values.g.isZero(0); ++k) {
-    const VectorXd from = point, step = normal_step(values, values.g);
+    const VectorXd from = point, step = step_onto(q, values);
     const double length = step.norm(), before = values.g.norm();
     if (!std::isfinite(length)) return false;
     bool nearer = false;
@@ -95,7 +105,7 @@ void Manifold::make_tangent(std::span<const double> q, double t, std::span<doubl
 
 double Manifold::distance(std::span<const double> q, double t) const {
   const ConstraintValues values = at(q, t);
-  return normal_step(values, values.g).norm();
+  return step_onto(q, values).norm();
 }
 
 std::vector<double> Manifold::projected_momentum(std::span<const double> q, double t,

@@ -73,6 +73,7 @@ class Manifold {
 
  private:
   Eigen::VectorXd force(std::span<const double> q, double t, std::span<const double> v) const;
+  Eigen::VectorXd step_onto(std::span<const double> q, const ConstraintValues& values) const;
   Eigen::VectorXd normal_step(const ConstraintValues& values, const Eigen::VectorXd& g) const;
 
   Parts parts_;

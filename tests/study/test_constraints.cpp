@@ -245,6 +245,16 @@ TEST_F(Scenes, ConstraintsThatAreWrong) {
             "p_x is 0.5, and 0 keeps them");
 }
 
+/// At x = 0 the gradient of x² vanishes, though x² = 1 is missed.
+TEST_F(Scenes, AnEndWhereTheGradientOfAConstraintVanishes) {
+  EXPECT_EQ(
+      message("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n"
+              "constraints = [\"x^2 = 1\"]\n[boundary]\nstart = { x = 1, y = 0 }\n"
+              "end = { x = 0, y = 0.5 }\nduration = 1\n"),
+      "scene.toml:7:9: the end does not satisfy the constraint 'x^2 = 1': left − right = -1 there; give "
+      "values that do, or leave out coordinates that follow from the others");
+}
+
 TEST_F(Scenes, ConstraintsThatDependOnEachOther) {
   const auto plane = [&](const std::string& second) {
     return message(

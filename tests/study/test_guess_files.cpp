@@ -94,6 +94,16 @@ TEST_F(Scenes, GuessFromARowOfATable) {
             "scene.toml:11:1: 'orbit' needs 'file': it chooses an orbit of a file");
 }
 
+/// Spreadsheets write a byte order mark in front of UTF-8.
+TEST_F(Scenes, GuessFromATableWithAByteOrderMark) {
+  write("path.csv", "\xEF\xBB\xBFt,x\n0,1\n1,3\n2,5\n");
+  const Study from_file = study(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[boundary]\nstart = { x = 1 }\nend = { x = "
+      "5 }\n"
+      "duration = 2\n[guess]\nfile = \"path.csv\"\n");
+  EXPECT_EQ(guessed(from_file, 0.5, 0), 3);
+}
+
 TEST_F(Scenes, GuessFromAutosSolutions) {
   // Two solutions of x' = v, v' = -x with three parameters of their own and a fourth place for the period.
   const auto solution = [](int label, double period) {

@@ -11,6 +11,9 @@ namespace {
 
 using SourcePointer = std::shared_ptr<const Source>;
 
+/// In front of what spreadsheets save as UTF-8.
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 std::string_view trimmed(std::string_view s) {
   const auto begin = s.find_first_not_of(" \t\r\"");
   if (begin == std::string_view::npos) return {};
@@ -42,6 +45,7 @@ double number_in(const CsvCell& cell) {
 CsvFile read_csv(const SourcePointer& source) {
   CsvFile file;
   std::string_view rest = source->text;
+  if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
   for (int number = 1; !rest.empty(); ++number) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = rest.substr(0, end);
