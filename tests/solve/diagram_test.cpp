@@ -91,6 +91,27 @@ TEST(Diagram, BuckledRods) {
   EXPECT_LT(start_of(found.of(1).front()).v[0] * start_of(found.of(2).front()).v[0], 0);
 }
 
+/// A pendulum at rest for ever longer times, whose energy closes no equations: swings from the bottom to the
+/// bottom in a half period, or two, begin at T = π and 2π. Those of energy E last 2m K(k), k² = (1 + E)/2.
+TEST(Diagram, RestOverTheDuration) {
+  const Problem rest =
+      fixed_ends(trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + cos(q[0]); }), {0}, {0}, 1);
+  const Followed found = follow_branches({rest, Varied::duration, 1, 8}, 1e-10, 40);
+  const std::vector<double> branches = found.values(PointKind::branch);
+  ASSERT_EQ(branches.size(), 2u);
+  EXPECT_NEAR(branches[0], pi, 1e-9);
+  EXPECT_NEAR(branches[1], 2 * pi, 1e-9);
+  EXPECT_EQ(found.of(0).front().solution.morse_index, 0);
+  EXPECT_EQ(found.of(0).back().solution.morse_index, 2);
+  ASSERT_EQ(found.branches.size(), 5u);
+  for (int branch = 1; branch < 5; ++branch)
+    for (const BranchPoint& point : found.of(branch)) {
+      const double k = std::sqrt((1 + *point.solution.energy) / 2);
+      EXPECT_NEAR(point.solution.duration(), (branch > 2 ? 4 : 2) * std::comp_ellint_1(k), 1e-7);
+      EXPECT_NEAR(point.parameter, point.solution.duration(), 1e-12);
+    }
+}
+
 /// A load across the rod, without a symmetry: branches pass near each other where they crossed, and none
 /// meet.
 TEST(Diagram, RodsUnderASmallLoadDoNotBranch) {

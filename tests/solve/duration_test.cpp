@@ -120,7 +120,9 @@ TEST(FreeDuration, PendulumReleasedWhereItShould) {
 /// At the energy of the largest range R a throw at 45° is the only one, T = √(2R/g): the energy is least in T
 /// there, a double root. It is found within the tolerance, or refused.
 TEST(FreeDuration, DoubleRootAtTheLargestRange) {
-  Problem thrown = fixed_ends(formula({"x", "y"}, "(x'^2 + y'^2)/2 - 9.81*y"), {0, 0}, {10, 0}, 1.4);
+  const Problem thrown =
+      fixed_ends(trace(2, [](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1]) / 2 - 9.81 * q[1]; }),
+                 {0, 0}, {10, 0}, 1.4);
   const double T = std::sqrt(2 * 10 / 9.81);
   for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-9, 1e-11}) {
     const Solution s = Solver().solve(at_energy(thrown, 49.05, 1.4), within(tolerance));

@@ -222,7 +222,8 @@ bool Continuation::begin_beside(const Path& path, double at_rest) {
 }
 
 bool Continuation::end_at_first() {
-  if (!first_point_)
+  singular_at_first_ = !first_point_;
+  if (singular_at_first_)
     return stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
   add(*std::exchange(first_point_, std::nullopt));
   return stop(

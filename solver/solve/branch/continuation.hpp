@@ -48,6 +48,8 @@ class Continuation {
   const std::optional<BranchStart>& start() const { return last_.start; }
 
   BranchEnd end() const { return end_; }
+  /// Whether there is an extremal to begin with, but the equations are singular there.
+  bool singular_at_first() const { return singular_at_first_; }
   /// Why it ended, with numbers.
   const std::string& message() const { return message_; }
   /// Largest |∂S/∂s − (−E ∂T/∂s + ∂S/∂p ∂p/∂s)| so far, relative to |S| or |E T| by the length of the path:
@@ -85,7 +87,7 @@ class Continuation {
   BranchState from_, to_;  ///< of the last step, whose memory the next one uses
   double length_ = 0, longest_ = 0;
   int count_ = 0, steps_ = 0;
-  bool started_ = false;
+  bool started_ = false, singular_at_first_ = false;
   double worst_action_slope_ = 0, worst_momentum_ = 0;
   std::deque<FoundPoint> found_;
   FoundPoint last_;

@@ -37,7 +37,8 @@ Problem lasting(const Problem& problem, double duration) {
   return result;
 }
 
-/// The family of a problem with forces, its duration a parameter like others.
+/// The family with its duration a parameter like others: for forces, and where the energy is that of rest at
+/// all durations, so that it closes no equations.
 ProblemFamily by_parameter(ProblemFamily family) {
   if (family.varied != Varied::duration) return family;
   family.varied = Varied::parameter;
@@ -79,6 +80,11 @@ Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
 
 bool Diagram::advance() {
   while (!current_->advance()) {
+    if (count_ == 0 && current_->singular_at_first() && family_.varied == Varied::duration) {
+      family_ = by_parameter(std::move(family_));
+      current_.emplace(family_, options_);
+      continue;
+    }
     note();
     if (!begin_next()) return false;
   }
