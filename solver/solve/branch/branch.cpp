@@ -8,7 +8,6 @@
 #include "action/energies.hpp"
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
-#include "solve/branch/motion_sign.hpp"
 #include "solve/newton/agreement.hpp"
 #include "solve/newton/ends.hpp"
 
@@ -307,34 +306,6 @@ double Branch::change(bool along) const {
   return along ? direction.parameter : correction.parameter;
 }
 
-/// Where the duration hardly changes along the extremals of all durations, as that of isochronous orbits, the
-/// second variation with T held is nearly singular, and that by T as well is not.
-bool Branch::told_by_energy() const { return std::abs(free_.energy) > std::abs(free_.duration); }
-
-const Inertia& Branch::inertia_with_duration() const {
-  if (!with_duration_)
-    with_duration_ = w_.iteration.model().inertia(errors_.null, VariedBy::path_and_duration);
-  return *with_duration_;
-}
-
-/// With K the second variation, T held, and B that by T as well, det K = (B⁻¹)_TT det B, and (B⁻¹)_TT is
-/// −∂T/∂E: where it is zero, K has a null direction.
-const Inertia& Branch::inertia() const {
-  if (problem_.paired) inertia_ = Inertia{};
-  if (inertia_) return *inertia_;
-  if (!told_by_energy()) return inertia_.emplace(w_.iteration.model().inertia(errors_.null));
-  Inertia found = inertia_with_duration();
-  const double by_energy = free_.duration / free_.energy;
-  if (std::abs(free_.duration) <= std::max(errors_.path, zero_eigenvalue)) {
-    --found.negative;
-    --found.positive;
-    ++found.zero;
-  } else {
-    --(by_energy > 0 ? found.negative : found.positive);
-  }
-  return inertia_.emplace(found);
-}
-
 double Branch::varied_unit() const {
   switch (family_.varied) {
     case Varied::energy:
@@ -366,21 +337,6 @@ void Branch::respond(const Move& onward, Move& response) {
   if (problem_.paired) make_agree(response.step, problem_.coordinates());
   response.parameter = by_duration() ? std::exchange(response.step.duration, 0) : 0;
   response.add(direction, -dot(onward, response) / dot(onward, direction));
-}
-
-int Branch::orientation(double onward) const {
-  if (problem_.paired) {
-    ClosingEquation equation;
-    const int sign = motion_sign(problem_, w_.iteration.action(), *tables_, path_,
-                                 closing_equation(problem_, path_, equation));
-    return sign == 0 || (sign < 0) == (onward * direction.parameter < 0) ? 1 : -1;
-  }
-  // det (K b; r 0) is det K ∂T/∂r, and det B −∂E/∂r, r the row that closes the duration.
-  const bool by_energy = told_by_energy();
-  const int count = by_energy ? inertia_with_duration().negative : inertia().negative;
-  const double closing = by_energy ? -free_.energy : free_.duration;
-  const double along = by_duration() ? 1 : direction.parameter;
-  return (count % 2 != 0) != (onward * along * closing < 0) ? -1 : 1;
 }
 
 /// Of node k in the mean over τ.
