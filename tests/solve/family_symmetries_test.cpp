@@ -62,6 +62,12 @@ TEST(FamilySymmetries, ATranslationOfTheFirstMember) {
     std::ranges::sort(found);
     ASSERT_EQ(found.size(), expected.size()) << from;
     for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-9);
+    for (const BranchPoint& point : points) {
+      if (point.kind != PointKind::branch || !inside(point.parameter)) continue;
+      const bool first = std::abs(point.parameter) < 1;
+      EXPECT_EQ(point.solution.morse_index, first ? 0 : 1) << from;
+      EXPECT_EQ(point.solution.nullity, first ? 2 : 3) << from;
+    }
   }
 }
 

@@ -214,6 +214,14 @@ Located find_branch_point(Tracker& tracker, const ProblemFamily& family, const B
   return {at, side.singular};
 }
 
+/// Eigenvalues that pass zero at a branch point are null there, however far off it is located.
+void count_null_directions(Solution& at, const BranchState& before, const BranchState& after) {
+  if (!at.morse_index || !at.nullity) return;
+  const int passed = std::abs(after.index - before.index);
+  at.nullity = std::max(*at.nullity, std::min(before.nullity, after.nullity) + passed);
+  at.morse_index = std::min({*at.morse_index, before.index, after.index});
+}
+
 /// Points between low, where the branch is as `before`, and high, where it is as `after`; to the last of them
 /// both move. False where the search is at its end.
 bool find_between(Tracker& tracker, const EventSearch& search, const BranchState& from, BranchState& before,
@@ -241,12 +249,14 @@ bool find_between(Tracker& tracker, const EventSearch& search, const BranchState
       found.leaps = true;
       return false;
     }
-    if (!of_squares_alone(tracker, point.singular.front()))
+    const bool crosses = !of_squares_alone(tracker, point.singular.front());
+    if (crosses)
       found.events.push_back(
           {first.at,
            {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at)}});
     low = first.at + beyond_it * high;
     if (!(low < high) || !tracker.reach(from, low, true)) return false;
+    if (crosses) count_null_directions(found.events.back().found.point.solution, before, tracker.state);
     before = tracker.state;
   }
   return true;

@@ -145,6 +145,7 @@ bool Tracker::update_tangent(bool first) {
   state.energy_time = std::abs(branch_.energy() * path_.duration());
   state.orientation = branch_.orientation(onward);
   state.index = branch_.inertia().negative;
+  state.nullity = branch_.inertia().zero;
   state.crossing = crossing_test();
   return true;
 }
