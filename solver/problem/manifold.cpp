@@ -63,8 +63,8 @@ VectorXd Manifold::normal_step(const ConstraintValues& values, const VectorXd& g
   return across * a.completeOrthogonalDecomposition().solve(g);
 }
 
-/// The step of one iteration onto the manifold from q; infinite where gradients vanish or depend on each other
-/// so that none leads nearer, by more than the last digits of q are.
+/// The step of one iteration onto the manifold from q; infinite where gradients vanish or depend on each
+/// other so that none leads nearer, by more than the last digits of q are.
 VectorXd Manifold::step_onto(std::span<const double> q, const ConstraintValues& values) const {
   const VectorXd step = normal_step(values, values.g);
   const double left = (values.g - values.slopes * step).norm();

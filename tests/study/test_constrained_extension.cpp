@@ -230,7 +230,9 @@ TEST_F(Scenes, ConditionsAndIntegralsThatFollowFromOthersAreRefusedByName) {
       message(plane +
               "start = { x = 0, y = 0 }\nend = { x = 1, y = 0 }\nintegrals = [\"x = 1\", \"y = 1\", "
               "\"2*x - 3*y = 1\"]\n");
-  EXPECT_NE(integrals.find("the ends and the integrals before it determine the integral '2*x - 3*y = 1'"), std::string::npos) << integrals;
+  EXPECT_NE(integrals.find("the ends and the integrals before it determine the integral '2*x - 3*y = 1'"),
+            std::string::npos)
+      << integrals;
   EXPECT_EQ(message(plane + "conditions = [\"x(0) = 0\", \"y(0) = 0\", \"x(T)^2 + y(T)^2 = 4\", "
                             "\"x(T)*y(T) = 1\"]\n"),
             "");

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "problem/manifold.hpp"
 #include "scenes.hpp"
@@ -198,6 +199,23 @@ TEST_F(Scenes, FamiliesOfConstrainedOrbits) {
   ASSERT_TRUE(last.floquet);
   EXPECT_EQ(last.floquet->multipliers.size(), 2u);
   EXPECT_NEAR(std::hypot(last.trajectory.nodes[0], last.trajectory.nodes[1]), 1.5, 1e-14);
+}
+
+/// Hanging at rest there are no momenta, but forces that cancel. With both ends held there in a time of 2 the
+/// second variation is singular where √(g/l)·2 = π.
+TEST_F(Scenes, BranchPointsOfAConstrainedBodyAtRest) {
+  const FollowedBranch found =
+      follow(study("[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { g = 2.0 }\n"
+                   "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\nconstraints = [\"x^2 + y^2 = 1\"]\n"
+                   "[boundary]\nstart = { x = 0, y = -1 }\nend = { x = 0, y = -1 }\nduration = 2\n"
+                   "[continuation]\nparameter = \"g\"\nto = 3\npoints = 20\n"));
+  std::vector<double> branches;
+  for (const BranchPoint& point : found.points)
+    if (point.kind == PointKind::branch) branches.push_back(point.parameter);
+  ASSERT_EQ(branches.size(), 1u);
+  EXPECT_NEAR(branches[0], std::numbers::pi * std::numbers::pi / 4, 1e-8);
+  EXPECT_EQ(found.points.back().parameter, 3);
+  EXPECT_EQ(found.points.back().solution.morse_index, 1);
 }
 
 TEST_F(Scenes, NodesOfASchemeAreOnTheManifold) {

@@ -13,6 +13,7 @@
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/mesh/levels.hpp"
+#include "solve/newton/ends.hpp"
 
 namespace extremal {
 

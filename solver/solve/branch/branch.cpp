@@ -8,8 +8,10 @@
 #include "action/energies.hpp"
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 #include "solve/newton/agreement.hpp"
 #include "solve/newton/ends.hpp"
+#include "solve/newton/residual_test.hpp"
 
 namespace extremal {
 
@@ -155,7 +157,9 @@ void Branch::note_action() {
   const DiscreteAction& action = w_.iteration.action();
   action_ = action.action();
   energy_ = -action.slope_duration();
-  residual_ = action.residual() > 0 ? action.residual() / action.momentum_scale() : 0;
+  // At rest there are no momenta, but forces that cancel leave roundoff.
+  const double roundoff = force_roundoff * w_.iteration.stiffness() * size_at_start(path_);
+  residual_ = action.residual() > roundoff ? action.residual() / action.momentum_scale() : 0;
   momenta_.assign(action.start_gradient().begin(), action.start_gradient().end());
   for (double& p : momenta_) p = -p;
   momenta_.insert(momenta_.end(), action.end_gradient().begin(), action.end_gradient().end());
