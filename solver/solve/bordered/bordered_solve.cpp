@@ -6,18 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "solve/bordered/bordered_judge.hpp"
 #include "solve/bordered/bordered_newton.hpp"
 #include "solve/bordered/limits.hpp"
-#include "solve/guess/first_path.hpp"
-#include "solve/guess/starting_ends.hpp"
+#include "solve/bordered/starting_states.hpp"
 #include "solve/mesh/levels.hpp"
 #include "solve/mesh/resolution.hpp"
-#include "solve/newton/ends.hpp"
 
 namespace extremal {
 
@@ -26,23 +23,6 @@ using namespace limits::bordered;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// A starting path: the guess, perhaps bent; and whether the integrals and conditions that it has are led to
-/// those that are given.
-struct Start {
-  double size = 0;  ///< of the waves, by the extent; 0: the guess itself
-  int first = 1, last = 3;
-  unsigned seed = 0;
-  bool led = false;
-
-  const char* strategy() const {
-    if (size == 0)
-      return led ? "newton from the guess, integrals and conditions led to what is given"
-                 : "newton from the guess";
-    return led ? "newton from the guess with waves added, integrals and conditions led to what is given"
-               : "newton from the guess with waves added";
-  }
-};
 
 /// A state, and where it came from.
 struct Found {
@@ -57,15 +37,14 @@ struct Failure {
   Status status = Status::not_converged;
 };
 
-/// Elements of one degree for the Lagrangian of all coordinates and that of the path.
-struct Elements {
-  const ElementTables *tables, *own;
-};
-
 class BorderedSolve {
  public:
   BorderedSolve(const Problem& problem, const SolveOptions& options)
-      : problem_(problem), extension_(*problem.extension), options_(options), n_(problem.coordinates()) {
+      : problem_(problem),
+        extension_(*problem.extension),
+        options_(options),
+        n_(problem.coordinates()),
+        starts_(problem) {
     levels_.bind(extension_.lagrangian);
     own_levels_.bind(problem.lagrangian);
     if (options.scheme) {
@@ -73,9 +52,6 @@ class BorderedSolve {
       scheme_.bind(*rule_, *extension_.lagrangian);
       own_scheme_.bind(*rule_, *problem.lagrangian);
     }
-    for (const WaypointCondition& w : extension_.waypoints)
-      times_.push_back(w.free ? w.time * problem.duration.value : w.time);
-    times_.push_back(problem.duration.value);
   }
 
   using Same = std::function<bool(const Solution&, const Solution&)>;
@@ -145,7 +121,7 @@ class BorderedSolve {
   /// Bends of the guess to both sides, that of less action first.
   void add_bent(std::vector<Start>& all) {
     const Elements elements = lobatto(first_degree);
-    const LegMesh mesh = equal_elements(first_elements * static_cast<int>(times_.size()));
+    const LegMesh mesh = starts_.equal_elements(first_elements * starts_.legs());
     for (const BendRow& row : bends)
       for (int seed = 0; seed < row.seeds; ++seed) {
         Start one{row.size, row.first, row.last, static_cast<unsigned>(seed)}, other = one;
@@ -163,113 +139,11 @@ class BorderedSolve {
   /// Of L alone; infinite where it is not finite.
   double action_of(const LegMesh& mesh, const Elements& elements, const Start& start) {
     equations_.reset(problem_, *elements.tables, *elements.own, mesh);
-    const bool finite = equations_.evaluate(first_state(mesh, elements, start), false);
+    const bool finite = equations_.evaluate(starts_.at(mesh, elements, start), false);
     return finite ? equations_.action().action() : INFINITY;
   }
 
   Elements lobatto(int degree) { return {&levels_.at(degree), &own_levels_.at(degree)}; }
-
-  /// Elements of each leg, in proportion to its duration.
-  LegMesh equal_elements(int elements) const {
-    LegMesh mesh;
-    mesh.first.push_back(0);
-    const int legs = static_cast<int>(times_.size());
-    for (int l = 0; l < legs; ++l) {
-      const double share = (times_[l] - (l > 0 ? times_[l - 1] : 0)) / times_.back();
-      const int left = elements - mesh.first.back() - (legs - l - 1);
-      const int count =
-          l + 1 == legs ? std::max(1, left)
-                        : std::clamp(static_cast<int>(std::lround(share * elements)), 1, std::max(1, left));
-      for (int k = 0; k < count; ++k) mesh.parts.push_back(1.0 / count);
-      mesh.first.push_back(mesh.first.back() + count);
-    }
-    return mesh;
-  }
-
-  /// The values at waypoints that are given.
-  void set_waypoints(BorderedState& state) const {
-    for (std::size_t w = 0; w < extension_.waypoints.size(); ++w)
-      for (const auto& [a, value] : extension_.waypoints[w].fixed)
-        state.path.set_node(state.mesh.first[w + 1], a, value);
-    state.path.load_ends();
-  }
-
-  /// By how much the ends of a bent start are moved, where nonlinear conditions hold between them: at those
-  /// of the guess their gradients may vanish.
-  std::vector<double> moved_ends(double size, const std::vector<double>& extent, Noise& noise) const {
-    std::vector<double> moved(2 * static_cast<std::size_t>(n_));
-    if (extension_.conditions.empty()) return moved;
-    std::vector<double> free(problem_.ends.free);
-    for (int f = 0; f < problem_.ends.free; ++f)
-      free[f] = size * extent[problem_.ends.home[f] % n_] * noise();
-    for (const Triplet& z : problem_.ends.z) moved[z.row] += z.value * free[z.column];
-    return moved;
-  }
-
-  /// Adds waves, and moves ends that are free; closed paths stay closed.
-  void bend(const Start& start, const ElementTables& tables, Path& path) const {
-    if (start.size == 0) return;
-    if (problem_.periodic) return bend_path(problem_, {start.size, start.seed, start.last}, tables, path);
-    const std::vector<double> extent = extents(path, negligible_extent[start.seed % 2]);
-    Noise noise(start.seed);
-    std::vector<double> amplitude(static_cast<std::size_t>(start.last + 1) * n_);
-    for (double& c : amplitude) c = start.size * noise();
-    // One wave of one coordinate has the size that is asked for.
-    if (start.first == start.last && n_ == 1) std::ranges::fill(amplitude, start.size);
-    const std::vector<double> moved = moved_ends(start.size, extent, noise);
-    std::vector<double> ends = ends_of(path);
-    for (std::size_t e = 0; e < ends.size(); ++e) ends[e] += moved[e];
-    fill_path(ends, tables, path, [&](double tau, double* point) {
-      for (int a = 0; a < n_; ++a) {
-        point[a] += (1 - tau) * moved[a] + tau * moved[n_ + a];
-        for (int m = start.first; m <= start.last; ++m)
-          point[a] += extent[a] / m * amplitude[static_cast<std::size_t>(m) * n_ + a] *
-                      std::sin(m * std::numbers::pi * tau);
-      }
-    });
-  }
-
-  /// The path is moved through the waypoints: by as much as it misses them, in proportion between them.
-  void lead_through_waypoints(const ElementTables& tables, Path& path) const {
-    if (extension_.waypoints.empty()) return;
-    const Trajectory before = trajectory_of(path);
-    std::vector<std::vector<double>> tau(n_, {0.0}), missed(n_, {0.0});
-    std::vector<double> q(n_), v(n_);
-    for (std::size_t w = 0; w < extension_.waypoints.size(); ++w) {
-      before.at(times_[w], q, v);
-      for (const auto& [a, value] : extension_.waypoints[w].fixed) {
-        tau[a].push_back(times_[w] / times_.back());
-        missed[a].push_back(value - q[a]);
-      }
-    }
-    for (int a = 0; a < n_; ++a) {
-      tau[a].push_back(1);
-      missed[a].push_back(0);
-    }
-    fill_path(ends_of(path), tables, path, [&](double t, double* point) {
-      for (int a = 0; a < n_; ++a) {
-        const auto after = std::min(std::ranges::upper_bound(tau[a], t), tau[a].end() - 1);
-        const auto k = static_cast<std::size_t>(after - tau[a].begin());
-        const double part = (t - tau[a][k - 1]) / (tau[a][k] - tau[a][k - 1]);
-        point[a] += missed[a][k - 1] + part * (missed[a][k] - missed[a][k - 1]);
-      }
-    });
-  }
-
-  BorderedState first_state(const LegMesh& mesh, const Elements& elements, const Start& start) const {
-    BorderedState state{{}, mesh, times_, std::vector<double>(extension_.conditions.size())};
-    const std::vector<double> lengths = element_lengths(mesh, times_);
-    Path path;
-    path.reset(*elements.own, mesh_nodes(lengths), times_.back(), lengths);
-    start_path(problem_, starting_ends(problem_), *elements.own, path);
-    bend(start, *elements.own, path);
-    lead_through_waypoints(*elements.own, path);
-    std::vector<double> constants = extension_.guess;
-    constants.resize(extension_.constants(), 0);
-    with_constants(path, *elements.tables, constants, state.path);
-    set_waypoints(state);
-    return state;
-  }
 
   bool newton(Found& found, Failure& failure) {
     equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
@@ -331,7 +205,7 @@ class BorderedSolve {
     path.resample_from(old, *elements.own, mesh_nodes(lengths));
     with_constants(path, *elements.tables, found.state.constants(n_), to.state.path);
     move_exactly(to.state, *elements.tables);
-    set_waypoints(to.state);
+    starts_.set_waypoints(to.state);
     return to;
   }
 
@@ -372,11 +246,11 @@ class BorderedSolve {
 
   /// Elements that resolve the starting path.
   LegMesh first_mesh(const Elements& elements, const Start& start) {
-    const int legs = static_cast<int>(times_.size());
+    const int legs = starts_.legs();
     const int most = start.size == 0 ? most_first_elements : most_bent_elements;
     for (int count = std::max(first_elements, 2 * legs);; count *= 2) {
-      const LegMesh mesh = equal_elements(count);
-      Found found{first_state(mesh, elements, start), elements.tables, elements.own};
+      const LegMesh mesh = starts_.equal_elements(count);
+      Found found{starts_.at(mesh, elements, start), elements.tables, elements.own};
       if (count >= most || errors(found).q <= guess_error * sizes(found).q) return mesh;
     }
   }
@@ -428,7 +302,7 @@ class BorderedSolve {
   }
 
   Found begin(const LegMesh& mesh, const Elements& elements, const Start& start) {
-    Found found{first_state(mesh, elements, start), elements.tables, elements.own};
+    Found found{starts_.at(mesh, elements, start), elements.tables, elements.own};
     equations_.reset(problem_, *elements.tables, *elements.own, mesh);
     estimate_multipliers(equations_, found.state, problem_);
     first_size_ = path_size(found.state.path, n_);
@@ -511,9 +385,9 @@ class BorderedSolve {
   /// Equal elements of the scheme that is asked for: so many, or doubled until the tolerance is met.
   Solution solve_with_scheme(const Start& start) {
     const Elements elements{&scheme_, &own_scheme_};
-    const int legs = static_cast<int>(times_.size());
+    const int legs = starts_.legs();
     const bool pinned = options_.elements > 0;
-    const LegMesh mesh = equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
+    const LegMesh mesh = starts_.equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
     Found found = begin(mesh, elements, start);
     Failure failure;
     if (!reach(found, start, failure)) return failed(failure);
@@ -542,7 +416,7 @@ class BorderedSolve {
   Levels levels_, own_levels_;
   std::optional<SchemeTables> rule_;
   ElementTables scheme_, own_scheme_;
-  std::vector<double> times_;  ///< of the waypoints, then T: guesses where free
+  StartingStates starts_;
   BorderedEquations equations_;
   Resolution resolution_;
   int iterations_ = 0;
