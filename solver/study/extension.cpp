@@ -3,101 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <iterator>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
-#include "scene/schema.hpp"
 #include "study/constrained_extension.hpp"
+#include "study/integrals.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
 #include "study/polyline.hpp"
+#include "study/unknown_constants.hpp"
+#include "study/waypoints.hpp"
 
 namespace extremal {
 namespace {
-
-using Dependents = std::set<std::string>;
-
-bool any_of(const std::set<std::string>& names, const Dependents& dependents) {
-  return std::ranges::any_of(names, [&](const std::string& name) { return dependents.contains(name); });
-}
-
-const std::string* formula_of(const Quantity& quantity) { return std::get_if<std::string>(&quantity.value); }
-
-/// The unknowns, and the parameters and definitions that are made of them.
-Dependents dependents_of(const Scene& scene) {
-  Dependents found;
-  for (const Assignment& unknown : scene.boundary.unknowns) found.insert(unknown.name);
-  for (std::size_t before = 0; before != found.size();) {
-    before = found.size();
-    for (const Definition& d : scene.system.definitions)
-      if (any_of(names_in(d.formula.value), found)) found.insert(d.name);
-    for (const Assignment& p : scene.system.parameters)
-      for (const Quantity& q : p.values)
-        if (formula_of(q) && any_of(names_in(*formula_of(q)), found)) found.insert(p.name);
-  }
-  return found;
-}
-
-/// Those that are the same at all times: no coordinate, velocity or time is in them.
-Dependents constants_of(const Scene& scene, const Dependents& dependents) {
-  std::set<std::string> varying{"t"};
-  for (const Text& c : scene.system.coordinates) varying.insert(c.value.substr(0, c.value.find('[')));
-  for (std::size_t before = 0; before != varying.size();) {
-    before = varying.size();
-    for (const Definition& d : scene.system.definitions)
-      if (any_of(names_in(d.formula.value), varying)) varying.insert(d.name);
-  }
-  Dependents constants;
-  std::ranges::set_difference(dependents, varying, std::inserter(constants, constants.end()));
-  return constants;
-}
-
-bool starts_name(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
-bool in_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
-/// A condition with each of `constants` as an end value, k(0): they are coordinates of the extended system.
-struct Rewritten {
-  std::string text;
-  std::vector<std::size_t> added;  ///< where "(0)" was added, in `text`
-
-  std::size_t original(std::size_t offset) const {
-    std::size_t before = 0;
-    for (const std::size_t place : added)
-      if (place < offset) before += std::min<std::size_t>(3, offset - place);
-    return offset - before;
-  }
-};
-
-Rewritten rewritten(const std::string& text, const Dependents& constants) {
-  Rewritten result;
-  for (std::size_t i = 0; i < text.size();) {
-    if (!starts_name(text[i])) {
-      // Digits and the letters of an exponent are no names.
-      std::size_t end = i + 1;
-      if (std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.')
-        while (end < text.size() && (in_name(text[end]) || text[end] == '.')) ++end;
-      result.text += text.substr(i, end - i);
-      i = end;
-      continue;
-    }
-    std::size_t end = i;
-    while (end < text.size() && in_name(text[end])) ++end;
-    const std::string name = text.substr(i, end - i);
-    const std::size_t next = text.find_first_not_of(' ', end);
-    result.text += name;
-    if (constants.contains(name) && !(next != std::string::npos && text[next] == '(')) {
-      result.added.push_back(result.text.size());
-      result.text += "(0)";
-    }
-    i = end;
-  }
-  return result;
-}
 
 /// Of the points that stand for the ends where there are constraints.
 EndCondition condition(const Text& text, const System& host, const Dependents& constants, const char* where,
@@ -112,45 +33,6 @@ EndCondition condition(const Text& text, const System& host, const Dependents& c
   }
 }
 
-/// "g = c".
-struct Integral {
-  Text integrand;
-  std::string value;
-  std::size_t value_offset;
-};
-
-Integral integral_of(const Text& text) {
-  const std::size_t equals = text.value.find('=');
-  if (equals == std::string::npos || text.value.find('=', equals + 1) != std::string::npos)
-    throw SceneError(position(text, 0),
-                     "an integral is an equation: the integrand on the left, its integral from 0 to T on the "
-                     "right, as in \"sqrt(1 + y'^2) = 4\"");
-  return {{text.value.substr(0, equals), text.at}, text.value.substr(equals + 1), equals + 1};
-}
-
-double value_of(const Text& text, const System& system) {
-  const Integral integral = integral_of(text);
-  try {
-    const double value = number(integral.value, system, "integrals");
-    if (std::isfinite(value)) return value;
-  } catch (const FormulaError& e) {
-    if (e.where.starts_with("definitions.")) throw;
-    throw SceneError(position(text, integral.value_offset + e.offset),
-                     fmt::format("{}; the right side of an integral is a number", e.what()));
-  }
-  throw SceneError(position(text, integral.value_offset), "the value of the integral is not finite");
-}
-
-/// Each integrand alone as a Lagrangian, so that its errors are found at their places.
-void check_integrands(const Scene& scene) {
-  for (const Text& text : scene.boundary.integrals) {
-    SystemTable table = scene.system;
-    table.lagrangian = integral_of(text).integrand;
-    table.force.clear();
-    make_system(table);
-  }
-}
-
 std::string unused_name(const std::string& stem, const SystemTable& table) {
   std::set<std::string> taken;
   for (const Text& c : table.coordinates) taken.insert(c.value.substr(0, c.value.find('[')));
@@ -159,16 +41,6 @@ std::string unused_name(const std::string& stem, const SystemTable& table) {
   std::string name = stem;
   while (taken.contains(name)) name += "_";
   return name;
-}
-
-/// L + Σ ν g with ν as the texts given.
-Text law_with(const Scene& scene, const std::vector<std::string>& multipliers) {
-  Text law = *scene.system.lagrangian;
-  law.value = "(" + law.value + ")";
-  for (std::size_t j = 0; j < multipliers.size(); ++j)
-    law.value +=
-        fmt::format(" + ({})*({})", multipliers[j], integral_of(scene.boundary.integrals[j]).integrand.value);
-  return law;
 }
 
 /// The system whose coordinates are those of the path, the unknowns and the multipliers.
@@ -183,7 +55,7 @@ SystemTable extended_table(const Scene& scene, const Dependents& dependents) {
       throw SceneError(p.name_at, fmt::format("the list '{}' depends on an unknown; write its elements as "
                                               "definitions",
                                               p.name));
-    table.definitions.push_back({p.name, p.name_at, {*formula_of(p.values.front()), p.values.front().at}});
+    table.definitions.push_back({p.name, p.name_at, {*as_formula(p.values.front()), p.values.front().at}});
     return true;
   });
   for (const Assignment& unknown : scene.boundary.unknowns)
@@ -258,7 +130,7 @@ void split_end(const char* place, const Dependents& dependents, std::vector<Assi
                std::vector<Text>& conditions) {
   std::erase_if(entries, [&](const Assignment& a) {
     const auto depends = [&](const Quantity& q) {
-      return formula_of(q) && any_of(names_in(*formula_of(q)), dependents);
+      return as_formula(q) && any_of(names_in(*as_formula(q)), dependents);
     };
     if (!std::ranges::any_of(a.values, depends)) return false;
     if (a.list || a.name.starts_with("p_"))
@@ -266,70 +138,12 @@ void split_end(const char* place, const Dependents& dependents, std::vector<Assi
                        fmt::format("'{}' depends on an unknown, which only single coordinates may; write "
                                    "an entry for each, or 'conditions'",
                                    a.name));
-    conditions.push_back({fmt::format("{}({}) = {}", a.name, place, *formula_of(a.values.front())), a.at});
+    conditions.push_back({fmt::format("{}({}) = {}", a.name, place, *as_formula(a.values.front())), a.at});
     return true;
   });
 }
 
-WaypointCondition read_waypoint(const WaypointTable& table, const System& system) {
-  WaypointCondition waypoint;
-  waypoint.free = table.free;
-  if (!table.free) waypoint.time = evaluate(table.time, system);
-  std::vector<char> fixed(system.names.size());
-  for (const Assignment& a : table.values)
-    for_each_value(a, range_of(a.name, a.name_at, system, keys_of("waypoints")),
-                   [&](int coordinate, const Quantity& value, int index) {
-                     if (std::exchange(fixed[coordinate], 1))
-                       throw SceneError(a.name_at, fmt::format("'{}' is given by its whole array already",
-                                                               system.names[coordinate]));
-                     waypoint.fixed.emplace_back(coordinate, evaluate(value, system, index));
-                   });
-  std::ranges::sort(waypoint.fixed);
-  return waypoint;
-}
-
-std::vector<WaypointCondition> read_waypoints(const Scene& scene, const System& system,
-                                              const Problem& problem) {
-  std::vector<WaypointCondition> waypoints;
-  double last = 0;
-  for (const WaypointTable& table : scene.waypoints) {
-    WaypointCondition& waypoint = waypoints.emplace_back(read_waypoint(table, system));
-    if (waypoint.free) {
-      if (!problem.lagrangian->structure().autonomous)
-        throw SceneError(table.time.at, "at = \"free\" needs a Lagrangian that does not depend on t");
-      continue;
-    }
-    const double duration = problem.duration.value;
-    if (!(waypoint.time > 0 && waypoint.time < duration))
-      throw SceneError(table.time.at,
-                       fmt::format("at = {}; a waypoint lies between 0 and T = {}", waypoint.time, duration));
-    if (!(waypoint.time > last))
-      throw SceneError(table.time.at, fmt::format("at = {} is not after the waypoint before, at {}; write "
-                                                  "waypoints in order of their times",
-                                                  waypoint.time, last));
-    last = waypoint.time;
-  }
-  return waypoints;
-}
-
 }  // namespace
-
-Scene with_unknowns(Scene scene) {
-  for (const Assignment& unknown : scene.boundary.unknowns) {
-    if (unknown.list)
-      throw SceneError(unknown.at, fmt::format("'{}' must be one number, the guess", unknown.name));
-    const auto same = [&](const Assignment& p) { return p.name == unknown.name; };
-    const auto known = std::ranges::find_if(scene.system.parameters, same);
-    if (known == scene.system.parameters.end())
-      scene.system.parameters.push_back(unknown);
-    else if (known->list)
-      throw SceneError(unknown.name_at,
-                       fmt::format("'{}' is a list; an unknown must be one number", unknown.name));
-    else
-      known->values = unknown.values;
-  }
-  return scene;
-}
 
 ExtendedScene split(const Scene& scene, const System& system) {
   ExtendedScene parts;
@@ -353,7 +167,7 @@ ExtendedScene split(const Scene& scene, const System& system) {
   parts.linear.where.reset();
   const Quantity& duration = scene.boundary.duration;
   const auto refuse = [&](const Quantity& q, const char* name) {
-    if (formula_of(q) && any_of(names_in(*formula_of(q)), dependents))
+    if (as_formula(q) && any_of(names_in(*as_formula(q)), dependents))
       throw SceneError(q.at, fmt::format("{} depends on an unknown; it must be a number{}", name,
                                          &q == &duration ? ", or \"free\" with one more condition" : ""));
   };
@@ -446,7 +260,8 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
     extension->names.push_back(unknown.name);
     extension->guess.push_back(std::get<double>(unknown.values.front().value));
   }
-  for (const Text& text : scene.boundary.integrals) extension->integrals.push_back(value_of(text, system));
+  for (const Text& text : scene.boundary.integrals)
+    extension->integrals.push_back(value_of_integral(text, scene, system));
   for (const Text& text : parts.conditions)
     extension->conditions.push_back(condition(text, host, constants, "conditions", ends));
   for (const Text& text : parts.where)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -13,9 +12,6 @@
 /// \file Unknown constants, integrals, nonlinear conditions and waypoints of a scene.
 
 namespace extremal {
-
-/// The scene with its unknowns as parameters, which have the values of their guesses.
-Scene with_unknowns(Scene scene);
 
 /// What a scene asks for beside its path, and what is left of [boundary]: a linear relation between numbers.
 struct ExtendedScene {

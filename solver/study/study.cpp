@@ -30,6 +30,7 @@
 #include "study/regularity.hpp"
 #include "study/singular_ends.hpp"
 #include "study/suggestion.hpp"
+#include "study/unknown_constants.hpp"
 #include "study/usage.hpp"
 #include "system/deferred_lagrangian.hpp"
 

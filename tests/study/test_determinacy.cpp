@@ -82,3 +82,40 @@ TEST_F(Scenes, ConditionsThatConstraintsImply) {
                "scene.toml:10:11: the condition 'x(T)^2 + y(T)^2 = 1' follows");
   EXPECT_EQ(refused("x(T) = 0.5"), "");
 }
+
+/// The centre of a circle that the path meets at right angles in (2, 0.6), where its momentum is (2, 0.1):
+/// the condition and its normal contain a and b each in its own way.
+TEST_F(Scenes, UnknownsThatOneConditionTellsApart) {
+  const Solution solution =
+      run(study("[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { a = 3, b = 0.2 }\n"
+                "lagrangian = \"(x'^2 + y'^2)/2 - y\"\n[boundary]\nduration = 1\n"
+                "conditions = [\"x(0) = 0\", \"y(0) = 0\", \"(x(T) - a)^2 + (y(T) - b)^2 = 1\"]\nunknowns = "
+                "{ a = 3, b = 0.2 }\n"
+                "where = [\"y(T) = 0.6\", \"x(T) = 2\"]\n[guess]\nx = \"2*t\"\ny = \"0.5*t\"\n"));
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  const double size = std::hypot(2, 0.1);
+  EXPECT_NEAR(solution.extension->unknowns[0].second, 2 + 2 / size, 1e-12);
+  EXPECT_NEAR(solution.extension->unknowns[1].second, 0.6 + 0.1 / size, 1e-12);
+}
+
+/// ∫x = 2c over x = 0.3 (2t − t²/2): 0.8.
+TEST_F(Scenes, IntegralsGivenByUnknowns) {
+  const std::string scene =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[boundary]\nstart = { x = 0 }\n"
+      "integrals = [\"x = 2*c\"]\nunknowns = { c = 0.3 }\nwhere = [\"x(T) = 0.6\"";
+  const Solution solution = run(study(scene + "]\nduration = 2\n"));
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  EXPECT_NEAR(solution.extension->unknowns[0].second, 0.4, 1e-12);
+  EXPECT_NEAR(solution.action, 0.09 * 8 / 6, 1e-12);
+  expect_start(message(scene + ", \"c = 0.4\"]\nduration = \"free\"\n[guess]\nduration = 2\n"),
+               "scene.toml:6:18: the right side depends on an unknown, which needs a duration");
+}
+
+/// No ray from the origin arrives at right angles at a circle about it, but in no time.
+TEST_F(Scenes, DurationsThatShrinkToNothing) {
+  const Solution solution =
+      run(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - y\"\n[boundary]\n"
+                "conditions = [\"x(0) = 0\", \"y(0) = 0\", \"x(T)^2 + y(T)^2 = 4\"]\nduration = \"free\"\n"
+                "where = \"y(T) = -0.7\"\n[guess]\nx = \"t\"\ny = \"-t/2\"\nduration = 1\n"));
+  EXPECT_FALSE(solution.converged());
+}
