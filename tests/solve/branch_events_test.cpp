@@ -58,5 +58,36 @@ TEST(BranchEvents, OrbitsThatGrazeAStop) {
   EXPECT_NEAR(folds[0], 0.63523985916457, 1e-9);
 }
 
+/// x'' = −sign x has T = 4√(2E), and one degree of freedom has the multipliers 1, 1. The orbit begins on the
+/// kink, which is at T too.
+TEST(BranchEvents, OrbitsThatBeginOnAKink) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - abs(x)\"\n[boundary]\nperiodic = true\n"
+      "duration = \"free\"\nenergy = 0.5\n[guess]\nx = \"0.5*sin(2*pi*t/T)\"\nduration = 4\n[continuation]\n"
+      "parameter = \"energy\"\nto = 2\npoints = 20\n"));
+  ASSERT_GT(found.points.size(), 3u);
+  for (const BranchPoint& point : found.points) {
+    EXPECT_NEAR(point.solution.duration(), 4 * std::sqrt(2 * point.parameter), 1e-9);
+    ASSERT_TRUE(point.solution.floquet);
+    for (const auto& multiplier : point.solution.floquet->multipliers)
+      EXPECT_NEAR(std::abs(multiplier - 1.0), 0, 1e-6);
+  }
+}
+
+/// Half waves of x and y begin at a = π², each or both: x(0)² = (8/3)(a − π²), y(0)² = (10/3)(a − π²) next to
+/// it. Nothing in between is an extremal.
+TEST(BranchEvents, TwoBranchesThatBeginTogether) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { a = 5 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 - a*(x^2 + y^2)/2 + x^4/8 + y^4/10\"\n[boundary]\nduration = 1\n"
+      "[guess]\nx = \"0\"\n[continuation]\nparameter = \"a\"\nto = 12\npoints = 10\nswitch = true\n"));
+  for (const BranchPoint& point : found.points) {
+    const std::vector<double>& q = point.solution.trajectory.nodes;
+    if (point.branch == 0) continue;
+    const double ratio = std::abs(q[1] / q[0]);
+    EXPECT_TRUE(ratio < 1e-3 || ratio > 1e3 || std::abs(ratio - std::sqrt(1.25)) < 0.1) << ratio;
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

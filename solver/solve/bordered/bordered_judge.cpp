@@ -250,8 +250,12 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
                const BorderedState& state, const ElementTables& own, double error, double first) {
   const double size = path_size(state.path, problem.coordinates());
   if (!equations.evaluate(state, true)) return refused("the action is not finite along the path found");
-  if (!(size < most_growth * first) || !(state.times.back() < most_growth * problem.duration.value))
+  const double stretched = state.times.back() / problem.duration.value;
+  if (!(size < most_growth * first) || !(stretched < most_growth))
     return refused("the path ran away from the guess; try another guess");
+  // In no time all momenta are large, and what conditions leave is small beside them.
+  if (!(stretched > 1 / most_growth))
+    return refused("the duration shrinks to nothing: there is no extremal near; try another guess");
   if (!(equations.residual() <= largest_residual)) return refused(residual_remains(equations.residual()));
   if (!(equations.mismatch() <= largest_mismatch))
     return refused(

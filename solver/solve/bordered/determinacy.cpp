@@ -150,11 +150,24 @@ class NearbyStates {
     BorderedState state{{}, mesh_, times_, std::vector<double>(extension_.conditions.size())};
     with_constants(path, all, constants, state.path);
     equations.reset(problem_, all, own, mesh_);
+    const double size = path_size(path, problem_.coordinates());
+    if (!equations.evaluate(state, false)) return std::nullopt;
+    put_multipliers(equations, size, noise, state.multipliers);
     if (!equations.evaluate(state, true)) return std::nullopt;
-    return path_size(path, problem_.coordinates());
+    return size;
   }
 
  private:
+  /// Of conditions r: η ∂r/∂q is about as large as momenta, so that the equations of the ends tell constants
+  /// apart that r alone contains in one combination.
+  void put_multipliers(const BorderedEquations& equations, double path, Noise& noise,
+                       std::vector<double>& multipliers) const {
+    for (std::size_t i = 0; i < multipliers.size(); ++i) {
+      const double terms = equations.target_sizes()[extension_.multipliers() + i];
+      multipliers[i] = terms > 0 ? noise() * equations.momentum() * path / terms : noise();
+    }
+  }
+
   /// On the manifold, where there are constraints. False if it cannot be reached.
   bool put_waves(double distance, const std::vector<double>& constants, Noise& noise,
                  const ElementTables& own, Path& path) const {

@@ -37,7 +37,7 @@ inline constexpr double shrinks = 0.25, amplified = 1e-8;
 inline constexpr double converged_step = 1e-14;
 /// A constant that is this small beside 1 has no size of its own.
 inline constexpr double least_constant = 1e-8;
-/// A path may become so many times larger than its guess, a duration so many times longer.
+/// A path may become so many times larger than its guess, a duration so many times longer or shorter.
 inline constexpr double most_growth = 1e4;
 
 /// Elements: of the first attempt, of those that follow, at most.

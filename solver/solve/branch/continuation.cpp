@@ -247,13 +247,15 @@ bool Continuation::begin_from_start() {
     // The number varies with the square of the length, perhaps fast: not past the value wanted at once.
     double past = 0;
     for (double length = first_departure; length > least_departure; length *= shorter_departure) {
-      if (!tracker_.reach(from, length)) continue;
+      // Where several directions are open at once, so near nothing tells paths in between from extremals.
+      if (!tracker_.reach(from, length) || (start.regular && !branch.determined())) continue;
       if ((state.varied - family_.to) * (from.varied - family_.to) > 0) return true;
       past = length;
     }
     if (past > 0 && tracker_.reach(from, past)) return true;
   }
-  return stop(BranchEnd::not_started, "no other branch was found where the equations are singular");
+  return stop(BranchEnd::not_started,
+              "no other branch was found where the equations are singular; others may begin there");
 }
 
 /// The next step that succeeds, with all that is found on it: a shorter one where the value that the branch

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "problem/closing.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/root.hpp"
 #include "solve/periodic/stability.hpp"
@@ -94,7 +95,8 @@ DoublingTests read_doubling_tests(Tracker& tracker) {
   const Problem& problem = tracker.branch().problem();
   const Trajectory trajectory = trajectory_of(tracker.state.path);
   SecondVariation& variation = tracker.workspace().variation;
-  if (!variation.assemble(problem.lagrangian, trajectory, tracker.condensed(), nullptr,
+  const ClosingMap closed = closing_map(problem);
+  if (!variation.assemble(problem.lagrangian, trajectory, tracker.condensed(), &closed,
                           problem.paired ? Definite::paired : Definite::positive))
     return {{NAN}};
   const std::optional<Floquet> found =

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "motion/flow.hpp"
+#include "problem/closing.hpp"
 #include "solution/observe.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/limits.hpp"
@@ -99,8 +100,9 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   if (!problem.periodic) return point;
   SecondVariation& variation = w.variation;
   if (problem.coordinates() <= most_coordinates_for_multipliers) {
+    const ClosingMap closed = closing_map(problem);
     const auto assemble = [&](Definite definite) {
-      return variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), nullptr,
+      return variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), &closed,
                                 definite);
     };
     if (!assemble(problem.paired ? Definite::paired : Definite::positive) && !variation.too_many()) {
