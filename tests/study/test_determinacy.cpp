@@ -1,4 +1,7 @@
+#include <cmath>
+
 #include "scenes.hpp"
+#include "solution/extension_values.hpp"
 
 using namespace extremal;
 using namespace extremal::test;
