@@ -314,9 +314,8 @@ void Continuation::end_at_half_period(StepEvents& events) {
   events.points.erase(met + 1, events.points.end());
   events.end = BranchEnd::closed;
   events.message = fmt::format(
-      "the branch is closed: at {:.8g} its orbit repeats one of half the period, and beyond are the same "
-      "ones "
-      "half a period later",
+      "the branch is closed: at {:.8g} its orbit repeats one of half the period, and beyond are the "
+      "same ones half a period later",
       parameter);
 }
 

@@ -100,44 +100,46 @@ std::optional<StartScan::State> StartScan::state(const Vector& w) {
   return state;
 }
 
-/// The miss of a motion; not finite where there is none until T.
-Vector StartScan::fly(const Vector& w) {
-  Vector y = start(w);
-  DormandPrince<double> method([this](double t, std::span<const double> x,
-                                      std::span<double> slope) { return flow_->slope(t, x, slope); },
-                               2 * n_);
+/// From y to T; false if there is no motion until then.
+template <class Slope>
+bool StartScan::integrate(const Slope& slope, Vector& y, double tolerance, int cost) {
+  DormandPrince<double> method(slope, static_cast<int>(y.size()));
   IntegrationOptions options;
-  options.tolerance = n_ == 1 ? fine_step : coarse_step;
-  options.block = n_;
-  options.max_steps = most_integrator_steps;
-  double t = 0;
-  const Integrated result = method.advance(t, span_of(y), problem_.duration.value, options);
-  more_(cost_ * (method.steps() + method.rejected()));
-  return result == Integrated::done ? miss(y) : Vector::Constant(n_, NAN);
-}
-
-/// With its derivatives by w.
-bool StartScan::fly(const Vector& w, Vector& miss, Eigen::MatrixXd& slope) {
-  Vector y = Vector::Zero(2 * n_ * (1 + n_));
-  y.head(2 * n_) = start(w);
-  for (int a = 0; a < n_; ++a) y[2 * n_ * (1 + a) + (problem_.ends.fixed[a] ? n_ + a : a)] = 1;
-  DormandPrince<double> method([this](double t, std::span<const double> x,
-                                      std::span<double> s) { return flow_->slope_with_variations(t, x, s); },
-                               static_cast<int>(y.size()));
-  IntegrationOptions options;
-  options.tolerance = fine_step;
+  options.tolerance = tolerance;
   options.block = n_;
   options.controlled = 2 * n_;
   options.max_steps = most_integrator_steps;
   double t = 0;
   const Integrated result = method.advance(t, span_of(y), problem_.duration.value, options);
-  more_(variations_cost * cost_ * (method.steps() + method.rejected()));
+  more_(cost * cost_ * (method.steps() + method.rejected()));
+  return result == Integrated::done;
+}
+
+/// The miss of a motion; not finite where there is none until T.
+Vector StartScan::fly(const Vector& w) {
+  Vector y = start(w);
+  const auto slope = [this](double t, std::span<const double> x, std::span<double> s) {
+    return flow_->slope(t, x, s);
+  };
+  const bool lasts = integrate(slope, y, n_ == 1 ? fine_step : coarse_step, 1);
+  return lasts ? miss(y) : Vector::Constant(n_, NAN);
+}
+
+/// With its derivatives by w.
+bool StartScan::fly(const Vector& w, Vector& miss, Eigen::MatrixXd& derivatives) {
+  Vector y = Vector::Zero(2 * n_ * (1 + n_));
+  y.head(2 * n_) = start(w);
+  for (int a = 0; a < n_; ++a) y[2 * n_ * (1 + a) + (problem_.ends.fixed[a] ? n_ + a : a)] = 1;
+  const auto slope = [this](double t, std::span<const double> x, std::span<double> s) {
+    return flow_->slope_with_variations(t, x, s);
+  };
+  if (!integrate(slope, y, fine_step, variations_cost)) return false;
   miss = this->miss(y.head(2 * n_));
-  slope.resize(n_, n_);
+  derivatives.resize(n_, n_);
   for (int b = 0; b < n_; ++b)
     for (int a = 0; a < n_; ++a)
-      slope(a, b) = y[2 * n_ * (1 + b) + (problem_.ends.fixed[n_ + a] ? a : n_ + a)];
-  return result == Integrated::done && miss.allFinite() && slope.allFinite();
+      derivatives(a, b) = y[2 * n_ * (1 + b) + (problem_.ends.fixed[n_ + a] ? a : n_ + a)];
+  return miss.allFinite() && derivatives.allFinite();
 }
 
 Vector StartScan::at(Place place) const {
@@ -200,7 +202,7 @@ bool StartScan::search(const Cell& cell, const std::vector<Place>& places, std::
     for (int k = 0; k < 2; ++k) {
       const double a = sample(places[k])[0], b = sample(places[k + 1])[0];
       if (std::isfinite(a) && std::isfinite(b) && (a < 0) != (b < 0))
-        enclose(at(places[k]), at(places[k + 1]), found);
+        enclose({at(places[k]), a}, {at(places[k + 1]), b}, found);
     }
     return true;
   }
@@ -222,24 +224,22 @@ bool StartScan::search(const Cell& cell, const std::vector<Place>& places, std::
 }
 
 /// The zero between two starts with values of other signs, by bisection and the secant in turn.
-void StartScan::enclose(Vector a, Vector b, std::vector<Vector>& found) {
-  double miss_a = fly(a)[0], miss_b = fly(b)[0];
-  const double width = (b - a).norm(), size = std::max(std::abs(miss_a), std::abs(miss_b));
+void StartScan::enclose(Side a, Side b, std::vector<Vector>& found) {
+  const double width = (b.w - a.w).norm(), size = std::max(std::abs(a.miss), std::abs(b.miss));
   for (int k = 0; k < most_sections && more_(0); ++k) {
-    const double part = k % 2 == 0 ? miss_a / (miss_a - miss_b) : 0.5;
-    const Vector middle = a + part * (b - a);
-    const double miss = fly(middle)[0];
+    const double part = k % 2 == 0 ? a.miss / (a.miss - b.miss) : 0.5;
+    const Vector w = a.w + part * (b.w - a.w);
+    const Side middle{w, fly(w)[0]};
     // Next to rest a step's error by the momentum may be too large for the integrator.
-    if (!std::isfinite(miss)) {
-      const bool first = std::abs(miss_a) < std::abs(miss_b);
-      if (std::abs(first ? miss_a : miss_b) <= nearly_met * size) found.push_back(first ? a : b);
+    if (!std::isfinite(middle.miss)) {
+      const Side& best = std::abs(a.miss) < std::abs(b.miss) ? a : b;
+      if (std::abs(best.miss) <= nearly_met * size) found.push_back(best.w);
       return;
     }
-    ((miss < 0) == (miss_a < 0) ? a : b) = middle;
-    ((miss < 0) == (miss_a < 0) ? miss_a : miss_b) = miss;
-    if (std::abs(miss) <= met * size || (b - a).norm() <= met * width) {
+    ((middle.miss < 0) == (a.miss < 0) ? a : b) = middle;
+    if (std::abs(middle.miss) <= met * size || (b.w - a.w).norm() <= met * width) {
       // A pole or a jump changes the sign too.
-      if (std::abs(miss) <= size) found.push_back(middle);
+      if (std::abs(middle.miss) <= size) found.push_back(middle.w);
       return;
     }
   }

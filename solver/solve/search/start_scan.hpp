@@ -55,17 +55,23 @@ class StartScan {
     Place corner;
     int width;
   };
+  struct Side {
+    Vector w;
+    double miss;
+  };
 
   Vector start(const Vector& w) const;
   Vector miss(const Vector& state) const;
   Vector at(Place place) const;
   const Vector& sample(Place place);
   Vector fly(const Vector& w);
-  bool fly(const Vector& w, Vector& miss, Eigen::MatrixXd& slope);
+  bool fly(const Vector& w, Vector& miss, Eigen::MatrixXd& derivatives);
+  template <class Slope>
+  bool integrate(const Slope& slope, Vector& y, double tolerance, int cost);
   std::vector<Place> lattice(const Cell& cell) const;
   void divide(const Cell& cell, std::deque<Cell>& cells, std::vector<Vector>& found);
   bool search(const Cell& cell, const std::vector<Place>& lattice, std::vector<Vector>& found);
-  void enclose(Vector a, Vector b, std::vector<Vector>& found);
+  void enclose(Side a, Side b, std::vector<Vector>& found);
   bool approach(Vector w, double width, std::vector<Vector>& found);
 
   const Problem& problem_;
