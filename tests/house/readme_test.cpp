@@ -63,19 +63,43 @@ bool is_page_of_scene(const std::string& target) {
          fs::exists(root() / "problems/scenes" / path.filename().replace_extension(".toml"));
 }
 
+std::string prose(const fs::path& page) {
+  return std::regex_replace(read(page), std::regex("```[^`]*```|`[^`]*`"), "");
+}
+
+/// Pages of single rooms, as the names of their files in solver/.
+std::vector<std::string> pages_of_rooms() {
+  std::vector<std::string> pages;
+  for (const auto& entry : fs::recursive_directory_iterator(root() / "solver"))
+    if (entry.path().filename() == "README.md" && entry.path().parent_path() != root() / "solver")
+      pages.push_back(fs::relative(entry.path(), root() / "solver").generic_string());
+  return pages;
+}
+
 TEST(Pages, LinksExist) {
-  for (const char* name : {"README.md", "problems/README.md", "problems/gallery.md", "solver/README.md",
-                           "bench/README.md", "bench/data/README.md", "tests/data/README.md"}) {
+  std::vector<std::string> names = {"README.md",           "problems/README.md", "problems/gallery.md",
+                                    "solver/README.md",    "bench/README.md",    "bench/data/README.md",
+                                    "tests/data/README.md"};
+  for (const std::string& page : pages_of_rooms()) names.push_back("solver/" + page);
+  for (const std::string& name : names) {
     const fs::path page = root() / name;
-    const std::string text = std::regex_replace(read(page), std::regex("```[^`]*```|`[^`]*`"), "");
+    const std::string text = prose(page);
     const std::regex link(R"~(\]\(([^)#]+)[)#]|src="([^"]+)")~");
     for (std::sregex_iterator match(text.begin(), text.end(), link), none; match != none; ++match) {
       const std::string target = (*match)[1].matched ? (*match)[1] : (*match)[2];
-      const bool made = std::string(name) == "problems/gallery.md" && is_page_of_scene(target);
+      const bool made = name == "problems/gallery.md" && is_page_of_scene(target);
       EXPECT_TRUE(made || target.starts_with("http") || fs::exists(page.parent_path() / target))
           << name << " links " << target;
     }
   }
+}
+
+TEST(Pages, TheMethodLinksThoseOfRooms) {
+  const std::vector<std::string> pages = pages_of_rooms();
+  ASSERT_GT(pages.size(), 10u);
+  const std::string method = prose(root() / "solver/README.md");
+  for (const std::string& page : pages)
+    EXPECT_NE(method.find("](" + page + ")"), std::string::npos) << "solver/README.md does not link " << page;
 }
 
 /// `make gallery` draws the pictures; a repository has room for small ones.
