@@ -244,6 +244,23 @@ int PinnedSolve::most_affordable() {
       std::min<double>(most_elements, most_lanes * most_cost / batch_cost(w_.pinned, scheme_.degree)));
 }
 
+void PinnedSolve::spend_budget(int elements) {
+  outcome_.status = Status::iteration_limit;
+  outcome_.message =
+      fmt::format("{} (solve.budget) is spent at {} elements; raise it, or loosen the tolerance",
+                  options_.deadline.budget_text(), elements);
+}
+
+void PinnedSolve::accept(const Scales& size) {
+  outcome_.status = Status::converged;
+  outcome_.message = "converged";
+  if (const int kinked = kinked_elements(); kinked > 0)
+    outcome_.message += fmt::format(
+        "; the path crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
+        kinked);
+  outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
+}
+
 Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
   int elements = options_.elements > 0 ? options_.elements : 16;
@@ -253,10 +270,7 @@ Outcome PinnedSolve::run() {
   int of_least = elements;
   for (;; before = latest) {
     if (options_.deadline.passed()) {
-      outcome_.status = Status::iteration_limit;
-      outcome_.message =
-          fmt::format("{} (solve.budget) is spent at {} elements; raise it, or loosen the tolerance",
-                      options_.deadline.budget_text(), elements);
+      spend_budget(elements);
       break;
     }
     if (!solve_discrete(elements)) {
@@ -286,13 +300,7 @@ Outcome PinnedSolve::run() {
     double excess = outcome_.error / outcome_.tolerance;
     if (options_.elements == 0 && excess <= 1) excess = std::max(excess, velocity_excess());
     if (options_.elements > 0 || excess <= 1) {
-      outcome_.status = Status::converged;
-      outcome_.message = "converged";
-      if (const int kinked = kinked_elements(); kinked > 0)
-        outcome_.message += fmt::format(
-            "; the path crosses kinks of the Lagrangian inside {} of its elements, which lowers the order",
-            kinked);
-      outcome_.elsewhere = ran_away(problem_, magnitude_, size.magnitude);
+      accept(size);
       break;
     }
     const double error = latest = excess * outcome_.tolerance;

@@ -32,6 +32,8 @@ class PinnedSolve {
   double velocity_excess();
   double wanted_growth(double excess) const;
   int most_affordable();
+  void spend_budget(int elements);
+  void accept(const Scales& size);
   /// Of the error of q throughout, not of the nodes alone.
   int order() const { return std::min(scheme_.order, scheme_.degree + 1); }
   void bind(int points);

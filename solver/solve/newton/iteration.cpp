@@ -210,8 +210,6 @@ bool NewtonIteration::restart_in_twice_the_precision(Path& path) {
   return extend();
 }
 
-/// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
-/// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|.
 StepResult NewtonIteration::full_step(Path& path, double enough, double least_damping) {
   ++count_;
   trials_ = 0;
@@ -228,55 +226,9 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
   }
   const double expected = approximate() ? 0 : largest_curvature_ * step;
   if (expected > 0 && std::max(worst_surprise * expected, least_curvature * step) * step <= enough &&
-      leaves_duration(path, step_)) {
-    contraction_ = surprise * expected;
-    norm_ = remaining_ = contraction_ * step;
-    damping_ = predicted_ = 1;
-    if (std::isnan(solve_for_step(path, step_, true))) return StepResult::singular;
-    apply(path, step_, 1, action_.corners());
-    return StepResult::ok;
-  }
-  double factor = predicted_;
-  saved_corners_.assign(action_.corners().begin(), action_.corners().end());
-  if (saved_corners_.empty() && !in_twice_the_precision())
-    saved_.copy_values(path);
-  else
-    saved_ = path;
-  for (;; factor /= 2) {
-    if (factor < least_damping) {
-      path.load_ends();
-      if (step < loudest && step <= quiet * measure_noise(path)) {
-        apply(path, step_, 1, saved_corners_);
-        norm_ = remaining_ = noise_;
-        contraction_ = damping_ = predicted_ = 1;
-        return StepResult::ok;
-      }
-      noise_ = 0;
-      model_->evaluate_gradient(action_, path);
-      return StepResult::stalled;
-    }
-    const bool moved = apply(path, step_, factor, saved_corners_);
-    ++trials_;
-    const bool positive = moved && path.duration() > 0;
-    if (positive) model_->evaluate_gradient(action_, path);
-    const double simplified = positive ? solve_for_step(path, simplified_) : NAN;
-    if (approximate() && !(simplified <= worst_approximate * step) && !(step < roundoff_step)) {
-      restore(path);
-      use_sparse(path.elements());
-      return full_step(path, enough, least_damping);
-    }
-    if (!(simplified <= (1 - factor / 4) * step) && extended_ &&
-        step < limits::converge::stalled_by_factors && restart_in_twice_the_precision(path))
-      return full_step(path, enough, least_damping);
-    const bool small = step < std::max(roundoff_step, quiet * noise_);
-    if (positive && (simplified <= (1 - factor / 4) * step || small)) {
-      contraction_ = simplified / step;
-      damping_ = factor;
-      norm_ = simplified;
-      break;
-    }
-    restore(path);
-  }
+      leaves_duration(path, step_))
+    return step_without_trial(path, expected);
+  if (const std::optional<StepResult> ended = damp(path, step, enough, least_damping)) return *ended;
   if (damping_ == 1 && !approximate()) {
     curvature_ = contraction_ / step;
     if (norm_ > roundoff_step) largest_curvature_ = std::max(largest_curvature_, curvature_);
@@ -288,6 +240,66 @@ StepResult NewtonIteration::full_step(Path& path, double enough, double least_da
     remaining_ = norm_ * contraction_;
   }
   return StepResult::ok;
+}
+
+/// The contraction of earlier steps says that this one is the last: no trial is evaluated.
+StepResult NewtonIteration::step_without_trial(Path& path, double expected) {
+  contraction_ = surprise * expected;
+  norm_ = remaining_ = contraction_ * undamped_;
+  damping_ = predicted_ = 1;
+  if (std::isnan(solve_for_step(path, step_, true))) return StepResult::singular;
+  apply(path, step_, 1, action_.corners());
+  return StepResult::ok;
+}
+
+/// Natural monotonicity (Deuflhard, Newton Methods for Nonlinear Problems, 3.3): with the step d at x and the
+/// simplified step e at x + λd, from the same factors, demand |e| <= (1 − λ/4)|d|. λ is halved until that
+/// holds; then nothing is returned. A result ends the step: it stalls, or better factors have begun it anew.
+std::optional<StepResult> NewtonIteration::damp(Path& path, double step, double enough,
+                                                double least_damping) {
+  saved_corners_.assign(action_.corners().begin(), action_.corners().end());
+  if (saved_corners_.empty() && !in_twice_the_precision())
+    saved_.copy_values(path);
+  else
+    saved_ = path;
+  for (double factor = predicted_; factor >= least_damping; factor /= 2) {
+    const bool moved = apply(path, step_, factor, saved_corners_);
+    ++trials_;
+    const bool positive = moved && path.duration() > 0;
+    if (positive) model_->evaluate_gradient(action_, path);
+    const double simplified = positive ? solve_for_step(path, simplified_) : NAN;
+    const bool monotone = simplified <= (1 - factor / 4) * step;
+    if (approximate() && !(simplified <= worst_approximate * step) && !(step < roundoff_step)) {
+      restore(path);
+      use_sparse(path.elements());
+      return full_step(path, enough, least_damping);
+    }
+    if (!monotone && extended_ && step < limits::converge::stalled_by_factors &&
+        restart_in_twice_the_precision(path))
+      return full_step(path, enough, least_damping);
+    if (positive && (monotone || step < std::max(roundoff_step, quiet * noise_))) {
+      contraction_ = simplified / step;
+      damping_ = factor;
+      norm_ = simplified;
+      return std::nullopt;
+    }
+    restore(path);
+  }
+  return end_in_noise(path, step);
+}
+
+/// No damping is small enough. A step within the noise of its own evaluation is taken as a whole.
+StepResult NewtonIteration::end_in_noise(Path& path, double step) {
+  path.load_ends();
+  if (step < loudest && step <= quiet * measure_noise(path)) {
+    apply(path, step_, 1, saved_corners_);
+    norm_ = remaining_ = noise_;
+    contraction_ = damping_ = predicted_ = 1;
+    return StepResult::ok;
+  }
+  noise_ = 0;
+  model_->evaluate_gradient(action_, path);
+  return StepResult::stalled;
 }
 
 /// Inverse iteration from the step, which has most of that direction already.

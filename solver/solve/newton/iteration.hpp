@@ -139,6 +139,9 @@ class NewtonIteration {
   bool doubles_digits() const;
   bool lost_digits() const;
   bool restart_in_twice_the_precision(Path& path);
+  StepResult step_without_trial(Path& path, double expected);
+  std::optional<StepResult> damp(Path& path, double step, double enough, double least_damping);
+  StepResult end_in_noise(Path& path, double step);
   /// Whether model() is not the second variation itself.
   bool approximate() const { return exact_ == nullptr; }
   double solve_for_step(const Path& path, Step& step, bool refine = false);
