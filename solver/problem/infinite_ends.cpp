@@ -161,20 +161,51 @@ double share_of_way(double s, double a, double b) {
   return s < 0 ? b / (a + b) * std::exp(a * s) : 1 - a / (a + b) * std::exp(-b * s);
 }
 
+/// Moves the free coordinates of the finite end, beside rest at the other, to where the linear motions that
+/// tend to rest have the momenta that are asked for: p = ∂L/∂q' + S (q − q*), with S that of these motions.
+void meet_momenta(const Problem& problem, const RestPoint& rest, bool at_end, std::vector<double>& q) {
+  const std::size_t n = q.size(), first = at_end ? n : 0;
+  const Eigen::MatrixXd& slope = at_end ? rest.unstable : rest.stable;
+  std::vector<int> free;
+  for (std::size_t a = 0; a < n; ++a)
+    if (!problem.ends.fixed[first + a]) free.push_back(static_cast<int>(a));
+  if (free.empty() || slope.size() == 0) return;
+  Eigen::VectorXd away(n), missing(n);
+  for (std::size_t a = 0; a < n; ++a) {
+    const double asked = problem.boundary.momenta.empty() ? 0 : problem.boundary.momenta[first + a];
+    away[a] = problem.ends.fixed[first + a] ? q[a] - rest.q[a] : 0;
+    missing[a] = asked - rest.momentum[a];
+  }
+  missing -= slope * away;
+  const Eigen::VectorXd free_away =
+      Eigen::MatrixXd(slope(free, free)).colPivHouseholderQr().solve(Eigen::VectorXd(missing(free)));
+  if (!free_away.allFinite()) return;
+  for (std::size_t k = 0; k < free.size(); ++k) q[free[k]] = rest.q[free[k]] + free_away[k];
+}
+
 Guess default_guess(const Problem& problem, const InfiniteEnds& infinite) {
   const std::size_t n = problem.coordinates();
-  const auto rate = [&](bool at_end) {
-    return rest_point_of(*problem.lagrangian, infinite, at_end, problem.duration.value).slowest;
-  };
   const bool from = !infinite.start.empty(), to = !infinite.end.empty();
-  const double a = from ? rate(false) : 0, b = to ? rate(true) : 0, T = problem.duration.value;
+  const double T = problem.duration.value;
   std::vector<double> start = values_of(problem.ends, false), end = values_of(problem.ends, true);
-  for (std::size_t k = 0; k < n; ++k) {
-    if (!from && !problem.ends.fixed[k]) start[k] = end[k];
-    if (!to && !problem.ends.fixed[n + k]) end[k] = start[k];
+  double a = 0, b = 0;
+  if (from) {
+    const RestPoint rest = rest_point_of(*problem.lagrangian, infinite, false, T);
+    a = rest.slowest;
+    if (!to) meet_momenta(problem, rest, true, end);
   }
-  if (start == end &&
-      (from && to ? true : std::ranges::any_of(problem.ends.fixed, [](char f) { return !f; })))
+  if (to) {
+    const RestPoint rest = rest_point_of(*problem.lagrangian, infinite, true, T);
+    b = rest.slowest;
+    if (!from) meet_momenta(problem, rest, false, start);
+  }
+  double way = 0, size = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    way = std::max(way, std::abs(end[k] - start[k]));
+    size = std::max({size, std::abs(start[k]), std::abs(end[k])});
+  }
+  if (way <= same_point * size &&
+      ((from && to) || std::ranges::any_of(problem.ends.fixed, [](char f) { return !f; })))
     throw InfiniteEndError(
         About::both,
         "the default guess is the equilibrium itself, which is an extremal at rest; give a "

@@ -29,8 +29,9 @@ RestPoint rest_point_of(const Lagrangian& lagrangian, const InfiniteEnds& infini
 double approach_time(const Lagrangian& lagrangian, const InfiniteEnds& infinite);
 
 /// Leaves the infinite ends of a problem free, and gives it the default guess if it has none: from the
-/// fixed values of the finite end, or from equilibrium to equilibrium along the straight line, at the rates
-/// of the slowest linear motions. Throws InfiniteEndError where that guess is the equilibrium itself.
+/// finite end, or from equilibrium to equilibrium along the straight line, at the rates of the slowest linear
+/// motions. Free coordinates of the finite end are those of linear motions with the momenta asked for. Throws
+/// InfiniteEndError where that guess is the equilibrium itself.
 void make_infinite(Problem& problem, InfiniteEnds infinite);
 
 }  // namespace extremal

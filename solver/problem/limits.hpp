@@ -21,6 +21,8 @@ inline constexpr double at_equilibrium = 1e-8;
 inline constexpr double approaching = 0.75;
 /// Energies of rest that are equal but for roundoff of formulas.
 inline constexpr double same_energy = 1e-9;
+/// Of the coordinates of two points that are equal but for roundoff.
+inline constexpr double same_point = 1e-12;
 /// In so many times of the slowest decay a deviation falls to 6e-6: the square of that, by which the subspace
 /// of the linear motion errs, is below most tolerances.
 inline constexpr double decays = 12;

@@ -3,10 +3,13 @@
 #include <utility>
 
 #include "problem/infinite_ends.hpp"
+#include "study/checks.hpp"
 
 namespace extremal {
 
 namespace {
+
+constexpr int most_slowings = 10;
 
 /// Where the scene gives the end that an error is about.
 [[noreturn]] void refuse(const BoundaryTable& boundary, const InfiniteEndError& e) {
@@ -40,8 +43,12 @@ InfiniteEnds read_infinite_ends(const Scene& scene, Purpose purpose, Problem& pr
 }
 
 void leave_infinite_ends(const Scene& scene, InfiniteEnds infinite, Problem& problem) {
+  const bool by_default = !problem.guess.given();
   try {
     make_infinite(problem, std::move(infinite));
+    // Velocities may be bounded, as that of light. The default guess then takes its way in a longer time.
+    for (int k = 0; by_default && k < most_slowings && !is_finite_on_guess(problem); ++k)
+      problem.duration.value *= 2;
   } catch (const InfiniteEndError& e) {
     refuse(scene.boundary, e);
   }

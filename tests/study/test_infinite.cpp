@@ -51,6 +51,28 @@ TEST_F(InfiniteEndsOf, KinksHaveTheirExactActions) {
   }
 }
 
+/// x = e^{−t}/2, and of x'²/2 + 1 − cos x the same momentum p = −2 sin(x/2); S = ∫ p dx.
+TEST_F(InfiniteEndsOf, GivenMomentaBeginTheDefaultGuess) {
+  const std::string from = "start = { p_x = -0.5 }\nend = { x = 0 }\n";
+  const Solution linear = solved(scene_of(one, "x'^2/2 + x^2/2", from));
+  ASSERT_TRUE(linear.converged()) << linear.message;
+  EXPECT_NEAR(linear.trajectory.nodes[0], 0.5, 1e-9);
+  EXPECT_NEAR(linear.action, 0.125, 1e-10);
+  const Solution pendulum = solved(scene_of(one, "x'^2/2 + 1 - cos(x)", from));
+  ASSERT_TRUE(pendulum.converged()) << pendulum.message;
+  EXPECT_NEAR(pendulum.trajectory.nodes[0], 2 * std::asin(0.25), 1e-9);
+  EXPECT_NEAR(pendulum.action, 4 * (1 - std::sqrt(15.0) / 4), 1e-10);
+}
+
+/// H is 0 on the path: S = ∫ p dx = ∫ √((2 − cos x)² − 1) dx = 4 + 2π. The velocity stays below 1.
+TEST_F(InfiniteEndsOf, TheDefaultGuessKeepsToVelocitiesThatAreAllowed) {
+  const Solution found = solved(
+      "[system]\ncoordinates = [\"x\"]\nhamiltonian = \"sqrt(1 + p_x^2) - 2 + cos(x)\"\n[boundary]\n"
+      "start = { x = 0 }\nend = { x = \"2*pi\" }\nduration = \"infinite\"\n");
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(found.action, 4 + 2 * std::numbers::pi, 1e-9);
+}
+
 TEST_F(InfiniteEndsOf, AHomoclinicOrbitIsASaddleOfTheAction) {
   const Solution found =
       solved(scene_of(one, "x'^2/2 + x^2/2 - x^4/4", "start = { x = 0 }\nend = { x = 0 }\n",
