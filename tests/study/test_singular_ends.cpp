@@ -187,6 +187,24 @@ TEST_F(SingularEnds, FamiliesFromValueToValue) {
   EXPECT_NEAR(branch.points.back().solution.action, time_of_fall(10, 5) / 2, 1e-9);
 }
 
+/// x'' = 1/√t: x = 4/3 t^(3/2) − t/3 and S = 19/18, to the order of the time that is added.
+TEST_F(SingularEnds, TimesAtWhichLIsInfiniteAreNamed) {
+  const std::string ends = "start = { x = 0 }\nend = { x = 1 }\nduration = 1";
+  const auto scene = [&](const std::string& t) {
+    return "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + x/sqrt(" + t + ")\"\n[boundary]\n" +
+           ends;
+  };
+  const Solution failed = solved(scene("t"));
+  EXPECT_FALSE(failed.converged());
+  EXPECT_NE(failed.message.find(
+                "L is not finite at t = 0, whatever the coordinates are; write t + 1e-09 for t in L"),
+            std::string::npos)
+      << failed.message;
+  const Solution mended = solved(scene("t + 1e-09"));
+  ASSERT_TRUE(mended.converged()) << mended.message;
+  EXPECT_NEAR(mended.action, 19.0 / 18, 2e-9);
+}
+
 TEST_F(SingularEnds, WhatIsNotAvailableIsRefused) {
   const std::string ends = "start = { y = 0 }\nend = { y = 5 }\nduration = 10";
   const auto refused = [&](const std::string& boundary, const std::string& more, const std::string& place,

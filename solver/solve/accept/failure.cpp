@@ -74,22 +74,32 @@ std::string unreachable(const Problem& problem) {
   const auto finite = [&](Point q, const std::vector<double>& v, double t) {
     return std::isfinite(evaluate_at(*problem.lagrangian, q, v, t, Order::value, scratch).value);
   };
+  const auto finite_at_some_velocity = [&](Point q, double t) {
+    std::vector<double> v(n, 0);
+    if (finite(q, v, t)) return true;
+    for (std::size_t a = 0; a < n; ++a) {
+      for (const double speed : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
+        v[a] = speed;
+        if (finite(q, v, t)) return true;
+      }
+      v[a] = 0;
+    }
+    return false;
+  };
   const auto* const open = dynamic_cast<const OpenEnds*>(problem.lagrangian.get());
   for (const bool end : {false, true}) {
     const Point q = fixed_end(problem, end);
     if (q.empty() || (open && (end ? open->open_end() : open->open_start()))) continue;
-    std::vector<double> v(n, 0);
-    bool somewhere = finite(q, v, end ? duration : 0);
-    for (std::size_t a = 0; a < n && !somewhere; ++a) {
-      for (const double speed : {-1e3, -1.0, -1e-3, 1e-3, 1.0, 1e3}) {
-        v[a] = speed;
-        somewhere = somewhere || finite(q, v, end ? duration : 0);
-      }
-      v[a] = 0;
-    }
-    if (!somewhere)
-      return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
-                         place_of(problem, q));
+    const double time = end ? duration : 0;
+    if (finite_at_some_velocity(q, time)) continue;
+    // A part of the duration in which t moves off what L cannot bear, if that is t.
+    const double little = 1e-9 * duration;
+    if (finite_at_some_velocity(q, end ? duration - little : little))
+      return fmt::format(
+          "L is not finite at t = {:.6g}, whatever the coordinates are; write t {} {:.1g} for t in L", time,
+          end ? '-' : '+', little);
+    return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
+                       place_of(problem, q));
   }
   const Point start = fixed_end(problem, false), end = fixed_end(problem, true);
   if (start.empty() || end.empty() || problem.duration.free || open) return {};
