@@ -62,6 +62,18 @@ struct End {
   RestPoint rest;
 };
 
+/// Whether the rates are those beside the point too, and no roundoff: where ∂²L/∂q∂q vanishes like a power of
+/// the distance, rounded coordinates leave something of it.
+bool has_rates(const Lagrangian& lagrangian, const RestPoint& rest, double t) {
+  const double size = largest(rest.q);
+  std::vector<double> q = rest.q;
+  for (const double side : {beside, -2 * beside}) {
+    for (double& x : q) x += side * size;
+    if (!(slowest_rate(lagrangian, q, t) <= 2 * rest.slowest)) return false;
+  }
+  return true;
+}
+
 End examine(const Lagrangian& lagrangian, const EndMap& ends, bool at_end) {
   End end{.fixed = wholly_fixed(ends, at_end), .at_rest = false, .q = values_of(ends, at_end), .rest = {}};
   if (!end.fixed) return end;
@@ -72,6 +84,7 @@ End examine(const Lagrangian& lagrangian, const EndMap& ends, bool at_end) {
     const double t = late(lagrangian, end.q), size = largest(end.q);
     end.rest = rest_point(lagrangian, end.q, t);
     end.at_rest = end.rest.distance <= at_equilibrium * (size > 0 ? size : 1);
+    if (end.at_rest && end.rest.hyperbolic) end.rest.hyperbolic = has_rates(lagrangian, end.rest, t);
     // Where L approaches its limit slowly, the equilibrium does too.
     if (!autonomous && !end.at_rest)
       end.at_rest = rest_point(lagrangian, end.q, 2 * t).distance <= approaching * end.rest.distance;
@@ -122,19 +135,23 @@ void check_hyperbolic(const End& end, bool at_end, const std::vector<std::string
 }
 
 /// An autonomous L conserves the energy −L(equilibrium).
-void check_energies(const End& start, const End& end, const std::vector<std::string>& names) {
+bool equal_energies(const End& start, const End& end) {
   double way = 0;
   for (std::size_t a = 0; a < start.q.size(); ++a) way = std::max(way, std::abs(end.q[a] - start.q[a]));
   const double a = start.rest.value, b = end.rest.value,
                size = std::max({std::abs(a), std::abs(b),
                                 way * way * std::max(start.rest.stiffness, end.rest.stiffness)});
-  if (std::abs(a - b) <= same_energy * size) return;
+  return std::abs(a - b) <= same_energy * size;
+}
+
+void check_energies(const End& start, const End& end, const std::vector<std::string>& names) {
+  if (equal_energies(start, end)) return;
   throw InfiniteEndError(
       About::both,
       fmt::format("the energy of rest is {:.10g} at {} and {:.10g} at {}, and L conserves it: no "
                   "extremal leads from one to the other; choose equilibria of equal energy, or a "
                   "finite duration",
-                  -a, point_text(names, start.q), -b, point_text(names, end.q)));
+                  -start.rest.value, point_text(names, start.q), -end.rest.value, point_text(names, end.q)));
 }
 
 /// Relation without the conditions on an end.
@@ -230,11 +247,14 @@ InfiniteEnds infinite_ends(const Lagrangian& lagrangian, const EndMap& ends,
   const bool autonomous = lagrangian.structure().autonomous;
   End start = examine(lagrangian, ends, false), end = examine(lagrangian, ends, true);
   if (!start.at_rest && !end.at_rest) refuse_finite(start, end, autonomous, names);
-  // An equilibrium that is not approached exponentially may still be passed, at a finite time.
-  if (start.at_rest && !(end.at_rest && end.rest.hyperbolic && !start.rest.hyperbolic))
-    check_hyperbolic(start, false, names);
-  if (end.at_rest && !(start.at_rest && start.rest.hyperbolic && !end.rest.hyperbolic))
-    check_hyperbolic(end, true, names);
+  // An equilibrium that is not approached exponentially may still be passed, at a finite time: with another
+  // energy than that of rest.
+  const auto passed = [&](const End& here, const End& there) {
+    return !here.rest.hyperbolic && there.at_rest && there.rest.hyperbolic &&
+           !(autonomous && equal_energies(start, end));
+  };
+  if (start.at_rest && !passed(start, end)) check_hyperbolic(start, false, names);
+  if (end.at_rest && !passed(end, start)) check_hyperbolic(end, true, names);
   start.at_rest = start.at_rest && start.rest.hyperbolic;
   end.at_rest = end.at_rest && end.rest.hyperbolic;
   InfiniteEnds found;

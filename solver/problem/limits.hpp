@@ -19,6 +19,8 @@ namespace infinite_ends {
 inline constexpr double at_equilibrium = 1e-8;
 /// In twice the time the distance of an equilibrium that is approached algebraically falls at least so far.
 inline constexpr double approaching = 0.75;
+/// Of the coordinates of an equilibrium: so far beside it rates are at most twice as large.
+inline constexpr double beside = 1e-6;
 /// Energies of rest that are equal but for roundoff of formulas.
 inline constexpr double same_energy = 1e-9;
 /// Of the coordinates of two points that are equal but for roundoff.

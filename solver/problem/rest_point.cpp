@@ -78,15 +78,23 @@ Matrix graph(const Matrix& sign, double side) {
 }
 
 /// (η, π)' = A (η, π) with L = ½ η'ᵀMη' + η'ᵀCη + ½ ηᵀKη and π = Mη' + Cη.
-Matrix linear_motion(const Matrix& m, const Matrix& c, const Matrix& k) {
-  const Eigen::Index n = m.rows();
-  const Matrix inverse = solved(m, Matrix::Identity(n, n)), slope = inverse * c;
+Matrix linear_motion(const PointValues& values, Eigen::Index n) {
+  const Matrix c = square(values.vq, n), inverse = solved(square(values.vv, n), Matrix::Identity(n, n)),
+               slope = inverse * c;
   Matrix a(2 * n, 2 * n);
-  a << -slope, inverse, k - c.transpose() * slope, slope.transpose();
+  a << -slope, inverse, square(values.qq, n) - c.transpose() * slope, slope.transpose();
   return a;
 }
 
+double least_real_part(const Eigen::VectorXcd& exponents) { return exponents.real().cwiseAbs().minCoeff(); }
+
 }  // namespace
+
+double slowest_rate(const Lagrangian& lagrangian, std::span<const double> q, double t) {
+  const auto n = static_cast<Eigen::Index>(q.size());
+  const Matrix a = linear_motion(AtRest(lagrangian, t)(Eigen::Map<const Eigen::VectorXd>(q.data(), n)), n);
+  return a.allFinite() ? least_real_part(general_eigenvalues(a)) : NAN;
+}
 
 RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near, double t) {
   const auto n = static_cast<Eigen::Index>(near.size());
@@ -122,12 +130,11 @@ RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near,
   rest.q.assign(q.begin(), q.end());
   rest.momentum = values.dv;
   rest.value = values.value;
-  const Matrix k = square(values.qq, n);
-  rest.stiffness = k.cwiseAbs().maxCoeff();
-  const Matrix a = linear_motion(square(values.vv, n), square(values.vq, n), k);
+  rest.stiffness = square(values.qq, n).cwiseAbs().maxCoeff();
+  const Matrix a = linear_motion(values, n);
   if (!a.allFinite()) throw std::invalid_argument("the mass matrix ∂²L/∂q'∂q' is singular at rest there");
   rest.exponents = general_eigenvalues(a);
-  rest.slowest = rest.exponents.real().cwiseAbs().minCoeff();
+  rest.slowest = least_real_part(rest.exponents);
   rest.hyperbolic = rest.slowest > imaginary * rest.exponents.cwiseAbs().maxCoeff();
   if (!rest.hyperbolic) return rest;
   const Matrix sign = matrix_sign(a);

@@ -30,6 +30,9 @@ struct RestPoint {
 /// Beside the point that is given. Throws std::invalid_argument where L has no finite derivatives there.
 RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near, double t);
 
+/// Least |Re λ| of the linear equations at a point that need be no equilibrium.
+double slowest_rate(const Lagrangian& lagrangian, std::span<const double> q, double t);
+
 /// The action, less that of rest, of the linear motion from q at the end of the path to the equilibrium, or
 /// of that from the equilibrium to q at its start. Exact to the third order of q − q*.
 EndCost cost_to(const RestPoint& rest, bool at_end);

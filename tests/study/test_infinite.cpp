@@ -73,6 +73,20 @@ TEST_F(InfiniteEndsOf, TheDefaultGuessKeepsToVelocitiesThatAreAllowed) {
   EXPECT_NEAR(found.action, 4 + 2 * std::numbers::pi, 1e-9);
 }
 
+/// 2π is rounded, so that the second derivative there is 1e-32 in place of 0; and where one end alone has λ =
+/// 0, the energy of rest lets no motion pass it.
+TEST_F(InfiniteEndsOf, EndsThatAreApproachedAlgebraicallyAreRefused) {
+  for (const auto& [lagrangian, boundary] :
+       {std::pair("x'^2/2 + (1 - cos(x))^2/2", "start = { x = 0 }\nend = { x = \"2*pi\" }\n"),
+        std::pair("x'^2/2 + (1 - cos(x))^2/2", "start = { x = \"2*pi\" }\nend = { x = \"4*pi\" }\n"),
+        std::pair("x'^2/2 + x^4*(1 - x)^2/2", "start = { x = 0 }\nend = { x = 1 }\n"),
+        std::pair("x'^2/2 + x^2*(1 - x)^4/2", "start = { x = 0 }\nend = { x = 1 }\n")}) {
+    const std::string text = message(scene_of(one, lagrangian, boundary));
+    EXPECT_NE(text.find("is not approached exponentially in all directions"), std::string::npos)
+        << lagrangian << ": " << text;
+  }
+}
+
 TEST_F(InfiniteEndsOf, AHomoclinicOrbitIsASaddleOfTheAction) {
   const Solution found =
       solved(scene_of(one, "x'^2/2 + x^2/2 - x^4/4", "start = { x = 0 }\nend = { x = 0 }\n",
