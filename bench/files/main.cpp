@@ -9,17 +9,20 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
+#include <ostream>
 #include <string>
 
 #include "report/csv.hpp"
 #include "report/file.hpp"
 #include "report/json.hpp"
+#include "report/oem.hpp"
 #include "report/sampling.hpp"
 #include "study/phase.hpp"
 #include "study/study.hpp"
 
-// A million samples of two coordinates, their velocities and momenta: evaluated, and written as NPZ, CSV and
-// JSON. Seconds that passed and of the processor, in this process and for it, the least of several runs.
+// A million samples of two coordinates, their velocities and momenta: evaluated, and written as NPZ, CSV,
+// JSON and, without momenta, OEM. Seconds that passed and of the processor, in this process and for it, the
+// least of several runs.
 
 namespace bench {
 namespace {
@@ -72,10 +75,17 @@ void measure() {
     const Seconds seconds = timed(work);
     report(name, seconds, fs::file_size(path));
   };
-  const std::string npz = folder / "r.npz", csv = folder / "r.csv", json = folder / "r.json";
+  const std::string npz = folder / "r.npz", csv = folder / "r.csv", json = folder / "r.json",
+                    oem = folder / "r.oem";
   write("NPZ", npz, [&] { write_files({{npz, npz_text(*result.samples, result.names)}}); });
   write("CSV", csv, [&] { write_csv(csv, *result.samples, result.names); });
   write("JSON", json, [&] { write_json(json, result); });
+  const Units units{
+      .length = 149'597'870.7, .time = 5'022'642.9, .frame = "ICRF", .centre = "SUN", .epoch = {}};
+  write("OEM", oem, [&] {
+    write_file(
+        oem, [&](std::ostream& out) { write_oem(out, units, result.title, result.names, *result.samples); });
+  });
   fs::remove_all(folder);
 }
 

@@ -99,9 +99,9 @@ void check_ephemeris(const Study& study) {
   }
 }
 
-std::string ephemeris_of(const Study& study, const Result& result) {
+void write_ephemeris(std::ostream& out, const Study& study, const Result& result) {
   std::optional<Samples> kept;
-  return oem_text(*study.units, result.title, result.names, file_samples(study, result, kept));
+  write_oem(out, *study.units, result.title, result.names, file_samples(study, result, kept));
 }
 
 std::string plot_of(const std::string& path, const Study& study, const Result& result,
@@ -120,7 +120,9 @@ void write_outputs(const SolveArguments& a, const Study& study, const Result& re
   if (converged && !a.csv.empty())
     files.push_back({.path = a.csv, .write = [&](std::ostream& out) { write_csv(out, study, result); }});
   if (converged && !a.npz.empty()) files.push_back({a.npz, npz_of(study, result)});
-  if (converged && !a.oem.empty()) files.push_back({a.oem, ephemeris_of(study, result)});
+  if (converged && !a.oem.empty())
+    files.push_back(
+        {.path = a.oem, .write = [&](std::ostream& out) { write_ephemeris(out, study, result); }});
   if (converged && !a.plot.empty()) files.push_back({a.plot, plot_of(a.plot, study, result, annotation)});
   Outputs::write(std::move(files));
 }

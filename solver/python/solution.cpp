@@ -61,8 +61,10 @@ std::string oem(const Solved& s, const Doubles& times) {
   const Study& study = *s.study;
   if (!study.units)
     throw std::invalid_argument("the problem has no units; give length, time, frame, centre and epoch");
-  return oem_text(*study.units, study.title, coordinate_names(study.problem),
-                  sample(study.problem, s.solution, list(times)));
+  return text_of([&](std::ostream& out) {
+    write_oem(out, *study.units, study.title, coordinate_names(study.problem),
+              sample(study.problem, s.solution, list(times)));
+  });
 }
 
 /// The bytes of a picture in the format that the path ends with; of several solutions of one study all.

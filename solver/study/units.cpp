@@ -110,14 +110,28 @@ Units read_units(const UnitsTable& table) {
   return units;
 }
 
-std::string epoch_text(Epoch epoch) {
+char* write_epoch(Epoch epoch, char* to) {
+  const auto put = [&to](long long value, int count, char behind) {
+    for (int k = count; k-- > 0; value /= 10) to[k] = static_cast<char>('0' + value % 10);
+    to[count] = behind;
+    to += count + 1;
+  };
   const auto date = chrono::floor<chrono::days>(epoch);
   const chrono::year_month_day day(date);
   const chrono::hh_mm_ss time(epoch - date);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:09}", static_cast<int>(day.year()),
-                     static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()),
-                     time.hours().count(), time.minutes().count(), time.seconds().count(),
-                     time.subseconds().count());
+  put(static_cast<int>(day.year()), 4, '-');
+  put(static_cast<unsigned>(day.month()), 2, '-');
+  put(static_cast<unsigned>(day.day()), 2, 'T');
+  put(time.hours().count(), 2, ':');
+  put(time.minutes().count(), 2, ':');
+  put(time.seconds().count(), 2, '.');
+  put(time.subseconds().count(), 9, ' ');
+  return to - 1;
+}
+
+std::string epoch_text(Epoch epoch) {
+  char text[epoch_size];
+  return {text, write_epoch(epoch, text)};
 }
 
 }  // namespace extremal

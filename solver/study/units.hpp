@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 #include "scene/scene.hpp"
@@ -22,7 +23,11 @@ struct Units {
 /// Throws SceneError for what is missing, not positive, not one line of ASCII, or no date from 1700 to 2200.
 Units read_units(const UnitsTable& table);
 
-/// "2025-01-31T12:00:00.000000000".
+/// Room that a date needs.
+inline constexpr std::size_t epoch_size = 30;
+
+/// "2025-01-31T12:00:00.000000000"; returns the end.
+char* write_epoch(Epoch epoch, char* to);
 std::string epoch_text(Epoch epoch);
 
 }  // namespace extremal

@@ -22,6 +22,13 @@ Units units() {
   return u;
 }
 
+std::string oem_text(const Units& units, const std::string& title, const std::vector<std::string>& names,
+                     const Samples& samples) {
+  std::ostringstream out;
+  write_oem(out, units, title, names, samples);
+  return out.str();
+}
+
 std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> lines;

@@ -12,6 +12,14 @@ from . import _core
 Array = npt.NDArray[Any]
 
 
+def reals(values: npt.ArrayLike, name: str) -> npt.NDArray[np.float64]:
+    """An array of doubles; of complex numbers no part is left out in silence."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise TypeError(f"{name} has complex numbers; need real ones")
+    return array.astype(float, copy=False)
+
+
 def known(values: Array, mask: Array) -> Array:
     """Values of which those at `mask` are not known: a masked array where there are such."""
     if mask.any():

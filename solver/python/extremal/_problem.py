@@ -8,6 +8,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
+from numbers import Real
 from typing import Any, overload
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy.typing as npt
 from . import _core, _toml, _trace
 from ._branch import Branch
 from ._errors import NotConverged
-from ._many import Solutions
+from ._many import Solutions, reals
 from ._solution import Solution
 
 Progress = Callable[[Any], object]
@@ -112,6 +113,16 @@ class _Parameters:
             else:
                 setattr(self, name, _trace.name_symbol(name))
 
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"there is no parameter '{name}'; give parameters=dict({name}=…)")
+
+
+def _takes_parameters(function: Callable[..., Any]) -> bool:
+    """Whether it has a fourth argument that must be given."""
+    arguments = inspect.signature(function).parameters.values()
+    needed = [a for a in arguments if a.default is a.empty and a.kind not in (a.VAR_POSITIONAL, a.VAR_KEYWORD)]
+    return len(needed) == 4
+
 
 def _traced(keys: dict[str, Any]) -> dict[str, Any]:
     """Keywords with formulas in place of functions."""
@@ -132,10 +143,10 @@ def _traced(keys: dict[str, Any]) -> dict[str, Any]:
     for law in laws:
         function = keys[law]
         arguments = [symbols["q"], symbols["p" if law == "hamiltonian" else "v"], _trace.name_symbol("t")]
-        if len(inspect.signature(function).parameters) == 4:
+        if _takes_parameters(function):
             arguments.append(_Parameters(parameters))
         value = function(*arguments)
-        values = list(value) if law == "force" else [value]
+        values = list(np.atleast_1d(np.asarray(value, dtype=object))) if law == "force" else [value]
         if law == "force" and len(values) != len(names):
             raise ValueError(f"force returned {len(values)} components for {len(names)} coordinates")
         texts = _trace.Formulas(values, definitions, taken).texts
@@ -261,6 +272,10 @@ class Problem:
         """Names of the n coordinates, as "x" and "q[1]"."""
         return tuple(self._study.names)
 
+    def _accepts(self, tolerance: Any) -> bool:
+        """Whether the problem can be solved to it as it is; the scene says why not."""
+        return self._study.adaptive and isinstance(tolerance, Real) and 0 < tolerance < 1
+
     @overload
     def solve(
         self,
@@ -310,9 +325,7 @@ class Problem:
             `solutions`.
         """
         if tolerance is not None:
-            if self._study.adaptive and 0 < tolerance < 1:
-                pass
-            else:
+            if not self._accepts(tolerance):
                 changes["tolerance"] = tolerance
         if solutions is not None:
             changes["search"] = {"solutions": solutions}
@@ -408,15 +421,14 @@ class Problem:
         given: dict[str, npt.NDArray[np.float64]] = {}
         for name, value, width in (("start", start, n), ("end", end, n), ("duration", duration, 0)):
             if value is not None:
-                array = np.asarray(value, dtype=float)
-                if (
-                    array.ndim not in (1, 2)
-                    and not (array.ndim == 0 and not width)
-                    or (width and array.shape[-1] != n)
-                ):
+                array = reals(value, name)
+                if array.ndim not in ((1, 2) if width else (0, 1)) or (width and array.shape[-1] != n):
                     raise ValueError(
                         f"{name} has the shape {array.shape}; need {f'(m, {n})' if width else '(m,)'}"
                     )
+                if not np.isfinite(array).all():
+                    place = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
+                    raise ValueError(f"{name}[{', '.join(map(str, place))}] = {array[place]}; need a finite number")
                 given[name] = array
         counts = {len(a) for name, a in given.items() if a.ndim == (1 if name == "duration" else 2)}
         if not counts:
@@ -429,7 +441,7 @@ class Problem:
         rows = {name: np.broadcast_to(a, (m,) if name == "duration" else (m, n)) for name, a in given.items()}
         problem = self._with_first(rows) if m else self
         threads = threads if threads is not None else len(os.sched_getaffinity(0))
-        if tolerance is not None and not (self._study.adaptive and 0 < tolerance < 1):
+        if tolerance is not None and not self._accepts(tolerance):
             problem = problem.replace(tolerance=tolerance)
         arrays = problem._study.solve_many(
             rows.get("start"), rows.get("end"), rows.get("duration"), tolerance, threads

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._many import reals
 
 if TYPE_CHECKING:
     from ._problem import Problem
@@ -371,7 +372,7 @@ class Solution:
 
     def _at(self, t: npt.ArrayLike, evaluate: Any) -> Array:
         self._require()
-        times = np.asarray(t, dtype=float)
+        times = reals(t, "t")
         values: Array = evaluate(times.ravel())
         return values.reshape(times.shape + values.shape[1:])
 
@@ -407,6 +408,8 @@ class Solution:
 
     def __getitem__(self, name: str) -> Array:
         """Values of "x", "x'" or "p_x" at the times `t`: (m,), of an array of k coordinates (m, k)."""
+        if not isinstance(name, str):
+            raise TypeError(f"a solution has no element {name!r}; s(t) is q(t), s[\"x\"] a coordinate at s.t")
         evaluate, wanted = self._solved.q, name
         if name.endswith("'"):
             evaluate, wanted = self._solved.v, name[:-1]
@@ -420,6 +423,8 @@ class Solution:
         values = self._at(self.t, evaluate)[:, columns]
         values.setflags(write=False)
         return values
+
+    __iter__ = None
 
     def _columns(self, name: str) -> int | slice | None:
         for coordinate, first, count, array in self._problem._study.coordinates:
@@ -450,7 +455,7 @@ class Solution:
             if samples < 2:
                 raise ValueError(f"samples = {samples}; need at least 2")
             return np.linspace(0, self.duration, samples)
-        return np.asarray(samples, dtype=float)
+        return reals(samples, "samples")
 
     def save(self, path: str | os.PathLike[str], samples: int | npt.ArrayLike | None = 201) -> None:
         """Writes the result with samples as .json, or the samples alone as .csv, .npz or .oem (with the

@@ -75,7 +75,8 @@ class Symbol:
     def _compare(self, other: Any) -> bool:
         raise TypeError(REFUSED)
 
-    __lt__ = __le__ = __gt__ = __ge__ = _compare
+    __eq__ = __ne__ = __lt__ = __le__ = __gt__ = __ge__ = _compare  # type: ignore[assignment]
+    __hash__ = object.__hash__
 
     def __float__(self) -> float:
         raise TypeError("a symbol has no value yet; use the functions of numpy, not those of math")
@@ -84,20 +85,22 @@ class Symbol:
         """Of arrays of symbols numpy calls a function as a method of each."""
         function = FUNCTIONS.get(name)
         if function is None:
-            raise AttributeError(f"a formula has no function '{name}'")
+            raise AttributeError(lacking(name))
         return lambda *others: function(self, *others)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
         function = FUNCTIONS.get(ufunc.__name__)
+        out = options.pop("out", (None,))[0]
         if method != "__call__" or options or function is None:
-            raise TypeError(f"a formula has no function '{ufunc.__name__}'")
+            raise TypeError(lacking(ufunc.__name__))
         arrays = np.broadcast_arrays(*(np.asarray(each, dtype=object) for each in inputs))
-        if arrays[0].ndim == 0:
-            return function(*inputs)
         result = np.empty(arrays[0].shape, dtype=object)
         for place in np.ndindex(result.shape):
             result[place] = function(*(array[place] for array in arrays))
-        return result
+        if out is None:
+            return result[()]
+        out[...] = result
+        return out
 
     def __repr__(self) -> str:
         return Formulas([self], {}, set()).texts[0]
@@ -107,6 +110,10 @@ REFUSED = (
     "a function is traced once, for all values of its arguments, and cannot choose by them; "
     "write np.minimum, np.maximum, abs or np.heaviside(u, 1)"
 )
+
+
+def lacking(name: str) -> str:
+    return f"a formula has no function '{name}'; those of numpy that it has are {', '.join(sorted(FUNCTIONS))}"
 
 
 def symbol(value: Any) -> Symbol:
