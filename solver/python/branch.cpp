@@ -1,11 +1,13 @@
 #include "python/branch.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <memory>
 #include <string>
 
 #include "python/arrays.hpp"
+#include "python/pickle.hpp"
 #include "python/study.hpp"
 #include "report/branch.hpp"
 #include "report/file.hpp"
@@ -54,7 +56,11 @@ void bind_branch(py::module_& module) {
       .def_property_readonly("kind", [](const BranchPoint& p) { return name(p.kind); })
       .def_property_readonly("duration", [](const BranchPoint& p) { return p.solution.duration(); })
       .def_property_readonly("energy", [](const BranchPoint& p) { return p.solution.energy; })
-      .def_property_readonly("action", [](const BranchPoint& p) { return p.solution.action; });
+      .def_property_readonly("action", [](const BranchPoint& p) { return p.solution.action; })
+      .def("__repr__", [](const BranchPoint& p) {
+        return fmt::format("<BranchPoint of branch {}: parameter {:.10g}, {}>", p.branch, p.parameter,
+                           name(p.kind));
+      });
 
   py::class_<FollowedBranch, std::shared_ptr<FollowedBranch>>(module, "FollowedBranch")
       .def_readonly("parameter", &FollowedBranch::parameter)
@@ -68,9 +74,11 @@ void bind_branch(py::module_& module) {
            [](const FollowedBranch& b) { return text_of([&](std::ostream& out) { write_csv(out, b); }); })
       .def("summary", [](const FollowedBranch& b) { return summary(b); })
       .def("plot", plot, py::arg("study"), py::arg("path"), py::arg("quantity"))
+      .def("state", [](const FollowedBranch& b) { return packed(b); })
       .def("solved", [](const FollowedBranch& b, std::size_t k, const PyStudy& study) {
         return solved_by(study.shared(), b.points.at(k).solution);
       });
+  module.def("restored_branch", unpacked_branch, py::arg("state"));
 }
 
 }  // namespace extremal::python

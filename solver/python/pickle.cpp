@@ -85,6 +85,21 @@ auto members(Fitted& s) {
   return std::tie(parameters, open_ends, values, covariance, scaled, chi_squared, freedom, t, columns);
 }
 
+auto members(BranchPoint& s) {
+  auto& [parameter, kind, branch, solution, momentum_difference, resolved] = s;
+  return std::tie(parameter, kind, branch, solution, momentum_difference, resolved);
+}
+
+auto members(BranchRecord& s) {
+  auto& [origin, end, message, points, action_slope, momentum] = s;
+  return std::tie(origin, end, message, points, action_slope, momentum);
+}
+
+auto members(FollowedBranch& s) {
+  auto& [title, parameter, names, points, branches] = s;
+  return std::tie(title, parameter, names, points, branches);
+}
+
 template <class T>
 concept HasMembers = requires(T& value) {
   members(value);
@@ -184,6 +199,17 @@ std::shared_ptr<const Fitted> unpacked_fit(const py::handle& state) {
   std::shared_ptr<const Fitted> fit;
   unpack(state, fit);
   return fit;
+}
+
+py::tuple packed(const FollowedBranch& branch) {
+  FollowedBranch copy = branch;
+  return pack(copy);
+}
+
+FollowedBranch unpacked_branch(const py::tuple& state) {
+  FollowedBranch branch;
+  unpack(state, branch);
+  return branch;
 }
 
 Solution unpacked(const py::tuple& state) {

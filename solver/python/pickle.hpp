@@ -6,8 +6,9 @@
 
 #include "report/result.hpp"
 #include "solution/solution.hpp"
+#include "study/continued.hpp"
 
-/// \file Solutions and fits as tuples of Python, to the last digit.
+/// \file Solutions, fits and branches as tuples of Python, to the last digit.
 
 namespace extremal::python {
 
@@ -19,5 +20,9 @@ Solution unpacked(const pybind11::tuple& state);
 /// The same of what a fit found, or None.
 pybind11::object packed(const std::shared_ptr<const Fitted>& fit);
 std::shared_ptr<const Fitted> unpacked_fit(const pybind11::handle& state);
+
+/// The same of branches.
+pybind11::tuple packed(const FollowedBranch& branch);
+FollowedBranch unpacked_branch(const pybind11::tuple& state);
 
 }  // namespace extremal::python

@@ -51,9 +51,15 @@ py::bytes npz(const Solved& s, const Doubles& times) {
   return npz_text(sample(s.study->problem, s.solution, list(times)), coordinate_names(s.study->problem));
 }
 
-std::string csv(const Solved& s, const Doubles& times) {
+/// Of solutions of one study, each at times of its own; `numbered` as the command writes those of a search.
+std::string csv(const std::vector<std::shared_ptr<Solved>>& solutions, const std::vector<Doubles>& times,
+                bool numbered) {
+  std::vector<Samples> samples;
+  for (std::size_t k = 0; k < solutions.size(); ++k)
+    samples.push_back(sample(solutions[k]->study->problem, solutions[k]->solution, list(times.at(k))));
+  const std::vector<std::string> names = coordinate_names(solutions.at(0)->study->problem);
   return text_of([&](std::ostream& out) {
-    write_csv(out, sample(s.study->problem, s.solution, list(times)), coordinate_names(s.study->problem));
+    numbered ? write_csv(out, samples, names) : write_csv(out, samples.at(0), names);
   });
 }
 
@@ -265,7 +271,6 @@ void bind_solution(py::module_& module) {
       .def("path_forces",
            [](const Solved& s, const Doubles& t) { return forces(s, t, &Samples::path_forces); })
       .def("json", json, py::arg("times") = py::none())
-      .def("csv", csv)
       .def("npz", npz)
       .def("oem", oem)
       .def("summary", [](const Solved& s) { return summary(result_of(s)); })
@@ -274,6 +279,7 @@ void bind_solution(py::module_& module) {
   module.def("restored", [](const PyStudy& study, const py::tuple& state) {
     return solved_by(study.shared(), unpacked(state[0]), unpacked_fit(state[1]));
   });
+  module.def("csv", csv, py::arg("solutions"), py::arg("times"), py::arg("numbered"));
   module.def("plot", plot, py::arg("path"), py::arg("solutions"));
 }
 

@@ -1,5 +1,6 @@
 #include "python/study.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
@@ -141,13 +142,22 @@ void bind_study(py::module_& module) {
       .def_readonly("iteration", &FitStep::iteration)
       .def_readonly("elements", &FitStep::elements)
       .def_readonly("degree", &FitStep::degree)
-      .def_readonly("chi_squared", &FitStep::chi_squared);
+      .def_readonly("chi_squared", &FitStep::chi_squared)
+      .def("__repr__", [](const FitStep& f) {
+        return fmt::format("<FitStep {}: {} elements of degree {}, chi squared {:.6g}>", f.iteration,
+                           f.elements, f.degree, f.chi_squared);
+      });
   py::class_<Iteration>(module, "Iteration")
       .def_readonly("elements", &Iteration::elements)
       .def_readonly("degree", &Iteration::degree)
       .def_readonly("residual", &Iteration::residual)
       .def_readonly("step", &Iteration::step)
-      .def_readonly("damping", &Iteration::damping);
+      .def_readonly("damping", &Iteration::damping)
+      .def("__repr__", [](const Iteration& i) {
+        return fmt::format(
+            "<Iteration: {} elements of degree {}, residual {:.1e}, step {:.1e}, damping {:.3g}>", i.elements,
+            i.degree, i.residual, i.step, i.damping);
+      });
 
   py::class_<PyStudy>(module, "Study")
       .def(py::init<const std::string&, const std::string&, bool>(), py::arg("text"), py::arg("name"),

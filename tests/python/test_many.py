@@ -1,5 +1,6 @@
 """Many arcs and families."""
 
+import copy
 import pickle
 
 import extremal as ex
@@ -69,7 +70,9 @@ def test_forces_and_times_and_initial_data():
         ({"end": [1, 2]}, "a row for each"),
         ({"end": np.zeros((3, 3))}, "shape"),
         ({"end": np.zeros((3, 2)), "duration": [1, 2]}, "number of rows"),
-        ({"end": [[0.5, np.nan]]}, "finite"),
+        ({"end": [[0.5, np.nan]]}, r"end\[0, 1\] = nan"),
+        ({"duration": [np.inf, 1]}, r"duration\[0\] = inf"),
+        ({"duration": [[1.0], [2.0]]}, "shape"),
         ({"duration": [1, -1]}, "duration\\[1\\] = -1"),
         ({"duration": [1.0], "threads": 0}, "threads"),
     ],
@@ -77,6 +80,14 @@ def test_forces_and_times_and_initial_data():
 def test_wrong_arrays(arc, keys, message):
     with pytest.raises(ValueError, match=message):
         arc.solve_many(**keys)
+
+
+def test_complex_numbers_are_refused(arc):
+    """numpy would leave their imaginary parts out."""
+    with pytest.raises(TypeError, match="end has complex"):
+        arc.solve_many(end=[[0.5, 1j]])
+    with pytest.raises(TypeError, match="t has complex"):
+        arc.solve()(np.array([1j]))
 
 
 def test_no_rows(arc):
@@ -104,6 +115,18 @@ def test_a_family_as_arrays(tmp_path):
         branch.plot(quantity="nothing(0)")
     with pytest.raises(IndexError):
         branch[m]
+    with pytest.raises(TypeError, match="slice"):
+        branch[1:3]
+    assert "parameter" in repr(seen[3])
+
+
+def test_a_pickle_of_a_family_has_every_point(arc):
+    branch = arc.follow("duration", to=3.0, points=6)
+    again = pickle.loads(pickle.dumps(branch))
+    assert again.to_dict() == branch.to_dict() and repr(again) == repr(branch)
+    np.testing.assert_array_equal(again[3](1.3), branch[3](1.3))
+    assert again.plot(quantity="x'(0)").svg == branch.plot(quantity="x'(0)").svg
+    assert copy.copy(branch) is branch and copy.deepcopy(branch) is branch
 
 
 def test_a_family_in_a_parameter_has_its_momenta():

@@ -1,6 +1,7 @@
 """Problems: from keywords, functions, texts and files; what is refused."""
 
 import pickle
+import tomllib
 
 import extremal as ex
 import numpy as np
@@ -100,6 +101,55 @@ def test_wrong_arguments():
         ex.Problem(KEPLER, duration=object())
     with pytest.raises(TypeError, match="length"):
         ex.Problem("q[1]'^2/2", duration=1)
+
+
+def test_a_tolerance_is_a_number_of_adaptive_solves(arc):
+    for keys, message in (
+        ({"tolerance": "tight"}, "must be a number"),
+        ({"tolerance": True}, "must be a number"),
+        ({"tolerance": 1e-6, "scheme": "midpoint", "elements": 16}, "exclude"),
+    ):
+        with pytest.raises(ex.SceneError, match=message):
+            arc.solve(**keys)
+    assert arc.solve(tolerance=np.float32(1e-6)).converged
+
+
+@pytest.mark.parametrize(
+    "choice",
+    [
+        lambda x: 1 if x == 0 else 2,
+        lambda x: 1 if x != 0 else 2,
+        lambda x: 1 if x in (0, 1) else 2,
+        lambda x: 1 if x > 0 else 2,
+        lambda x: max(x, 0),
+        lambda x: np.where(x >= 0, 1, 2),
+    ],
+)
+def test_functions_that_choose_by_values_are_refused(choice):
+    with pytest.raises(TypeError, match="cannot choose"):
+        ex.Problem(lambda q, v, t: v[0] ** 2 / 2 - choice(q[0]), coordinates=["x"], start={"x": 1}, duration=1.0)
+
+
+def test_functions_of_numpy_on_symbols():
+    def law(function):
+        fixed = {"start": {"x": 0, "y": 0}, "end": {"x": 1, "y": 1}, "duration": 1.0}
+        return tomllib.loads(ex.Problem(function, coordinates=["x", "y"], **fixed).to_toml())["system"]
+
+    def plane(extra):
+        return law(lambda q, v, t: v @ v / 2 - extra(q, v))["lagrangian"]
+
+    assert plane(lambda q, v: np.cross(q, v)) == "(x'*x' + y'*y')/2 - (x*y' - y*x')"
+    assert plane(lambda q, v: np.polyval([1, 2], q[0])) == "(x'*x' + y'*y')/2 - ((0*x + 1.0)*x + 2.0)"
+    assert law(lambda q, v, t, m=3: m * v @ v / 2)["lagrangian"] == "(3*x'*x' + 3*y'*y')/2"
+    with pytest.raises(TypeError, match="no function 'sign'; those .* sin"):
+        plane(lambda q, v: np.sign(q[0]))
+    with pytest.raises(AttributeError, match="no parameter 'k'"):
+        law(lambda q, v, t, p: v @ v / 2 - p.k)
+
+
+def test_a_force_of_one_coordinate_is_a_number():
+    problem = ex.Problem("x'^2/2", force=lambda q, v, t: -v[0], coordinates=["x"], start={"x": 0, "p_x": 1}, duration=2.0)
+    assert problem.solve()(2.0)[0] == pytest.approx(1 - np.exp(-2), abs=1e-9)
 
 
 def test_problems_do_not_change(arc):

@@ -52,6 +52,10 @@ def test_coordinates_by_name(arc):
         s.z
     with pytest.raises(KeyError, match="x, y"):
         s["z"]
+    with pytest.raises(TypeError, match="no element 0"):
+        s[0]
+    with pytest.raises(TypeError, match="not iterable"):
+        list(s)
     assert "x" in dir(s)
 
 
@@ -192,6 +196,7 @@ def test_a_failed_solve_says_why():
     s = failing.solve()
     assert not s.converged and s.status == "conjugate-ends" and s.message
     assert s.nodes is None and s.index is None and s.windows is None
+    assert np.isnan([s.action, s.duration, s.error_estimate, s.residual]).all() and s.energy is None
     assert s.to_dict(5)["status"] == s.status and "samples" not in s.to_dict(5)
     with pytest.raises(ValueError, match="no trajectory"):
         s(0.5)
@@ -214,6 +219,15 @@ def test_several_solutions_come_by_their_actions():
     assert found[0].solutions == (found[0],)
     assert "</svg>" in one.plot().svg
     assert len(pickle.loads(pickle.dumps(one)).solutions) == 4
+
+
+def test_a_table_of_several_solutions_is_that_of_the_command(tmp_path, command):
+    scene = tmp_path / "scene.toml"
+    pendulum = ex.Problem("th'^2/2 + cos(th)", start={"th": 0}, end={"th": 1}, duration=10, search={"solutions": 2})
+    scene.write_text(pendulum.to_toml())
+    subprocess.run([command, "solve", scene, "--csv", tmp_path / "c.csv", "--quiet"], check=True)
+    pendulum.solve().save(tmp_path / "p.csv")
+    assert (tmp_path / "p.csv").read_text() == (tmp_path / "c.csv").read_text()
 
 
 def test_schemes_are_keywords(arc):

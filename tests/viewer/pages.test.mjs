@@ -276,6 +276,45 @@ test("walls, contacts and waypoints are drawn and marked", async () => {
   });
 });
 
+/** How many pixels of the plain canvas have a colour of the style sheet. */
+const coloured = (page, name) =>
+  page.evaluate((name) => {
+    const hex = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+    const wanted = [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
+    const canvas = document.querySelector(".flat canvas");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let k = 0; k < data.length; k += 4)
+      count += wanted.every((part, channel) => data[k + channel] === part) ? 1 : 0;
+    return count;
+  }, name);
+
+test("contacts and waypoints are seen on the path", async () => {
+  for (const [scene, contact, waypoint] of [
+    ["keep-out-transfer", true, false],
+    ["kepler-tour", false, true],
+    ["kepler", false, false],
+  ])
+    await withPage(made("solve", scene).file, "pause", async (page) => {
+      assert.equal((await coloured(page, "contact")) > 20, contact, scene);
+      assert.equal((await coloured(page, "waypoint")) > 20, waypoint, scene);
+    });
+  const { file } = made("solve", "round-a-cap");
+  await withPage(file, "pause&theme=light", async (page) => {
+    assert.ok(await page.isVisible(".deep canvas"));
+  });
+});
+
+test("small numbers have an exponent", async () => {
+  const { file, result } = made("compare", "kepler");
+  const row = result.rows.findIndex(({ seconds }) => seconds < 1e-4);
+  await withPage(file, "", async (page) => {
+    const text = await page.textContent(`[data-row="${row}"][data-field=seconds]`);
+    assert.match(text, /^\d(\.\d+)?e-[5-9]$/);
+    assert.equal(Number(text), result.rows[row].seconds);
+  });
+});
+
 test("titles and names are texts", async () => {
   const title = "</script><script>alert(1)</script><img src=x onerror=alert(2)> & 'a' \"b\" \u2028 <!--";
   const scene = join(folder, "tags.toml");

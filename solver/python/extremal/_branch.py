@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -135,7 +136,7 @@ class Branch:
 
     def __getitem__(self, k: int) -> Solution:
         """The solution of a point."""
-        count = len(self)
+        count, k = len(self), operator.index(k)
         if not -count <= k < count:
             raise IndexError(f"the branch has {count} points")
         k %= count
@@ -177,3 +178,16 @@ class Branch:
 
     def __repr__(self) -> str:
         return self._followed.summary().rstrip("\n") if len(self) else f"{self.status}: {self.message}"
+
+    def __copy__(self) -> Branch:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Branch:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._problem, self._followed.state())
+
+
+def _restored(problem: Problem, state: tuple[Any, ...]) -> Branch:
+    return Branch._made(problem, _core.Study(problem._text, problem._name, True), _core.restored_branch(state))

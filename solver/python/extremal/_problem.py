@@ -324,9 +324,8 @@ class Problem:
             A Solution. Of a problem with a table [search] that with the least action, the others in
             `solutions`.
         """
-        if tolerance is not None:
-            if not self._accepts(tolerance):
-                changes["tolerance"] = tolerance
+        if tolerance is not None and (changes or not self._accepts(tolerance)):
+            changes["tolerance"] = tolerance
         if solutions is not None:
             changes["search"] = {"solutions": solutions}
         problem = self.replace(**changes) if changes else self

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -92,7 +93,8 @@ def drawn(draw: Any, path: str | os.PathLike[str] | None) -> Picture | None:
 class Solution:
     """A trajectory q(t) on [0, T], n coordinates, in the units of the problem. Immutable.
 
-    Where `converged` is false, `status` and `message` say why, and there is no trajectory. Arrays cannot be
+    Where `converged` is false, `status` and `message` say why, there is no trajectory, and numbers of one are
+    NaN or None. Arrays cannot be
     written; they are views of the solution's own memory and keep it alive.
 
     >>> s(1.3)                      # q(1.3), (n,)
@@ -158,12 +160,12 @@ class Solution:
     @property
     def action(self) -> float:
         """∫ L dt."""
-        return self._solved.action
+        return self._known(self._solved.action)
 
     @property
     def duration(self) -> float:
         """T."""
-        return self._solved.duration
+        return self._known(self._solved.duration)
 
     @property
     def energy(self) -> float | None:
@@ -183,12 +185,12 @@ class Solution:
     @property
     def error_estimate(self) -> float:
         """Largest error of q(t), in units of q."""
-        return self._solved.error_estimate
+        return self._known(self._solved.error_estimate)
 
     @property
     def residual(self) -> float:
         """Largest component of the discrete equations, divided by the largest momentum."""
-        return self._solved.residual
+        return self._known(self._solved.residual)
 
     @property
     def index(self) -> int | None:
@@ -211,6 +213,10 @@ class Solution:
     def certificate(self) -> str:
         """What is known of the windows: "none", "sampled" or "global"."""
         return self._solved.certificate
+
+    def _known(self, value: float) -> float:
+        """A number that a path has; NaN where there is none."""
+        return value if self.converged else math.nan
 
     @property
     def windows(self) -> Array | None:
@@ -454,26 +460,37 @@ class Solution:
         if isinstance(samples, (int, np.integer)):
             if samples < 2:
                 raise ValueError(f"samples = {samples}; need at least 2")
-            return np.linspace(0, self.duration, samples)
+            # Rounded as those of the command, so that files are the same.
+            times = self.duration * np.arange(samples) / (samples - 1)
+            times[-1] = self.duration
+            return times
         return reals(samples, "samples")
+
+    def _rows(self, samples: int | npt.ArrayLike | None) -> Array:
+        """Times of samples, where nothing else is written; None: those of the nodes."""
+        times = self.t if samples is None else self._times(samples)
+        self._require()
+        assert times is not None
+        return times
 
     def save(self, path: str | os.PathLike[str], samples: int | npt.ArrayLike | None = 201) -> None:
         """Writes the result with samples as .json, or the samples alone as .csv, .npz or .oem (with the
-        table `units`), by the ending of the path. A file is written whole or not at all."""
+        table `units`), by the ending of the path; of a search all solutions as .json and .csv. A file is
+        written whole or not at all."""
         name = os.fspath(path)
         if name.endswith(".json"):
             text = self._solved.json(self._times(samples))
             if self._all:
                 text = json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
             content = text.encode()
-        elif name.endswith((".csv", ".npz", ".oem")):
-            self._require()
-            times = self.t if samples is None else self._times(samples)
-            assert times is not None
-            if name.endswith(".npz"):
-                content = self._solved.npz(times)
-            else:
-                content = (self._solved.csv if name.endswith(".csv") else self._solved.oem)(times).encode()
+        elif name.endswith(".csv"):
+            every = self.solutions
+            rows = [solution._rows(samples) for solution in every]
+            content = _core.csv([s._solved for s in every], rows, bool(self._all)).encode()
+        elif name.endswith(".npz"):
+            content = self._solved.npz(self._rows(samples))
+        elif name.endswith(".oem"):
+            content = self._solved.oem(self._rows(samples)).encode()
         else:
             raise ValueError(f"'{name}' ends neither in .json nor in .csv, .npz or .oem")
         _core.write(name, content)

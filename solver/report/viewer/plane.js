@@ -2,6 +2,7 @@
 // small pictures and where there is no WebGL.
 import { faded, mixed, themeColour, tone } from "./colour.js";
 import { fitCanvas } from "./dom.js";
+import { marks } from "./marks.js";
 import { drawMotion } from "./motion.js";
 import { projection } from "./projection.js";
 import { axisText, ticks } from "./text.js";
@@ -66,6 +67,7 @@ export class PlaneView {
     );
     for (const other of this.behind) this.drawPaths(context, other, 0.3, 1.1, tone(other.colour));
     this.drawPaths(context, this.front, 0.55, this.small ? 1.3 : 1.8, null);
+    if (!this.small) this.drawMarks(context);
     if (!this.small) this.drawEnds(context);
     this.drawCentres(context);
   }
@@ -194,6 +196,29 @@ export class PlaneView {
       context.stroke();
       context.fillStyle = colour;
       context.fillRect(to[0] - 4, to[1] - 4, 8, 8);
+    }
+  }
+
+  /** Contacts as parts of the path, waypoints as rings. */
+  drawMarks(context) {
+    for (const body of this.view.bodies) {
+      const { contacts, waypoints } = marks(this.state, this.front, body);
+      context.lineWidth = 4;
+      context.strokeStyle = themeColour("contact");
+      for (const part of contacts) {
+        context.beginPath();
+        for (const place of part) context.lineTo(...this.project.at(place));
+        context.stroke();
+      }
+      context.lineWidth = 2;
+      context.strokeStyle = themeColour("waypoint");
+      context.fillStyle = themeColour("panel");
+      for (const place of waypoints) {
+        context.beginPath();
+        context.arc(...this.project.at(place), 4, 0, 2 * Math.PI);
+        context.fill();
+        context.stroke();
+      }
     }
   }
 

@@ -22,6 +22,7 @@ import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { mixed, themeColour, tone } from "./colour.js";
 import { element } from "./dom.js";
+import { marks } from "./marks.js";
 import { axisText, short } from "./text.js";
 
 const fieldOfView = 30; // degrees, upwards
@@ -29,7 +30,8 @@ const trailPoints = 60,
   trailShare = 0.12;
 const behindPoints = 300; // of each path behind the one in front
 const bodySize = 0.0095,
-  centreSize = 0.008; // radii, of the distance to the camera
+  centreSize = 0.008,
+  markSize = 0.006; // radii, of the distance to the camera
 const direction = [0.52, -0.76, 0.42]; // from which the box is seen first
 const leastSide = 0.3; // of a box, of its longest side
 
@@ -126,12 +128,12 @@ export class SpaceView {
     this.ball = new SphereGeometry(1, 24, 16);
     this.bodies = this.view.bodies.map((body) => this.addBall(this.bodyColour(body), bodySize));
     this.trails = this.view.bodies.map((body) => this.addTrail(this.bodyColour(body)));
-    this.centres = this.view.centres.map((centre) => {
-      const ball = this.addBall(themeColour("centre"), centreSize);
-      ball.position.set(...this.point(centre.at));
-      if (centre.name) this.note(centre.name, ball.position, "centre");
-      return ball;
-    });
+    this.fixed = [];
+    for (const { name, at } of this.view.centres) {
+      const ball = this.addFixed(at, "centre", centreSize);
+      if (name) this.note(name, ball.position, "centre");
+    }
+    this.addMarks();
   }
 
   bodyColour(body) {
@@ -264,6 +266,26 @@ export class SpaceView {
     return ball;
   }
 
+  addFixed(at, colour, size) {
+    const ball = this.addBall(themeColour(colour), size);
+    ball.position.set(...this.point(at));
+    this.fixed.push(ball);
+    return ball;
+  }
+
+  /** Contacts as parts of the path, waypoints as balls. */
+  addMarks() {
+    for (const body of this.view.bodies) {
+      const { contacts, waypoints } = marks(this.state, this.front, body);
+      for (const part of contacts)
+        this.addLine(
+          part.flatMap((place) => this.point(place)),
+          { color: themeColour("contact"), linewidth: 5 },
+        );
+      for (const place of waypoints) this.addFixed(place, "waypoint", markSize);
+    }
+  }
+
   moveBodies() {
     const { front, view } = this,
       phase = this.state.phase,
@@ -281,7 +303,7 @@ export class SpaceView {
       }
       data.needsUpdate = true;
     });
-    for (const ball of [...this.bodies, ...this.centres])
+    for (const ball of [...this.bodies, ...this.fixed])
       ball.scale.setScalar(ball.userData.size * ball.position.distanceTo(this.camera.position));
   }
 

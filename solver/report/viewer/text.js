@@ -14,8 +14,8 @@ export function brief(value, digits = 6) {
 /** Three digits, for ends of axes. */
 export const short = (value) => minus(String(Number(value.toPrecision(3))));
 
-/** All digits: the shortest text that gives the same double. */
-export const full = (value) => String(value);
+/** All digits: the shortest text that gives the same double; small numbers without zeros before them. */
+export const full = (value) => (Math.abs(value) < 1e-4 && value !== 0 ? value.toExponential() : String(value));
 
 /** "x (km)". */
 export const axisText = ({ name, unit }) => (unit ? `${name} (${unit})` : name);
