@@ -127,7 +127,7 @@ def test_a_tolerance_is_a_number_of_adaptive_solves(arc):
 )
 def test_functions_that_choose_by_values_are_refused(choice):
     with pytest.raises(TypeError, match="cannot choose"):
-        ex.Problem(lambda q, v, t: v[0] ** 2 / 2 - choice(q[0]), coordinates=["x"], start={"x": 1}, duration=1.0)
+        ex.Problem(lambda q, v, t: v[0] ** 2 / 2 - choice(q[0]), coordinates=["x"], duration=1.0)
 
 
 def test_functions_of_numpy_on_symbols():
@@ -148,7 +148,8 @@ def test_functions_of_numpy_on_symbols():
 
 
 def test_a_force_of_one_coordinate_is_a_number():
-    problem = ex.Problem("x'^2/2", force=lambda q, v, t: -v[0], coordinates=["x"], start={"x": 0, "p_x": 1}, duration=2.0)
+    start = {"x": 0, "p_x": 1}
+    problem = ex.Problem("x'^2/2", force=lambda q, v, t: -v[0], start=start, duration=2.0)
     assert problem.solve()(2.0)[0] == pytest.approx(1 - np.exp(-2), abs=1e-9)
 
 

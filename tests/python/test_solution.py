@@ -223,7 +223,8 @@ def test_several_solutions_come_by_their_actions():
 
 def test_a_table_of_several_solutions_is_that_of_the_command(tmp_path, command):
     scene = tmp_path / "scene.toml"
-    pendulum = ex.Problem("th'^2/2 + cos(th)", start={"th": 0}, end={"th": 1}, duration=10, search={"solutions": 2})
+    law, search = "th'^2/2 + cos(th)", {"solutions": 2}
+    pendulum = ex.Problem(law, start={"th": 0}, end={"th": 1}, duration=10, search=search)
     scene.write_text(pendulum.to_toml())
     subprocess.run([command, "solve", scene, "--csv", tmp_path / "c.csv", "--quiet"], check=True)
     pendulum.solve().save(tmp_path / "p.csv")

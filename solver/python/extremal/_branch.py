@@ -190,4 +190,5 @@ class Branch:
 
 
 def _restored(problem: Problem, state: tuple[Any, ...]) -> Branch:
-    return Branch._made(problem, _core.Study(problem._text, problem._name, True), _core.restored_branch(state))
+    study = _core.Study(problem._text, problem._name, True)
+    return Branch._made(problem, study, _core.restored_branch(state))

@@ -120,8 +120,8 @@ class _Parameters:
 def _takes_parameters(function: Callable[..., Any]) -> bool:
     """Whether it has a fourth argument that must be given."""
     arguments = inspect.signature(function).parameters.values()
-    needed = [a for a in arguments if a.default is a.empty and a.kind not in (a.VAR_POSITIONAL, a.VAR_KEYWORD)]
-    return len(needed) == 4
+    variable = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
+    return sum(a.default is a.empty and a.kind not in variable for a in arguments) == 4
 
 
 def _traced(keys: dict[str, Any]) -> dict[str, Any]:
@@ -274,7 +274,7 @@ class Problem:
 
     def _accepts(self, tolerance: Any) -> bool:
         """Whether the problem can be solved to it as it is; the scene says why not."""
-        return self._study.adaptive and isinstance(tolerance, Real) and 0 < tolerance < 1
+        return self._study.adaptive and isinstance(tolerance, Real) and 0 < float(tolerance) < 1
 
     @overload
     def solve(
@@ -426,8 +426,10 @@ class Problem:
                         f"{name} has the shape {array.shape}; need {f'(m, {n})' if width else '(m,)'}"
                     )
                 if not np.isfinite(array).all():
-                    place = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
-                    raise ValueError(f"{name}[{', '.join(map(str, place))}] = {array[place]}; need a finite number")
+                    at = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
+                    raise ValueError(
+                        f"{name}[{', '.join(map(str, at))}] = {array[at]}; need a finite number"
+                    )
                 given[name] = array
         counts = {len(a) for name, a in given.items() if a.ndim == (1 if name == "duration" else 2)}
         if not counts:

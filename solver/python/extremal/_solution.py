@@ -94,8 +94,7 @@ class Solution:
     """A trajectory q(t) on [0, T], n coordinates, in the units of the problem. Immutable.
 
     Where `converged` is false, `status` and `message` say why, there is no trajectory, and numbers of one are
-    NaN or None. Arrays cannot be
-    written; they are views of the solution's own memory and keep it alive.
+    NaN or None. Arrays cannot be written; they are views of the solution's own memory and keep it alive.
 
     >>> s(1.3)                      # q(1.3), (n,)
     >>> s(np.linspace(0, s.duration, 100))  # (100, n)

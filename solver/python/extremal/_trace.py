@@ -75,7 +75,7 @@ class Symbol:
     def _compare(self, other: Any) -> bool:
         raise TypeError(REFUSED)
 
-    __eq__ = __ne__ = __lt__ = __le__ = __gt__ = __ge__ = _compare  # type: ignore[assignment]
+    __eq__ = __ne__ = __lt__ = __le__ = __gt__ = __ge__ = _compare
     __hash__ = object.__hash__
 
     def __float__(self) -> float:
@@ -113,7 +113,8 @@ REFUSED = (
 
 
 def lacking(name: str) -> str:
-    return f"a formula has no function '{name}'; those of numpy that it has are {', '.join(sorted(FUNCTIONS))}"
+    known = ", ".join(sorted(FUNCTIONS))
+    return f"a formula has no function '{name}'; those of numpy that it has are {known}"
 
 
 def symbol(value: Any) -> Symbol:
