@@ -50,13 +50,19 @@ py::array_t<double> starts(const FollowedBranch& branch, bool velocities) {
 }  // namespace
 
 void bind_branch(py::module_& module) {
-  py::class_<BranchPoint>(module, "BranchPoint")
-      .def_readonly("branch", &BranchPoint::branch)
-      .def_readonly("parameter", &BranchPoint::parameter)
-      .def_property_readonly("kind", [](const BranchPoint& p) { return name(p.kind); })
-      .def_property_readonly("duration", [](const BranchPoint& p) { return p.solution.duration(); })
-      .def_property_readonly("energy", [](const BranchPoint& p) { return p.solution.energy; })
-      .def_property_readonly("action", [](const BranchPoint& p) { return p.solution.action; })
+  py::class_<BranchPoint>(module, "BranchPoint", "A point of a family, as progress is called with it.")
+      .def_readonly("branch", &BranchPoint::branch, "Number of its branch; 0 is the one asked for.")
+      .def_readonly("parameter", &BranchPoint::parameter, "Value of what varies.")
+      .def_property_readonly(
+          "kind", [](const BranchPoint& p) { return name(p.kind); },
+          "Either \"regular\", \"fold\", \"branch\" or \"period-doubling\".")
+      .def_property_readonly(
+          "duration", [](const BranchPoint& p) { return p.solution.duration(); }, "T.")
+      .def_property_readonly(
+          "energy", [](const BranchPoint& p) { return p.solution.energy; },
+          "Energy; None where L depends on t.")
+      .def_property_readonly(
+          "action", [](const BranchPoint& p) { return p.solution.action; }, "Action.")
       .def("__repr__", [](const BranchPoint& p) {
         return fmt::format("<BranchPoint of branch {}: parameter {:.10g}, {}>", p.branch, p.parameter,
                            name(p.kind));

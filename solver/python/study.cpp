@@ -138,21 +138,22 @@ void bind_study(py::module_& module) {
   for (int k = 0; k <= static_cast<int>(Status::iteration_limit); ++k) statuses.append(name(Status{k}));
   module.attr("STATUSES") = statuses;
 
-  py::class_<FitStep>(module, "FitStep")
-      .def_readonly("iteration", &FitStep::iteration)
-      .def_readonly("elements", &FitStep::elements)
-      .def_readonly("degree", &FitStep::degree)
-      .def_readonly("chi_squared", &FitStep::chi_squared)
+  py::class_<FitStep>(module, "FitStep", "A step of a fit, as progress is called with it.")
+      .def_readonly("iteration", &FitStep::iteration, "Its number.")
+      .def_readonly("elements", &FitStep::elements, "Number of elements.")
+      .def_readonly("degree", &FitStep::degree, "Degree of the elements.")
+      .def_readonly("chi_squared", &FitStep::chi_squared, "The sum that is made least.")
       .def("__repr__", [](const FitStep& f) {
         return fmt::format("<FitStep {}: {} elements of degree {}, chi squared {:.6g}>", f.iteration,
                            f.elements, f.degree, f.chi_squared);
       });
-  py::class_<Iteration>(module, "Iteration")
-      .def_readonly("elements", &Iteration::elements)
-      .def_readonly("degree", &Iteration::degree)
-      .def_readonly("residual", &Iteration::residual)
-      .def_readonly("step", &Iteration::step)
-      .def_readonly("damping", &Iteration::damping)
+  py::class_<Iteration>(module, "Iteration", "A step of Newton's method, as progress is called with it.")
+      .def_readonly("elements", &Iteration::elements, "Number of elements.")
+      .def_readonly("degree", &Iteration::degree, "Degree of the elements.")
+      .def_readonly("residual", &Iteration::residual,
+                    "Largest component of the discrete equations, divided by the largest momentum.")
+      .def_readonly("step", &Iteration::step, "Largest change of q.")
+      .def_readonly("damping", &Iteration::damping, "The part of the step that was taken, in (0, 1].")
       .def("__repr__", [](const Iteration& i) {
         return fmt::format(
             "<Iteration: {} elements of degree {}, residual {:.1e}, step {:.1e}, damping {:.3g}>", i.elements,

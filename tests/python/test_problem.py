@@ -1,5 +1,6 @@
 """Problems: from keywords, functions, texts and files; what is refused."""
 
+import inspect
 import pickle
 import tomllib
 
@@ -266,3 +267,16 @@ class TestFunctions:
     def test_what_is_no_formula_is_refused(self, law, error):
         with pytest.raises(error):
             ex.Problem(law, coordinates=["x", "y"], **ENDS)
+
+
+def test_all_that_is_public_has_a_docstring():
+    for name in ex.__all__:
+        public = getattr(ex, name)
+        if not callable(public):
+            continue
+        assert inspect.getdoc(public), name
+        members = [m for m in vars(public) if not m.startswith("_")] if inspect.isclass(public) else []
+        for member in members:
+            value = inspect.getattr_static(public, member)
+            if isinstance(value, property) or inspect.isroutine(value):
+                assert value.__doc__, f"{name}.{member}"
