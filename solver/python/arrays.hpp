@@ -34,4 +34,7 @@ py::array_t<Number> view(const std::vector<Number>& numbers, const py::handle& o
   return view(numbers.data(), {static_cast<py::ssize_t>(numbers.size())}, owner);
 }
 
+/// A copy.
+inline std::vector<double> list(const Doubles& array) { return {array.data(), array.data() + array.size()}; }
+
 }  // namespace extremal::python

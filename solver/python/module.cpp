@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 
 #include "python/branch.hpp"
+#include "python/files.hpp"
 #include "python/solution.hpp"
 #include "python/study.hpp"
 #include "report/file.hpp"
@@ -70,6 +71,7 @@ PYBIND11_MODULE(_core, module) {
   bind_solution(module);
   bind_branch(module);
   bind_study(module);
+  bind_files(module);
   module.def("keys", keys);
   module.def("read_text", read_text);
   module.def("write", write_text, py::arg("path"), py::arg("content"));

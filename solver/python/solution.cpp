@@ -11,9 +11,6 @@
 #include "python/arrays.hpp"
 #include "python/pickle.hpp"
 #include "python/study.hpp"
-#include "report/csv.hpp"
-#include "report/json.hpp"
-#include "report/oem.hpp"
 #include "report/page.hpp"
 #include "report/plot.hpp"
 #include "report/sampling.hpp"
@@ -22,11 +19,6 @@
 #include "study/phase.hpp"
 
 namespace extremal::python {
-namespace {
-
-using Times = std::optional<Doubles>;
-
-std::vector<double> list(const Doubles& array) { return {array.data(), array.data() + array.size()}; }
 
 Result result_of(const Solved& s) {
   Result result{s.study->title, coordinate_names(s.study->problem), s.solution, s.study->seconds_read,
@@ -36,42 +28,7 @@ Result result_of(const Solved& s) {
   return result;
 }
 
-/// As --output writes it, with samples at `times`.
-std::string json(const Solved& s, const Times& times) {
-  Result result = result_of(s);
-  if (s.solution.converged()) {
-    if (times) result.samples = sample(s.study->problem, s.solution, list(*times));
-    if (s.study->spectrum) add_spectrum(*s.study, *s.study->spectrum, result);
-    add_surroundings(*s.study, result);
-  }
-  return text_of([&](std::ostream& out) { write_json(out, result); });
-}
-
-py::bytes npz(const Solved& s, const Doubles& times) {
-  return npz_text(sample(s.study->problem, s.solution, list(times)), coordinate_names(s.study->problem));
-}
-
-/// Of solutions of one study, each at times of its own; `numbered` as the command writes those of a search.
-std::string csv(const std::vector<std::shared_ptr<Solved>>& solutions, const std::vector<Doubles>& times,
-                bool numbered) {
-  std::vector<Samples> samples;
-  for (std::size_t k = 0; k < solutions.size(); ++k)
-    samples.push_back(sample(solutions[k]->study->problem, solutions[k]->solution, list(times.at(k))));
-  const std::vector<std::string> names = coordinate_names(solutions.at(0)->study->problem);
-  return text_of([&](std::ostream& out) {
-    numbered ? write_csv(out, samples, names) : write_csv(out, samples.at(0), names);
-  });
-}
-
-std::string oem(const Solved& s, const Doubles& times) {
-  const Study& study = *s.study;
-  if (!study.units)
-    throw std::invalid_argument("the problem has no units; give length, time, frame, centre and epoch");
-  return text_of([&](std::ostream& out) {
-    write_oem(out, *study.units, study.title, coordinate_names(study.problem),
-              sample(study.problem, s.solution, list(times)));
-  });
-}
+namespace {
 
 /// The bytes of a picture in the format that the path ends with; of several solutions of one study all.
 py::bytes plot(const std::string& path, const std::vector<std::shared_ptr<Solved>>& solutions) {
@@ -270,16 +227,12 @@ void bind_solution(py::module_& module) {
            [](const Solved& s, const Doubles& t) { return forces(s, t, &Samples::constraint_forces); })
       .def("path_forces",
            [](const Solved& s, const Doubles& t) { return forces(s, t, &Samples::path_forces); })
-      .def("json", json, py::arg("times") = py::none())
-      .def("npz", npz)
-      .def("oem", oem)
       .def("summary", [](const Solved& s) { return summary(result_of(s)); })
       .def_property_readonly("fit", fit_of)
       .def("state", [](const Solved& s) { return py::make_tuple(packed(s.solution), packed(s.fit)); });
   module.def("restored", [](const PyStudy& study, const py::tuple& state) {
     return solved_by(study.shared(), unpacked(state[0]), unpacked_fit(state[1]));
   });
-  module.def("csv", csv, py::arg("solutions"), py::arg("times"), py::arg("numbered"));
   module.def("plot", plot, py::arg("path"), py::arg("solutions"));
 }
 

@@ -226,9 +226,23 @@ def test_a_table_of_several_solutions_is_that_of_the_command(tmp_path, command):
     law, search = "th'^2/2 + cos(th)", {"solutions": 2}
     pendulum = ex.Problem(law, start={"th": 0}, end={"th": 1}, duration=10, search=search)
     scene.write_text(pendulum.to_toml())
-    subprocess.run([command, "solve", scene, "--csv", tmp_path / "c.csv", "--quiet"], check=True)
-    pendulum.solve().save(tmp_path / "p.csv")
+    written = ["--csv", tmp_path / "c.csv", "--output", tmp_path / "c.json", "--samples", "201"]
+    subprocess.run([command, "solve", scene, *written, "--quiet"], check=True)
+    for ending in ("csv", "json"):
+        pendulum.solve().save(bytes(tmp_path / f"p.{ending}"))
     assert (tmp_path / "p.csv").read_text() == (tmp_path / "c.csv").read_text()
+    ours, theirs = (json.loads((tmp_path / f"{name}.json").read_text()) for name in "pc")
+    for result in (ours, theirs, *ours["solutions"], *theirs["solutions"]):
+        del result["seconds"]
+    assert ours == theirs
+
+
+def test_samples_are_a_number_or_a_list_of_times(arc):
+    s = arc.solve()
+    assert s.to_dict([1, 0])["samples"]["t"] == [1, 0]
+    for samples in (1, [[0, 1], [1, 2]]):
+        with pytest.raises(ValueError, match="samples"):
+            s.to_dict(samples)
 
 
 def test_schemes_are_keywords(arc):

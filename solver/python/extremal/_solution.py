@@ -242,7 +242,7 @@ class Solution:
 
     def _field(self, name: str) -> Any:
         """A field of the result as `--output` writes it; None where it has none."""
-        return json.loads(self._solved.json()).get(name)
+        return json.loads(_core.json([self._solved], [None], False)).get(name)
 
     @property
     def multipliers(self) -> npt.NDArray[np.complex128] | None:
@@ -448,10 +448,12 @@ class Solution:
 
     def to_dict(self, samples: int | npt.ArrayLike | None = None) -> dict[str, Any]:
         """The result as `--output` writes it, with so many equal samples, or samples at these times."""
-        result: dict[str, Any] = json.loads(self._solved.json(self._times(samples)))
-        if self._all:
-            result["solutions"] = [json.loads(s._solved.json(s._times(samples))) for s in self._all]
+        times = [solution._times(samples) for solution in self.solutions]
+        result: dict[str, Any] = json.loads(_core.json(self._every(), times, bool(self._all)))
         return result
+
+    def _every(self) -> list[_core.Solved]:
+        return [solution._solved for solution in self.solutions]
 
     def _times(self, samples: int | npt.ArrayLike | None) -> Array | None:
         if samples is None or not self.converged:
@@ -463,7 +465,10 @@ class Solution:
             times = self.duration * np.arange(samples) / (samples - 1)
             times[-1] = self.duration
             return times
-        return reals(samples, "samples")
+        given = reals(samples, "samples")
+        if given.ndim > 1:
+            raise ValueError(f"samples has the shape {given.shape}; need a number of samples, or times (m,)")
+        return given
 
     def _rows(self, samples: int | npt.ArrayLike | None) -> Array:
         """Times of samples, where nothing else is written; None: those of the nodes."""
@@ -476,29 +481,20 @@ class Solution:
         """Writes the result with samples as .json, or the samples alone as .csv, .npz or .oem (with the
         table `units`), by the ending of the path; of a search all solutions as .json and .csv. A file is
         written whole or not at all."""
-        name = os.fspath(path)
+        name = os.fsdecode(path)
+        times: list[Array | None]
         if name.endswith(".json"):
-            text = self._solved.json(self._times(samples))
-            if self._all:
-                text = json.dumps(self.to_dict(samples), ensure_ascii=False, indent=2, allow_nan=False) + "\n"
-            content = text.encode()
-        elif name.endswith(".csv"):
-            every = self.solutions
-            rows = [solution._rows(samples) for solution in every]
-            content = _core.csv([s._solved for s in every], rows, bool(self._all)).encode()
-        elif name.endswith(".npz"):
-            content = self._solved.npz(self._rows(samples))
-        elif name.endswith(".oem"):
-            content = self._solved.oem(self._rows(samples)).encode()
+            times = [solution._times(samples) for solution in self.solutions]
+        elif name.endswith((".csv", ".npz", ".oem")):
+            times = [solution._rows(samples) for solution in self.solutions]
         else:
             raise ValueError(f"'{name}' ends neither in .json nor in .csv, .npz or .oem")
-        _core.write(name, content)
+        _core.save(name, self._every(), times, bool(self._all))
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> Picture | None:
         """Draws the trajectory, of a search all of them: by gnuplot into a file .svg, .png or .pdf, or as a
         picture for a notebook; into a file .html as an interactive page."""
-        solved = [solution._solved for solution in self.solutions]
-        return drawn(lambda name: _core.plot(name, solved), path)
+        return drawn(lambda name: _core.plot(name, self._every()), path)
 
     def _repr_svg_(self) -> str | None:
         try:
