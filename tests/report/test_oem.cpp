@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <regex>
@@ -88,6 +90,29 @@ TEST(Oem, KeepsTheGrammarOfTheStandard) {
     EXPECT_LE(line.size(), 254u);
   }
   EXPECT_EQ(states, 3);
+}
+
+/// More lines than a block of text holds, each with what fmt writes.
+TEST(Oem, LinesFollowEachOther) {
+  constexpr int count = 20'000;
+  Samples samples{{}, {{}, {}}, {{}, {}}, {Column(count), Column(count)}};
+  for (int k = 0; k < count; ++k) {
+    samples.t.push_back(0.1 * k);  // s: units of ten
+    samples.q[0].push_back(std::sin(k));
+    samples.q[1].push_back(std::exp(0.01 * k));
+    samples.v[0].push_back(-1.0 / (k + 1));
+    samples.v[1].push_back(std::cos(k) * 1e-300);
+  }
+  const std::vector<std::string> lines = lines_of(oem_text(units(), "", {"x", "y"}, samples));
+  ASSERT_EQ(lines.size(), 16u + count);
+  for (int k = 0; k < count; ++k) {
+    const auto [q, v] =
+        std::pair(std::array{samples.q[0][k], samples.q[1][k]}, std::array{samples.v[0][k], samples.v[1][k]});
+    const std::string date =
+        fmt::format("2024-02-28T{:02}:{:02}:{:02}.000000000", k / 3600, k / 60 % 60, k % 60);
+    EXPECT_EQ(lines[16 + k], fmt::format("{} {:.15e} {:.15e} {:.15e} {:.15e} {:.15e} {:.15e}", date,
+                                         1000 * q[0], 1000 * q[1], 0.0, 100 * v[0], 100 * v[1], 0.0));
+  }
 }
 
 TEST(Oem, HasASegmentForEachBody) {
