@@ -318,3 +318,24 @@ TEST_F(Scenes, LegsWithConjugateEnds) {
   EXPECT_NE(both.message.find("one of a family of extremals, in 2 directions"), std::string::npos)
       << both.message;
 }
+
+/// Two circles and x(0) = x(T)/3 are met by ends at angles θ(T) = ±θ(0). These curves cross at θ = 0, where
+/// the three gradients depend on each other and p is not normal to either curve. By S = d²/2 − (y(0) +
+/// y(T))/2 − 1/24 for the distance d of the ends, dS/dθ vanishes at sin θ(0) = −1/12 on one, S = 23/12, and
+/// at θ = ±π/2 on the other, S = −1/24 or 95/24; both ends of a diameter, θ = ±π/2, have d = 4, S = 8 − 1/24
+/// ± 1.
+TEST_F(Scenes, CurvesOfEndsThatCross) {
+  const std::string crossing =
+      system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - y") +
+      "[boundary]\nconditions = [\"x(0)^2 + y(0)^2 = 1\", \"x(T)^2 + y(T)^2 = 9\", \"x(0) = x(T)/3\"]\n"
+      "duration = 1\n[guess]\n";
+  for (const char* guess :
+       {"x = \"1 + 2*t\"\ny = 0.2\n", "x = \"1 + 2*t\"\ny = 0.02\n", "x = \"1 + 2*t\"\ny = \"-0.1*t\"\n"}) {
+    const Solution s = run(study(crossing + guess));
+    ASSERT_TRUE(s.converged()) << s.message;
+    double nearest = INFINITY;
+    for (const double action : {23 / 12.0, -1 / 24.0, 95 / 24.0, 167 / 24.0, 215 / 24.0})
+      nearest = std::min(nearest, std::abs(s.action - action));
+    EXPECT_LT(nearest, 1e-9) << guess << s.action;
+  }
+}

@@ -262,13 +262,15 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
         std::isfinite(equations.mismatch())
             ? fmt::format("the conditions are missed by {:.1e}; try another guess", equations.mismatch())
             : "the conditions are not finite on the path found; try another guess");
-  if (std::string fault = dependence(equations); !fault.empty()) return refused(std::move(fault));
   if (std::string fault = missed_condition(problem, state); !fault.empty()) return refused(std::move(fault));
   const double energy = equations.momentum() * size / state.times.back();
   if (!(equations.energy_jump() <=
         largest_residual * std::max(energy, std::abs(problem.duration.energy.value_or(0)))))
     return refused(fmt::format("the energy at a free time is missed by {:.1e}; try another guess",
                                equations.energy_jump()));
+  if (std::string fault = dependence(equations, state, options.tolerance * size); !fault.empty())
+    return refused(std::move(fault));
+  if (!equations.evaluate(state, true)) return refused("the action is not finite along the path found");
   Solution solution;
   solution.status = Status::converged;
   solution.message = "converged";

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -15,53 +16,88 @@ using namespace limits::bordered;
 
 namespace {
 
-/// Their derivatives, a column for each; columns of length one, or zero where terms cancel.
-Eigen::MatrixXd derivatives(const BorderedEquations& equations, int first, int count) {
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(equations.of_path(), count), terms = columns;
+/// Integrals and conditions at a path.
+struct Targets {
+  Eigen::MatrixXd columns;  ///< their derivatives, of length one, or zero where terms cancel
+  Eigen::VectorXd missed;   ///< what they are missed by, over the lengths of their derivatives
+};
+
+Targets targets_at(const BorderedEquations& equations, int first, int count) {
+  Targets at{Eigen::MatrixXd::Zero(equations.of_path(), count), equations.values().segment(first, count)};
+  Eigen::MatrixXd terms = at.columns;
   for (const auto& e : equations.entries()) {
     const int j = e.col() - first;
     if (e.row() >= equations.of_path() || j < 0 || j >= count) continue;
-    columns(e.row(), j) += e.value();
+    at.columns(e.row(), j) += e.value();
     terms(e.row(), j) += std::abs(e.value());
   }
   for (int j = 0; j < count; ++j) {
-    const double length = columns.col(j).norm();
-    if (length > dependent * terms.col(j).norm())
-      columns.col(j) /= length;
-    else
-      columns.col(j).setZero();
+    const double length = at.columns.col(j).norm();
+    if (length > dependent * terms.col(j).norm()) {
+      at.columns.col(j) /= length;
+      at.missed[j] /= length;
+    } else {
+      at.columns.col(j).setZero();
+    }
   }
-  return columns;
+  return at;
+}
+
+/// By how much the first `count` targets are missed, by their terms.
+double missed_by(const BorderedEquations& equations, int first, int count) {
+  double most = 0;
+  for (int j = 0; j < count; ++j)
+    most = std::max(most, std::abs(equations.values()[first + j]) / equations.target_sizes()[j]);
+  return most;
 }
 
 }  // namespace
 
-std::string dependence(const BorderedEquations& equations) {
+std::string dependence(BorderedEquations& equations, const BorderedState& state, double accuracy) {
   const Extension& extension = equations.extension();
   const int integrals = extension.multipliers(), count = integrals + equations.conditions();
   if (count == 0) return {};
   const auto name = [&](int j) {
     return j < integrals ? fmt::format("integral {}", j + 1) : fmt::format("condition {}", j - integrals + 1);
   };
-  const Eigen::MatrixXd columns =
-      derivatives(equations, equations.first_constant() + extension.unknowns(), count);
+  const int first = equations.first_constant() + extension.unknowns();
+  const Targets at = targets_at(equations, first, count);
   for (int j = 0; j < count; ++j)
-    if (columns.col(j).isZero(0))
+    if (at.columns.col(j).isZero(0))
       return fmt::format(
           "{} does not change with the path, to first order: it is at an extremum, or the ends "
           "determine it; leave it out, or change its value",
           name(j));
-  if (columns.rows() < count)
+  if (at.columns.rows() < count)
     return fmt::format(
         "{} integrals and conditions are more than the {} unknowns of the path; take more elements", count,
-        columns.rows());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinV);
-  if (svd.singularValues()[count - 1] > dependent) return {};
+        at.columns.rows());
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(at.columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
   std::vector<std::string> names;
   for (int j = 0; j < count; ++j)
     if (std::abs(svd.matrixV()(j, count - 1)) > takes_part) names.push_back(name(j));
-  return fmt::format("{} depend on each other along the path found: leave one of them out",
-                     fmt::join(names, ", "));
+  if (!(svd.singularValues()[count - 1] > dependent))
+    return fmt::format("{} depend on each other along the path found: leave one of them out",
+                       fmt::join(names, ", "));
+  // The shortest step that meets them all, to first order: Cᵀ d = −missed.
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(equations.unknowns());
+  step.head(at.columns.rows()) = -svd.matrixU() * svd.singularValues().cwiseInverse().asDiagonal() *
+                                 svd.matrixV().transpose() * at.missed;
+  const double missed = missed_by(equations, first, count), distance = step.lpNorm<Eigen::Infinity>();
+  const auto is_met = [&] {
+    BorderedState moved = state;
+    return equations.apply(moved, step, 1) && equations.evaluate(moved, false) &&
+           missed_by(equations, first, count) <= std::max(met, corrected * missed);
+  };
+  if (distance <= accuracy && (missed <= met || is_met())) return {};
+  return fmt::format(
+      "the path runs into a point at which {} to first order, and is {:.1e} away from meeting {}: "
+      "multipliers "
+      "grow without bound there, and it is no extremal; try another guess, or conditions whose derivatives "
+      "are independent",
+      names.size() > 1 ? fmt::format("{} depend on each other", fmt::join(names, ", "))
+                       : fmt::format("{} does not change with the path", names[0]),
+      distance, names.size() > 1 ? "them" : "it");
 }
 
 }  // namespace extremal

@@ -57,6 +57,9 @@ inline constexpr double velocity_tolerances = 10;
 /// Derivatives of integrals and conditions, of length one, that are so nearly dependent are so; a small one
 /// is compared with its terms. Of a combination that vanishes, parts beyond the second belong to it.
 inline constexpr double dependent = 1e-6, takes_part = 1e-3;
+/// Conditions that are missed by the first, by their terms, are met to roundoff. Beyond, a step of Newton's
+/// method for them alone leaves the second at most: next to a point where they depend on each other a quarter.
+inline constexpr double met = 1e-15, corrected = 0.1;
 
 /// States about the guess at which the equations are compared: their distances, relative to it, and elements
 /// of each leg. Lines of length one that depend on each other in all of them leave at most so much: the
