@@ -339,3 +339,27 @@ TEST_F(Scenes, CurvesOfEndsThatCross) {
     EXPECT_LT(nearest, 1e-9) << guess << s.action;
   }
 }
+
+/// From one top of a pendulum over the next, with the bottom at t = 16: a kink 4 atan e^(t − 16) − π but for
+/// e^−32, of action 8 − T, which passes there by itself. Newton's method from straight lines does not arrive.
+TEST_F(Scenes, KinkThroughAWaypoint) {
+  const Solution s = run(study(system("[\"x\"]", "x'^2/2 + cos(x)") +
+                               "[boundary]\nstart = { x = \"-pi\" }\nend = { x = \"pi\" }\nduration = 40\n"
+                               "[[waypoints]]\nat = 16\nx = 0\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.action, 8 - 40, 1e-11);
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_NEAR(at(s, 17, 0), 4 * std::atan(std::numbers::e) - pi, 1e-8);
+  EXPECT_NEAR(s.extension->waypoints[0].impulse[0].second, 0, 1e-9);
+}
+
+/// Times are fixed and the potential is bounded, so there is a path of least action.
+TEST_F(Scenes, LeastActionThroughWaypoints) {
+  const Solution s =
+      run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - 2*(cos(3*x) + cos(2*y) + 0.3*cos(x*y))") +
+                "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 4, y = -3 }\nduration = 6\n"
+                "[[waypoints]]\nat = 2\nx = 1\n[[waypoints]]\nat = 4\nx = 2.5\ny = 2\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_EQ(s.morse_index, 0);
+  EXPECT_TRUE(s.minimizing);
+}

@@ -322,6 +322,28 @@ bool BorderedEquations::apply(BorderedState& state, const Eigen::VectorXd& step,
   return true;
 }
 
+double BorderedEquations::minimised(const BorderedState& state) const {
+  double sum = action_.action();
+  const std::vector<double>& momenta = problem_->boundary.momenta;
+  for (std::size_t end = 0; end < momenta.size(); ++end)
+    sum += end < static_cast<std::size_t>(n_) ? momenta[end] * state.path.node(0)[end]
+                                              : -momenta[end] * state.path.node(elements_)[end - n_];
+  return sum;
+}
+
+Eigen::VectorXd BorderedEquations::node_times(const BorderedState& state) const {
+  const int lanes = simd_lanes();
+  Eigen::VectorXd times = Eigen::VectorXd::Zero(of_path_);
+  for (int k = 0; k < elements_; ++k) {
+    const double inside = state.path.h(k / lanes)[k % lanes] / tables_->scheme().degree;
+    for (int u = 0; u < local_; ++u)
+      for (const Share& share : shares(k, u))
+        if (share.unknown < of_path_)
+          times[share.unknown] += share.factor * share.factor * (u < inner_ ? inside : inside / 2);
+  }
+  return times;
+}
+
 double BorderedEquations::residual() const {
   return values_.head(of_path_).lpNorm<Eigen::Infinity>() / (momentum_ > 0 ? momentum_ : 1);
 }

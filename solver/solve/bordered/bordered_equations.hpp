@@ -44,6 +44,7 @@ class BorderedEquations {
   void hold_times(bool on) { times_held_ = on; }
 
   const Extension& extension() const { return *problem_->extension; }
+  int coordinates() const { return n_; }
   int unknowns() const { return unknowns_; }
   int of_path() const { return of_path_; }                                     ///< unknowns of the path
   int first_constant() const { return of_path_; }                              ///< k, then ν
@@ -74,6 +75,12 @@ class BorderedEquations {
   double mismatch() const;
   /// The largest that is left of the equations of the free times: energies.
   double energy_jump() const;
+
+  /// What δS_h = 0 makes stationary with fixed times: S_h and, where momenta are given, p(0)·q(0) −
+  /// p(T)·q(T).
+  double minimised(const BorderedState& state) const;
+  /// The time that each unknown of the path stands for.
+  Eigen::VectorXd node_times(const BorderedState& state) const;
 
   /// Index and nullity of the second variation where constants and the duration are held: on the paths that
   /// keep the integrals, the conditions and the waypoints, those without a given time at any time. The matrix

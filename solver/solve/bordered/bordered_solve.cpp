@@ -12,6 +12,7 @@
 #include "solve/bordered/bordered_judge.hpp"
 #include "solve/bordered/bordered_newton.hpp"
 #include "solve/bordered/limits.hpp"
+#include "solve/bordered/minimise.hpp"
 #include "solve/bordered/starting_states.hpp"
 #include "solve/mesh/levels.hpp"
 #include "solve/mesh/resolution.hpp"
@@ -61,12 +62,15 @@ class BorderedSolve {
     const auto start = Clock::now();
     std::vector<Start> starts{{}};
     if (has_targets()) starts.push_back({.led = true});
+    if (may_be_minimised(problem_)) starts.push_back({.downhill = true});
+    const std::size_t unbent = starts.size();
     std::vector<Solution> found;
     std::optional<Failure> first_failure;
     std::size_t tried = 0;
     for (; tried < starts.size() && !(tried > 0 && spent()); ++tried) {
       if (static_cast<int>(found.size()) >= most) break;
       const Start& from = starts[tried];
+      downhill_ = from.downhill;
       equations_.set_offsets({});
       Solution solution = options_.scheme ? solve_with_scheme(from) : solve_adapted(from);
       if (solution.converged()) {
@@ -76,9 +80,8 @@ class BorderedSolve {
       } else if (!first_failure) {
         first_failure = {solution.message, solution.status};
       }
-      const bool bent = starts.size() > 2 || starts.back().size != 0;
       const bool wanted = static_cast<int>(found.size()) < most;
-      if (tried + 1 == starts.size() && !bent && wanted) add_bent(starts);
+      if (tried + 1 == unbent && wanted) add_bent(starts);
     }
     if (found.empty()) return {timed(failure(*first_failure), start)};
     std::ranges::stable_sort(found, {}, &Solution::action);
@@ -153,8 +156,12 @@ class BorderedSolve {
         options_.progress(
             {found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step, damping});
     };
-    const BorderedReport report = converge(
-        equations_, found.state, [&] { return spent(); }, told);
+    const auto stop = [&] { return spent(); };
+    if (downhill_ && !minimise(equations_, found.state, stop, told)) {
+      failure = {"the action has no minimum near the guess"};
+      return false;
+    }
+    const BorderedReport report = converge(equations_, found.state, stop, told);
     found.correction = report.correction;
     failure = {report.failure};
     return report.converged && is_balanced(found, failure);
@@ -248,7 +255,8 @@ class BorderedSolve {
   LegMesh first_mesh(const Elements& elements, const Start& start) {
     const int legs = starts_.legs();
     const int most = start.size == 0 ? most_first_elements : most_bent_elements;
-    for (int count = std::max(first_elements, 2 * legs);; count *= 2) {
+    // Steps downhill go to paths that the guess does not tell.
+    for (int count = std::max(start.downhill ? most : first_elements, 2 * legs);; count *= 2) {
       const LegMesh mesh = starts_.equal_elements(count);
       Found found{starts_.at(mesh, elements, start), elements.tables, elements.own};
       if (count >= most || errors(found).q <= guess_error * sizes(found).q) return mesh;
@@ -420,6 +428,7 @@ class BorderedSolve {
   BorderedEquations equations_;
   Resolution resolution_;
   int iterations_ = 0;
+  bool downhill_ = false;  ///< of the start that is tried
   double seconds_analyse_ = 0, first_size_ = 1;
 };
 

@@ -40,6 +40,17 @@ inline constexpr double least_constant = 1e-8;
 /// A path may become so many times larger than its guess, a duration so many times longer or shorter.
 inline constexpr double most_growth = 1e4;
 
+/// Of steps downhill: how many at most, and the longest by the size of the path; one that is so short is
+/// Newton's, beside the minimiser. The action must fall by a part of what the quadratic model predicts,
+/// unless that is roundoff of the action.
+inline constexpr int most_descents = 400;
+inline constexpr double longest_descent = 0.3, minimal = 1e-6, sufficient = 1e-4, roundoff_of_action = 1e-14;
+/// The least 1/τ, by the stiffest node, and the factor by which it changes.
+inline constexpr double least_shift = 1e-8, growth = 4;
+/// Of the size of the path, along the direction in which a saddle is left.
+inline constexpr double kick = 0.1, least_kick = 1e-3;
+inline constexpr int inverse_iterations = 12;
+
 /// Elements: of the first attempt, of those that follow, at most.
 inline constexpr int first_degree = 6, degree = 10, compared_with = 12;
 inline constexpr int first_elements = 8, most_elements = 2000, most_first_elements = 64,
@@ -58,7 +69,8 @@ inline constexpr double velocity_tolerances = 10;
 /// is compared with its terms. Of a combination that vanishes, parts beyond the second belong to it.
 inline constexpr double dependent = 1e-6, takes_part = 1e-3;
 /// Conditions that are missed by the first, by their terms, are met to roundoff. Beyond, a step of Newton's
-/// method for them alone leaves the second at most: next to a point where they depend on each other a quarter.
+/// method for them alone leaves the second at most: next to a point where they depend on each other a
+/// quarter.
 inline constexpr double met = 1e-15, corrected = 0.1;
 
 /// States about the guess at which the equations are compared: their distances, relative to it, and elements

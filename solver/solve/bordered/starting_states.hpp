@@ -13,14 +13,16 @@
 namespace extremal {
 
 /// A starting path: the guess, perhaps bent; and whether the integrals and conditions that it has are led to
-/// those that are given.
+/// those that are given, or the action is minimised.
 struct Start {
   double size = 0;  ///< of the waves, by the extent; 0: the guess itself
   int first = 1, last = 3;
   unsigned seed = 0;
   bool led = false;
+  bool downhill = false;  ///< to a minimiser first
 
   const char* strategy() const {
+    if (downhill) return "minimisation from the guess";
     if (size == 0)
       return led ? "newton from the guess, integrals and conditions led to what is given"
                  : "newton from the guess";
