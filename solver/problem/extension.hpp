@@ -31,10 +31,11 @@ struct WaypointCondition {
 
 /// Stationary points of
 ///
-///   S + Σ_j ν_j (∫ g_j dt − c_j) + Σ_i η_i r_i(q(0), q(T), k)
+///   S + Σ_j ν_j (∫ g_j dt − c_j) + Σ_i η_i r_i(q(0), q(T), k) + Σ_l e_l(q(0), q(T), k)
 ///
-/// in the path, in ν and in η. The constants k are held there; the conditions w(q(0), q(T), k) = 0 determine
-/// them, and where no energy does, a free duration.
+/// in the path, in ν and in η; e are p(k)·q(0) and −p(k)·q(T), where momenta are given by constants. The
+/// constants k are held there; the conditions w(q(0), q(T), k) = 0 determine them, and where no energy does,
+/// a free duration.
 ///
 /// The constants k and ν are coordinates of `lagrangian`, L + Σ ν_j g_j, behind the n of the path:
 /// coordinates that are constant along the path and have no velocity. So all derivatives with respect to them
@@ -45,6 +46,7 @@ struct Extension {
   std::vector<double> guess;                     ///< of k, u entries
   std::vector<double> integrals;                 ///< c, m entries
   std::vector<EndCondition> conditions;          ///< r, over the ends of all n + u + m coordinates
+  std::vector<EndCondition> end_terms{};         ///< e, likewise
   std::vector<EndCondition> where;               ///< w, likewise
   std::vector<WaypointCondition> waypoints;      ///< in order of their times
   /// L + Σ ν_j g_j of n coordinates for given values of k and ν.

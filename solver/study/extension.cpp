@@ -125,20 +125,40 @@ void check_constrained(const Scene& scene, const Problem& problem) {
         "other out");
 }
 
-/// The entries of "start" or "end" without those made of unknowns, which become conditions.
-void split_end(const char* place, const Dependents& dependents, std::vector<Assignment>& entries,
-               std::vector<Text>& conditions) {
+[[noreturn]] void refuse_unknown(const Assignment& a, const std::string& why) {
+  throw SceneError(a.at, fmt::format("'{}' depends on an unknown, {}", a.name, why));
+}
+
+/// A momentum that depends on an unknown, as what it adds to the action.
+Text momentum_term(const char* place, const Assignment& a, const Scene& scene, const System& system) {
+  if (system.hamiltonian) refuse_unknown(a, "which momenta may not in phase space; give a number");
+  if (!scene.system.constraints.empty())
+    refuse_unknown(a, "which momenta may not where there are constraints; give a number");
+  return {fmt::format("{}{}({})*({}) = 0", place[0] == 'T' ? "-" : "", a.name.substr(2), place,
+                      *as_formula(a.values.front())),
+          a.at};
+}
+
+/// The entries of "start" or "end" without those made of unknowns, which become conditions and terms of
+/// momenta.
+void split_end(const char* place, const Dependents& dependents, const Scene& scene, const System& system,
+               std::vector<Assignment>& entries, ExtendedScene& parts) {
+  const std::vector<Assignment> all = entries;
   std::erase_if(entries, [&](const Assignment& a) {
     const auto depends = [&](const Quantity& q) {
       return as_formula(q) && any_of(names_in(*as_formula(q)), dependents);
     };
     if (!std::ranges::any_of(a.values, depends)) return false;
-    if (a.list || a.name.starts_with("p_"))
-      throw SceneError(a.at,
-                       fmt::format("'{}' depends on an unknown, which only single coordinates may; write "
-                                   "an entry for each, or 'conditions'",
-                                   a.name));
-    conditions.push_back({fmt::format("{}({}) = {}", a.name, place, *as_formula(a.values.front())), a.at});
+    if (a.list) refuse_unknown(a, "which only single coordinates and momenta may; write an entry for each");
+    const bool momentum = a.name.starts_with("p_");
+    const std::string other = momentum ? a.name.substr(2) : "p_" + a.name;
+    if (std::ranges::find(all, other, &Assignment::name) != all.end())
+      refuse_unknown(a, fmt::format("and '{}' is given at this end too; leave one of them out", other));
+    if (momentum)
+      parts.momenta.push_back(momentum_term(place, a, scene, system));
+    else
+      parts.conditions.push_back(
+          {fmt::format("{}({}) = {}", a.name, place, *as_formula(a.values.front())), a.at});
     return true;
   });
 }
@@ -149,8 +169,8 @@ ExtendedScene split(const Scene& scene, const System& system) {
   ExtendedScene parts;
   parts.linear = scene.boundary;
   const Dependents dependents = dependents_of(scene);
-  split_end("0", dependents, parts.linear.start, parts.conditions);
-  split_end("T", dependents, parts.linear.end, parts.conditions);
+  split_end("0", dependents, scene, system, parts.linear.start, parts);
+  split_end("T", dependents, scene, system, parts.linear.end, parts);
   std::erase_if(parts.linear.conditions, [&](const Text& text) {
     const bool contains = any_of(names_in(text.value), dependents);
     const bool linear = !contains && placed(text, [&](const std::string& s) {
@@ -264,6 +284,8 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
     extension->integrals.push_back(value_of_integral(text, scene, system));
   for (const Text& text : parts.conditions)
     extension->conditions.push_back(condition(text, host, constants, "conditions", ends));
+  for (const Text& text : parts.momenta)
+    extension->end_terms.push_back(condition(text, host, constants, "end", ends));
   for (const Text& text : parts.where)
     extension->where.push_back(condition(text, host, constants, "where", ends));
   extension->waypoints = read_waypoints(scene, system, problem);

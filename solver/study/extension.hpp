@@ -18,6 +18,7 @@ struct ExtendedScene {
   bool extended = false;
   BoundaryTable linear;
   std::vector<Text> conditions;  ///< nonlinear ones, and those that contain unknowns
+  std::vector<Text> momenta;     ///< given by unknowns: "p·q(0) = 0" at the start, "-p·q(T) = 0" at the end
   std::vector<Text> where;
 };
 ExtendedScene split(const Scene& scene, const System& system);

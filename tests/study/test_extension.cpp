@@ -363,3 +363,34 @@ TEST_F(Scenes, LeastActionThroughWaypoints) {
   EXPECT_EQ(s.morse_index, 0);
   EXPECT_TRUE(s.minimizing);
 }
+
+/// x'' = −y, y'' = −x: x + y is trigonometric, x − y hyperbolic, and so are the momenta of the ends that
+/// conditions ask for.
+TEST_F(Scenes, MomentaGivenByUnknowns) {
+  const std::string law = "parameters = { A = 1, B = 0.3 }\n[boundary]\nduration = 1\n";
+  const std::string two = system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - x*y", law);
+  const double sum = (1.5 - 1.7 * std::cos(1)) / std::sin(1),
+               difference = (0.5 - 0.7 * std::cosh(1)) / std::sinh(1);
+  const Solution s =
+      run(study(two + "start = { p_x = \"A\", p_y = \"A*B\" }\nend = { x = 1, y = 0.5 }\n"
+                      "unknowns = { A = 1, B = 0.3 }\nwhere = [\"x(0) = 1.2\", \"y(0) = 0.5\"]\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.extension->unknowns[0].second, (sum + difference) / 2, 1e-12);
+  EXPECT_NEAR(s.extension->unknowns[1].second, (sum - difference) / (sum + difference), 1e-11);
+  EXPECT_NEAR(s.momentum_start[0], (sum + difference) / 2, 1e-12);
+  const double sum_end = (1.5 * std::cos(1) - 1.7) / std::sin(1),
+               difference_end = (0.5 * std::cosh(1) - 0.7) / std::sinh(1);
+  const Solution end = run(study(two + "start = { x = 1.2, y = 0.5 }\nend = { p_x = \"2*A*B\", y = 0.5 }\n"
+                                       "unknowns = { A = 1 }\nwhere = [\"x(T) = 1\"]\n"));
+  ASSERT_TRUE(end.converged()) << end.message;
+  EXPECT_NEAR(end.extension->unknowns[0].second, (sum_end + difference_end) / 1.2, 1e-11);
+  const std::string both = "unknowns = { A = 1 }\nwhere = [\"y(T) = 1\"]\n";
+  EXPECT_EQ(
+      message(two + "start = { x = 1.2, p_x = \"A*B\" }\n" + both),
+      "scene.toml:7:26: 'p_x' depends on an unknown, and 'x' is given at this end too; leave one of them "
+      "out");
+  EXPECT_EQ(
+      message(two + "start = { x = \"A*B\", p_x = 1 }\n" + both),
+      "scene.toml:7:15: 'x' depends on an unknown, and 'p_x' is given at this end too; leave one of them "
+      "out");
+}

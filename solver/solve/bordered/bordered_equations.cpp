@@ -219,30 +219,44 @@ double BorderedEquations::energy_jump() const {
   return most;
 }
 
+/// Of the function of the ends that was evaluated last.
+void BorderedEquations::add_gradient(double factor) {
+  for (int e = 0; e < 2 * all_; ++e) {
+    if (gradient_[e] == 0) continue;
+    for (const Share& share : end_shares(e)) values_[share.unknown] += factor * share.factor * gradient_[e];
+  }
+}
+
+void BorderedEquations::add_hessian(double factor) {
+  for (int e = 0; e < 2 * all_; ++e)
+    for (int f = 0; f < 2 * all_; ++f) {
+      const double value = factor * hessian_[static_cast<std::size_t>(e) * 2 * all_ + f];
+      if (value == 0) continue;
+      for (const Share& r : end_shares(e))
+        for (const Share& c : end_shares(f)) add(r.unknown, c.unknown, r.factor * c.factor * value);
+    }
+}
+
 void BorderedEquations::add_conditions(const BorderedState& state, bool matrix) {
   const std::size_t all = all_;
   const std::span<const double> start{state.path.node(0), all}, end{state.path.node(elements_), all};
+  const std::span<double> hessian = matrix ? hessian_ : std::span<double>{};
   for (int i = 0; i < conditions(); ++i) {
     const int row = first_multiplier() + i;
     const double eta = state.multipliers[i];
-    values_[row] =
-        extension().conditions[i].function(start, end, gradient_, matrix ? hessian_ : std::span<double>{});
+    values_[row] = extension().conditions[i].function(start, end, gradient_, hessian);
     target_sizes_.push_back(size_of_terms(start, end));
-    for (int e = 0; e < 2 * all_; ++e) {
-      if (gradient_[e] == 0) continue;
-      for (const Share& share : end_shares(e)) {
-        values_[share.unknown] += eta * share.factor * gradient_[e];
-        if (matrix) add_both(row, share.unknown, share.factor * gradient_[e]);
-      }
-    }
+    add_gradient(eta);
     if (!matrix) continue;
     for (int e = 0; e < 2 * all_; ++e)
-      for (int f = 0; f < 2 * all_; ++f) {
-        const double value = eta * hessian_[static_cast<std::size_t>(e) * 2 * all_ + f];
-        if (value == 0) continue;
-        for (const Share& r : end_shares(e))
-          for (const Share& c : end_shares(f)) add(r.unknown, c.unknown, r.factor * c.factor * value);
-      }
+      if (gradient_[e] != 0)
+        for (const Share& share : end_shares(e)) add_both(row, share.unknown, share.factor * gradient_[e]);
+    add_hessian(eta);
+  }
+  for (const EndCondition& term : extension().end_terms) {
+    term.function(start, end, gradient_, hessian);
+    add_gradient(1);
+    if (matrix) add_hessian(1);
   }
 }
 

@@ -107,6 +107,8 @@ class BorderedEquations {
   void add_elements(const BorderedState& state, bool matrix);
   void add_element(int k, int lane, const BatchValues& values, const BorderedState& state, bool matrix);
   void add_conditions(const BorderedState& state, bool matrix);
+  void add_gradient(double factor);
+  void add_hessian(double factor);
   void add_closing(const BorderedState& state, bool matrix);
   double size_of_terms(std::span<const double> start, std::span<const double> end) const;
   void add_held(const BorderedState& state);

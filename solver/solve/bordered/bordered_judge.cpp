@@ -296,7 +296,8 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
   observe_energy(*solution.extension->lagrangian, solution);
-  if (inertia.negative == 0 && inertia.zero > 0 && !problem.periodic && problem.boundary.momenta.empty()) {
+  if (inertia.negative == 0 && inertia.zero > 0 && !problem.periodic && problem.boundary.momenta.empty() &&
+      extension.end_terms.empty()) {
     Problem held = problem;
     held.lagrangian = solution.extension->lagrangian;
     held.duration.value = state.times.back();
