@@ -12,6 +12,7 @@
 #include "report/result.hpp"
 #include "report/sampling.hpp"
 #include "report/text.hpp"
+#include "solution/extension_values.hpp"
 
 namespace extremal {
 
@@ -62,7 +63,7 @@ Json object(const BranchPoint& point, const std::vector<std::string>& names) {
   Json state = Json::object();
   for (std::size_t a = 0; a < names.size(); ++a) state[names[a]] = start.q[a];
   for (std::size_t a = 0; a < names.size(); ++a) state[velocity_key(names[a])] = start.v[a];
-  return {
+  Json object = {
       {"branch", point.branch},
       {"parameter", point.parameter},
       {"duration", solution.duration()},
@@ -74,6 +75,9 @@ Json object(const BranchPoint& point, const std::vector<std::string>& names) {
       {"krein", solution.floquet && solution.floquet->paired ? Json(solution.floquet->krein) : Json(nullptr)},
       {"kind", name(point.kind)},
       {"start", std::move(state)}};
+  if (solution.extension)
+    for (const auto& [unknown, value] : solution.extension->unknowns) object["unknowns"][unknown] = value;
+  return object;
 }
 
 /// Lines in the place of a value, indented by so much more.

@@ -15,6 +15,7 @@
 #include "study/boundary.hpp"
 #include "study/constraints.hpp"
 #include "study/continued_by_values.hpp"
+#include "study/extension.hpp"
 #include "study/infinite.hpp"
 #include "study/minimal_family.hpp"
 #include "study/modelling.hpp"
@@ -119,6 +120,10 @@ class VariedScene {
     problem.lagrangian = system.lagrangian;
     if (problem.phase) set_phase_space(*system.hamiltonian, problem, problem_.phase.get());
     problem.copies = system.copies;
+    if (problem_.extension) {
+      put_extension(system, problem);
+      return problem;
+    }
     set_relation(scene_.boundary, system, problem);
     problem.duration = read_duration(scene_.boundary, system);
     if (problem_.infinite) {
@@ -127,6 +132,14 @@ class VariedScene {
       leave_infinite_ends(scene_, std::move(infinite), problem);
     }
     return problem;
+  }
+
+  void put_extension(const System& system, Problem& problem) const {
+    const ExtendedScene parts = split(scene_, system);
+    set_relation(parts.linear, system, problem);
+    problem.duration = read_duration(parts.linear, system);
+    if (problem.duration.free) problem.duration.value = problem_.duration.value;
+    read_extension(scene_, parts, system, {}, problem);
   }
 
   Scene scene_;

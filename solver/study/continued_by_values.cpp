@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "problem/extension.hpp"
 #include "problem/own_symmetries.hpp"
 #include "problem/singular_ends.hpp"
+#include "solution/extension_values.hpp"
 #include "solve/solve.hpp"
 
 namespace extremal {
@@ -93,6 +96,18 @@ void guess_by(const Problem& before, const Trajectory& trajectory, Problem& prob
   }
 }
 
+/// Gives a problem the constants and the free times of waypoints that a solution has as its guesses.
+void guess_constants_by(const Solution& solution, Problem& problem) {
+  if (!problem.extension || !solution.extension) return;
+  auto extension = std::make_shared<Extension>(*problem.extension);
+  for (std::size_t k = 0; k < extension->guess.size(); ++k)
+    extension->guess[k] = solution.extension->unknowns[k].second;
+  for (std::size_t w = 0; w < extension->waypoints.size(); ++w)
+    if (extension->waypoints[w].free)
+      extension->waypoints[w].time = solution.extension->waypoints[w].time / problem.duration.value;
+  problem.extension = std::move(extension);
+}
+
 /// The problem with this value of what varies, if there is one.
 std::optional<Problem> problem_at(const ProblemFamily& family, double value) {
   if (family.varied == Varied::parameter) return family.at(value);
@@ -161,7 +176,8 @@ BranchPoint point_of(double parameter, const Solution& solution) {
 }  // namespace
 
 bool continued_by_values(const Problem& problem, const SolveOptions& options) {
-  return options.scheme || problem.infinite.has_value() || singular_ends(problem).has_value();
+  return options.scheme || problem.extension || problem.infinite.has_value() ||
+         singular_ends(problem).has_value();
 }
 
 FollowedBranch follow_by_values(const Study& study, const Continued& continued,
@@ -209,6 +225,7 @@ FollowedBranch follow_by_values(const Study& study, const Continued& continued,
     Solution found;
     if (there) {
       guess_by(here, solution.trajectory, *there);
+      guess_constants_by(solution, *there);
       if (of_scheme)
         there = checked(std::move(there));
       else

@@ -5,7 +5,8 @@
 #include "study/continued.hpp"
 #include "study/study.hpp"
 
-/// \file Families of extremals with ends at infinity, or at which L is infinite, and of those of a scheme.
+/// \file Families of extremals with ends at infinity, or at which L is infinite, with constants, integrals,
+/// conditions or waypoints, and of those of a scheme.
 
 namespace extremal {
 

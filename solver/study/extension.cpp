@@ -163,6 +163,24 @@ void split_end(const char* place, const Dependents& dependents, const Scene& sce
   });
 }
 
+/// Of families, which are followed from value to value.
+void check_extended_family(const Scene& scene, const std::string& asks) {
+  const ContinuationTable& table = *scene.continuation;
+  const Location at = position(table.parameter, 0);
+  if (table.switching) throw SceneError(at, asks + "branch points are not looked for; leave 'switch' out");
+  if (!scene.system.constraints.empty())
+    throw SceneError(at, asks +
+                             "families are not continued under constraints; solve for each value with "
+                             "--set instead");
+  if (table.parameter.value == "duration" && !scene.waypoints.empty())
+    throw SceneError(at, "between waypoints the duration is not varied; vary a parameter");
+  if (std::ranges::find(scene.boundary.unknowns, table.parameter.value, &Assignment::name) !=
+      scene.boundary.unknowns.end())
+    throw SceneError(at, fmt::format("'{}' is an unknown, which the conditions determine; vary another "
+                                     "parameter",
+                                     table.parameter.value));
+}
+
 }  // namespace
 
 ExtendedScene split(const Scene& scene, const System& system) {
@@ -218,11 +236,7 @@ void check_extended(const Scene& scene, Purpose purpose) {
     throw SceneError(scene.fit->at, asks +
                                         "a fit is not available; leave [fit] out, or write parameters "
                                         "that are to be found there");
-  if (scene.continuation && purpose == Purpose::family)
-    throw SceneError(scene.continuation->at,
-                     asks +
-                         "families are not continued; solve for each value with --set "
-                         "instead");
+  if (scene.continuation && purpose == Purpose::family) check_extended_family(scene, asks);
   if (scene.solve.method && scene.solve.method->value != "newton")
     throw SceneError(
         position(*scene.solve.method, 0),

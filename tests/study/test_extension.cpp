@@ -4,6 +4,7 @@
 #include "problem/extension.hpp"
 #include "scenes.hpp"
 #include "solution/extension_values.hpp"
+#include "study/continued.hpp"
 
 using namespace extremal;
 using namespace extremal::test;
@@ -25,6 +26,12 @@ double at(const Solution& s, double t, int a) {
   std::vector<double> q(n), v(n);
   s.trajectory.at(t, q, v);
   return q[a];
+}
+
+double slope(const Solution& s, double t) {
+  std::vector<double> q(1), v(1);
+  s.trajectory.at(t, q, v);
+  return v[0];
 }
 
 }  // namespace
@@ -393,4 +400,34 @@ TEST_F(Scenes, MomentaGivenByUnknowns) {
       message(two + "start = { x = \"A*B\", p_x = 1 }\n" + both),
       "scene.toml:7:15: 'x' depends on an unknown, and 'p_x' is given at this end too; leave one of them "
       "out");
+}
+
+/// Each point of a family has its own unknowns and impulses. x = ½ sin(wt)/sin w before the first waypoint;
+/// a cos(k(1 − t))/cos k with cos k = a/1.7; a chain of the length l, sinh(u)/u = √(l² − 4), u = 1/2c, with
+/// y' = sinh((t − t0)/c).
+TEST_F(Scenes, FamiliesOfExtendedProblems) {
+  const auto last = [&](const std::string& scene) {
+    const FollowedBranch branch = follow(study(scene));
+    EXPECT_EQ(branch.branches[0].end, BranchEnd::target) << branch.branches[0].message;
+    return branch.points.back().solution;
+  };
+  const Solution between =
+      last(system("[\"x\"]", "x'^2/2 - w^2*x^2/2", "parameters = { w = 1 }\n") +
+           "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 3\n[[waypoints]]\nat = 1\nx = 0.5\n"
+           "[[waypoints]]\nat = 2\nx = -0.25\n[continuation]\nparameter = \"w\"\nto = 2.5\npoints = 8\n");
+  const double w = 2.5, after = w * (-0.25 - 0.5 * std::cos(w)) / std::sin(w);
+  EXPECT_NEAR(between.momentum_start[0], 0.5 * w / std::sin(w), 1e-9);
+  EXPECT_NEAR(between.extension->waypoints[0].impulse[0].second, after - 0.5 * w / std::tan(w), 1e-8);
+  const Solution unknown =
+      last(system("[\"x\"]", "x'^2/2 - k^2*x^2/2", "parameters = { a = 1.5, k = 0.5 }\n") +
+           "[boundary]\nstart = { x = \"a\" }\nduration = 1\nunknowns = { k = 0.5 }\n"
+           "where = [\"x(T) = 1.7\"]\n[continuation]\nparameter = \"a\"\nto = 0.3\npoints = 8\n");
+  EXPECT_NEAR(unknown.extension->unknowns[0].second, std::acos(0.3 / 1.7), 1e-9);
+  const Solution chain =
+      last(system("[\"y\"]", "y*sqrt(1 + y'^2)", "parameters = { l = 4 }\n") +
+           "[boundary]\nstart = { y = 1 }\nend = { y = 3 }\nduration = 1\n"
+           "integrals = [\"sqrt(1 + y'^2) = l\"]\n[continuation]\nparameter = \"l\"\nto = 3\npoints = 4\n");
+  double u = 2;
+  for (int k = 0; k < 20; ++k) u -= (std::sinh(u) - std::sqrt(5) * u) / (std::cosh(u) - std::sqrt(5));
+  EXPECT_NEAR(std::asinh(slope(chain, 1)) - std::asinh(slope(chain, 0)), 2 * u, 1e-8);
 }
