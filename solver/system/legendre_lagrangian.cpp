@@ -36,10 +36,9 @@ int row_of_second(const Structure& s, int a, int b) {
 struct LegendreLagrangian::Evaluation {
   int count;
   std::ptrdiff_t stride;
-  double *p, *h;                     ///< n rows; those of H
-  double *inverse, *product;         ///< of one block: H_pp⁻¹, H_pp⁻¹ H_pq
-  double *matrix, *pivots, *vector;  ///< of one point
-  double* further;
+  double *p, *h;              ///< n rows; those of H
+  double *inverse, *product;  ///< of one block: H_pp⁻¹, H_pp⁻¹ H_pq
+  double *further, *work;
   double* row(double* rows, int k) const { return rows + k * stride; }
 };
 
@@ -117,7 +116,7 @@ LegendreLagrangian::Evaluation LegendreLagrangian::evaluate_hamiltonian(const Po
   const std::size_t n = structure_.coordinates, m = largest_, h = hamiltonian_.rows(order);
   const std::size_t of_tapes = std::max(hamiltonian_.doubles(points.count), search_.doubles(points));
   const std::size_t rows = n + h + m * m + m * widest_ + further;
-  double* next = scratch.reserve(of_tapes + rows * points.stride + m * (m + 2)) + of_tapes;
+  double* next = scratch.reserve(of_tapes + rows * points.stride + 2 * m * m * most_lanes) + of_tapes;
   const auto take = [&](std::size_t count) { return std::exchange(next, next + count * points.stride); };
   Evaluation at{.count = points.count,
                 .stride = points.stride,
@@ -125,13 +124,9 @@ LegendreLagrangian::Evaluation LegendreLagrangian::evaluate_hamiltonian(const Po
                 .h = take(h),
                 .inverse = take(m * m),
                 .product = take(m * widest_),
-                .matrix = nullptr,
-                .pivots = nullptr,
-                .vector = nullptr,
-                .further = take(further)};
-  at.matrix = next;
-  at.pivots = next + m * m;
-  at.vector = at.pivots + m;
+                .further = take(further),
+                .work = nullptr};
+  at.work = next;
   search_.find(points, at.p, scratch);
   hamiltonian_.evaluate({points.count, points.stride, points.q, at.p, points.t}, order, at.h, scratch);
   return at;
@@ -139,23 +134,8 @@ LegendreLagrangian::Evaluation LegendreLagrangian::evaluate_hamiltonian(const Po
 
 /// H_pp⁻¹ of a block at all points.
 void LegendreLagrangian::invert(const Block& block, const Evaluation& at) const {
-  const int m = block.size();
-  if (m == 1) {
-    const double* h = at.row(at.h, block.pp[0]);
-    for (int i = 0; i < at.count; ++i) at.inverse[i] = 1 / h[i];
-    return;
-  }
-  for (int i = 0; i < at.count; ++i) {
-    for (int e = 0; e < m * m; ++e) at.matrix[e] = block.pp[e] < 0 ? 0 : at.row(at.h, block.pp[e])[i];
-    const bool regular = factor_small(at.matrix, at.pivots, m);
-    for (int j = 0; j < m; ++j) {
-      std::fill_n(at.vector, m, 0.0);
-      at.vector[j] = 1;
-      if (regular) solve_small(at.matrix, at.pivots, m, at.vector);
-      for (int k = 0; k < m; ++k)
-        at.row(at.inverse, k * m + j)[i] = regular ? at.vector[k] : std::numeric_limits<double>::quiet_NaN();
-    }
-  }
+  extremal::invert({at.count, at.stride, at.h, at.inverse, at.work},
+                   {block.size(), block.momenta.data(), block.pp.data()});
 }
 
 /// Adds H_qp H_pp⁻¹ H_pq to L_qq and writes L_vq = −H_pp⁻¹ H_pq, L_vv = H_pp⁻¹.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "system/momentum_step.hpp"
 #include "system/tape_lagrangian.hpp"
 
 namespace extremal {
@@ -28,16 +29,12 @@ class MomentumSearch {
   struct Block {
     std::vector<int> momenta;
     std::vector<int> rows;  ///< of slopes_ with H_pp, size × size; -1: zero
+    CoupledMomenta coupled() const { return {static_cast<int>(momenta.size()), momenta.data(), rows.data()}; }
   };
   struct Batch;
   void play(const Batch& batch) const;
   void begin(const Batch& batch, int start) const;
-  void begin_single(const Batch& batch, int k) const;
   bool advance(const Batch& batch) const;
-  bool advance_single(const Batch& batch, int k) const;
-  double residual(const Batch& batch, const Block& block, int i) const;
-  void step(const Batch& batch, int k, int i) const;
-  double coupled_step(const Batch& batch, const Block& block, int i, double& size) const;
 
   int n_ = 0, largest_ = 0;
   std::vector<std::vector<int>> members_;
@@ -46,10 +43,7 @@ class MomentumSearch {
   int slope_rows_ = 0;
 };
 
-/// The LU factors with row pivoting of an m × m matrix, in place; false where it is singular or not finite.
-/// `pivots` has m entries.
-bool factor_small(double* a, double* pivots, int m);
-/// Replaces x by the solution.
-void solve_small(const double* lu, const double* pivots, int m, double* x);
+/// In the lanes of the level in use.
+void invert(const InverseRows& rows, const CoupledMomenta& coupled);
 
 }  // namespace extremal

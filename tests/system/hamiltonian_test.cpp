@@ -96,6 +96,33 @@ const std::vector<Pair>& pairs() {
        {0.3, -0.8},
        {0.7, 0.4},
        false},
+      // |q'|² = P/(1 − P)² with P = |p|²; at p = q' there is no H.
+      {"three momenta coupled",
+       {"x", "y", "z"},
+       {},
+       "(sqrt(1 + 4*(x'^2 + y'^2 + z'^2)) - 1 + log(2/(1 + sqrt(1 + 4*(x'^2 + y'^2 + z'^2)))))/2 - x*y",
+       "-log(1 - p_x^2 - p_y^2 - p_z^2)/2 + x*y",
+       {0.3, -0.8, 0.1},
+       {0.7, 0.4, -1.2},
+       false},
+      {"four momenta coupled",
+       {"x", "y", "z", "w"},
+       {},
+       "(sqrt(1 + 4*(x'^2 + y'^2 + z'^2 + w'^2)) - 1 + "
+       "log(2/(1 + sqrt(1 + 4*(x'^2 + y'^2 + z'^2 + w'^2)))))/2 - x*y",
+       "-log(1 - p_x^2 - p_y^2 - p_z^2 - p_w^2)/2 + x*y",
+       {0.3, -0.8, 0.1, 0.6},
+       {0.7, 0.4, -1.2, 0.2},
+       false},
+      // x' y' = s/(1 − s)² with s = p_x p_y: H_pp has a diagonal of zeros at p = 0.
+      {"indefinite, not quadratic",
+       {"x", "y"},
+       {},
+       "sqrt(1 + 4*x'*y') - 1 + log(2/(1 + sqrt(1 + 4*x'*y'))) - x^2",
+       "-log(1 - p_x*p_y) + x^2",
+       {0.3, -0.8},
+       {0.7, 0.4},
+       false},
   };
   return all;
 }
