@@ -32,8 +32,12 @@ constexpr double growth = 1.25;
 constexpr double good_enough = 1e-9, roundoff = 1e-13;
 /// Steps with one matrix.
 constexpr int matrix_steps = 3;
-/// Rows of the least-squares matrix at a time.
+/// Samples at a time.
 constexpr Eigen::Index chunk = 2048;
+/// Beyond so many bins the window leaks less than roundoff; sums that are nearer need no more points than
+/// this.
+constexpr double farthest = 64;
+constexpr Eigen::Index most_points = 4 * 64;
 
 /// a cos ωτ + b sin ωτ, τ from the middle of the signal: there the three hardly depend on each other.
 struct Wave {
@@ -69,6 +73,11 @@ class Turns {
   double frequency_, step_, cosine_[length], sine_[length];
 };
 
+/// Of the window, which is even: Σ w (cos Ωτ, u sin Ωτ, u² cos Ωτ) with u = τ over half the signal.
+struct Moments {
+  double plain = 0, odd = 0, square = 0;
+};
+
 class Fit {
  public:
   Fit(std::span<const double> samples, double step);
@@ -91,10 +100,15 @@ class Fit {
   /// One Gauss-Newton step for `waves`, which `values` is to be the sum of, with the matrix of the step
   /// before unless `anew`; the largest change, in units of the bin and relative to the largest amplitude.
   double step(std::vector<Wave>& waves, const VectorXd& values, bool anew);
+  Moments moments(double frequency) const;
+  /// Sums over the samples of products of x = cos ωτ, y = sin ωτ and u (b x − a y) of each wave with those of
+  /// each other: by products of angles they are moments of the window, and most of them vanish.
+  MatrixXd normal_matrix(const std::vector<Wave>& waves) const;
 
   Eigen::Index count_;
   double step_;
   VectorXd values_, weights_, left_;
+  VectorXd moment_places_, moment_weights_;  ///< u, and w there
   std::vector<std::complex<double>> transformed_;
   std::vector<double> windowed_;
   VectorXd unit_;  ///< of the columns of the matrix
@@ -113,6 +127,44 @@ Fit::Fit(std::span<const double> samples, double step)
     weights_[j] = std::pow(1 - std::cos(2 * pi * static_cast<double>(j) / static_cast<double>(count_ - 1)),
                            window_power);
   weights_ /= weights_.sum();
+  const Eigen::Index points = std::min(count_ - 1, most_points);
+  moment_places_ = VectorXd::LinSpaced(points + 1, -1, 1);
+  moment_weights_ = (1 + (pi * moment_places_.array()).cos()).pow(window_power);
+  moment_weights_ /= moment_weights_.sum();
+}
+
+/// w u^k is smooth, also where it ends, so few points serve. Samples do not tell Ω from Ω + 2π/step.
+Moments Fit::moments(double frequency) const {
+  const double turns = frequency * step_ / (2 * pi), whole = std::round(turns);
+  const double bins = (turns - whole) * static_cast<double>(count_ - 1);
+  Moments m;
+  if (std::abs(bins) > farthest) return m;
+  for (Eigen::Index j = 0; j < moment_places_.size(); ++j) {
+    const double u = moment_places_[j], c = moment_weights_[j] * std::cos(pi * bins * u);
+    m.plain += c;
+    m.odd += moment_weights_[j] * u * std::sin(pi * bins * u);
+    m.square += c * u * u;
+  }
+  const bool reversed = count_ % 2 == 0 && std::remainder(whole, 2) != 0;
+  return reversed ? Moments{-m.plain, -m.odd, -m.square} : m;
+}
+
+MatrixXd Fit::normal_matrix(const std::vector<Wave>& waves) const {
+  const auto count = static_cast<Eigen::Index>(waves.size());
+  MatrixXd normal(3 * count, 3 * count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    for (Eigen::Index l = 0; l <= k; ++l) {
+      const auto& [omega, a, b] = waves[static_cast<std::size_t>(k)];
+      const auto& [other, c, d] = waves[static_cast<std::size_t>(l)];
+      const Moments sum = moments(omega + other), difference = moments(omega - other);
+      const double even = (difference.plain + sum.plain) / 2, uneven = (difference.plain - sum.plain) / 2;
+      const double xy = (sum.odd - difference.odd) / 2, yx = (sum.odd + difference.odd) / 2;
+      normal.block<3, 3>(3 * k, 3 * l) << even, 0, -c * xy,  //
+          0, uneven, d * yx,                                 //
+          -a * yx, b * xy,
+          (b * d * (difference.square + sum.square) + a * c * (difference.square - sum.square)) / 2;
+    }
+  return MatrixXd(normal.selfadjointView<Eigen::Lower>());
 }
 
 Wave Fit::largest() {
@@ -135,8 +187,8 @@ Wave Fit::largest() {
 double Fit::step(std::vector<Wave>& waves, const VectorXd& values, bool anew) {
   const Eigen::Index columns = 3 * static_cast<Eigen::Index>(waves.size()), most = std::min(chunk, count_);
   MatrixXd cosine(most, columns / 3), sine(most, columns / 3);
-  MatrixXd normal = MatrixXd::Zero(anew ? columns : 0, anew ? columns : 0), rows(anew ? most : 0, columns);
-  VectorXd right = VectorXd::Zero(columns), left(most), tau(most), root(most);
+  MatrixXd normal = anew ? normal_matrix(waves) : MatrixXd();
+  VectorXd right = VectorXd::Zero(columns), left(most), tau(most);
   const double scale = middle();
   std::vector<Turns> turns;
   for (const Wave& wave : waves) turns.emplace_back(wave.frequency, step_);
@@ -151,7 +203,6 @@ double Fit::step(std::vector<Wave>& waves, const VectorXd& values, bool anew) {
     }
     left.head(n).array() *= weights_.segment(from, n).array();
     tau.head(n) = VectorXd::LinSpaced(n, first, first + step_ * static_cast<double>(n - 1)) / scale;
-    if (anew) root.head(n) = weights_.segment(from, n).cwiseSqrt();
     for (std::size_t w = 0; w < waves.size(); ++w) {
       const auto k = static_cast<Eigen::Index>(w);
       const auto& [omega, a, b] = waves[w];
@@ -160,12 +211,7 @@ double Fit::step(std::vector<Wave>& waves, const VectorXd& values, bool anew) {
       right[3 * k] += x.dot(left.head(n));
       right[3 * k + 1] += y.dot(left.head(n));
       right[3 * k + 2] += by_frequency.dot(left.head(n));
-      if (!anew) continue;
-      rows.col(3 * k).head(n) = root.head(n).cwiseProduct(x);
-      rows.col(3 * k + 1).head(n) = root.head(n).cwiseProduct(y);
-      rows.col(3 * k + 2).head(n) = root.head(n).cwiseProduct(by_frequency);
     }
-    if (anew) normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.topRows(n).transpose());
   }
   // A constant has no sine and no frequency, and a wave without amplitude no frequency yet.
   for (std::size_t w = 0; w < waves.size(); ++w)
@@ -180,8 +226,7 @@ double Fit::step(std::vector<Wave>& waves, const VectorXd& values, bool anew) {
   // Columns of waves differ by their amplitudes: scaled to unit diagonal, the matrix is near the unit matrix.
   if (anew) {
     unit_ = normal.diagonal().cwiseSqrt().cwiseInverse();
-    factors_.compute(unit_.asDiagonal() * MatrixXd(normal.selfadjointView<Eigen::Lower>()) *
-                     unit_.asDiagonal());
+    factors_.compute(unit_.asDiagonal() * normal * unit_.asDiagonal());
   }
   const VectorXd change = unit_.asDiagonal() * factors_.solve(unit_.asDiagonal() * right);
   double largest = 0, amplitude = 0;

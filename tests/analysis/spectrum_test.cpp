@@ -67,6 +67,17 @@ TEST(Spectrum, FewSamplesAPeriod) {
   expect_lines(line_spectrum(signal(lines, 1, 200), 1, {.amplitude = 1e-9}), lines, 200, 1e-10);
 }
 
+/// Sums of two frequencies near twice the highest are close to zero for the samples, of even and odd number.
+TEST(Spectrum, FastLines) {
+  for (const std::size_t count : {1000, 1001}) {
+    const double step = 0.1, duration = step * static_cast<double>(count - 1), bin = 2 * pi / duration;
+    const double highest = pi / step;
+    const std::vector<SpectralLine> lines = {
+        {highest - 3 * bin, 1, 0.3}, {highest - 6.5 * bin, 0.6, 1.4}, {highest - 90 * bin, 0.2, -1}};
+    expect_lines(line_spectrum(signal(lines, step, count), step, {.amplitude = 1e-9}), lines, duration, 1e-9);
+  }
+}
+
 TEST(Spectrum, SaysWhatIsLeft) {
   std::vector<double> x = signal({{1, 1, 0}}, 0.1, 10001);
   std::mt19937 random(7);
