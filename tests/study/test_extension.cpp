@@ -242,8 +242,8 @@ TEST_F(Scenes, ExtensionsThatAreRefused) {
                 .rfind("scene.toml:9:", 0),
             0u);
   EXPECT_EQ(message(free + "[boundary]\nconditions = [\"x(0)^2 = 1\", \"y(0) = 0\"]\nduration = 1\n"
-                           "[continuation]\nparameter = \"duration\"\nto = 2\n")
-                .rfind("scene.toml:7:1: ", 0),
+                           "[continuation]\nparameter = \"duration\"\nto = 2\nswitch = true\n")
+                .rfind("scene.toml:8:14: ", 0),
             0u);
 }
 
