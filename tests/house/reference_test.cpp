@@ -307,6 +307,13 @@ TEST_F(Written, FieldsOfABranchAreThoseOfThePage) {
              "system.use = \"above\"\nboundary = { start = { x = 0 }, end = { x = 1 }, duration = 2 }\n"
              "continuation = { parameter = \"duration\", to = 2.5, points = 3 }\n",
              fields, {"--samples", "2"});
+  add_fields("continue",
+             "system = { coordinates = [\"x\"], parameters = { a = 1, k = 1 }, "
+             "lagrangian = \"x'^2/2 - k^2*x^2/2\" }\n"
+             "boundary = { start = { x = \"a\" }, duration = 1, unknowns = { k = 1 }, "
+             "where = [\"x(T) = 1.7\"] }\n"
+             "continuation = { parameter = \"a\", to = 0.9, points = 2 }\n",
+             fields);
   EXPECT_EQ(fields, names_in("## Fields of a branch"));
 }
 
