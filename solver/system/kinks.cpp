@@ -38,8 +38,16 @@ Body copy_body(const LagrangianGraph& l, const Term& term) {
   return body;
 }
 
-/// ∂value/∂node, as an expression of the inputs.
-NodeId derivative_by_node(Body& body, NodeId node, int inputs) {
+/// The value that a kink would have if it went on smoothly beyond its surface.
+NodeId beyond(Graph& graph, NodeId kink) {
+  const Node n = graph[kink];
+  if (n.op == Op::abs) return graph.unary(Op::neg, kink);
+  return graph.binary(n.op == Op::max ? Op::min : Op::max, n.a, n.b);
+}
+
+/// ∂value/∂node, as an expression of the inputs: the mean of both sides of the surface. So it is half the
+/// jump where it vanishes on one side alone, next to the surface as well.
+NodeId derivative_by_kink(Body& body, NodeId node, int inputs) {
   Graph& graph = body.graph;
   const auto variable = static_cast<std::uint32_t>(inputs);
   std::unordered_map<NodeId, NodeId> image;
@@ -56,8 +64,13 @@ NodeId derivative_by_node(Body& body, NodeId node, int inputs) {
   const NodeId slope = gradient(graph, image[body.value], {&variable, 1})[0];
   std::vector<NodeId> replacement;
   for (std::uint32_t k = 0; k < variable; ++k) replacement.push_back(graph.input(k));
-  replacement.push_back(node);
-  return substitute(graph, slope, replacement);
+  NodeId sum = graph.constant(0);
+  for (const NodeId side : {node, beyond(graph, node)}) {
+    replacement.resize(variable);
+    replacement.push_back(side);
+    sum = graph.add(sum, substitute(graph, slope, replacement));
+  }
+  return graph.mul(graph.constant(0.5), sum);
 }
 
 /// The expressions of one kink, the same for all rows of a term.
@@ -68,7 +81,7 @@ struct Expressions {
 Expressions expressions(Body& body, NodeId kink, int inputs) {
   const Node n = body.graph[kink];
   if (n.op == Op::step) return {body.graph.sub(n.a, n.b), body.graph.constant(0)};
-  const NodeId slope = derivative_by_node(body, kink, inputs);
+  const NodeId slope = derivative_by_kink(body, kink, inputs);
   if (n.op == Op::abs) return {n.a, slope};
   const double half = n.op == Op::max ? 0.5 : -0.5;
   return {body.graph.sub(n.a, n.b), body.graph.mul(body.graph.constant(half), slope)};

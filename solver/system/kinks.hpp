@@ -8,7 +8,7 @@
 
 /// \file Where a Lagrangian is not smooth. abs(u), min(a, b), max(a, b) and step(u) are smooth on both sides
 /// of a surface u(q, q', t) = 0, with u = a − b for min and max. Beside it
-///   L = smooth part + w |u|,   w = ∂L/∂|u|,
+///   L = smooth part + w |u|,   w = ∂L/∂|u|, the mean of both sides,
 /// so that ∂L/∂q jumps by 2 w ∂u/∂q from u < 0 to u > 0: max(a, b) = (a + b + |a − b|)/2, and min likewise.
 
 namespace extremal {

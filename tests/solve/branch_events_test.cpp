@@ -89,5 +89,54 @@ TEST(BranchEvents, TwoBranchesThatBeginTogether) {
   }
 }
 
+/// Great circles of a sphere in the family of equators of spheroids, along z'' = −(2π/c)² z of the period 1:
+/// the index is 1, and for c < 1 it is 3. One step ends at c = 1 itself.
+TEST(BranchEvents, AStepThatEndsWhereBranchesCross) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nparameters = { c = 1.3 }\nlagrangian = \"(x'^2 + "
+      "y'^2 + z'^2)/2\"\nconstraints = [\"x^2 + y^2 + z^2/c^2 = 1\"]\n[boundary]\nperiodic = true\n"
+      "duration = 1\n[guess]\nx = \"cos(2*pi*t)\"\ny = \"sin(2*pi*t)\"\nz = \"0\"\n[continuation]\n"
+      "parameter = \"c\"\nto = 0.7\npoints = 20\n"));
+  const std::vector<double> branches = values(found.points, PointKind::branch);
+  ASSERT_EQ(branches.size(), 1u) << found.branches[0].message;
+  EXPECT_NEAR(branches[0], 1, 1e-9);
+  for (const BranchPoint& point : found.points) {
+    const bool crossing = point.kind == PointKind::branch;
+    EXPECT_EQ(point.solution.morse_index, crossing || point.parameter > 1 ? 1 : 3) << point.parameter;
+    EXPECT_EQ(point.solution.nullity, crossing ? 3 : 1) << point.parameter;
+  }
+}
+
+/// A pendulum in a plane of a sphere, which at e = 0 may be turned about the vertical; its index otherwise as
+/// solves find it. The middle of a step is e = 0 itself.
+TEST(BranchEvents, AStepWithACrossingInItsMiddle) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nparameters = { e = -0.2 }\nlagrangian = \"(x'^2 + "
+      "y'^2 + z'^2)/2 - z - e*y^2\"\nconstraints = [\"x^2 + y^2 + z^2 = 1\"]\n[boundary]\nperiodic = true\n"
+      "duration = 7.5\n[guess]\nx = \"sin(1.1)*cos(2*pi*t/T)\"\ny = \"0\"\n"
+      "z = \"-sqrt(1 - sin(1.1)^2*cos(2*pi*t/T)^2)\"\n[continuation]\nparameter = \"e\"\nto = 0.3\n"
+      "points = 20\n"));
+  const std::vector<double> branches = values(found.points, PointKind::branch);
+  ASSERT_EQ(branches.size(), 1u) << found.branches[0].message;
+  EXPECT_NEAR(branches[0], 0, 1e-9);
+  for (const BranchPoint& point : found.points)
+    EXPECT_EQ(point.solution.morse_index, point.parameter > 1e-6 ? 4 : 3) << point.parameter;
+}
+
+/// All orbits of the harmonic oscillator have its period. Beside it the eigenvalues grow with the square of
+/// the parameter: the index is known from the first point of the branch on that tells them from zero.
+TEST(BranchEvents, ABranchThatBeginsAtOrbitsOfOnePeriod) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { l = 0 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
+      "(x^2 + y^2)/2 - l*(x^2*y - y^3/3)\"\n[boundary]\nperiodic = true\nduration = \"free\"\nenergy = 0.1\n"
+      "[guess]\nx = \"0\"\ny = \"0.447*cos(t)\"\nduration = 6.3\n[continuation]\nparameter = \"l\"\n"
+      "to = 0.6\npoints = 10\n"));
+  ASSERT_GT(found.points.size(), 4u);
+  for (std::size_t k = 1; k < found.points.size(); ++k) {
+    EXPECT_EQ(found.points[k].solution.morse_index, 4) << found.points[k].parameter;
+    EXPECT_EQ(found.points[k].solution.nullity, 1) << found.points[k].parameter;
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

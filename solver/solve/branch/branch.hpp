@@ -55,8 +55,10 @@ class Branch : public ExtremalCurve {
   /// Whether null directions of the equations are those of single points, as of folds, and not of a family
   /// that is degenerate; a branch that begins at such a point knows it from the branch that it leaves.
   bool regular() const { return folds_ == true; }
-  /// Whether the equations that were linearised at last leave no direction open.
-  bool determined() const { return w_.iteration.model().left_out() == 0; }
+  /// How many directions the equations that were linearised at last leave open.
+  int open() const { return w_.iteration.model().left_out(); }
+  /// How many directions symmetries, or what is held, keep moves across.
+  int phases() const { return phases_.count; }
   void set_regular() { folds_ = true; }
   /// It is to be seen where the equations are linearised next.
   void ask_regular() { folds_.reset(); }

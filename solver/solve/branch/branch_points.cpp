@@ -93,13 +93,16 @@ FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, doub
   return found;
 }
 
-/// To a state at `guess`, or aside of it where the equations are too singular. NaN if there is none. Where
-/// directions are held the tangent is across them, not along the branch: it may turn.
+/// To a state at `guess`, or aside of it where the equations are too singular: at a branch point itself they
+/// leave more directions open, and nothing tells its sides apart. NaN if there is none. Where directions are
+/// held the tangent is across them, not along the branch: it may turn.
 double state_near(Tracker& tracker, const BranchState& from, double guess, double aside,
                   const Side (&sides)[2], bool held = false) {
   for (const double at :
        {guess, guess + aside * (sides[1].at - guess), guess - aside * (guess - sides[0].at)})
-    if (held ? tracker.reach(from, at, true) : tracker.reach_smoothly(from, at, true)) return at;
+    if (held ? tracker.reach(from, at, true)
+             : tracker.reach_smoothly(from, at, true) && tracker.state.open <= from.open)
+      return at;
   return NAN;
 }
 

@@ -206,7 +206,8 @@ bool Continuation::begin_from_solve() {
 
 /// The first member alone may have symmetries, or other directions, along which its extremals are a family.
 /// Its point is found with these held, and the branch begins beside it: on a branch that leads on from it the
-/// extremal half as far beside is about half as far away.
+/// extremal half as far beside is about half as far away. It begins so far beside that symmetries alone leave
+/// null directions: eigenvalues that are zero at the first member tell the index there.
 bool Continuation::begin_beside(const Path& path, double at_rest) {
   if (family_.varied != Varied::parameter) return false;
   const ProblemFamily alone = with_symmetries_of_first(family_);
@@ -214,11 +215,15 @@ bool Continuation::begin_beside(const Path& path, double at_rest) {
   if (!first.begin(path, family_.from, at_rest)) return false;
   first.measure_anew();
   first_point_ = FoundPoint{read_point(first, PointKind::regular)};
-  const double reach = beside_first * (family_.to - family_.from);
-  const std::optional<double> far = tracker_.begin_beside(first.state, family_.from + reach, at_rest);
-  if (!far) return false;
-  const std::optional<double> near = tracker_.begin_beside(first.state, family_.from + reach / 2, at_rest);
-  return near && *near <= half_as_far * *far;
+  const auto beside = [&](double part) {
+    const double value = family_.from + part * (family_.to - family_.from);
+    return tracker_.begin_beside(first.state, value, at_rest);
+  };
+  const std::optional<double> near = beside(beside_first / 2), far = beside(beside_first);
+  if (!near || !far || *near > half_as_far * *far) return false;
+  for (double part = beside_first; part <= first_length; part *= 2)
+    if (beside(part) && tracker_.state.nullity <= tracker_.branch().phases()) return true;
+  return beside(beside_first / 2).has_value();
 }
 
 bool Continuation::end_at_first() {
@@ -248,7 +253,7 @@ bool Continuation::begin_from_start() {
     double past = 0;
     for (double length = first_departure; length > least_departure; length *= shorter_departure) {
       // Where several directions are open at once, so near nothing tells paths in between from extremals.
-      if (!tracker_.reach(from, length) || (start.regular && !branch.determined())) continue;
+      if (!tracker_.reach(from, length) || (start.regular && branch.open() > 0)) continue;
       if ((state.varied - family_.to) * (from.varied - family_.to) > 0) return true;
       past = length;
     }
@@ -267,6 +272,7 @@ bool Continuation::step() {
     if (length_ < least_length || options_.solve.deadline.passed()) return give_up(from_);
     if (tracker_.reach_smoothly(from_, length_)) break;
   }
+  if (state.open > from_.open) end_beside_crossing();
   const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
   tracker_.measure_anew();
   tracker_.predict(from_, length);
@@ -290,6 +296,16 @@ bool Continuation::step() {
   before_ = std::exchange(here_, period_of(family_, state));
   if (end_ == BranchEnd::none) end_where_period_diverges(here_.error);
   return !found_.empty();
+}
+
+/// A step that ends where branches cross tells neither side: a shorter one, unless that also leaves more
+/// directions open than the branch did.
+void Continuation::end_beside_crossing() {
+  const double shorter = shortening * length_;
+  if (tracker_.reach_smoothly(from_, shorter) && tracker_.state.open <= from_.open)
+    length_ = shorter;
+  else
+    tracker_.reach_smoothly(from_, length_);
 }
 
 /// A shorter step than that to the tracker's state.

@@ -66,6 +66,7 @@ class Continuation {
   bool end_at_first();
   bool begin_from_start();
   bool step();
+  void end_beside_crossing();
   bool retry(double length);
   void check_action();
   void end_at_half_period(StepEvents& events);

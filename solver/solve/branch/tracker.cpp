@@ -146,6 +146,7 @@ bool Tracker::update_tangent(bool first) {
   state.orientation = branch_.orientation(onward);
   state.index = branch_.inertia().negative;
   state.nullity = branch_.inertia().zero;
+  state.open = branch_.open();
   state.crossing = crossing_test();
   return true;
 }
