@@ -89,6 +89,19 @@ TEST(BranchEvents, TwoBranchesThatBeginTogether) {
   }
 }
 
+/// The point of the branch at the end, by solutions of both linear equations put together: there a crossing
+/// has just passed the end of the period.
+TEST(BranchEvents, OrbitsThatBeginBesideAKink) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { F = 0.3965 }\nlagrangian = \"x'^2/2 - x^2/2 - "
+      "3*max(x - 0.5, 0)^2 + F*x*cos(1.3*t)\"\nforce = { x = \"-0.1*x'\" }\n[boundary]\nperiodic = true\n"
+      "duration = \"2*pi/1.3\"\n[guess]\nstate = { x = 0.4974, \"x'\" = 2.615 }\n[continuation]\n"
+      "parameter = \"F\"\nto = 0.398\npoints = 40\n"));
+  ASSERT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  for (const BranchPoint& point : found.points) EXPECT_LT(point.momentum_difference, 1e-8) << point.parameter;
+  EXPECT_NEAR(found.points.back().solution.momentum_start[0], 2.6196183977, 1e-8);
+}
+
 /// Great circles of a sphere in the family of equators of spheroids, along z'' = −(2π/c)² z of the period 1:
 /// the index is 1, and for c < 1 it is 3. One step ends at c = 1 itself.
 TEST(BranchEvents, AStepThatEndsWhereBranchesCross) {

@@ -24,7 +24,7 @@ struct BranchPoint {
   /// Of the momenta from the derivatives of the action against ∂L/∂q' at the ends of the trajectory, the
   /// most, relative to the largest there or the mean along the path.
   double momentum_difference = 0;
-  bool resolved = true;  ///< the energy is conserved, roughly
+  bool resolved = true;  ///< the energy is conserved, roughly, and elements end at kinks
 };
 
 /// A path next to where another branch begins.

@@ -35,7 +35,7 @@ struct BranchState {
   double action_rate = 0;   ///< ∂S/∂s as its derivatives give it
   double energy_time = 0;   ///< |E T|
   int orientation = 1, index = 0, nullity = 0;
-  int open = 0;           ///< directions that the equations leave open
+  int open = 0;         ///< directions that the equations leave open
   double crossing = 0;  ///< zero where branches cross; of the sign of the orientation
   DoublingTests doubling;
   std::vector<EarlierTests> earlier;  ///< of the states before, the nearest first, in the units of this one

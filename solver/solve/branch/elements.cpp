@@ -1,3 +1,6 @@
+#include <cmath>
+#include <numbers>
+
 #include "solve/branch/limits.hpp"
 #include "solve/branch/tracker.hpp"
 #include "solve/mesh/kink_nodes.hpp"
@@ -62,6 +65,20 @@ void Tracker::adopt(const Plan& plan) {
   if (plan.mesh.empty()) return change_elements(plan.degree, {path_.mesh().begin(), path_.mesh().end()});
   const std::vector<double> times = kink_times(branch_.tables(), path_, branch_.problem().periodic);
   change_elements(plan.degree, times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
+}
+
+/// Forces beyond a kink, of the size of others, bend a path by (2π t/T)²/2 of its range: nearer to T than t
+/// that is within the tolerance.
+std::optional<std::vector<double>> Tracker::mesh_beside_closing() const {
+  const double beside = std::sqrt(2 * tolerance_) / (2 * std::numbers::pi);
+  return mesh_to_kinks(branch_.tables(), path_, branch_.problem().periodic, tolerance_, beside);
+}
+
+bool Tracker::move_to(const std::vector<double>& mesh, bool across) {
+  const double value = state.varied;
+  tangent_ = state.tangent;
+  change_elements(path_.degree(), mesh);
+  return correct(1, across ? nullptr : &value) && update_tangent();
 }
 
 /// The path and the tangent on other elements.

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "motion/flow.hpp"
 #include "problem/closing.hpp"
@@ -54,23 +55,7 @@ std::optional<double> energy_of_momenta(const Lagrangian& lagrangian, const Solu
   return std::isfinite(energy) ? std::optional(energy) : std::nullopt;
 }
 
-}  // namespace
-
-const char* name(PointKind kind) {
-  switch (kind) {
-    case PointKind::fold:
-      return "fold";
-    case PointKind::branch:
-      return "branch";
-    case PointKind::period_doubling:
-      return "period-doubling";
-    case PointKind::regular:
-      break;
-  }
-  return "regular";
-}
-
-BranchPoint read_point(Tracker& tracker, PointKind kind) {
+BranchPoint read_state(Tracker& tracker, PointKind kind) {
   BranchState& state = tracker.state;
   const Branch& branch = tracker.branch();
   const Problem& problem = branch.problem();
@@ -113,6 +98,36 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   read_stability(problem, variation, tracker.sizes().q, solution, false);
   state.doubling = {solution.floquet ? doubling_tests(*solution.floquet) : std::vector<double>{NAN},
                     solution.morse_index ? doubling_index(problem, variation) : std::nullopt};
+  return point;
+}
+
+}  // namespace
+
+const char* name(PointKind kind) {
+  switch (kind) {
+    case PointKind::fold:
+      return "fold";
+    case PointKind::branch:
+      return "branch";
+    case PointKind::period_doubling:
+      return "period-doubling";
+    case PointKind::regular:
+      break;
+  }
+  return "regular";
+}
+
+/// Steps go on from the state as it was.
+BranchPoint read_point(Tracker& tracker, PointKind kind) {
+  const bool singular = kind == PointKind::branch;  // what is held belongs to the elements of the path
+  const auto mesh = singular ? std::nullopt : tracker.mesh_beside_closing();
+  if (!mesh) return read_state(tracker, kind);
+  BranchState before = tracker.state;
+  const bool moved = tracker.move_to(*mesh, kind == PointKind::fold);
+  BranchPoint point = read_state(tracker, kind);
+  point.resolved = point.resolved && moved;
+  before.doubling = tracker.state.doubling;
+  tracker.state = std::move(before);
   return point;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "solve/branch/branch_state.hpp"
 
@@ -50,6 +51,13 @@ class Tracker {
   /// The state, measured anew in lengths of its own path, or in a share of the largest before: a path that
   /// shrinks to nothing is passed.
   void measure_anew();
+
+  /// Steps let a closed path cross kinks of L inside the elements beside T, lest these shorten to nothing.
+  /// Elements on which it meets the tolerance there; nothing if it does on its own.
+  std::optional<std::vector<double>> mesh_beside_closing() const;
+  /// The state on other elements, with its value of the number that varies, or across its tangent. False if
+  /// it fails.
+  bool move_to(const std::vector<double>& mesh, bool across);
 
   /// The predictor of the state, from the state before, so far back.
   void predict(const BranchState& before, double length);

@@ -13,14 +13,15 @@ namespace extremal {
 namespace {
 
 /// Crossings at which elements end, all in t/T. A closed path may cross inside an element before `first` and
-/// after `last`: half as far from T as the first quadrature point. Elements between T and that crossing do
-/// not count, nor does one that ends there: the crossing may pass T, and would shorten them to nothing.
+/// after `last`: half as far from T as the first quadrature point, and no farther than `beside`. Elements
+/// between T and that crossing do not count, nor does one that ends there: the crossing may pass T, and would
+/// shorten them to nothing.
 struct Crossed {
   std::vector<double> times;
   double first = 0, last = 1;
 };
 
-Crossed crossed_by(const ElementTables& tables, const Path& path, bool closed) {
+Crossed crossed_by(const ElementTables& tables, const Path& path, bool closed, double beside) {
   Crossed found{crossings(*tables.kinks(), path)};
   if (!closed || found.times.empty()) return found;
   const std::span<const double> mesh = path.mesh();
@@ -35,8 +36,8 @@ Crossed crossed_by(const ElementTables& tables, const Path& path, bool closed) {
   while (before > after && (mesh[before] > found.times.back() || at_node(before, found.times.back())))
     --before;
   const double part = 0.5 * tables.scheme().node[0];
-  found.first = part * mesh[after];
-  found.last = 1 - part * (1 - mesh[before]);
+  found.first = std::min(part * mesh[after], beside);
+  found.last = 1 - std::min(part * (1 - mesh[before]), beside);
   std::erase_if(found.times, [&](double t) { return t < found.first || t > found.last; });
   return found;
 }
@@ -45,13 +46,13 @@ Crossed crossed_by(const ElementTables& tables, const Path& path, bool closed) {
 
 std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed) {
   if (!tables.kinks()) return {};
-  return crossed_by(tables, path, closed).times;
+  return crossed_by(tables, path, closed, 1).times;
 }
 
 std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,
-                                                 double tolerance) {
+                                                 double tolerance, double beside) {
   if (!tables.kinks()) return std::nullopt;
-  const auto [times, first, last] = crossed_by(tables, path, closed);
+  const auto [times, first, last] = crossed_by(tables, path, closed, beside);
   std::vector<double> mesh;
   for (const double t : path.mesh())
     if (t == 0 || t == 1 || (t > first && t < last)) mesh.push_back(t);

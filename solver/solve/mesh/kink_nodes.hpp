@@ -15,8 +15,9 @@ namespace extremal {
 std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed);
 
 /// The mesh of the path with these crossings as nodes, and none of those for which no element ends; nothing
-/// where it is so, to `tolerance` of T, and where L is smooth.
+/// where it is so, to `tolerance` of T, and where L is smooth. Of a closed path elements end also for
+/// crossings farther than `beside` from T, in t/T.
 std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,
-                                                 double tolerance);
+                                                 double tolerance, double beside = 1);
 
 }  // namespace extremal
