@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear/dense.hpp"
 #include "solution/solution.hpp"
 #include "solve/search/limits.hpp"
 
@@ -98,47 +97,6 @@ class Balance::Speeds {
   std::vector<double> q_, v_;
 };
 
-/// The equilibrium beside the slowest sample of a rest, where L is stationary in q without velocity.
-class Balance::Equilibrium {
- public:
-  Equilibrium(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest)
-      : lagrangian_(lagrangian), none_(speeds.v().size(), 0) {
-    speeds.at(speeds.times[slowest]);
-    std::vector<double> q = speeds.q();
-    const auto n = static_cast<Eigen::Index>(q.size());
-    for (int step = 0;; ++step) {
-      values_ = evaluate_at(lagrangian, q, none_, 0, Order::hessian, scratch_);
-      if (step == newton_steps) return;
-      const Eigen::Map<const Eigen::VectorXd> force(values_.dq.data(), n);
-      const Eigen::Map<const Eigen::MatrixXd> stiffness(values_.qq.data(), n, n);
-      Eigen::Map<Eigen::VectorXd>(q.data(), n) -= Eigen::VectorXd(solved(stiffness, force));
-    }
-  }
-
-  double mass(const std::vector<double>& a, const std::vector<double>& b) const {
-    return form(a, values_.vv, b);
-  }
-  double rate(const std::vector<double>& v) const { return std::sqrt(form(v, values_.qq, v) / mass(v, v)); }
-  /// L there.
-  double cost() const { return values_.value; }
-  /// Whether the path is there at this sample: elsewhere it is accelerated, against the speed that it has.
-  bool holds(Speeds& speeds, std::size_t sample) {
-    const double speed = speeds.at(speeds.times[sample]);
-    const PointValues at = evaluate_at(lagrangian_, speeds.q(), none_, 0, Order::gradient, scratch_);
-    const std::vector<double>& v = speeds.v();
-    double force = 0;
-    for (std::size_t a = 0; a < v.size(); ++a) force += at.dq[a] * v[a];
-    const double acceleration = std::abs(force) / mass(v, v) * length(v);
-    return !(acceleration > off_equilibrium * rate(v) * std::max(speed, speed_roundoff * speeds.fastest));
-  }
-
- private:
-  const Lagrangian& lagrangian_;
-  const std::vector<double> none_;
-  PointValues values_;
-  Scratch scratch_;
-};
-
 Balance::Balance(const Problem& problem, const Path& path) {
   if (problem.ends.free > 0 || !problem.lagrangian->structure().autonomous) return;
   Speeds speeds(path);
@@ -168,60 +126,61 @@ Balance::Balance(const Problem& problem, const Path& path) {
 std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Speeds& speeds,
                                               std::size_t slowest) {
   const std::size_t last = speeds.times.size() - 1;
-  const double least = speeds.values[slowest],
-               tail = std::max(tail_speed * speeds.fastest, tail_growth * least);
+  const double tail = std::max(tail_speed * speeds.fastest, tail_growth * speeds.values[slowest]);
   std::size_t before = slowest, after = slowest;
   while (before > 0 && speeds.values[before] < tail) --before;
   while (after < last && speeds.values[after] < tail) ++after;
-  Equilibrium equilibrium(lagrangian, speeds, slowest);
-  // A tail ends where the path does; an end beside the equilibrium has none.
-  const bool begins = speeds.values[before] < tail && equilibrium.holds(speeds, 0);
-  const bool ends = speeds.values[after] < tail && equilibrium.holds(speeds, last);
-  if (begins && ends) return std::nullopt;
-  Rest rest{{0, speeds.times[last]}, {0, speeds.times[last]}, 0, 0, true, equilibrium.cost()};
-  std::vector<double> in, out;
-  if (!begins) {
-    rest.span.from = speeds.tail_end(slowest, before, tail);
-    in = speeds.v();
-  }
-  if (!ends) {
-    rest.span.to = speeds.tail_end(slowest, after, tail);
-    out = speeds.v();
-  }
-  if (begins) in = out;
-  if (ends) out = in;
-  const double kinetic = equilibrium.mass(in, in) * equilibrium.mass(out, out),
-               r = 0.5 * (equilibrium.rate(in) + equilibrium.rate(out));
-  if (!(r > 0) || !(kinetic > 0)) return std::nullopt;
-  rest.stiffness = begins || ends ? 2 * r : r;
-  rest.log_energy = 0.5 * std::log(kinetic) - rest.stiffness * rest.span.length();
-  rest.positive = equilibrium.mass(in, out) > 0;
+  speeds.at(speeds.times[slowest]);
+  const NearEquilibrium equilibrium(lagrangian, speeds.q());
+  // A tail ends where the path does.
+  const bool begins = speeds.values[before] < tail, ends = speeds.values[after] < tail;
+  if ((begins && ends) || !equilibrium.hyperbolic()) return std::nullopt;
+  Rest rest{{}, {}, {}, equilibrium.cost()};
+  rest.span.from = speeds.tail_end(slowest, before, tail);
+  const std::vector<double> q = speeds.q(), v = speeds.v();
+  rest.span.to = speeds.tail_end(slowest, after, tail);
+  rest.energy = equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends},
+                                   speed_roundoff * speeds.fastest);
+  if (!std::isfinite(rest.energy.at(rest.span.length()).log)) return std::nullopt;
   while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
   while (after < last && speeds.values[after] < moving * speeds.fastest) ++after;
   rest.slow = {speeds.times[before], speeds.times[after]};
   return rest;
 }
 
-/// The energies are e^C for log_energy − stiffness·(shift after − shift before) = C; before the first rest
-/// and after the last nothing is shifted.
+/// Lengths of rests, the sum of which is given, for which the logarithms of the energies agree; before the
+/// first rest and after the last nothing is shifted.
 void Balance::balance() {
   if (rests_.size() < 2) return;
-  double sum = 0, weights = 0, shift = 0;
-  for (const Rest& rest : rests_) {
-    if (rest.positive != rests_.front().positive) return;
-    sum += rest.log_energy / rest.stiffness;
-    weights += 1 / rest.stiffness;
+  const bool positive = rests_.front().value().positive;
+  if (std::ranges::any_of(rests_, [&](const Rest& rest) { return rest.value().positive != positive; })) return;
+  std::vector<double> longer(rests_.size(), 0);
+  for (int step = 0; step < most_length_steps; ++step) {
+    double sum = 0, weights = 0, change = 0;
+    std::vector<RestEnergy::Value> values;
+    for (std::size_t j = 0; j < rests_.size(); ++j) {
+      values.push_back(rests_[j].energy.at(rests_[j].span.length() + longer[j]));
+      sum += values[j].log / values[j].stiffness;
+      weights += 1 / values[j].stiffness;
+    }
+    for (std::size_t j = 0; j < rests_.size(); ++j) {
+      const double more = (values[j].log - sum / weights) / values[j].stiffness;
+      longer[j] += more;
+      change = std::max(change, std::abs(more * values[j].stiffness));
+    }
+    if (change < balanced) break;
   }
   exists_ = true;
-  for (const Rest& rest : rests_) {
-    const double longer = (rest.log_energy - sum / weights) / rest.stiffness;
-    shift += longer;
+  double shift = 0;
+  for (std::size_t j = 0; j < rests_.size(); ++j) {
+    const Rest& rest = rests_[j];
+    shift += longer[j];
     shifts_.push_back(shift);
-    largest_shift_ = std::max(largest_shift_, std::abs(longer) * rest.stiffness);
+    largest_shift_ = std::max(largest_shift_, std::abs(longer[j]) * rest.value().stiffness);
     // With tails that are faster than those measured there may still be a rest.
-    const bool long_enough = rest.span.length() + longer > still_long * rest.span.length();
+    const bool long_enough = rest.span.length() + longer[j] > still_long * rest.span.length();
     stretched_.push_back(long_enough ? rest.span : rest.slow);
-    exists_ = exists_ && stretched_.back().length() + longer > 0;
+    exists_ = exists_ && stretched_.back().length() + longer[j] > 0;
   }
   shifts_.back() = 0;
 }
@@ -238,17 +197,17 @@ double Balance::excess(const Rest& rest) const {
     digits = std::max(digits, std::abs(other.cost));
   }
   const double excess = rest.cost - least;
-  return excess > 2 * std::exp(rest.log_energy) + cost_roundoff * (digits + kinetic_) ? excess : 0;
+  return excess > std::exp(rest.value().log) + cost_roundoff * (digits + kinetic_) ? excess : 0;
 }
 
 std::size_t Balance::falling() const {
   std::size_t gone = rests_.size();
   if (rests_.size() < 2) return gone;
   for (std::size_t j = 0; j < rests_.size(); ++j) {
-    if (rests_[j].positive && excess(rests_[j]) == 0) continue;
-    const bool worse =
-        gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
-        (excess(rests_[j]) == excess(rests_[gone]) && rests_[j].log_energy > rests_[gone].log_energy);
+    if (rests_[j].value().positive && excess(rests_[j]) == 0) continue;
+    const bool worse = gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
+                       (excess(rests_[j]) == excess(rests_[gone]) &&
+                        rests_[j].value().log > rests_[gone].value().log);
     if (worse) gone = j;
   }
   return gone;
@@ -264,7 +223,7 @@ bool Balance::fall(Path& path) const {
   double others = 0;
   for (std::size_t j = 0; j < rests_.size(); ++j) others += j == gone ? 0 : spans[j].length();
   spans[gone] = rests_[gone].slow;
-  const double shorter = spans[gone].length() - std::min(spans[gone].length(), 1 / rests_[gone].stiffness);
+  const double shorter = spans[gone].length() - std::min(spans[gone].length(), 1 / rests_[gone].value().stiffness);
   std::vector<double> shifts;
   double shift = 0;
   for (std::size_t j = 0; j < spans.size(); ++j)

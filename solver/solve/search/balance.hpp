@@ -6,16 +6,16 @@
 
 #include "action/path.hpp"
 #include "problem/problem.hpp"
+#include "solve/search/rest_energy.hpp"
 
 /// \file Where in time a path belongs that comes to rest near equilibria.
 
 namespace extremal {
 
 /// A path between fixed ends that rests near equilibria, at its ends or between. What lies between two rests
-/// is held in time by the energy, which is the same in all of them. In a rest the deviation from the
-/// equilibrium is A e^−rt + B e^rt, r² = vᵀL_qq v / vᵀL_q'q' v, with the energy −2r²AB in the norm of L_q'q';
-/// where the path ends at the equilibrium, A = −B. So the logarithms of the energies are linear in the shifts
-/// of the parts, also where the energies themselves are below roundoff.
+/// is held in time by the energy, which is the same in all of them. In a rest the motion is linear, and its
+/// tails give the energy by exponential functions of the length of the rest. So the shifts of the parts for
+/// which the energies agree are known also where the energies themselves are below roundoff.
 class Balance {
  public:
   Balance(const Problem& problem, const Path& path);
@@ -45,13 +45,11 @@ class Balance {
   struct Rest {
     Span span;          ///< times at which the speed falls and rises
     Span slow;          ///< with the tails
-    double log_energy;  ///< but for a constant
-    double stiffness;   ///< −∂(log_energy)/∂(length of span): r, or 2r at an end of the path
-    bool positive;      ///< energy
+    RestEnergy energy;  ///< by the length of span
     double cost;        ///< L at the equilibrium
+    RestEnergy::Value value() const { return energy.at(span.length()); }
   };
   class Speeds;
-  class Equilibrium;
   static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest);
   void balance();
   double excess(const Rest& rest) const;

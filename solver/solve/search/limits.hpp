@@ -43,12 +43,13 @@ inline constexpr int speed_samples = 4, halvings = 60;
 inline constexpr double resting = 1e-2, tail_speed = 1e-4, tail_growth = 10;
 /// Faster than this, by the largest, a part is no tail of a rest.
 inline constexpr double moving = 0.1;
-/// Acceleration at an end by the rate and the speed: more shows that it is not at the equilibrium. The speed
-/// has roundoff.
-inline constexpr double off_equilibrium = 0.1, speed_roundoff = 1e-12;
+/// Of speeds at an end, by the largest of the path: an end so near to an equilibrium is at it.
+inline constexpr double speed_roundoff = 1e-12;
+/// Slower than this, by the fastest, a motion near an equilibrium neither approaches nor leaves.
+inline constexpr double slowest_rate = 1e-8;
 /// Steps from a rest to the equilibrium; and roundoff of L there, by its size and the kinetic energy of the
 /// path.
-inline constexpr int newton_steps = 3;
+inline constexpr int newton_steps = 3, most_length_steps = 30;
 inline constexpr double cost_roundoff = 1e-14;
 /// Of a rest between its tails, what must remain if only that is to be compressed.
 inline constexpr double still_long = 0.3;
