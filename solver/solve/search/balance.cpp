@@ -152,31 +152,41 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
 /// first rest and after the last nothing is shifted.
 void Balance::balance() {
   if (rests_.size() < 2) return;
-  const bool positive = rests_.front().value().positive;
-  if (std::ranges::any_of(rests_, [&](const Rest& rest) { return rest.value().positive != positive; })) return;
-  std::vector<double> longer(rests_.size(), 0);
-  for (int step = 0; step < most_length_steps; ++step) {
-    double sum = 0, weights = 0, change = 0;
+  const bool positive = std::ranges::any_of(rests_, [](const Rest& rest) { return rest.value().positive; });
+  std::vector<double> longer;
+  for (const Rest& rest : rests_) {
+    const std::optional<double> held = rest.energy.held_near(rest.span.length(), positive);
+    if (!held) return;
+    longer.push_back(*held - rest.span.length());
+  }
+  double change = INFINITY;
+  for (int step = 0; step < most_length_steps && change > balanced; ++step) {
+    double sum = 0, weights = 0;
     std::vector<RestEnergy::Value> values;
     for (std::size_t j = 0; j < rests_.size(); ++j) {
       values.push_back(rests_[j].energy.at(rests_[j].span.length() + longer[j]));
-      sum += values[j].log / values[j].stiffness;
+      sum += longer[j] + values[j].log / values[j].stiffness;
       weights += 1 / values[j].stiffness;
     }
+    change = 0;
     for (std::size_t j = 0; j < rests_.size(); ++j) {
-      const double more = (values[j].log - sum / weights) / values[j].stiffness;
-      longer[j] += more;
+      double more = (values[j].log - sum / weights) / values[j].stiffness;
+      if (!std::isfinite(more)) return;
       change = std::max(change, std::abs(more * values[j].stiffness));
+      const double length = rests_[j].span.length() + longer[j];
+      while (!rests_[j].energy.held_at(length + more, positive)) more /= 2;
+      longer[j] += more;
     }
-    if (change < balanced) break;
   }
+  if (!(change <= balanced)) return;
   exists_ = true;
   double shift = 0;
   for (std::size_t j = 0; j < rests_.size(); ++j) {
     const Rest& rest = rests_[j];
     shift += longer[j];
     shifts_.push_back(shift);
-    largest_shift_ = std::max(largest_shift_, std::abs(longer[j]) * rest.value().stiffness);
+    const double stiffness = rest.energy.at(rest.span.length() + longer[j]).stiffness;
+    largest_shift_ = std::max(largest_shift_, std::abs(longer[j]) * stiffness);
     // With tails that are faster than those measured there may still be a rest.
     const bool long_enough = rest.span.length() + longer[j] > still_long * rest.span.length();
     stretched_.push_back(long_enough ? rest.span : rest.slow);
@@ -204,7 +214,7 @@ std::size_t Balance::falling() const {
   std::size_t gone = rests_.size();
   if (rests_.size() < 2) return gone;
   for (std::size_t j = 0; j < rests_.size(); ++j) {
-    if (rests_[j].value().positive && excess(rests_[j]) == 0) continue;
+    if (excess(rests_[j]) == 0 && rests_[j].energy.held_near(rests_[j].span.length(), true)) continue;
     const bool worse = gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
                        (excess(rests_[j]) == excess(rests_[gone]) &&
                         rests_[j].value().log > rests_[gone].value().log);

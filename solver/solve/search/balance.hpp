@@ -30,7 +30,7 @@ class Balance {
   /// is done, if those are too short.
   bool apply(Path& path) const;
   /// Whether the action falls as a rest becomes shorter, between parts or at an end: L is larger at its
-  /// equilibrium than at that of another rest, or its energy is negative, as where a path turns back. For
+  /// equilibrium than at that of another rest, or its energy stays negative, as where a path turns back. For
   /// ∂S/∂t of a part is the energy after it less that before, and what is above −L at the equilibrium falls
   /// in size as rests become longer.
   bool falls() const;

@@ -80,15 +80,19 @@ bool Search::flow_from(double away, double side) {
   for (std::size_t k = 0; k + 1 < nodes.size(); k += flow_limits::nodes_an_element) mesh.push_back(nodes[k]);
   mesh.push_back(1);
   mesh = graded(std::move(mesh), flow_limits::steepest_grading);
-  const auto reopen = [&] {
-    refinement_.open(mesh, Refinement::first_degree);
+  const auto reopen = [&](int degree) {
+    refinement_.open(mesh, degree);
     curve.fill(refinement_.tables(), path_);
   };
-  reopen();
+  reopen(Refinement::first_degree);
   renew();
   if (found(strategy)) return true;
-  reopen();
-  return held_in_time(strategy, renew);
+  reopen(Refinement::first_degree);
+  if (held_in_time(strategy, renew)) return true;
+  // Linear elements hold a path where forces are smaller than their errors.
+  reopen(flow_limits::finishing_degree);
+  renew();
+  return descend() && found(strategy);
 }
 
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then

@@ -40,7 +40,7 @@ namespace balance {
 inline constexpr int speed_samples = 4, halvings = 60;
 /// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
 /// equations, large against errors, and so many times the least that one exponential function is left.
-inline constexpr double resting = 1e-2, tail_speed = 1e-4, tail_growth = 10;
+inline constexpr double resting = 5e-2, tail_speed = 1e-4, tail_growth = 10;
 /// Faster than this, by the largest, a part is no tail of a rest.
 inline constexpr double moving = 0.1;
 /// Of speeds at an end, by the largest of the path: an end so near to an equilibrium is at it.
@@ -49,8 +49,11 @@ inline constexpr double speed_roundoff = 1e-12;
 inline constexpr double slowest_rate = 1e-8;
 /// Steps from a rest to the equilibrium; and roundoff of L there, by its size and the kinetic energy of the
 /// path.
-inline constexpr int newton_steps = 3, most_length_steps = 30;
+inline constexpr int newton_steps = 3;
 inline constexpr double cost_roundoff = 1e-14;
+/// Lengths of rests are looked along by this, by the fastest rate; and steps to balanced ones at most.
+inline constexpr double length_step = 0.1;
+inline constexpr int most_length_steps = 200;
 /// Of a rest between its tails, what must remain if only that is to be compressed.
 inline constexpr double still_long = 0.3;
 /// An element of a rest becomes no shorter than this part of itself.
@@ -81,7 +84,7 @@ inline constexpr double longest_step = 0.3;
 inline constexpr double sufficient = 1e-4;
 inline constexpr double shortest = 0x1p-40;
 /// Relative to the range: minima this well known let the ends of windows move; and an extremal.
-inline constexpr double nearly_minimal = 0.03, close = 1e-3;
+inline constexpr double nearly_minimal = 0.03, close = 1e-5;
 
 }  // namespace descent
 
@@ -180,9 +183,10 @@ inline constexpr double negative = 0.02;
 inline constexpr int inverse_iterations = 12;
 /// A path this much larger than at first has run away.
 inline constexpr double runaway = 1e3;
-/// Nodes of one element of higher degree; and elements by those beside them: tails of a path reach into the
-/// elements of a rest.
-inline constexpr int nodes_an_element = 4;
+/// Nodes of one element of higher degree; that degree where Newton's method fails from the path, and the
+/// action is minimised further; and elements by those beside them: tails of a path reach into the elements of
+/// a rest.
+inline constexpr int nodes_an_element = 4, finishing_degree = 8;
 inline constexpr double steepest_grading = 4;
 
 }  // namespace gradient_flow

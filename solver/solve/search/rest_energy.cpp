@@ -43,6 +43,21 @@ RestEnergy::Value RestEnergy::at(double length) const {
   return {std::log(std::abs(sum)) - slowest * length, fall / sum, sum > 0};
 }
 
+bool RestEnergy::held_at(double length, bool positive) const {
+  const Value value = at(length);
+  return value.positive == positive && value.stiffness > 0;
+}
+
+/// The action of the rest falls on the way: longer where the energy rises, shorter where its sign is wrong.
+std::optional<double> RestEnergy::held_near(double length, bool positive) const {
+  double fastest = 0;
+  for (const Term& term : terms_) fastest = std::max(fastest, std::abs(term.rate));
+  const double step = (at(length).positive == positive ? length_step : -length_step) / fastest;
+  for (int k = 0; k < most_length_steps && length > 0; ++k, length += step)
+    if (held_at(length, positive)) return length;
+  return std::nullopt;
+}
+
 NearEquilibrium::NearEquilibrium(const Lagrangian& lagrangian, std::span<const double> q)
     : q_(q.begin(), q.end()) {
   const auto n = static_cast<Eigen::Index>(q_.size());

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <complex>
+#include <optional>
 #include <vector>
 
 #include "system/lagrangian.hpp"
@@ -25,6 +26,10 @@ class RestEnergy {
   /// Terms that are smaller than errors of the tails are left out.
   explicit RestEnergy(std::vector<Term> terms);
   Value at(double length) const;
+  /// The length next to this one at which the energy has that sign and falls in size as the rest becomes
+  /// longer; so long a rest is held in time. Motions that turn about the equilibrium have many such lengths.
+  std::optional<double> held_near(double length, bool positive) const;
+  bool held_at(double length, bool positive) const;
 
  private:
   std::vector<Term> terms_;
