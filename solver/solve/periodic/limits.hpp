@@ -36,7 +36,7 @@ inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
 namespace soft_shifts {
 
 /// Speeds below this, relative to the largest, are rest.
-inline constexpr double slowest = 5e-2;
+inline constexpr double slowest = 1e-2;
 
 }  // namespace soft_shifts
 

@@ -139,8 +139,8 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   rest.span.from = speeds.tail_end(slowest, before, tail);
   const std::vector<double> q = speeds.q(), v = speeds.v();
   rest.span.to = speeds.tail_end(slowest, after, tail);
-  rest.energy = equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends},
-                                   speed_roundoff * speeds.fastest);
+  rest.energy =
+      equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends}, speed_roundoff * speeds.fastest);
   if (!std::isfinite(rest.energy.at(rest.span.length()).log)) return std::nullopt;
   while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
   while (after < last && speeds.values[after] < moving * speeds.fastest) ++after;
@@ -215,9 +215,9 @@ std::size_t Balance::falling() const {
   if (rests_.size() < 2) return gone;
   for (std::size_t j = 0; j < rests_.size(); ++j) {
     if (excess(rests_[j]) == 0 && rests_[j].energy.held_near(rests_[j].span.length(), true)) continue;
-    const bool worse = gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
-                       (excess(rests_[j]) == excess(rests_[gone]) &&
-                        rests_[j].value().log > rests_[gone].value().log);
+    const bool worse =
+        gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
+        (excess(rests_[j]) == excess(rests_[gone]) && rests_[j].value().log > rests_[gone].value().log);
     if (worse) gone = j;
   }
   return gone;
@@ -233,7 +233,8 @@ bool Balance::fall(Path& path) const {
   double others = 0;
   for (std::size_t j = 0; j < rests_.size(); ++j) others += j == gone ? 0 : spans[j].length();
   spans[gone] = rests_[gone].slow;
-  const double shorter = spans[gone].length() - std::min(spans[gone].length(), 1 / rests_[gone].value().stiffness);
+  const double shorter =
+      spans[gone].length() - std::min(spans[gone].length(), 1 / rests_[gone].value().stiffness);
   std::vector<double> shifts;
   double shift = 0;
   for (std::size_t j = 0; j < spans.size(); ++j)

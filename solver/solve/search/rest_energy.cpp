@@ -102,8 +102,8 @@ VectorXcd NearEquilibrium::deviation(const Passage& passage) const {
   return z;
 }
 
-/// A rest that begins `displaced` by q: what comes back is e^−rate·length of `leaving`, in columns `away`, and
-/// columns `back` make up for what it lacks of q there. A rest that ends is the same backwards in time.
+/// A rest that begins `displaced` by q: what comes back is e^−rate·length of `leaving`, in columns `away`,
+/// and columns `back` make up for what it lacks of q there. A rest that ends is the same backwards in time.
 std::vector<RestEnergy::Term> NearEquilibrium::from_end(const VectorXcd& leaving, const VectorXcd& rates,
                                                         const MatrixXcd& away, const MatrixXcd& back,
                                                         const VectorXcd& displaced) const {

@@ -36,8 +36,9 @@ class RestEnergy {
 };
 
 /// Motion near an equilibrium, z = (q − equilibrium, q') with z' = Az: M q'' = K q + (Cᵀ − C) q' with the
-/// second derivatives of L. What approaches the equilibrium and what leaves it, z = z_s + z_u, are exponential
-/// functions, also where C turns the path; the energy z·Wz/2 is z_u·W z_s, for each of them alone has none.
+/// second derivatives of L. What approaches the equilibrium and what leaves it, z = z_s + z_u, are
+/// exponential functions, also where C turns the path; the energy z·Wz/2 is z_u·W z_s, for each of them alone
+/// has none.
 class NearEquilibrium {
  public:
   /// Near q, where L is stationary without velocity.
@@ -65,9 +66,9 @@ class NearEquilibrium {
 
   std::vector<double> q_;
   PointValues values_;
-  Eigen::MatrixXd form_;               ///< W
-  Eigen::MatrixXcd stable_, unstable_;    ///< columns
-  Eigen::VectorXcd decays_, growths_;  ///< rates, with positive real parts
+  Eigen::MatrixXd form_;                ///< W
+  Eigen::MatrixXcd stable_, unstable_;  ///< columns
+  Eigen::VectorXcd decays_, growths_;   ///< rates, with positive real parts
 };
 
 }  // namespace extremal

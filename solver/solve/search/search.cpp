@@ -98,17 +98,17 @@ bool Search::found(const char* strategy) {
 }
 
 /// Downhill in windows, from the path that there is.
-bool Search::descend() {
+bool Search::descend(int most) {
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
-  int steps = refinement_.steps_left() / 2;  // others may need fewer
-  Descent descent(path_, w_, [&] { return refinement_.count_step() && --steps > 0; });
+  Descent descent(path_, w_, [&] { return refinement_.count_step() && --most > 0; });
   return descent.run(refinement_.tables());
 }
 
 bool Search::by_descent(const std::vector<double>& mesh) {
   if (refinement_.exhausted() || problem_.paired) return false;
   start(mesh, bend_);
-  return descend() && found("minimisation in windows");
+  // Others may need fewer steps.
+  return descend(refinement_.steps_left() / 2) && found("minimisation in windows");
 }
 
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.
