@@ -43,7 +43,7 @@ TEST(Descent, ActionFallsAtEveryStep) {
     actions.push_back(begun.w.iteration.action().action());
     return true;
   });
-  ASSERT_TRUE(descent.run(*begun.tables));
+  ASSERT_TRUE(descent.run(*begun.tables, 1e-3));
   ASSERT_GT(actions.size(), 20u);
   for (std::size_t k = 1; k + 1 < actions.size(); ++k) EXPECT_LT(actions[k], actions[k - 1]) << k;
   const Solution solution = solve(convex(0), within(1e-10));
@@ -56,7 +56,7 @@ TEST(Descent, ArrivesAtASaddle) {
                                   [](double tau) { return Values{0.5 - tau}; });
   Begun begun(problem, 40);
   Descent descent(begun.path, begun.w, [] { return true; });
-  ASSERT_TRUE(descent.run(*begun.tables));
+  ASSERT_TRUE(descent.run(*begun.tables, 1e-3));
   const double slope = (0.3 - 0.5 * std::cos(20.0)) / std::sin(20.0);
   for (int k = 0; k <= 40; ++k) {
     const double t = 0.5 * k;
@@ -69,7 +69,7 @@ TEST(Descent, NeedsElementsWithinAWindow) {
   const Problem problem = fixed_ends(systems::oscillator(1), {0.5}, {0.3}, 20);
   Begun begun(problem, 4);
   Descent descent(begun.path, begun.w, [] { return true; });
-  EXPECT_FALSE(descent.run(*begun.tables));
+  EXPECT_FALSE(descent.run(*begun.tables, 1e-3));
 }
 
 TEST(Descent, StopsWhenToldTo) {
@@ -77,7 +77,7 @@ TEST(Descent, StopsWhenToldTo) {
   Begun begun(problem, 16);
   int left = 5;
   Descent descent(begun.path, begun.w, [&] { return --left > 0; });
-  EXPECT_FALSE(descent.run(*begun.tables));
+  EXPECT_FALSE(descent.run(*begun.tables, 1e-3));
   EXPECT_EQ(left, 0);
 }
 

@@ -94,7 +94,7 @@ bool Descent::shorten(double slope, double before, double longest) {
   return false;
 }
 
-Descent::Result Descent::descend(const ElementTables& tables) {
+Descent::Result Descent::descend(const ElementTables& tables, double close) {
   DiscreteAction& action = w_.iteration.action();
   action.evaluate(path_);
   if (!count_() || !action.finite() || !find_windows()) return Result::failed;
@@ -111,10 +111,10 @@ Descent::Result Descent::descend(const ElementTables& tables) {
                                                                                : Result::failed;
 }
 
-bool Descent::run(const ElementTables& tables) {
+bool Descent::run(const ElementTables& tables, double close) {
   saved_ = path_;
   for (;;) {
-    const Result result = descend(tables);
+    const Result result = descend(tables, close);
     if (result == Result::failed) return false;
     if (result == Result::moved) continue;
     w_.iteration.set_scale(scales(path_, tables).q);

@@ -19,13 +19,13 @@ class Descent {
   /// `count` is called for each factorisation and says whether there may be more.
   Descent(Path& path, Workspace& workspace, std::function<bool()> count);
 
-  /// Takes the path near an extremal on its elements. False if it does not arrive there, or
-  /// if the action is not even convex over one element.
-  bool run(const ElementTables& tables);
+  /// Takes the path near an extremal on its elements: what is left of a step is at most `close` of the range.
+  /// False if it does not arrive there, or if the action is not even convex over one element.
+  bool run(const ElementTables& tables, double close);
 
  private:
   enum class Result { minimal, moved, failed };
-  Result descend(const ElementTables& tables);
+  Result descend(const ElementTables& tables, double close);
   bool find_windows();
   void solve_windows();
   double slope();

@@ -92,7 +92,7 @@ bool Search::flow_from(double away, double side) {
   // Linear elements hold a path where forces are smaller than their errors.
   reopen(flow_limits::finishing_degree);
   renew();
-  return descend(flow_limits::most_steps) && found(strategy);
+  return descend(flow_limits::most_steps, flow_limits::finished) && found(strategy);
 }
 
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then

@@ -84,7 +84,7 @@ inline constexpr double longest_step = 0.3;
 inline constexpr double sufficient = 1e-4;
 inline constexpr double shortest = 0x1p-40;
 /// Relative to the range: minima this well known let the ends of windows move; and an extremal.
-inline constexpr double nearly_minimal = 0.03, close = 1e-5;
+inline constexpr double nearly_minimal = 0.03, close = 1e-3;
 
 }  // namespace descent
 
@@ -183,10 +183,11 @@ inline constexpr double negative = 0.02;
 inline constexpr int inverse_iterations = 12;
 /// A path this much larger than at first has run away.
 inline constexpr double runaway = 1e3;
-/// Nodes of one element of higher degree; that degree where Newton's method fails from the path, and the
-/// action is minimised further; and elements by those beside them: tails of a path reach into the elements of
-/// a rest.
+/// Nodes of one element of higher degree; and elements by those beside them: tails of a path reach into the
+/// elements of a rest. The degree where Newton's method fails from the path, and the action is minimised
+/// further, until that part of the range is left: what a rest holds may be this small.
 inline constexpr int nodes_an_element = 4, finishing_degree = 8;
+inline constexpr double finished = 1e-5;
 inline constexpr double steepest_grading = 4;
 
 }  // namespace gradient_flow

@@ -98,17 +98,17 @@ bool Search::found(const char* strategy) {
 }
 
 /// Downhill in windows, from the path that there is.
-bool Search::descend(int most) {
+bool Search::descend(int most, double close) {
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
   Descent descent(path_, w_, [&] { return refinement_.count_step() && --most > 0; });
-  return descent.run(refinement_.tables());
+  return descent.run(refinement_.tables(), close);
 }
 
 bool Search::by_descent(const std::vector<double>& mesh) {
   if (refinement_.exhausted() || problem_.paired) return false;
   start(mesh, bend_);
   // Others may need fewer steps.
-  return descend(refinement_.steps_left() / 2) && found("minimisation in windows");
+  return descend(refinement_.steps_left() / 2, limits::descent::close) && found("minimisation in windows");
 }
 
 /// From durations in which the guess is nearly a motion, through extremals of all durations between.

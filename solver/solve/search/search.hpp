@@ -96,7 +96,7 @@ class Search {
   bool by_gradient_flow(double side = 1);
   bool flow_from(double away, double side);
   bool held_in_time(const char* strategy, const std::function<void()>& renew);
-  bool descend(int most);
+  bool descend(int most, double close);
   bool by_descent(const std::vector<double>& mesh);
   bool from_finer_elements();
   bool from_line();
