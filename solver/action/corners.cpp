@@ -206,8 +206,8 @@ std::vector<Corner> corners_of(const Kinks& kinks, const Path& path, const Closi
   return corners_of(kinks, Copy(path, path.duration()).pieces, closed);
 }
 
-bool follow_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
-                    double factor) {
+bool move_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
+                  double factor) {
   if (corners.empty()) return true;
   if (!(path.duration() > 0)) return false;
   const std::size_t n = path.coordinates();

@@ -43,8 +43,8 @@ std::vector<Corner> corners_of(const Kinks& kinks, const Path& path, const Closi
 /// node, to the mean of their times; T does not move. Where that is far for the elements beside a node, the
 /// nodes up to the next corner follow. False, and nothing is done, where Path::slide() does
 /// nothing.
-bool follow_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
-                    double factor);
+bool move_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
+                  double factor);
 
 /// Adds the matrix of a corner, n × n.
 void add_stiffness(const Corner& corner, double* block);

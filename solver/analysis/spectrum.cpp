@@ -256,11 +256,11 @@ void Fit::take(const Wave& wave) {
 }
 
 bool Fit::refine(std::vector<Wave>& waves, double goal) {
-  bool settled = false;
-  for (int k = 0; k < 10 && !settled; ++k) {
+  bool converged = false;
+  for (int k = 0; k < 10 && !converged; ++k) {
     const double change = step(waves, values_, k % matrix_steps == 0);
     if (!std::isfinite(change)) return false;
-    settled = change < goal;
+    converged = change < goal;
   }
   leave(waves);
   return true;

@@ -53,7 +53,7 @@ inline constexpr double first_distance = 1e-3, nearer = 0.1;
 inline constexpr int distances = 5;
 inline constexpr int bisections = 60;
 /// Of an exponent, between two distances.
-inline constexpr double settled = 4e-3;
+inline constexpr double exponent_change = 4e-3;
 /// Beyond the largest one the integral of L is infinite; below the least one L is nearly finite.
 inline constexpr double least_exponent = 0.02, largest_exponent = 0.98;
 /// Denominators of fractions; the error of an exponent that is measured, and that of arithmetic.

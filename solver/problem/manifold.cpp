@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 constexpr int most_steps = 60;
 constexpr double least_factor = 1e-3;
 /// Steps below so many roundings of the point gain nothing more.
-constexpr double settled = 4 * std::numeric_limits<double>::epsilon();
+constexpr double last_step = 4 * std::numeric_limits<double>::epsilon();
 /// Where g cannot be made smaller, so long a step was one of roundoff.
-constexpr double roundoff = 1e3 * settled;
+constexpr double roundoff = 1e3 * last_step;
 
 /// A point with t, and multipliers zero but for one.
 std::vector<double> extended(std::span<const double> q, double t, int further, int one = -1) {
@@ -91,7 +91,7 @@ bool Manifold::project(std::span<double> q, double t) const {
       point = from;
       return length <= roundoff * point.norm();
     }
-    if (length <= settled * point.norm()) return true;
+    if (length <= last_step * point.norm()) return true;
   }
   return values.g.isZero(0);
 }
@@ -159,7 +159,7 @@ std::vector<double> Manifold::momentum(std::span<const double> q, double t,
     if (!(length < before)) break;
     velocity += step;
     before = length;
-    if (length <= settled * velocity.norm()) break;
+    if (length <= last_step * velocity.norm()) break;
   }
   return momentum(q, t, v);
 }

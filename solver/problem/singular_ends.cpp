@@ -113,7 +113,7 @@ double exponent(const Lagrangian& lagrangian, const End& end, std::size_t a, dou
   // They differ from γ by a power of the distance: Aitken's extrapolation.
   const double last = slopes[distances - 1], change = last - slopes[distances - 2],
                before = slopes[distances - 2] - slopes[distances - 3];
-  if (!(std::abs(change) <= settled)) return 0;
+  if (!(std::abs(change) <= exponent_change)) return 0;
   return std::abs(change) < 0.9 * std::abs(before) ? last + change * change / (before - change) : last;
 }
 

@@ -32,13 +32,13 @@ class ConstrainedEnds {
     m_ = manifold_.constraints();
   }
 
-  bool settle() {
+  bool complete() {
     check_momenta();
     fit_fixed();
     for (const bool at_end : {false, true})
       if (fixed(at_end)) meet(at_end);
     if (problem_.initial) {
-      settle_initial();
+      complete_initial();
       return true;
     }
     bool suited = problem_.periodic || suits();
@@ -138,7 +138,7 @@ class ConstrainedEnds {
   }
 
   /// The momenta of L̃; a part normal to the manifold would be none of a motion on it.
-  void settle_initial() {
+  void complete_initial() {
     auto& [q, p, paired] = *problem_.initial;
     std::copy(near_.start.begin(), near_.start.end(), q.begin());
     const std::vector<double> projection = manifold_.projected_momentum(q, 0, p);
@@ -306,8 +306,8 @@ EndPoints end_points(const Problem& problem) {
   return points;
 }
 
-bool settle_ends(const Scene& scene, EndPoints& near, Problem& problem) {
-  return ConstrainedEnds(scene, near, problem).settle();
+bool complete_ends(const Scene& scene, EndPoints& near, Problem& problem) {
+  return ConstrainedEnds(scene, near, problem).complete();
 }
 
 void refuse_partly_free(const Scene& scene, const Problem& problem) {

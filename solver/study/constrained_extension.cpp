@@ -87,7 +87,7 @@ class ConstrainedPoint {
       if (!fixed[a]) free_.push_back(static_cast<int>(a));
   }
 
-  void settle(const std::vector<Text>& constraints) {
+  void complete(const std::vector<Text>& constraints) {
     size_ = Eigen::Map<const VectorXd>(q_.data(), std::ssize(q_)).lpNorm<Eigen::Infinity>();
     if (!free_.empty()) meet_along_free();
     const ConstraintValues values = manifold_.at(q_, time_);
@@ -220,12 +220,13 @@ void ConditionsOnManifold::put_relation(const std::vector<std::string>& texts, P
   problem.ends = solve_relation(problem.boundary);
 }
 
-void settle_waypoints(const Scene& scene, const Problem& problem, std::vector<WaypointCondition>& waypoints) {
+void complete_waypoints(const Scene& scene, const Problem& problem,
+                        std::vector<WaypointCondition>& waypoints) {
   for (std::size_t w = 0; w < waypoints.size(); ++w) {
     if (waypoints[w].free && !problem.manifold->autonomous())
       throw SceneError(scene.waypoints[w].time.at,
                        "at = \"free\" needs constraints and a Lagrangian that do not depend on t");
-    ConstrainedPoint(scene.waypoints[w], problem, waypoints[w]).settle(scene.system.constraints);
+    ConstrainedPoint(scene.waypoints[w], problem, waypoints[w]).complete(scene.system.constraints);
   }
 }
 

@@ -40,6 +40,7 @@ class ConditionsOnManifold {
 
 /// Fixes the coordinates that constraints determine at waypoints too. Throws SceneError where a point does
 /// not satisfy the constraints, with the amount, or is fixed in part.
-void settle_waypoints(const Scene& scene, const Problem& problem, std::vector<WaypointCondition>& waypoints);
+void complete_waypoints(const Scene& scene, const Problem& problem,
+                        std::vector<WaypointCondition>& waypoints);
 
 }  // namespace extremal

@@ -22,9 +22,9 @@ class ConstrainedGuess {
   ConstrainedGuess(const Scene& scene, Problem& problem)
       : scene_(scene), problem_(problem), manifold_(*problem.manifold), n_(problem.coordinates()) {}
 
-  void settle(const EndPoints& ends) {
+  void project(const EndPoints& ends) {
     if (problem_.initial) return;
-    if (!problem_.guess.given()) return settle_default(ends);
+    if (!problem_.guess.given()) return project_default(ends);
     const Guess given = problem_.guess;
     const std::size_t failed = project(problem_.guess);
     if (failed == problem_.guess.tau.size()) return;
@@ -51,7 +51,7 @@ class ConstrainedGuess {
 
   /// The line between the ends, bent where it passes a point that is as near to one side of the manifold as
   /// to another.
-  void settle_default(const EndPoints& ends) {
+  void project_default(const EndPoints& ends) {
     std::minstd_rand random{7};
     std::vector<double> aside(n_);
     for (double& x : aside) x = 2.0 * random() / std::minstd_rand::max() - 1;
@@ -101,8 +101,8 @@ class ConstrainedGuess {
 
 }  // namespace
 
-void settle_guess(const Scene& scene, const EndPoints& ends, Problem& problem) {
-  ConstrainedGuess(scene, problem).settle(ends);
+void project_guess(const Scene& scene, const EndPoints& ends, Problem& problem) {
+  ConstrainedGuess(scene, problem).project(ends);
 }
 
 }  // namespace extremal

@@ -63,12 +63,12 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
 /// on the manifold. Momenta of initial data become those of L̃. Throws SceneError with the amount by which a
 /// constraint is missed. False where the natural conditions of L̃ are not those on the manifold: only minimal
 /// coordinates have these.
-bool settle_ends(const Scene& scene, EndPoints& near, Problem& problem);
+bool complete_ends(const Scene& scene, EndPoints& near, Problem& problem);
 
 /// Throws SceneError: an end is fixed in part, and there are no minimal coordinates for it.
 [[noreturn]] void refuse_partly_free(const Scene& scene, const Problem& problem);
 
 /// Moves the guess onto the manifold, also the default one. Throws SceneError where that is impossible.
-void settle_guess(const Scene& scene, const EndPoints& ends, Problem& problem);
+void project_guess(const Scene& scene, const EndPoints& ends, Problem& problem);
 
 }  // namespace extremal

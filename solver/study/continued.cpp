@@ -93,7 +93,7 @@ class VariedScene {
     if (problem_.manifold) {
       constrain_like(*problem_.manifold, scene_.system, system, problem);
       EndPoints near = near_;
-      settle_ends(scene_, near, problem);
+      complete_ends(scene_, near, problem);
     }
     return problem;
   }
@@ -104,7 +104,7 @@ class VariedScene {
     BareProblem found{with(system), {}};
     found.graph = put_manifold_like(*problem_.manifold, scene_.system, system, found.problem);
     EndPoints near = near_;
-    settle_ends(scene_, near, found.problem);
+    complete_ends(scene_, near, found.problem);
     return found;
   }
 

@@ -264,7 +264,7 @@ bool constraints_vary(const Scene& scene) {
 }
 
 void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system,
-                    const SettledEnds& settled, Problem& problem) {
+                    const CompletedEnds& completed, Problem& problem) {
   const Dependents dependents = dependents_of(scene), constants = constants_of(scene, dependents);
   const SystemTable table = extended_table(scene, dependents);
   System host = make_system(table);
@@ -304,15 +304,15 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
     extension->where.push_back(condition(text, host, constants, "where", ends));
   extension->waypoints = read_waypoints(scene, system, problem);
   extension->at = [scene](const std::vector<double>& values) { return lagrangian_at(scene, values); };
-  if (problem.manifold) settle_waypoints(scene, problem, extension->waypoints);
+  if (problem.manifold) complete_waypoints(scene, problem, extension->waypoints);
   if (!extension->waypoints.empty()) guess_through(extension->waypoints, problem);
   if (problem.manifold) {
-    settle_guess(scene, settled.near, problem);
+    project_guess(scene, completed.near, problem);
     put_constrained_laws(scene, problem.manifold, *extension);
     problem.lagrangian = extension->at(first_constants(scene));
     std::vector<std::string> texts;
     for (const Text& text : parts.conditions) texts.push_back(text.value);
-    if (!settled.suited) on_manifold->put_relation(texts, problem, *extension);
+    if (!completed.suited) on_manifold->put_relation(texts, problem, *extension);
   }
   problem.extension = std::move(extension);
 }

@@ -34,7 +34,7 @@ bool constraints_vary(const Scene& scene);
 
 /// Ends of a problem with constraints: whether the relation is one of ends on the manifold, and points near
 /// them.
-struct SettledEnds {
+struct CompletedEnds {
   bool suited = true;
   EndPoints near{};
 };
@@ -43,6 +43,6 @@ struct SettledEnds {
 /// where there is none. With constraints the problem has its manifold, and the guess is moved onto it; where
 /// the relation is not suited to it, it becomes a part of the extension.
 void read_extension(const Scene& scene, const ExtendedScene& parts, const System& system,
-                    const SettledEnds& ends, Problem& problem);
+                    const CompletedEnds& ends, Problem& problem);
 
 }  // namespace extremal

@@ -123,7 +123,7 @@ Problem with_guessed_ends(const Scene& scene, const ExtendedScene& parts, const 
 }
 
 /// The guess, and what constraints make of it and of the ends, which become points near them. False as
-/// settle_ends().
+/// complete_ends().
 bool read_constrained_guess(const Scene& scene, const ExtendedScene& parts, const System& system,
                             const Deadline& deadline, Purpose purpose, EndPoints& ends, Problem& problem) {
   const bool extended = parts.extended;
@@ -140,8 +140,8 @@ bool read_constrained_guess(const Scene& scene, const ExtendedScene& parts, cons
   check_independent(scene, ends, problem);
   // Ends that an unknown decides on are conditions, and a guess through waypoints is still to be made.
   if (extended && !problem.periodic && constraints_vary(scene)) return false;
-  const bool suited = settle_ends(scene, ends, problem);
-  if (!extended) settle_guess(scene, ends, problem);
+  const bool suited = complete_ends(scene, ends, problem);
+  if (!extended) project_guess(scene, ends, problem);
   return suited;
 }
 

@@ -32,18 +32,18 @@ Scaled sum_of_parts(Algebra& algebra, const Graph& source, const Group& group, b
 }
 
 /// ± one node, so that only a sign is left for the instruction that puts it out.
-void settle(Algebra& algebra, Scaled& value) {
+void absorb_factors(Algebra& algebra, Scaled& value) {
   if (!value.zero())
     value = {value.factor < 0 ? -1.0 : 1.0, algebra.node({std::abs(value.factor), value.node})};
 }
 
-void settle(Algebra& algebra, Kernel& kernel) {
-  settle(algebra, kernel.value);
-  for (Partial& p : kernel.gradient) settle(algebra, p.value);
-  for (SecondPartial& p : kernel.hessian) settle(algebra, p.value);
+void absorb_factors(Algebra& algebra, Kernel& kernel) {
+  absorb_factors(algebra, kernel.value);
+  for (Partial& p : kernel.gradient) absorb_factors(algebra, p.value);
+  for (SecondPartial& p : kernel.hessian) absorb_factors(algebra, p.value);
   for (Kernel::Sensitivity& s : kernel.sensitivities) {
-    settle(algebra, s.value);
-    for (Partial& p : s.gradient) settle(algebra, p.value);
+    absorb_factors(algebra, s.value);
+    for (Partial& p : s.gradient) absorb_factors(algebra, p.value);
   }
 }
 
@@ -77,7 +77,7 @@ Kernel differentiate(const Graph& source, const Group& group, bool at_rest) {
     kernel.sensitivities.push_back(
         {kernel.at(0, k), slope[0].value, differentiate(algebra, slope[0].value, state)});
   }
-  settle(algebra, kernel);
+  absorb_factors(algebra, kernel);
   return kernel;
 }
 

@@ -104,7 +104,7 @@ class Reduced {
     z_ = directions();
     find_hessian();
     if (!s_.force.empty()) find_copies();
-    settle();
+    absorb_factors();
     return std::move(result_);
   }
 
@@ -290,18 +290,18 @@ class Reduced {
   }
 
   /// Of each expression only a sign is left beside its node.
-  void settle() {
-    const auto settle_one = [&](Scaled& value) {
+  void absorb_factors() {
+    const auto absorb = [&](Scaled& value) {
       if (!value.zero())
         value = {value.factor < 0 ? -1.0 : 1.0, algebra_.node({std::abs(value.factor), value.node})};
     };
-    settle_one(result_.value);
-    for (Partial& p : result_.gradient) settle_one(p.value);
+    absorb(result_.value);
+    for (Partial& p : result_.gradient) absorb(p.value);
     for (auto* entries : {&result_.hessian, &result_.copies_hessian})
-      for (auto& p : *entries) settle_one(p.value);
+      for (auto& p : *entries) absorb(p.value);
     for (Row* row :
          {&result_.start, &result_.steps, &result_.pivots, &result_.rates, &result_.slopes, &result_.motion})
-      for (Scaled& value : *row) settle_one(value);
+      for (Scaled& value : *row) absorb(value);
     Kernel& kernel = result_.kernel;
     const auto put = [&](Variable kind, int count) {
       for (int k = 0; k < count; ++k) {

@@ -141,7 +141,7 @@ bool PinnedSolve::holds_energy(const Resolution::Error& left_out) {
 
 /// The elements of the companion end where it crosses kinks of L: Newton's method again as long as they do
 /// not.
-NewtonReport PinnedSolve::follow_kinks(const ElementTables& tables, NewtonReport report) {
+NewtonReport PinnedSolve::converge_with_kinks(const ElementTables& tables, NewtonReport report) {
   for (int k = 0; tables.kinks() && k < companion_steps; ++k) {
     const std::vector<double> times = crossings(*tables.kinks(), w_.other);
     if (distance_to_nodes(w_.other.mesh(), times) <= companion_misplacement) return report;
@@ -186,7 +186,8 @@ double PinnedSolve::distance_to_companion() {
     w_.other.interpolate_from(path_, tables, w_.levels.raise(path_.degree(), degree));
   const Path start = w_.other;
   w_.iteration.reset(problem_, tables, w_.other.elements());
-  const NewtonReport report = follow_kinks(tables, run_newton(tables, w_.other, 1e-12, companion_steps));
+  const NewtonReport report =
+      converge_with_kinks(tables, run_newton(tables, w_.other, 1e-12, companion_steps));
   if (!report.reached) return INFINITY;
   w_.resolution.measure(w_.other, tables);
   const Scales size = scales(w_.other, tables);

@@ -26,7 +26,7 @@ class PinnedSolve {
   bool quadrature_is_exact();
   bool free_times();
   bool holds_energy(const Resolution::Error& left_out);
-  NewtonReport follow_kinks(const ElementTables& tables, NewtonReport report);
+  NewtonReport converge_with_kinks(const ElementTables& tables, NewtonReport report);
   int kinked_elements() const;
   double distance_to_companion();
   double velocity_excess();

@@ -210,7 +210,7 @@ bool Refinement::end_at_kinks() {
 }
 
 /// Newton's method again, as long as the path that it found crosses kinks elsewhere than where elements end.
-NewtonReport Refinement::follow_kinks(NewtonReport newton) {
+NewtonReport Refinement::converge_with_kinks(NewtonReport newton) {
   const auto on_step = [this] { return count_step(); };
   for (int k = 0; k < most_realignments && tables_->kinks() && !exhausted(); ++k) {
     if (!end_at_kinks()) return newton;
@@ -265,7 +265,7 @@ Refinement::Attempt Refinement::attempt() {
     rebind();
     newton = converge(w_.iteration, path_, *coarse, {coarse_goal, steps_left(coarse_steps)}, on_step);
   }
-  newton = follow_kinks(newton);
+  newton = converge_with_kinks(newton);
   outcome_.message = newton.failure;
   return newton.reached ? refine_from(newton) : Attempt::failed;
 }
@@ -312,7 +312,7 @@ Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
       return Attempt::failed;
     }
     if (result == Attempt::converged && end_at_kinks()) {
-      newton = follow_kinks(converge_to(aim, false));
+      newton = converge_with_kinks(converge_to(aim, false));
       measure();
       result = newton.reached ? Attempt::refine : Attempt::failed;
       outcome_.message = newton.failure;

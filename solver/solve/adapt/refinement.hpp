@@ -111,7 +111,7 @@ class Refinement {
   void move_to(const ElementTables& tables, std::span<const double> mesh);
   bool end_at_kinks();
   bool closes_beside_kinks() const;
-  NewtonReport follow_kinks(NewtonReport newton);
+  NewtonReport converge_with_kinks(NewtonReport newton);
   void adopt(const Plan& plan);
   void refine();
   void record();

@@ -76,7 +76,7 @@ void StartingStates::bend(const Start& start, const ElementTables& tables, Path&
 }
 
 /// The path is moved through the waypoints: by as much as it misses them, in proportion between them.
-void StartingStates::lead_through_waypoints(const ElementTables& tables, Path& path) const {
+void StartingStates::pass_waypoints(const ElementTables& tables, Path& path) const {
   if (extension_.waypoints.empty()) return;
   const Trajectory before = trajectory_of(path);
   std::vector<std::vector<double>> tau(n_, {0.0}), missed(n_, {0.0});
@@ -109,7 +109,7 @@ BorderedState StartingStates::at(const LegMesh& mesh, const Elements& elements, 
   path.reset(*elements.own, mesh_nodes(lengths), times_.back(), lengths);
   start_path(problem_, starting_ends(problem_), *elements.own, path);
   bend(start, *elements.own, path);
-  lead_through_waypoints(*elements.own, path);
+  pass_waypoints(*elements.own, path);
   std::vector<double> constants = extension_.guess;
   constants.resize(extension_.constants(), 0);
   with_constants(path, *elements.tables, constants, state.path);

@@ -53,7 +53,7 @@ class StartingStates {
  private:
   std::vector<double> moved_ends(double size, const std::vector<double>& extent, Noise& noise) const;
   void bend(const Start& start, const ElementTables& tables, Path& path) const;
-  void lead_through_waypoints(const ElementTables& tables, Path& path) const;
+  void pass_waypoints(const ElementTables& tables, Path& path) const;
 
   const Problem& problem_;
   const Extension& extension_;

@@ -77,7 +77,7 @@ bool Branch::apply(const Move& move, double factor) {
   path_.add(move.step.nodes, move.step.inner, factor);
   if (!by_duration()) path_.set_duration(duration);
   path_.load_ends();
-  if (!follow_corners(path_, corners, move.step.nodes, factor)) return false;
+  if (!move_corners(path_, corners, move.step.nodes, factor)) return false;
   const std::vector<double> before = ends();
   if (!set_coordinate(coordinate)) return false;
   ends_ = ends();

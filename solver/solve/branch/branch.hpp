@@ -125,7 +125,7 @@ class Branch : public ExtremalCurve {
   void hold_along(const Move& direction);
   void negate_second(std::vector<double>& nodes) const;
   double energy_change(const Move& move) const;
-  bool told_by_energy() const;
+  bool ordered_by_energy() const;
   const Inertia& inertia_with_duration() const;
   double solve_beside(double by, Move& move);
   void fit_path(const Problem& problem);

@@ -10,7 +10,7 @@ namespace extremal {
 
 /// Where the duration hardly changes along the extremals of all durations, as that of isochronous orbits, the
 /// second variation with T held is nearly singular, and that by T as well is not.
-bool Branch::told_by_energy() const { return std::abs(free_.energy) > std::abs(free_.duration); }
+bool Branch::ordered_by_energy() const { return std::abs(free_.energy) > std::abs(free_.duration); }
 
 const Inertia& Branch::inertia_with_duration() const {
   if (!with_duration_)
@@ -23,7 +23,7 @@ const Inertia& Branch::inertia_with_duration() const {
 const Inertia& Branch::inertia() const {
   if (problem_.paired) inertia_ = Inertia{};
   if (inertia_) return *inertia_;
-  if (!told_by_energy()) return inertia_.emplace(w_.iteration.model().inertia(errors_.null));
+  if (!ordered_by_energy()) return inertia_.emplace(w_.iteration.model().inertia(errors_.null));
   Inertia found = inertia_with_duration();
   const double by_energy = free_.duration / free_.energy;
   if (std::abs(free_.duration) <= std::max(errors_.path, zero_eigenvalue)) {
@@ -44,7 +44,7 @@ int Branch::orientation(double onward) const {
     return sign == 0 || (sign < 0) == (onward * direction.parameter < 0) ? 1 : -1;
   }
   // det (K b; r 0) is det K ∂T/∂r, and det B −∂E/∂r, r the row that closes the duration.
-  const bool by_energy = told_by_energy();
+  const bool by_energy = ordered_by_energy();
   const int count = by_energy ? inertia_with_duration().negative : inertia().negative;
   const double closing = by_energy ? -free_.energy : free_.duration;
   const double along = by_duration() ? 1 : direction.parameter;

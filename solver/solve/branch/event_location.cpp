@@ -52,7 +52,7 @@ double find_value(Tracker& tracker, const ProblemFamily& family, const BranchSta
   const double bend = ((far.value - near.value) / reach - slope) / reach;
   const double guess = 2 * off / (slope + std::copysign(std::sqrt(slope * slope + 4 * bend * off), off));
   if (guess >= 0 && guess <= reach && tracker.reach(from, near.at + guess, false, &value) &&
-      tracker.turned_little()) {
+      tracker.turn_is_small()) {
     const double landed = near.at + guess + tracker.landed();
     if (landed >= near.at && landed <= far.at) return landed;
   }

@@ -104,7 +104,7 @@ bool Tracker::resolve_forces(double length, const double* landing) {
 }
 
 bool Tracker::reach_smoothly(const BranchState& from, double length, bool same_elements) {
-  return reach(from, length, same_elements) && turned_little();
+  return reach(from, length, same_elements) && turn_is_small();
 }
 
 bool Tracker::land(double value) { return correct(1, &value) && update_tangent(); }

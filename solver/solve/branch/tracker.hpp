@@ -92,7 +92,7 @@ class Tracker {
   double tolerance() const { return tolerance_; }
   double error() const { return error_; }    ///< of q, absolute
   double cosine() const { return cosine_; }  ///< of the angle by which the last step turned
-  bool turned_little() const { return cosine_ > sharpest_turn; }
+  bool turn_is_small() const { return cosine_ > sharpest_turn; }
   int factorisations() const { return factorisations_; }  ///< of the last corrections
   double landed() const { return landed_; }               ///< how far beyond reach()'s length
   StepFailure failure() const { return failure_; }

@@ -106,7 +106,7 @@ SolvedArc Arcs::solve(const PathArc& arc) {
     none.message = "an arc has no length";
     return none;
   }
-  if (determined(arc.held)) return follow_constraints(arc);
+  if (determined(arc.held)) return solve_determined(arc);
   const double least = attainable(fitted(arc), arc.start.size());
   SolvedArc solved = solve_extremal(arc, std::max(arc_tolerance(options_), least));
   if (!solved.found) solved = solve_extremal(arc, std::max(arc_share_again * options_.tolerance, 2 * least));
@@ -136,7 +136,7 @@ SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
 
 SolvedArc Arcs::solve_closed(const PathArc& arc) {
   if (determined(arc.held)) {
-    if (!problem_.duration.free) return follow_constraints(arc);
+    if (!problem_.duration.free) return solve_determined(arc);
     SolvedArc none;
     none.message = "a path that is held throughout has no duration of its own";
     return none;
@@ -209,7 +209,7 @@ void Arcs::measure(const PathArc& arc, SolvedArc& solved) {
 }
 
 /// As many constraints as coordinates: they alone determine the path.
-SolvedArc Arcs::follow_constraints(const PathArc& arc) {
+SolvedArc Arcs::solve_determined(const PathArc& arc) {
   const std::size_t n = problem_.coordinates();
   const std::shared_ptr<const Manifold> onto = manifold(arc.held);
   const double duration = arc.to - arc.from;

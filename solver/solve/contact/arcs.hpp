@@ -67,7 +67,7 @@ class Arcs {
   bool determined(const std::vector<int>& held) const;
   SolvedArc solve_extremal(const PathArc& arc, double tolerance);
   SolvedArc solve_problem(const PathArc& arc, Problem problem, double tolerance);
-  SolvedArc follow_constraints(const PathArc& arc);
+  SolvedArc solve_determined(const PathArc& arc);
   void measure(const PathArc& arc, SolvedArc& solved);
 
   const Problem& problem_;

@@ -177,7 +177,7 @@ Junctions::Result Junctions::run() {
   if (!(closed ? solve_closed() : start())) return Result::failed;
   movement_ = mismatch_ = 0;
   if (closed || unknowns() == 0) return Result::matched;
-  const double wanted = settled_share * arcs_.options().tolerance,
+  const double wanted = converged_share * arcs_.options().tolerance,
                enough = enough_share * arcs_.options().tolerance;
   bool useful = false, exact = false;  // the derivatives there are: not far off; not updated
   for (int k = 0; k < most_steps; ++k) {

@@ -43,7 +43,7 @@ inline constexpr double difference = 1e-5, difference_share = 0.2;
 inline constexpr double matched = 1e-12;
 /// Parts of the tolerance for the next step, by which Newton's method ends: what it aims at, and what is
 /// enough where it goes no further.
-inline constexpr double settled_share = 0.02, enough_share = 0.3;
+inline constexpr double converged_share = 0.02, enough_share = 0.3;
 inline constexpr int most_steps = 30;
 /// Where a step would leave so large a part of the equations, they contradict each other.
 inline constexpr double disagreeing = 0.3;

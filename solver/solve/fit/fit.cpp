@@ -100,7 +100,7 @@ class Fit {
       if (progress_) progress_({iteration, path_.path().elements(), path_.path().degree(), 2 * cost});
       return !options_.deadline.passed();
     };
-    if (!path_.settle()) {
+    if (!path_.converge_on_elements()) {
       fail("Newton's method does not converge on the elements of the first trajectory");
       return false;
     }

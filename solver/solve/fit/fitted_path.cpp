@@ -78,7 +78,7 @@ std::vector<double> FittedPath::values() const {
   return result;
 }
 
-bool FittedPath::settle() {
+bool FittedPath::converge_on_elements() {
   if (!scheme_ || path_.elements() == 0) return false;
   node_ = path_.elements();
   meet_ends(at_->problem, path_);

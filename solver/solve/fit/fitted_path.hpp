@@ -34,7 +34,7 @@ class FittedPath {
   bool evaluate_by_values(std::span<double> residuals, std::span<double> jacobian);
 
   /// Of the path there is; false where Newton's method does not converge on its elements.
-  bool settle();
+  bool converge_on_elements();
   std::vector<double> coordinates() const;
   std::vector<double> values() const;
 

@@ -166,7 +166,7 @@ bool NewtonIteration::apply(Path& path, const Step& step, double factor, std::sp
   keep_ends(problem_->ends, path);
   if (problem_->duration.free) path.set_duration(path.duration() + factor * step.duration);
   path.load_ends();
-  return follow_corners(path, corners, step.nodes, factor);
+  return move_corners(path, corners, step.nodes, factor);
 }
 
 /// The path as it was saved, and its mesh where that may have moved.

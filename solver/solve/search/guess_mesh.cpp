@@ -81,7 +81,7 @@ bool Search::mesh_of_motion() {
 /// The same elements for the same motion, with factors that have more digits; false if it was not followed.
 /// Errors of the elements are amplified as roundoff is: where the first step amplifies all that doubles have
 /// lost, their degree is higher.
-bool Search::follow_with_double_digits() {
+bool Search::search_with_double_digits() {
   if (!refinement_.mesh_kept()) return false;
   start(mesh_, bend_, kept_degree);
   const bool lost = refinement_.loses_digits();

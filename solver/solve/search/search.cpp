@@ -75,7 +75,7 @@ Search::Pursuit Search::pursue(const char* strategy) {
 Search::Pursuit Search::pursue_guess() {
   Pursuit result = pursue(from_guess);
   if (result.result == Refinement::Result::converged || options_.deadline.passed()) return result;
-  if (!follow_with_double_digits()) return result;
+  if (!search_with_double_digits()) return result;
   refinement_.allow(allowance_);
   return pursue(from_guess);
 }

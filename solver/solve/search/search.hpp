@@ -81,7 +81,7 @@ class Search {
   GuessKind prepare();
   GuessKind begin();
   bool mesh_of_motion();
-  bool follow_with_double_digits();
+  bool search_with_double_digits();
   void end_at_kinks_of_guess();
   bool resolve_guess();
   Pursuit pursue(const char* strategy);

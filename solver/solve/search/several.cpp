@@ -293,14 +293,14 @@ bool Several::trace_families() {
 }
 
 /// Whether loops come back to known orbits as often as they would if no more of the wanted were missing.
-bool Several::settled() const {
+bool Several::returns_suffice() const {
   if (!loops_.usable()) return true;
   return returns_ >= returns_each * static_cast<int>(found_.size()) ||
          seed_ >= (1 + spare_loops) * enough_at_;
 }
 
 bool Several::wanted() const {
-  return !(static_cast<int>(found_.size()) >= most_ && settled()) &&
+  return !(static_cast<int>(found_.size()) >= most_ && returns_suffice()) &&
          in_vain_ < (loops_.usable() ? most_loops_in_vain : most_in_vain) && !search_.exhausted();
 }
 
@@ -322,7 +322,7 @@ int Several::within(double reach) const {
 }
 
 /// Whether the path, which a homotopy has led to the problem, is nearly an extremal that was found.
-bool Several::leads_to_known() {
+bool Several::reaches_known() {
   Solution candidate;
   candidate.trajectory = trajectory_of(path_);
   candidate.error_estimate = led * scales(path_, search_.tables()).q;
@@ -333,7 +333,7 @@ bool Several::leads_to_known() {
 
 /// All motions that meet the end, of growing reach, until enough are found or no more seem to be in reach.
 /// Whether that can be told.
-bool Several::follow_arrivals() {
+bool Several::trace_arrivals() {
   const Deadline deadline = options_.deadline.share(arrivals_share);
   double nearest = motions_.slowest();
   double farthest = reach_beyond * std::max(wanted_reach(), nearest);
@@ -420,7 +420,7 @@ void Several::scan() {
     if (!motions_.next(reach)) continue;
     astray = 0;
     ++quiet;
-    if (leads_to_known()) continue;
+    if (reaches_known()) continue;
     const std::size_t before = found_.size();
     refine_and_keep(search_.tables(), from_motion);
     if (found_.size() == before) continue;
@@ -466,7 +466,7 @@ std::vector<Solution> Several::run(int most) {
   scale_ = size_of_guess();
   if (begun) descend();
   const bool told = (most_ > 1 || !begun) &&
-                    ((motions_.has_curves() && follow_arrivals()) || (starts_.usable() && scan_starts()));
+                    ((motions_.has_curves() && trace_arrivals()) || (starts_.usable() && scan_starts()));
   if (!told && (!found_.empty() || loops_.usable())) {
     if (begun) deflate();
     guess();

@@ -43,7 +43,7 @@ class Several {
     return it == found_.end() ? -1 : static_cast<int>(it - found_.begin());
   }
   bool wanted() const;
-  bool settled() const;
+  bool returns_suffice() const;
   int keep();
   int add(Solution candidate, bool held = false);
   int refine_and_keep(const ElementTables& tables, const char* strategy);
@@ -59,12 +59,12 @@ class Several {
   void trace_family(std::size_t solution, int family);
   std::unique_ptr<Homotopy> leave(int family, bool onward);
   void load(const Solution& solution);
-  bool follow_arrivals();
+  bool trace_arrivals();
   bool scan_starts();
   void scan();
   double wanted_reach() const;
   int within(double reach) const;
-  bool leads_to_known();
+  bool reaches_known();
   std::string searched(std::size_t all) const;
 
   const Problem& problem_;
