@@ -107,7 +107,7 @@ class Fits : public Scenes {
     ASSERT_TRUE(solution.converged()) << solution.message;
     FittedPath path(task, read.options);
     path.take(solution, values);
-    ASSERT_TRUE(path.settle());
+    ASSERT_TRUE(path.converge_on_elements());
     const std::vector<double> at = path.coordinates();
     const std::size_t rows = task.data.count(), count = values.size();
     std::vector<double> residuals(rows), jacobian(rows * count);
