@@ -25,7 +25,9 @@
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/phase_space_solve.hpp"
 #include "solve/reversed_solve.hpp"
+#include "solve/search/balance.hpp"
 #include "solve/search/distinct.hpp"
+#include "solve/search/limits.hpp"
 #include "solve/search/search.hpp"
 #include "solve/search/several.hpp"
 #include "solve/singular_solve.hpp"
@@ -105,6 +107,20 @@ std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions
   return solution->converged() ? std::move(solution) : std::nullopt;
 }
 
+/// What lies between two rests is held in time by the energy, the square of deviations from rest. A looser
+/// tolerance than this leaves its place open.
+SolveOptions holding(const SolveOptions& options) {
+  SolveOptions closer = options;
+  closer.tolerance = limits::balance::holding_tolerance;
+  return closer;
+}
+
+bool loosely_held(const Problem& problem, const SolveOptions& options, const Solution& solution) {
+  return solution.converged() && options.tolerance > limits::balance::holding_tolerance &&
+         problem.ends.free == 0 && problem.lagrangian->structure().autonomous &&
+         count_rests(solution.trajectory) > 1;
+}
+
 Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w);
 
 /// From the guess. Where that does not lead to an extremal, from the one that is found without the scheme.
@@ -150,7 +166,11 @@ Solution solve_once(const Problem& problem, const SolveOptions& options, Workspa
   Solution solution = acceptance.result(last);
   solution.seconds_solve = seconds;
   solution.iterations += spent;
-  return solution;
+  if (!loosely_held(problem, options, solution)) return solution;
+  Solution closer = solve_once(problem, holding(options), w);
+  closer.iterations += solution.iterations;
+  closer.seconds_solve += solution.seconds_solve;
+  return closer;
 }
 
 /// A problem of finite duration, from the guess alone where `near_guess` holds.
@@ -319,6 +339,8 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   adaptive.elements = 0;
   if (options.scheme) adaptive.deadline = options.deadline.share(search_share);
   std::vector<Solution> found = Several(problem, adaptive, w).run(most);
+  if (std::ranges::any_of(found, [&](const Solution& s) { return loosely_held(problem, adaptive, s); }))
+    found = Several(problem, holding(adaptive), w).run(most);
   if (problem.manifold && !options.scheme)
     for (Solution& solution : found) move_onto_manifold(problem, solution);
   if (!options.scheme || !found.front().converged()) return found;

@@ -113,7 +113,7 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
                  const Outcome& outcome, Workspace& w, Solution& solution) {
   solution.status = outcome.status;
   solution.message = outcome.message;
-  solution.error_estimate = outcome.error;
+  solution.error_estimate = outcome.error + (outcome.shifts_held ? outcome.shift_error : 0);
   solution.degree = path.degree();
   const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;

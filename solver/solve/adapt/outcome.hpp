@@ -22,6 +22,7 @@ struct Outcome {
   bool recovered = false;
   /// Its parts between times of rest are held in time: roundoff hides what would hold them.
   bool shifts_held = false;
+  double shift_error = 0;  ///< of q, absolute: what is not known of the shifts that are held
   double error = 0;        ///< of q, absolute
   double tolerance = 0;    ///< absolute
   int iterations = 0;      ///< steps that were taken

@@ -106,7 +106,8 @@ Balance::Balance(const Problem& problem, const Path& path) {
   kinetic_ = form(speeds.v(),
                   evaluate_at(*problem.lagrangian, speeds.q(), speeds.v(), 0, Order::hessian, scratch).vv,
                   speeds.v());
-  const double slow = resting * speeds.fastest;
+  fastest_ = speeds.fastest;
+  const double slow = resting * fastest_;
   const std::size_t count = speeds.times.size();
   bool all = true;
   for (std::size_t i = 0; i < count && all; ++i) {
@@ -122,30 +123,59 @@ Balance::Balance(const Problem& problem, const Path& path) {
   if (all) balance();
 }
 
-/// The rest about the sample of least speed; nothing if its tails are not those of an equilibrium.
+/// Nothing if the path has no such tail at all, or none of an energy.
+std::optional<Balance::Tails> Balance::tails(const NearEquilibrium& equilibrium, Speeds& speeds,
+                                             std::size_t slowest, double speed) {
+  const std::size_t last = speeds.times.size() - 1;
+  std::size_t before = slowest, after = slowest;
+  while (before > 0 && speeds.values[before] < speed) --before;
+  while (after < last && speeds.values[after] < speed) ++after;
+  // A tail ends where the path does.
+  const bool begins = speeds.values[before] < speed, ends = speeds.values[after] < speed;
+  if (begins && ends) return std::nullopt;
+  Tails found;
+  found.span.from = speeds.tail_end(slowest, before, speed);
+  const std::vector<double> q = speeds.q(), v = speeds.v();
+  found.span.to = speeds.tail_end(slowest, after, speed);
+  found.energy =
+      equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends}, speed_roundoff * speeds.fastest);
+  if (!std::isfinite(found.value().log)) return std::nullopt;
+  return found;
+}
+
+/// The rest about the sample of least speed; nothing if its tails are not those of an equilibrium. What the
+/// equations of a tail of speed a are not linear in changes the logarithm of the energy by c₁ a + c₂ a² + …:
+/// tails of a, 2a and 4a tell c₁ and c₂.
 std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Speeds& speeds,
                                               std::size_t slowest) {
-  const std::size_t last = speeds.times.size() - 1;
-  const double tail = std::max(tail_speed * speeds.fastest, tail_growth * speeds.values[slowest]);
-  std::size_t before = slowest, after = slowest;
-  while (before > 0 && speeds.values[before] < tail) --before;
-  while (after < last && speeds.values[after] < tail) ++after;
   speeds.at(speeds.times[slowest]);
   const NearEquilibrium equilibrium(lagrangian, speeds.q());
-  // A tail ends where the path does.
-  const bool begins = speeds.values[before] < tail, ends = speeds.values[after] < tail;
-  if ((begins && ends) || !equilibrium.hyperbolic()) return std::nullopt;
-  Rest rest{{}, {}, {}, equilibrium.cost()};
-  rest.span.from = speeds.tail_end(slowest, before, tail);
-  const std::vector<double> q = speeds.q(), v = speeds.v();
-  rest.span.to = speeds.tail_end(slowest, after, tail);
-  rest.energy =
-      equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends}, speed_roundoff * speeds.fastest);
-  if (!std::isfinite(rest.energy.at(rest.span.length()).log)) return std::nullopt;
+  if (!equilibrium.hyperbolic()) return std::nullopt;
+  const double tail = std::max(tail_speed * speeds.fastest, tail_growth * speeds.values[slowest]);
+  const std::optional<Tails> first = tails(equilibrium, speeds, slowest, tail);
+  if (!first) return std::nullopt;
+  Rest rest{.tails = *first, .slow = {}, .cost = equilibrium.cost(), .doubt = tail / speeds.fastest};
+  const std::optional<Tails> second = tails(equilibrium, speeds, slowest, 2 * tail),
+                             fourth = tails(equilibrium, speeds, slowest, 4 * tail);
+  if (second && fourth) {
+    const double one = first->value().log, two = second->value().log, four = fourth->value().log;
+    const double linear = one - two, quadratic = (5 * one - 6 * two + four) / 3;
+    if (std::abs(quadratic) < moving) {
+      rest.correction = quadratic;
+      rest.doubt = std::abs(quadratic - linear);
+    }
+  }
+  std::size_t before = slowest, after = slowest;
   while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
-  while (after < last && speeds.values[after] < moving * speeds.fastest) ++after;
+  while (after + 1 < speeds.times.size() && speeds.values[after] < moving * speeds.fastest) ++after;
   rest.slow = {speeds.times[before], speeds.times[after]};
   return rest;
+}
+
+RestEnergy::Value Balance::Rest::at(double length) const {
+  RestEnergy::Value value = tails.energy.at(length);
+  value.log += correction;
+  return value;
 }
 
 /// Lengths of rests, the sum of which is given, for which the logarithms of the energies agree; before the
@@ -155,16 +185,16 @@ void Balance::balance() {
   const bool positive = std::ranges::any_of(rests_, [](const Rest& rest) { return rest.value().positive; });
   std::vector<double> longer;
   for (const Rest& rest : rests_) {
-    const std::optional<double> held = rest.energy.held_near(rest.span.length(), positive);
+    const std::optional<double> held = rest.tails.energy.held_near(rest.length(), positive);
     if (!held) return;
-    longer.push_back(*held - rest.span.length());
+    longer.push_back(*held - rest.length());
   }
   double change = INFINITY;
   for (int step = 0; step < most_length_steps && change > balanced; ++step) {
     double sum = 0, weights = 0;
     std::vector<RestEnergy::Value> values;
     for (std::size_t j = 0; j < rests_.size(); ++j) {
-      values.push_back(rests_[j].energy.at(rests_[j].span.length() + longer[j]));
+      values.push_back(rests_[j].at(rests_[j].length() + longer[j]));
       sum += longer[j] + values[j].log / values[j].stiffness;
       weights += 1 / values[j].stiffness;
     }
@@ -173,8 +203,8 @@ void Balance::balance() {
       double more = (values[j].log - sum / weights) / values[j].stiffness;
       if (!std::isfinite(more)) return;
       change = std::max(change, std::abs(more * values[j].stiffness));
-      const double length = rests_[j].span.length() + longer[j];
-      while (!rests_[j].energy.held_at(length + more, positive)) more /= 2;
+      const double length = rests_[j].length() + longer[j];
+      while (!rests_[j].tails.energy.held_at(length + more, positive)) more /= 2;
       longer[j] += more;
     }
   }
@@ -185,11 +215,12 @@ void Balance::balance() {
     const Rest& rest = rests_[j];
     shift += longer[j];
     shifts_.push_back(shift);
-    const double stiffness = rest.energy.at(rest.span.length() + longer[j]).stiffness;
+    const double stiffness = rest.at(rest.length() + longer[j]).stiffness;
+    error_ = std::max(error_, fastest_ * rest.doubt / stiffness);
     largest_shift_ = std::max(largest_shift_, std::abs(longer[j]) * stiffness);
     // With tails that are faster than those measured there may still be a rest.
-    const bool long_enough = rest.span.length() + longer[j] > still_long * rest.span.length();
-    stretched_.push_back(long_enough ? rest.span : rest.slow);
+    const bool long_enough = rest.length() + longer[j] > still_long * rest.length();
+    stretched_.push_back(long_enough ? rest.tails.span : rest.slow);
     exists_ = exists_ && stretched_.back().length() + longer[j] > 0;
   }
   shifts_.back() = 0;
@@ -214,7 +245,7 @@ std::size_t Balance::falling() const {
   std::size_t gone = rests_.size();
   if (rests_.size() < 2) return gone;
   for (std::size_t j = 0; j < rests_.size(); ++j) {
-    if (excess(rests_[j]) == 0 && rests_[j].energy.held_near(rests_[j].span.length(), true)) continue;
+    if (excess(rests_[j]) == 0 && rests_[j].tails.energy.held_near(rests_[j].length(), true)) continue;
     const bool worse =
         gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
         (excess(rests_[j]) == excess(rests_[gone]) && rests_[j].value().log > rests_[gone].value().log);
@@ -227,7 +258,7 @@ bool Balance::falls() const { return falling() < rests_.size(); }
 
 bool Balance::fall(Path& path) const {
   std::vector<Span> spans;
-  for (const Rest& rest : rests_) spans.push_back(rest.span);
+  for (const Rest& rest : rests_) spans.push_back(rest.tails.span);
   const std::size_t gone = falling();
   if (gone == rests_.size()) return false;
   double others = 0;
@@ -241,6 +272,23 @@ bool Balance::fall(Path& path) const {
     shifts.push_back(shift += j == gone ? -shorter : shorter * spans[j].length() / others);
   shifts.back() = 0;
   return stretch(spans, shifts, 0, path);
+}
+
+int count_rests(const Trajectory& path) {
+  const std::size_t n = path.coordinates, stride = (path.degree + 1) * n;
+  std::vector<double> speeds;
+  for (int k = 0; k < path.elements(); ++k) {
+    const double* first = path.nodes.data() + k * stride;
+    const double* last = first + path.degree * n;
+    double square = 0;
+    for (std::size_t a = 0; a < n; ++a) square += (last[a] - first[a]) * (last[a] - first[a]);
+    speeds.push_back(std::sqrt(square) / path.length(k));
+  }
+  const double slow = speeds.empty() ? 0 : resting * *std::ranges::max_element(speeds);
+  int rests = 0;
+  for (std::size_t k = 0; k < speeds.size(); ++k)
+    rests += speeds[k] < slow && !(k > 0 && speeds[k - 1] < slow);
+  return rests;
 }
 
 }  // namespace extremal

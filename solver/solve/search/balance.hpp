@@ -6,6 +6,7 @@
 
 #include "action/path.hpp"
 #include "problem/problem.hpp"
+#include "solution/solution.hpp"
 #include "solve/search/rest_energy.hpp"
 
 /// \file Where in time a path belongs that comes to rest near equilibria.
@@ -26,6 +27,8 @@ class Balance {
   double rest_speed() const { return rest_speed_; }
   /// The largest shift, times the rate of a rest beside it.
   double largest_shift() const { return largest_shift_; }
+  /// Of q, absolute: the largest speed by the time in which the shifts are in doubt.
+  double error() const { return error_; }
   /// Shifts the parts of `path`, by stretching and compressing the elements of the rests. False, and nothing
   /// is done, if those are too short.
   bool apply(Path& path) const;
@@ -42,14 +45,25 @@ class Balance {
     double from, to;
     double length() const { return to - from; }
   };
-  struct Rest {
-    Span span;          ///< times at which the speed falls and rises
-    Span slow;          ///< with the tails
+  /// A rest between the times at which the speed falls below that of a tail and rises above it.
+  struct Tails {
+    Span span;
     RestEnergy energy;  ///< by the length of span
-    double cost;        ///< L at the equilibrium
     RestEnergy::Value value() const { return energy.at(span.length()); }
   };
+  struct Rest {
+    Tails tails;
+    Span slow;              ///< with all that is slower than the moving parts
+    double cost;            ///< L at the equilibrium
+    double correction = 0;  ///< of the logarithm of the energy, for tails that are no longer linear
+    double doubt = 0;       ///< of that logarithm
+    double length() const { return tails.span.length(); }
+    RestEnergy::Value at(double length) const;
+    RestEnergy::Value value() const { return at(length()); }
+  };
   class Speeds;
+  static std::optional<Tails> tails(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
+                                    double speed);
   static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest);
   void balance();
   double excess(const Rest& rest) const;
@@ -58,8 +72,11 @@ class Balance {
   std::vector<Rest> rests_;
   std::vector<Span> stretched_;  ///< of the rests, to shift what is between
   std::vector<double> shifts_;   ///< of the parts after the rests; the last is 0
-  double rest_speed_ = 0, largest_shift_ = 0, kinetic_ = 0;
+  double rest_speed_ = 0, largest_shift_ = 0, kinetic_ = 0, fastest_ = 0, error_ = 0;
   bool exists_ = false;
 };
+
+/// Stretches of elements along which the path, on average, is slower than a rest may be.
+int count_rests(const Trajectory& path);
 
 }  // namespace extremal

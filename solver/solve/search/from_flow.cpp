@@ -115,7 +115,8 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
     const Balance balance(problem_, path_);
     speed = balance.rest_speed();
     balance_found = balance.exists() && !balance.falls();
-    if (!balance_found || balance.largest_shift() < rest_limits::balanced || !balance.apply(path_)) break;
+    outcome_.shift_error = balance.error();
+    if (!balance_found || !balance.apply(path_) || balance.largest_shift() < rest_limits::balanced) break;
   }
   acceptance_ = acceptance;
   if (!balance_found) {

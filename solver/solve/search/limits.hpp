@@ -58,6 +58,9 @@ inline constexpr int most_length_steps = 200;
 inline constexpr double still_long = 0.3;
 /// An element of a rest becomes no shorter than this part of itself.
 inline constexpr double shortest_element = 0.02;
+/// A path that rests twice is solved for to this tolerance at least: energies of 1e-13 are told by
+/// truncation.
+inline constexpr double holding_tolerance = 1e-9;
 /// A shift by the rate, after which the tails need not be measured again; and passes at most.
 inline constexpr double balanced = 1e-5;
 inline constexpr int most_balances = 4;

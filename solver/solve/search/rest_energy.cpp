@@ -108,16 +108,14 @@ std::vector<RestEnergy::Term> NearEquilibrium::from_end(const VectorXcd& leaving
                                                         const MatrixXcd& away, const MatrixXcd& back,
                                                         const VectorXcd& displaced) const {
   const Eigen::Index n = rates.size();
-  const MatrixXcd positions = back.topRows(n), form = form_.cast<Complex>();
-  const VectorXcd fixed = back * coefficients(positions, displaced);
+  const auto positions = back.topRows(n).partialPivLu();
+  const MatrixXcd parts = away * leaving.asDiagonal(), left = form_.cast<Complex>() * parts;
+  const VectorXcd fixed = left.transpose() * (back * positions.solve(displaced));
+  const MatrixXcd made_up = left.transpose() * (back * positions.solve(MatrixXcd(-parts.topRows(n))));
   std::vector<RestEnergy::Term> terms;
   for (Eigen::Index j = 0; j < n; ++j) {
-    const VectorXcd left = form * away.col(j) * leaving[j];
-    terms.push_back({left.cwiseProduct(fixed).sum(), rates[j]});
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const VectorXcd made_up = back * coefficients(positions, VectorXcd(away.col(k).head(n) * -leaving[k]));
-      terms.push_back({left.cwiseProduct(made_up).sum(), rates[j] + rates[k]});
-    }
+    terms.push_back({fixed[j], rates[j]});
+    for (Eigen::Index k = 0; k < n; ++k) terms.push_back({made_up(j, k), rates[j] + rates[k]});
   }
   return terms;
 }
