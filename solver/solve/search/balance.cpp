@@ -97,7 +97,7 @@ class Balance::Speeds {
   std::vector<double> q_, v_;
 };
 
-Balance::Balance(const Problem& problem, const Path& path) {
+Balance::Balance(const Problem& problem, const Path& path, Accuracy accuracy) {
   if (problem.ends.free > 0 || !problem.lagrangian->structure().autonomous) return;
   Speeds speeds(path);
   const auto fastest = std::ranges::max_element(speeds.values) - speeds.values.begin();
@@ -115,7 +115,7 @@ Balance::Balance(const Problem& problem, const Path& path) {
     std::size_t slowest = i;
     for (; i < count && speeds.values[i] < slow; ++i)
       if (speeds.values[i] < speeds.values[slowest]) slowest = i;
-    const std::optional<Rest> rest = measure(*problem.lagrangian, speeds, slowest);
+    const std::optional<Rest> rest = measure(*problem.lagrangian, speeds, slowest, accuracy);
     all = rest.has_value();
     if (all) rests_.push_back(*rest);
     rest_speed_ = std::max(rest_speed_, speeds.values[slowest] / speeds.fastest);
@@ -143,33 +143,43 @@ std::optional<Balance::Tails> Balance::tails(const NearEquilibrium& equilibrium,
   return found;
 }
 
-/// The rest about the sample of least speed; nothing if its tails are not those of an equilibrium. What the
-/// equations of a tail of speed a are not linear in changes the logarithm of the energy by c₁ a + c₂ a² + …:
-/// tails of a, 2a and 4a tell c₁ and c₂.
+/// The rest about the sample of least speed; nothing if its tails are not those of an equilibrium.
 std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Speeds& speeds,
-                                              std::size_t slowest) {
+                                              std::size_t slowest, Accuracy accuracy) {
   speeds.at(speeds.times[slowest]);
   const NearEquilibrium equilibrium(lagrangian, speeds.q());
   if (!equilibrium.hyperbolic()) return std::nullopt;
-  const double tail = std::max(tail_speed * speeds.fastest, tail_growth * speeds.values[slowest]);
-  const std::optional<Tails> first = tails(equilibrium, speeds, slowest, tail);
-  if (!first) return std::nullopt;
-  Rest rest{.tails = *first, .slow = {}, .cost = equilibrium.cost(), .doubt = tail / speeds.fastest};
-  const std::optional<Tails> second = tails(equilibrium, speeds, slowest, 2 * tail),
-                             fourth = tails(equilibrium, speeds, slowest, 4 * tail);
-  if (second && fourth) {
-    const double one = first->value().log, two = second->value().log, four = fourth->value().log;
-    const double linear = one - two, quadratic = (5 * one - 6 * two + four) / 3;
-    if (std::abs(quadratic) < moving) {
-      rest.correction = quadratic;
-      rest.doubt = std::abs(quadratic - linear);
-    }
-  }
+  const double least = tail_growth * speeds.values[slowest],
+               tail = std::max(tail_speed * speeds.fastest, least);
+  const std::optional<Tails> found = tails(equilibrium, speeds, slowest, tail);
+  if (!found) return std::nullopt;
+  Rest rest{.tails = *found, .slow = {}, .cost = equilibrium.cost(), .doubt = tail / speeds.fastest};
+  if (accuracy == Accuracy::extrapolated) extrapolate(equilibrium, speeds, slowest, 4 * tail, least, rest);
   std::size_t before = slowest, after = slowest;
   while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
   while (after + 1 < speeds.times.size() && speeds.values[after] < moving * speeds.fastest) ++after;
   rest.slow = {speeds.times[before], speeds.times[after]};
   return rest;
+}
+
+/// What the equations of a tail of speed a are not linear in changes the logarithm of the energy by
+/// c₁ a + c₂ a² + …; tails of a, 2a and 4a tell c₁ and c₂. The slower the tails, the less is left of that,
+/// and the more of the errors of the path: the speed is taken at which c₂ changes the result least.
+void Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
+                          double fastest_tail, double least, Rest& rest) {
+  const double measured = rest.tails.value().log;
+  std::vector<double> logs;
+  for (double speed = fastest_tail; speed >= least && logs.size() < most_tails; speed /= 2) {
+    const std::optional<Tails> found = tails(equilibrium, speeds, slowest, speed);
+    if (!found) return;
+    logs.push_back(found->value().log);
+    if (logs.size() < 3) continue;
+    const double four = logs[logs.size() - 3], two = logs[logs.size() - 2], one = logs.back();
+    const double linear = 2 * one - two, quadratic = (8 * one - 6 * two + four) / 3;
+    if (!(std::abs(quadratic - linear) < rest.doubt)) continue;
+    rest.doubt = std::abs(quadratic - linear);
+    rest.correction = quadratic - measured;
+  }
 }
 
 RestEnergy::Value Balance::Rest::at(double length) const {

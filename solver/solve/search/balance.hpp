@@ -19,7 +19,9 @@ namespace extremal {
 /// which the energies agree are known also where the energies themselves are below roundoff.
 class Balance {
  public:
-  Balance(const Problem& problem, const Path& path);
+  /// Of the energies in the rests: by linear tails, or also by what these leave out.
+  enum class Accuracy { linear, extrapolated };
+  Balance(const Problem& problem, const Path& path, Accuracy accuracy = Accuracy::linear);
 
   /// Whether there are shifts for which the energies agree.
   bool exists() const { return exists_; }
@@ -64,7 +66,10 @@ class Balance {
   class Speeds;
   static std::optional<Tails> tails(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
                                     double speed);
-  static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest);
+  static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest,
+                                     Accuracy accuracy);
+  static void extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
+                          double fastest_tail, double least, Rest& rest);
   void balance();
   double excess(const Rest& rest) const;
   std::size_t falling() const;

@@ -112,7 +112,7 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
   for (int pass = 0; pass < rest_limits::most_balances; ++pass) {
     again(true);  // where the balance is far off, elements may disagree
     if (w_.iteration.held_shifts() == 0) break;
-    const Balance balance(problem_, path_);
+    const Balance balance(problem_, path_, Balance::Accuracy::extrapolated);
     speed = balance.rest_speed();
     balance_found = balance.exists() && !balance.falls();
     outcome_.shift_error = balance.error();

@@ -41,6 +41,8 @@ inline constexpr int speed_samples = 4, halvings = 60;
 /// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
 /// equations, large against errors, and so many times the least that one exponential function is left.
 inline constexpr double resting = 1e-2, tail_speed = 1e-4, tail_growth = 10;
+/// Tails of speeds that are halved: at most so many.
+inline constexpr std::size_t most_tails = 10;
 /// Faster than this, by the largest, a part is no tail of a rest.
 inline constexpr double moving = 0.1;
 /// Of speeds at an end, by the largest of the path: an end so near to an equilibrium is at it.
