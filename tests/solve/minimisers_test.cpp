@@ -85,6 +85,32 @@ TEST(Minimisers, UnequalTailsAreBalanced) {
   }
 }
 
+/// x' = x (1 − x)(1 + kx) of energy E → 0 needs ln(2/ε) + c₀ for x < 1/2 and ln(2r/ε)/r + c₁ beyond, with
+/// ε = √(2E), r = 1 + k: so the duration determines ε and the time of x = 1/2. Neither tails whose rates
+/// differ nor a loose tolerance moves it.
+TEST(Minimisers, KinksBetweenRestsOfDifferentRates) {
+  for (const auto& [k, T] : {std::pair(2.0, 30.0), std::pair(10.0, 45.0), std::pair(30.0, 20.0)}) {
+    const Problem problem = fixed_ends(trace(1,
+                                             [k = k](auto q, auto v, auto) {
+                                               const auto w = q[0] * (1.0 - q[0]) * (1.0 + k * q[0]);
+                                               return (v[0] * v[0] + w * w) / 2.0;
+                                             }),
+                                       {0}, {1}, T);
+    const double r = 1 + k, log2 = std::log(2.0), part = k / r * std::log(1 + k / 2);
+    const double c0 = -log2 + log2 / r - part, c1 = -k / r * std::log(r) + log2 - log2 / r + part;
+    const double log_epsilon = -(T - log2 - c0 - c1 - std::log(2 * r) / r) / (1 + 1 / r);
+    for (const double tolerance : {1e-9, 1e-3}) {
+      const Solution s = Solver().solve(problem, within(tolerance));
+      ASSERT_TRUE(s.converged()) << k << ": " << s.message;
+      double x = 0, v = 0;
+      s.trajectory.at(log2 - log_epsilon + c0, {&x, 1}, {&v, 1});
+      EXPECT_NEAR(x, 0.5, 1e-8) << k << ", " << tolerance;
+      EXPECT_LE(std::abs(x - 0.5), 10 * s.error_estimate) << k << ", " << tolerance;
+      EXPECT_EQ(s.morse_index, 0);
+    }
+  }
+}
+
 TEST(Minimisers, RestsBetweenTheEnds) {
   const Solution two = solve(fixed_ends(trace(1,
                                               [](auto q, auto v, auto) {

@@ -213,12 +213,13 @@ void explain_nullity(const Problem& problem, Solution& solution) {
 }
 
 /// A shift in time is a symmetry of L.
-void tell_soft_shift(Solution& solution) {
+void tell_soft_shift(const Outcome& found, Solution& solution) {
   solution.minimizing = solution.morse_index == 0;
   solution.message +=
       "; a shift in time between the rests of this path changes the action by less than roundoff: of the "
-      "paths "
-      "that differ by it this is the one whose energies at both ends agree";
+      "paths that differ by it this is the one whose energies at both ends agree";
+  if (found.shift_error > found.tolerance)
+    solution.message += fmt::format(", to within {:.1e} of the path", found.shift_error);
 }
 
 /// Of conjugate ends the last conjugate time is T itself, which is not between them. The windows are then
@@ -280,7 +281,7 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
     if (found.family == 0) explain_nullity(problem, solution);
     if (found.family == 0) tell_continuum(problem, solution);
     if (found.shifts_held)
-      tell_soft_shift(solution);
+      tell_soft_shift(found, solution);
     else if (found.family == 0)
       judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
     else
