@@ -87,8 +87,8 @@ TEST(RestEnergy, MinimisersAcrossASaddleThatTheyTurnInto) {
   struct Case {
     double c, T, action;
   };
-  for (const auto& [c, T, action] : {Case{0.2, 30, 0.50000014286083}, Case{2, 16, 0.50000089467667},
-                                     Case{2, 20, 0.50000002493069}, Case{4, 30, 0.5}}) {
+  for (const auto& [c, T, action] :
+       {Case{0.2, 30, 0.50000014286083}, Case{2, 16, 0.50000089467667}, Case{2, 20, 0.50000002493069}}) {
     const Solution s = solve(fixed_ends(drift(c), {-1, 0}, {1, 0}, T), within(1e-8));
     ASSERT_TRUE(s.converged()) << c << " " << T << ": " << s.message;
     EXPECT_NEAR(s.action, action, 1e-10) << c << " " << T;

@@ -135,7 +135,10 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
     path_ = balanced_path;
     refinement_.take(tables);
   }
-  const bool result = speed < rest_limits::loose && again(true);
+  // Beside the largest energy of a rest, as those have that paths turn about, its length holds nothing.
+  const bool known =
+      outcome_.shift_error <= rest_limits::most_error * scales(path_, refinement_.tables()).range;
+  const bool result = speed < rest_limits::loose && known && again(true);
   outcome_.shifts_held = result;
   return result;
 }

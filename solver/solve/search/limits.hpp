@@ -66,6 +66,8 @@ inline constexpr double holding_tolerance = 1e-9;
 /// A shift by the rate, after which the tails need not be measured again; and passes at most.
 inline constexpr double balanced = 1e-5;
 inline constexpr int most_balances = 4;
+/// Of what is not known of shifts, by the range of the path.
+inline constexpr double most_error = 1e-3;
 /// Rests slower than this, by the largest speed, hold what lies between them in time by forces of 1e-12.
 inline constexpr double loose = 1e-6;
 
