@@ -99,6 +99,7 @@ CurveFitReport minimise(const CurveFit& fit, std::vector<double>& x, const Deadl
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = most_iterations;
   options.max_num_consecutive_invalid_steps = most_invalid;
+  options.initial_trust_region_radius = fit.radius;
   options.function_tolerance = least_change;
   options.gradient_tolerance = 0;
   options.parameter_tolerance = least_step;

@@ -34,6 +34,8 @@ struct CurveFit {
   std::function<bool(std::span<const double> x, std::span<double> r, std::span<double> jacobian)> evaluate;
   /// Called after each iteration with ½ Σ ρ; false ends them. May be empty.
   std::function<bool(int iteration, double cost)> count = {};
+  /// The first trust region: JᵀJ + diag(JᵀJ)/radius gives the first step.
+  double radius = 1e4;
 };
 
 struct CurveFitReport {

@@ -47,7 +47,6 @@ class Fit {
     }
     const int before = result_.solution.iterations;
     for (int round = 0; round < most_rounds; ++round) {
-      path_.take(result_.solution, result_.values);
       if (!minimise_on_elements() || !determined()) return std::move(result_);
       const Trajectory fitted = observed_part();
       result_.solution = solve(guess_of(fitted), fitted.duration());
@@ -93,8 +92,23 @@ class Fit {
     return true;
   }
 
+  /// Nearly by steps of Gauss and Newton; where these leave the values that have extremals, by shorter ones.
   bool minimise_on_elements() {
-    CurveFit fit{.residuals = task_.data.count(), .loss = task_.loss, .evaluate = {}, .count = {}};
+    const std::vector<double> start = result_.values;
+    const Solution first = result_.solution;
+    for (const double radius : first_radii) {
+      result_.values = start;
+      result_.solution = first;
+      path_.take(first, start);
+      if (minimise_from(radius)) return true;
+      if (options_.deadline.passed()) break;
+    }
+    return false;
+  }
+
+  bool minimise_from(double radius) {
+    CurveFit fit{
+        .residuals = task_.data.count(), .loss = task_.loss, .evaluate = {}, .count = {}, .radius = radius};
     fit.evaluate = [this](auto x, auto r, auto j) { return evaluate(x, r, j); };
     fit.count = [this](int iteration, double cost) {
       if (progress_) progress_({iteration, path_.path().elements(), path_.path().degree(), 2 * cost});

@@ -8,6 +8,8 @@ namespace extremal::limits::fit {
 inline constexpr int most_rounds = 5;
 /// Of Newton's method from the extremal before, predicted by its derivatives.
 inline constexpr int most_newton_steps = 12;
+/// Trust regions to begin with: the second makes the first step a tenth of that of Gauss and Newton.
+inline constexpr double first_radii[] = {1e4, 0.1};
 /// Singular values of the derivatives, each column of length one, that are smaller relative to the largest
 /// belong to what observations do not determine: ten digits of the derivatives are known at least.
 inline constexpr double undetermined = 1e-9;
