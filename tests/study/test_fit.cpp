@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <random>
 
@@ -224,6 +225,46 @@ TEST_F(Fits, RobustLossesCountOutliersLess) {
     EXPECT_LT(error, squared / 2) << loss;
     EXPECT_LT(error, 0.01) << loss;
   }
+}
+
+/// The first steps of Gauss and Newton lead to where no extremal is. χ² is that of another program's least
+/// squares, by integration.
+TEST_F(Fits, ShorterStepsKeepToValuesThatHaveExtremals) {
+  const std::string oscillator =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - a*x^2/2 - b*x^4/4\"\nparameters = ";
+  const std::map<std::size_t, double> outliers = {{5, 1.0}, {20, -2.0}, {40, 1.0}};
+  const auto rows = samples(oscillator +
+                                "{ a = 1.3, b = 0.3 }\n[boundary]\nstart = { x = 1, p_x = 0 }\n"
+                                "duration = 12\n",
+                            61);
+  std::string text = "t,x,sigma x\n";
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    text += fmt::format("{:.17g},{:.17g},0.02\n", rows[k][0],
+                        rows[k][1] + (outliers.contains(k) ? outliers.at(k) : 0));
+  write("data.csv", text);
+  const FitResult found = fitted(oscillator +
+                                 "{ a = 1.0, b = 0.2 }\n[boundary]\nduration = 12\n[fit]\n"
+                                 "data = \"data.csv\"\nparameters = [\"a\", \"b\"]\n");
+  EXPECT_NEAR(found.chi_squared, 13775.294594, 1e-3);
+  EXPECT_NEAR(found.values[0], 2.2501, 1e-3);
+}
+
+/// Directions from the centre leave the scale open: r → s r with μ → s³ μ.
+TEST_F(Fits, NameAllThatDataLeaveOpenTogether) {
+  const std::string plane =
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { mu = 1.0 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 + mu/sqrt(x^2 + y^2)\"\n[boundary]\n";
+  std::string text = "t,ang,sigma ang\n";
+  for (const auto& row : samples(plane + "start = { x = 1, y = 0, p_x = 0, p_y = 1.1 }\nduration = 8\n", 41))
+    text += fmt::format("{:.17g},{:.17g},0.01\n", row[0], std::atan2(row[2], row[1]));
+  write("data.csv", text);
+  const FitResult found = run_fit(
+      study(plane +
+            "duration = 8\n[guess]\nstate = { x = 1.05, y = 0.05, \"x'\" = 0.02, \"y'\" = 1.1 }\n[fit]\n"
+            "data = \"data.csv\"\nobserve = { ang = \"atan2(y, x)\" }\nparameters = [\"mu\"]\n"));
+  EXPECT_EQ(found.solution.status, Status::not_converged);
+  EXPECT_NE(found.solution.message.find("do not determine 'mu', 'x(0)'"), std::string::npos)
+      << found.solution.message;
 }
 
 /// From a first stiffness on the other side of one at which the duration is conjugate to the start.

@@ -17,7 +17,7 @@ inline constexpr double undetermined = 1e-9;
 /// determined, relative to the largest such change.
 inline constexpr double without_effect = 1e-12;
 /// Unknowns with at least this part of the largest in a direction that is not determined are named.
-inline constexpr double named = 0.05;
+inline constexpr double named = 1e-3;
 /// χ² above its mean by so many of its standard deviations is no scatter of the data.
 inline constexpr double most_deviations = 10;
 /// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part
