@@ -65,6 +65,15 @@ std::string place_of(const Problem& problem, Point q) {
   return place + (q.size() > most_named ? ", …" : "");
 }
 
+/// A point at a thousandth of the coordinates from another, or of one where all are zero.
+std::vector<double> beside(Point q) {
+  double size = 0;
+  for (const double x : q) size = std::max(size, std::abs(x));
+  std::vector<double> result(q.begin(), q.end());
+  for (double& x : result) x += 1e-3 * (size > 0 ? size : 1);
+  return result;
+}
+
 /// An end where L is not finite at rest nor at speeds along each axis, or an end that no motion reaches in
 /// time: where L is finite at rest, but not at the mean velocity between the ends.
 std::string unreachable(const Problem& problem) {
@@ -92,12 +101,12 @@ std::string unreachable(const Problem& problem) {
     if (q.empty() || (open && (end ? open->open_end() : open->open_start()))) continue;
     const double time = end ? duration : 0;
     if (finite_at_some_velocity(q, time)) continue;
-    // A part of the duration in which t moves off what L cannot bear, if that is t.
+    // Either the point is singular, and points beside it are not, or the time is.
     const double little = 1e-9 * duration;
-    if (finite_at_some_velocity(q, end ? duration - little : little))
-      return fmt::format(
-          "L is not finite at t = {:.6g}, whatever the coordinates are; write t {} {:.1g} for t in L", time,
-          end ? '-' : '+', little);
+    if (!finite_at_some_velocity(beside(q), time) &&
+        finite_at_some_velocity(q, end ? duration - little : little))
+      return fmt::format("L is not finite at t = {:.6g}; write t {} {:.1g} for t in L", time, end ? '-' : '+',
+                         little);
     return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
                        place_of(problem, q));
   }
