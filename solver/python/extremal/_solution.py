@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -94,7 +93,7 @@ class Solution:
     """A trajectory q(t) on [0, T], n coordinates, in the units of the problem. Immutable.
 
     Where `converged` is false, `status` and `message` say why, there is no trajectory, and numbers of one are
-    NaN or None. Arrays cannot be written; they are views of the solution's own memory and keep it alive.
+    None. Arrays cannot be written; they are views of the solution's own memory and keep it alive.
 
     >>> s(1.3)                      # q(1.3), (n,)
     >>> s(np.linspace(0, s.duration, 100))  # (100, n)
@@ -157,12 +156,12 @@ class Solution:
         return self._solved.strategy
 
     @property
-    def action(self) -> float:
+    def action(self) -> float | None:
         """∫ L dt."""
         return self._known(self._solved.action)
 
     @property
-    def duration(self) -> float:
+    def duration(self) -> float | None:
         """T."""
         return self._known(self._solved.duration)
 
@@ -182,12 +181,12 @@ class Solution:
         return self._solved.work
 
     @property
-    def error_estimate(self) -> float:
+    def error_estimate(self) -> float | None:
         """Largest error of q(t), in units of q."""
         return self._known(self._solved.error_estimate)
 
     @property
-    def residual(self) -> float:
+    def residual(self) -> float | None:
         """Largest component of the discrete equations, divided by the largest momentum."""
         return self._known(self._solved.residual)
 
@@ -213,9 +212,9 @@ class Solution:
         """What is known of the windows: "none", "sampled" or "global"."""
         return self._solved.certificate
 
-    def _known(self, value: float) -> float:
-        """A number that a path has; NaN where there is none."""
-        return value if self.converged else math.nan
+    def _known(self, value: float) -> float | None:
+        """A number that a path has; None where there is none."""
+        return value if self.converged else None
 
     @property
     def windows(self) -> Array | None:
@@ -462,8 +461,9 @@ class Solution:
             if samples < 2:
                 raise ValueError(f"samples = {samples}; need at least 2")
             # Rounded as those of the command, so that files are the same.
-            times = self.duration * np.arange(samples) / (samples - 1)
-            times[-1] = self.duration
+            duration = self._solved.duration
+            times = duration * np.arange(samples) / (samples - 1)
+            times[-1] = duration
             return times
         given = reals(samples, "samples")
         if given.ndim > 1:
