@@ -219,7 +219,8 @@ void tell_soft_shift(const Outcome& found, Solution& solution) {
       "; a shift in time between the rests of this path changes the action by less than roundoff: of the "
       "paths that differ by it this is the one whose energies at both ends agree";
   if (found.shift_error > found.tolerance)
-    solution.message += fmt::format(", to within {:.1e} of the path", found.shift_error);
+    solution.message +=
+        fmt::format("; what is not known of the shift changes q by {:.1e}", found.shift_error);
 }
 
 /// Of conjugate ends the last conjugate time is T itself, which is not between them. The windows are then
