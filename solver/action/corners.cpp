@@ -22,6 +22,8 @@ constexpr double same_time = 1e-12;
 constexpr double most_stretch = 2;
 /// Of the shorter element beside a corner: a move that changes those two alone. Others keep all their digits.
 constexpr double near = 0.01;
+/// Of a change of u over an element: a value of u that is on its side of the surface.
+constexpr double beside = 0x1p-40;
 /// Halvings of an interval, after which the crossing is known to the last digit.
 constexpr int most_halvings = 60;
 
@@ -79,9 +81,10 @@ class Along {
     return evaluate_at(f, s.q, s.v, s.t, Order::value, scratch_).value;
   }
   double at(const Lagrangian& f, int element, double tau) { return at(f, state_at(path_, element, tau)); }
-  std::vector<double> slope(const Lagrangian& f, const State& s) {
-    return evaluate_at(f, s.q, s.v, s.t, Order::gradient, scratch_).dq;
+  PointValues gradient(const Lagrangian& f, const State& s) {
+    return evaluate_at(f, s.q, s.v, s.t, Order::gradient, scratch_);
   }
+  std::vector<double> slope(const Lagrangian& f, const State& s) { return gradient(f, s).dq; }
 
   /// The times of crossings in one element.
   void find(const Kinks& kinks, int element, std::vector<double>& times);
@@ -151,6 +154,50 @@ void Along::find(const Kinks& kinks, int element, std::vector<double>& times) {
   }
 }
 
+double product(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// Moves a point along the slope of u by as much as changes u so, to first order.
+void move_along(std::span<double> x, std::span<const double> slope, double change) {
+  const double square = product(slope, slope);
+  for (std::size_t k = 0; k < x.size(); ++k) x[k] += slope[k] * change / square;
+}
+
+/// A node and what is next to it.
+struct Sides {
+  int node;
+  State before, after;     ///< at the node, by the velocities of either side
+  double u_left, u_right;  ///< at the next points within the elements
+  double shorter;          ///< of the elements
+};
+
+/// Calls take(surface, sides, rising) at each node beside which u changes its sign.
+template <class Take>
+void for_crossed(const Kinks& kinks, const Polynomials& path, const ClosingMap* closed, Along& along,
+                 Take&& take) {
+  const int s = path.degree, elements = path.elements();
+  if (s < 2) return;
+  const std::vector<double>& lobatto = lobatto_barycentric(s).nodes;
+  for (int k = 1; k < elements + (closed != nullptr); ++k) {
+    const bool at_end = k == elements;
+    const State left = state_at(path, k - 1, lobatto[s - 1]);
+    State right = state_at(path, at_end ? 0 : k, lobatto[1]);
+    Sides at{.node = k, .before = state_at(path, k - 1, 1), .after = state_at(path, at_end ? 0 : k, 0)};
+    if (at_end)
+      for (State* state : {&right, &at.after}) continue_beyond(path, *closed, *state);
+    at.shorter = std::min(path.times[k] - path.times[k - 1],
+                          at_end ? path.times[1] : path.times[k + 1] - path.times[k]);
+    for (const KinkSurface& surface : kinks.surfaces()) {
+      at.u_left = along.at(*surface.u, left);
+      at.u_right = along.at(*surface.u, right);
+      if ((at.u_left < 0) != (at.u_right < 0)) take(surface, at, at.u_right > at.u_left);
+    }
+  }
+}
+
 /// Nodes between those that move, and the ends, move in proportion.
 void spread(std::span<const double> mesh, std::span<const int> moves, std::span<double> shift) {
   std::size_t left = 0;
@@ -168,38 +215,67 @@ void spread(std::span<const double> mesh, std::span<const int> moves, std::span<
 
 std::vector<Corner> corners_of(const Kinks& kinks, const Polynomials& path, const ClosingMap* closed) {
   std::vector<Corner> corners;
-  const int s = path.degree, n = path.coordinates, elements = path.elements();
-  if (s < 2) return corners;
-  const std::vector<double>& lobatto = lobatto_barycentric(s).nodes;
-  const double gap = SchemeTables::of_gauss(s).node[0];
+  const int n = path.coordinates;
+  const double gap = SchemeTables::of_gauss(std::max(path.degree, 2)).node[0];
   Along along(path);
-  for (int k = 1; k < elements + (closed != nullptr); ++k) {
-    const bool at_end = k == elements;
-    const State left = state_at(path, k - 1, lobatto[s - 1]), before = state_at(path, k - 1, 1);
-    State right = state_at(path, at_end ? 0 : k, lobatto[1]), here = state_at(path, at_end ? 0 : k, 0);
-    if (at_end)
-      for (State* state : {&right, &here}) continue_beyond(path, *closed, *state);
-    here.q = before.q;
-    for (int a = 0; a < n; ++a) here.v[a] = 0.5 * (here.v[a] + before.v[a]);
-    const double shorter = std::min(path.times[k] - path.times[k - 1],
-                                    at_end ? path.times[1] : path.times[k + 1] - path.times[k]);
-    for (const KinkSurface& surface : kinks.surfaces()) {
-      if (surface.by_velocity) continue;
-      const double u_left = along.at(*surface.u, left), u_right = along.at(*surface.u, right);
-      if ((u_left < 0) == (u_right < 0)) continue;
-      Corner corner{.node = k,
-                    .u = along.at(*surface.u, here),
-                    .rate = along.at(*surface.u_by_time, here),
-                    .normal = along.slope(*surface.u, here)};
-      for (int a = 0; a < n; ++a) corner.rate += corner.normal[a] * here.v[a];
-      // The path crosses the surface as the signs on both sides say, and not by a cusp.
-      const bool crosses = (corner.rate > 0) == (u_right > u_left);
-      if (!crosses || !(std::abs(corner.u) < gap * shorter * std::abs(corner.rate))) continue;
-      corner.stiffness = 2 * along.at(*surface.weight, here) / std::abs(corner.rate);
-      corners.push_back(std::move(corner));
+  for_crossed(kinks, path, closed, along, [&](const KinkSurface& surface, const Sides& at, bool rising) {
+    if (surface.by_velocity) return;
+    State here = at.after;
+    here.q = at.before.q;
+    for (int a = 0; a < n; ++a) here.v[a] = 0.5 * (at.before.v[a] + at.after.v[a]);
+    Corner corner{.node = at.node,
+                  .u = along.at(*surface.u, here),
+                  .rate = along.at(*surface.u_by_time, here),
+                  .normal = along.slope(*surface.u, here),
+                  .sideways = std::vector<double>(n)};
+    for (int a = 0; a < n; ++a) corner.rate += corner.normal[a] * here.v[a];
+    // The path crosses the surface as the signs on both sides say, and not by a cusp.
+    const bool crosses = (corner.rate > 0) == rising;
+    if (!crosses || !(std::abs(corner.u) < gap * at.shorter * std::abs(corner.rate))) return;
+    const double square = product(corner.normal, corner.normal);
+    if (square > 0) {
+      move_along(here.q, corner.normal, beside * at.shorter * std::abs(corner.rate) - corner.u);
+      const std::vector<double> jump = along.slope(*surface.odd, here);
+      const double along_normal = product(jump, corner.normal) / square;
+      corner.stiffness = along_normal / std::abs(corner.rate);
+      for (int a = 0; a < n; ++a)
+        corner.sideways[a] = (jump[a] - along_normal * corner.normal[a]) / std::abs(corner.rate);
     }
-  }
+    corners.push_back(std::move(corner));
+  });
   return corners;
+}
+
+std::vector<double> Switch::velocity_at(double u) const {
+  std::vector<double> moved = v;
+  move_along(moved, by_v, u);
+  return moved;
+}
+
+std::vector<Switch> switches_of(const Kinks& kinks, const Polynomials& path, const ClosingMap* closed) {
+  std::vector<Switch> switches;
+  Along along(path);
+  for_crossed(kinks, path, closed, along, [&](const KinkSurface& surface, const Sides& at, bool rising) {
+    if (!surface.by_velocity) return;
+    const PointValues slopes = along.gradient(*surface.u, at.before);
+    if (!(product(slopes.dv, slopes.dv) > 0)) return;
+    Switch found{.node = at.node,
+                 .q = at.before.q,
+                 .v = at.before.v,
+                 .t = at.before.t,
+                 .by_q = slopes.dq,
+                 .by_v = slopes.dv,
+                 .by_t = along.at(*surface.u_by_time, at.before),
+                 .before = at.u_left};
+    found.v = found.velocity_at(-slopes.value);
+    State positive = at.before;
+    positive.v = found.velocity_at(beside * std::abs(at.u_left));
+    found.jump = along.slope(*surface.odd, positive);
+    if (!rising)
+      for (double& x : found.jump) x = -x;
+    switches.push_back(std::move(found));
+  });
+  return switches;
 }
 
 std::vector<Corner> corners_of(const Kinks& kinks, const Path& path, const ClosingMap* closed) {
@@ -232,11 +308,18 @@ bool move_corners(Path& path, std::span<const Corner> corners, std::span<const d
   return path.slide(shift, most_stretch);
 }
 
+void add_force(const Corner& corner, double u, double* gradient) {
+  for (std::size_t a = 0; a < corner.normal.size(); ++a)
+    gradient[a] += (corner.stiffness * corner.normal[a] + corner.sideways[a]) * u;
+}
+
 void add_stiffness(const Corner& corner, double* block) {
-  const std::size_t n = corner.normal.size();
+  const std::vector<double>&normal = corner.normal, &sideways = corner.sideways;
+  const std::size_t n = normal.size();
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = 0; b < n; ++b)
-      block[a * n + b] += corner.stiffness * corner.normal[a] * corner.normal[b];
+      block[a * n + b] +=
+          corner.stiffness * normal[a] * normal[b] + sideways[a] * normal[b] + normal[a] * sideways[b];
 }
 
 std::vector<double> crossings(const Kinks& kinks, const Polynomials& path) {

@@ -153,7 +153,7 @@ void DiscreteAction::put_change(const Path& path, const PathChange& change) {
     const std::size_t first = static_cast<std::size_t>(corner.node) * n_;
     double u = -corner.u;
     for (int a = 0; a < n_; ++a) u += corner.normal[a] * change.nodes[first + a];
-    for (int a = 0; a < n_; ++a) nodes.gradient[first + a] += corner.stiffness * corner.normal[a] * u;
+    add_force(corner, u, nodes.gradient.data() + first);
   }
 }
 

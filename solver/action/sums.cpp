@@ -175,12 +175,11 @@ void DiscreteAction::eliminated(int b, const double* x, const double* y, double*
 /// Finds the corners of a path, and adds what they contribute to the gradient.
 void DiscreteAction::measure_corners(const Path& path) {
   corners_ = corners_of(*tables_->kinks(), path, closed_);
-  for (const Corner& corner : corners_)
-    for (int a = 0; a < n_; ++a) {
-      const double force = corner.stiffness * corner.normal[a] * corner.u;
-      nodes.gradient[static_cast<std::size_t>(corner.node) * n_ + a] += force;
-      raw_nodes_[static_cast<std::size_t>(corner.node) * n_ + a] += force;
-    }
+  for (const Corner& corner : corners_) {
+    const std::size_t first = static_cast<std::size_t>(corner.node) * n_;
+    add_force(corner, corner.u, nodes.gradient.data() + first);
+    add_force(corner, corner.u, raw_nodes_.data() + first);
+  }
 }
 
 void DiscreteAction::add_corners() {

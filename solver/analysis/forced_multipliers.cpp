@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "analysis/multipliers.hpp"
@@ -16,6 +17,7 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of the shift in time after a part of the orbit.
 constexpr double known_shift = 0.1;
@@ -48,6 +50,40 @@ MatrixXd motion_transfer(const Piece& piece, const VectorXd& unit) {
   return result;
 }
 
+/// Where a force jumps at u(q, q', t) = 0, a motion y = (q, p) beside another, δy, crosses later by
+/// δt = −∇u·δy/u', and until then has the slope f₋ in place of f₊:
+///   δy₊ = (I + (f₊ − f₋) ∇uᵀ/u') δy₋,   u' by f₋.
+/// Of f = (q', p') the second half jumps alone, and δq' = L_vv⁻¹(δp − L_vq δq).
+MatrixXd saltation(const Lagrangian& copies, const Switch& at, double length, const VectorXd& unit) {
+  const auto n = unit.size();
+  Scratch memory;
+  // Second derivatives of a force lose digits beside its jump.
+  const PointValues second =
+      evaluate_at(copies, at.q, at.velocity_at(0x1p-20 * at.before), at.t, Order::hessian, memory);
+  const PointValues values =
+      evaluate_at(copies, at.q, at.velocity_at(0x1p-40 * at.before), at.t, Order::gradient, memory);
+  const auto one = [&](const std::vector<double>& both) -> MatrixXd {
+    return linearised(Eigen::Map<const RowMajor>(both.data(), 2 * n, 2 * n));
+  };
+  const auto sum = [&](const std::vector<double>& both) -> VectorXd {
+    return VectorXd::Map(both.data(), n) + VectorXd::Map(both.data() + n, n);
+  };
+  const auto first = [&](const std::vector<double>& both) { return VectorXd::Map(both.data(), n); };
+  // ∂p/∂t at given q and q'.
+  const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * length;
+  const PointValues earlier = evaluate_at(copies, at.q, at.v, at.t - step, Order::gradient, memory);
+  const PointValues later = evaluate_at(copies, at.q, at.v, at.t + step, Order::gradient, memory);
+  const VectorXd drift = (first(later.dv) - first(earlier.dv)) / (2 * step);
+  const VectorXd by_p = solved(one(second.vv).transpose(), sum(at.by_v));
+  const VectorXd by_q = sum(at.by_q) - one(second.vq).transpose() * by_p;
+  const double rate = at.by_t + by_q.dot(first(at.v)) + by_p.dot(first(values.dq) - drift);
+  const VectorXd jump = unit.cwiseInverse().asDiagonal() * first(at.jump) / rate;
+  MatrixXd result = MatrixXd::Identity(2 * n, 2 * n);
+  result.bottomLeftCorner(n, n) += jump * (unit.cwiseInverse().asDiagonal() * by_q).transpose();
+  result.bottomRightCorner(n, n) += jump * (unit.asDiagonal() * by_p).transpose();
+  return result;
+}
+
 /// The field of the shift in time at the start of piece k, of one copy.
 VectorXd shift_of_one(const SecondVariation& variation, int k, const VectorXd& unit) {
   const auto n = unit.size();
@@ -70,7 +106,10 @@ Factors factors_of(const SecondVariation& variation, const ClosedOrbit& orbit) {
   Factors result;
   std::vector<VectorXd> shifts;
   for (int k = 0; k < count; ++k) {
-    result.flow.push_back(motion_transfer(variation.piece(k), unit));
+    const Piece piece = variation.piece(k);
+    result.flow.push_back(motion_transfer(piece, unit));
+    for (const Switch& at : variation.switches_after(k))
+      result.flow.back() = saltation(variation.lagrangian(), at, piece.length, unit) * result.flow.back();
     shifts.push_back(shift_of_one(variation, k, unit));
   }
   if (orbit.map.size() > 0) {

@@ -23,7 +23,7 @@ constexpr double least_pivot = 1e-3;
 constexpr std::size_t most_kept = 1 << 23;
 /// Of an element, halved again and again.
 constexpr double shortest_part = 0x1p-12;
-/// Of an element: a point that is on one side of the kink at its end.
+/// Of T, and at most half a piece: a point that is on one side of the kink at its end.
 constexpr double beside_kink = 0x1p-40;
 /// Pieces, or so many of an element, at most.
 constexpr int most_pieces = 1 << 14, most_of_element = 16;
@@ -70,14 +70,15 @@ bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, con
   definite_ = definite;
   const bool taken = condensed.action && take(condensed), regular = taken || cut();
   if (!regular) pieces_.clear();
-  if (regular && lagrangian_->kinks()) add_corners(closed);
+  switches_.clear();
+  if (regular && lagrangian_->kinks()) find_crossings(closed);
   evaluated_ = regular && !taken ? pieces_.back().first : -1;
   forget();
   return regular;
 }
 
 /// Where the path crosses a kink the momentum of a Jacobi field jumps: the piece that ends there has it.
-void SecondVariation::add_corners(const ClosingMap* closed) {
+void SecondVariation::find_crossings(const ClosingMap* closed) {
   const std::size_t size = static_cast<std::size_t>(coordinates()) * coordinates();
   const Polynomials path{coordinates(), trajectory_->degree, trajectory_->times, trajectory_->nodes};
   for (const Corner& corner : corners_of(*lagrangian_->kinks(), path, closed))
@@ -86,6 +87,15 @@ void SecondVariation::add_corners(const ClosingMap* closed) {
       if (part.element == corner.node - 1 && part.tau1 == 1)
         add_stiffness(corner, forms_.data() + (3 * k + 2) * size);
     }
+  switches_ = switches_of(*lagrangian_->kinks(), path, closed);
+}
+
+std::vector<Switch> SecondVariation::switches_after(int k) const {
+  std::vector<Switch> found;
+  const Part& part = pieces_[k].part;
+  for (const Switch& at : switches_)
+    if (part.element == at.node - 1 && part.tau1 == 1) found.push_back(at);
+  return found;
 }
 
 Piece SecondVariation::piece(int k) const {
@@ -106,11 +116,10 @@ Eigen::VectorXd SecondVariation::shift(int k) const {
   const int n = coordinates();
   const double t = k < count() ? pieces_[k].start : trajectory_->duration();
   std::vector<double> q(n), v(n);
-  const double within = lagrangian_->kinks() ? beside_kink : 0;
-  if (k < count())
-    trajectory_->in_element(pieces_[k].part.element, pieces_[k].part.tau0 + within, q, v);
-  else
-    trajectory_->in_element(trajectory_->elements() - 1, 1 - within, q, v);
+  const Part& part = pieces_[std::min(k, count() - 1)].part;
+  const double beside = beside_kink * trajectory_->duration() / trajectory_->length(part.element);
+  const double within = lagrangian_->kinks() ? std::min((part.tau1 - part.tau0) / 2, beside) : 0;
+  trajectory_->in_element(part.element, k < count() ? part.tau0 + within : part.tau1 - within, q, v);
   Scratch memory;
   const PointValues values = evaluate_at(*lagrangian_, q, v, t, Order::gradient, memory);
   Eigen::VectorXd field(2 * n);

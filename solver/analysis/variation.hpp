@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "action/corners.hpp"
 #include "action/discrete_action.hpp"
 #include "solution/solution.hpp"
 
@@ -50,6 +51,7 @@ class SecondVariation {
   bool too_large() const { return too_large_; }
 
   int coordinates() const { return trajectory_->coordinates; }
+  const Lagrangian& lagrangian() const { return *lagrangian_; }
   bool has_kinks() const { return lagrangian_->kinks() != nullptr; }
   int count() const { return static_cast<int>(pieces_.size()); }
   /// If there are too many pieces to keep all, only after hold(k).
@@ -62,6 +64,10 @@ class SecondVariation {
   /// (q', p') at the start of piece k, or, for k = count(), at T: where L does not depend on t, the field of
   /// the shift in time.
   Eigen::VectorXd shift(int k) const;
+
+  /// Where the path crosses surfaces that depend on velocities at the end of piece k, none of which its form
+  /// D has.
+  std::vector<Switch> switches_after(int k) const;
 
   /// The Jacobi fields of piece k at start + tau·length, n × n: those with x_a = I, x_b = 0 and with x_a = 0,
   /// x_b = I.
@@ -98,7 +104,7 @@ class SecondVariation {
   bool take(const Condensed& condensed);
   const Eigen::MatrixXd& inner_by_ends(int k);
   void forget();
-  void add_corners(const ClosingMap* closed);
+  void find_crossings(const ClosingMap* closed);
 
   std::shared_ptr<const Lagrangian> lagrangian_;
   const Trajectory* trajectory_ = nullptr;
@@ -110,6 +116,7 @@ class SecondVariation {
   std::vector<Kept> pieces_;
   std::vector<double> forms_;  ///< A, B, D of each piece, or of those evaluated last
   int forms_from_ = 0;         ///< the first of these pieces
+  std::vector<Switch> switches_;
 
   // What was evaluated last.
   DiscreteAction action_;

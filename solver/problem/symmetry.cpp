@@ -6,6 +6,7 @@
 #include <random>
 
 #include "problem/problem.hpp"
+#include "system/kinks.hpp"
 
 namespace extremal {
 
@@ -27,8 +28,8 @@ constexpr int spare_points = 8, most_tries = 8;
 /// What the coordinates extend over along the guess, all alike; and points about it.
 class Cloud {
  public:
-  Cloud(const Problem& problem, const std::vector<double>& nearness)
-      : problem_(problem), nearness_(nearness), n_(problem.coordinates()) {
+  Cloud(const Problem& problem, const std::vector<double>& scales)
+      : problem_(problem), scales_(scales), n_(problem.coordinates()) {
     VectorXd q(n_), low = VectorXd::Constant(n_, INFINITY), high = -low;
     for (int k = 0; k <= 32; ++k) {
       at(k / 32.0, q);
@@ -39,26 +40,28 @@ class Cloud {
     if (!(extent_ > 0)) extent_ = std::max(1.0, high.cwiseAbs().maxCoeff());
   }
   double extent() const { return extent_; }
-  std::size_t places() const { return nearness_.size(); }
+  std::size_t places() const { return scales_.size(); }
 
   void draw(VectorXd& q, VectorXd& v) {
     at(0.5 + 0.5 * number(), q);
-    const double near = nearness_[drawn_++ % nearness_.size()];
+    const double scale = scales_[drawn_++ % scales_.size()];
     for (int a = 0; a < n_; ++a) {
-      q[a] = near * (q[a] + 0.1 * extent_ * number());
-      v[a] = near * 2 * extent_ / problem_.duration.value * number();
+      q[a] = scale * (q[a] + 0.1 * extent_ * number());
+      v[a] = scale * 2 * extent_ / problem_.duration.value * number();
     }
   }
 
- private:
+  /// In [−1, 1].
   double number() { return 2.0 * random_() / std::minstd_rand::max() - 1; }
+
+ private:
   void at(double tau, VectorXd& q) const {
     q.setZero(n_);
     if (problem_.guess.given()) problem_.guess.at(tau, {q.data(), std::size_t(n_)});
   }
 
   const Problem& problem_;
-  const std::vector<double>& nearness_;
+  const std::vector<double>& scales_;
   int n_;
   double extent_ = 1;
   std::minstd_rand random_{7};
@@ -101,6 +104,38 @@ class Equations {
       ++found;
     }
     return found == points;
+  }
+
+  /// Invariance of the surfaces where L is not smooth: about one point L is that of one side alone, which may
+  /// have more symmetries. At each point the surfaces together, with weights.
+  void add_surfaces(const Problem& problem, Cloud& cloud) {
+    if (!problem.lagrangian->kinks()) return;
+    const Eigen::Index before = rows_.rows(), points = columns_ + spare_points;
+    rows_.conservativeResize(before + points, columns_);
+    rows_.bottomRows(points).setZero();
+    VectorXd q(n_), v(n_);
+    Scratch scratch;
+    for (Eigen::Index k = 0; k < points; ++k) {
+      cloud.draw(q, v);
+      VectorXd by_q = VectorXd::Zero(n_), by_v = by_q;
+      for (const KinkSurface& surface : problem.lagrangian->kinks()->surfaces()) {
+        const PointValues u =
+            evaluate_at(*surface.u, {q.data(), std::size_t(n_)}, {v.data(), std::size_t(n_)},
+                        0.1 * static_cast<double>(k), Order::gradient, scratch);
+        const double weight = cloud.number();
+        by_q += weight * Eigen::Map<const VectorXd>(u.dq.data(), n_);
+        by_v += weight * Eigen::Map<const VectorXd>(u.dv.data(), n_);
+      }
+      auto row = rows_.row(before + k);
+      for (int a = 0; a < n_; ++a) {
+        for (int b = 0; b < n_ && matrices_ > 0; ++b) row[a * n_ + b] = by_q[a] * q[b] + by_v[a] * v[b];
+        row[matrices_ + a] = cloud.extent() * by_q[a];
+      }
+      if (const double size = row.norm(); size > 0 && std::isfinite(size))
+        row /= size;
+      else
+        row.setZero();
+    }
   }
 
   /// With ends x = offset + Z y that satisfy B x = value, ends that are moved must, too: B (G⊕G) Z = 0 and
@@ -158,9 +193,10 @@ class Equations {
 }  // namespace
 
 std::vector<Generator> continuous_symmetries(const Problem& problem, const SymmetrySearch& search) {
-  Cloud cloud(problem, search.nearness);
+  Cloud cloud(problem, search.scales);
   Equations equations(problem, search.most_coordinates);
   if (!equations.add_invariance(problem, cloud)) return {};
+  equations.add_surfaces(problem, cloud);
   equations.add_ends(problem, cloud.extent());
   return equations.solutions(cloud.extent());
 }

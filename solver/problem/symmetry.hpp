@@ -20,8 +20,9 @@ inline constexpr int most_coordinates_for_rotations = 12;
 
 struct SymmetrySearch {
   int most_coordinates = most_coordinates_for_rotations;  ///< with more only translations are looked for
-  /// Points about the guess are in turn so much nearer to the origin, and slower: far away forces may vanish.
-  std::vector<double> nearness{1};
+  /// Points about the guess and their velocities are in turn multiplied by these. A symmetry holds everywhere;
+  /// in one place what breaks it may be below roundoff, far away or beside the bottom of a flat potential.
+  std::vector<double> scales{1, 8, 64};
 };
 
 /// Independent affine motions of configuration space that leave the boundary relation and the action of every

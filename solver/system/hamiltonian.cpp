@@ -33,12 +33,13 @@ LagrangianGraph negative(LagrangianGraph h) {
   return h;
 }
 
-/// The kinks of L where those of H do not depend on momenta: ∂L/∂|u| = −∂H/∂|u| at the same point.
+/// The kinks of L where those of H do not depend on momenta: then ∂L/∂q jumps as −∂H/∂q does at the same
+/// point.
 std::shared_ptr<const Kinks> kinks_of_lagrangian(const LagrangianGraph& hamiltonian) {
   auto kinks = find_kinks(negative(hamiltonian));
   if (!kinks) return kinks;
   for (const KinkSurface& surface : kinks->surfaces()) {
-    const Structure& s = surface.weight->structure();
+    const Structure& s = surface.odd->structure();
     if (!s.mass.empty() || !s.gyroscopic.empty() || !s.linear.empty() || !s.velocity_free)
       throw std::invalid_argument(
           "abs, min, max or step multiplies momenta here, and the Hamiltonian is not quadratic in them; "

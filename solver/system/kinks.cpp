@@ -45,46 +45,32 @@ NodeId beyond(Graph& graph, NodeId kink) {
   return graph.binary(n.op == Op::max ? Op::min : Op::max, n.a, n.b);
 }
 
-/// ∂value/∂node, as an expression of the inputs: the mean of both sides of the surface. So it is half the
-/// jump where it vanishes on one side alone, next to the surface as well.
-NodeId derivative_by_kink(Body& body, NodeId node, int inputs) {
+/// The value of the body less that which it would have if the kink went on smoothly beyond its surface.
+NodeId odd_part(Body& body, NodeId kink) {
   Graph& graph = body.graph;
-  const auto variable = static_cast<std::uint32_t>(inputs);
   std::unordered_map<NodeId, NodeId> image;
   for (const NodeId id : nodes_of(graph, body.value)) {
     const Node n = graph[id];
-    if (id == node)
-      image[id] = graph.input(variable);
+    if (id == kink)
+      image[id] = beyond(graph, kink);
     else if (arity(n.op) == 0)
       image[id] = id;
     else
       image[id] =
           arity(n.op) == 1 ? graph.unary(n.op, image[n.a]) : graph.binary(n.op, image[n.a], image[n.b]);
   }
-  const NodeId slope = gradient(graph, image[body.value], {&variable, 1})[0];
-  std::vector<NodeId> replacement;
-  for (std::uint32_t k = 0; k < variable; ++k) replacement.push_back(graph.input(k));
-  NodeId sum = graph.constant(0);
-  for (const NodeId side : {node, beyond(graph, node)}) {
-    replacement.resize(variable);
-    replacement.push_back(side);
-    sum = graph.add(sum, substitute(graph, slope, replacement));
-  }
-  return graph.mul(graph.constant(0.5), sum);
+  return graph.sub(body.value, image[body.value]);
 }
 
 /// The expressions of one kink, the same for all rows of a term.
 struct Expressions {
-  NodeId u, weight;
+  NodeId u, odd;
 };
 
-Expressions expressions(Body& body, NodeId kink, int inputs) {
+Expressions expressions(Body& body, NodeId kink) {
   const Node n = body.graph[kink];
   if (n.op == Op::step) return {body.graph.sub(n.a, n.b), body.graph.constant(0)};
-  const NodeId slope = derivative_by_kink(body, kink, inputs);
-  if (n.op == Op::abs) return {n.a, slope};
-  const double half = n.op == Op::max ? 0.5 : -0.5;
-  return {body.graph.sub(n.a, n.b), body.graph.mul(body.graph.constant(half), slope)};
+  return {n.op == Op::abs ? n.a : body.graph.sub(n.a, n.b), odd_part(body, kink)};
 }
 
 /// Of the inputs of an expression in one row: whether one is a coordinate or the time, and a velocity.
@@ -132,7 +118,7 @@ std::shared_ptr<const Kinks> find_kinks(const LagrangianGraph& l) {
   for (const Term& term : l.terms) {
     Body body = copy_body(l, term);
     for (const NodeId kink : body.kinks) {
-      const Expressions found = expressions(body, kink, term.arity);
+      const Expressions found = expressions(body, kink);
       for (int r = 0; r < term.rows(); ++r) {
         const std::span<const std::uint32_t> row(term.table.data() + static_cast<std::size_t>(r) * term.arity,
                                                  term.arity);
@@ -140,7 +126,7 @@ std::shared_ptr<const Kinks> find_kinks(const LagrangianGraph& l) {
         if (!state) continue;
         surfaces.push_back({.u = as_lagrangian(l, body, found.u, row),
                             .u_by_time = as_lagrangian(l, body, by_time(l, body, found.u, row), row),
-                            .weight = as_lagrangian(l, body, found.weight, row),
+                            .odd = as_lagrangian(l, body, found.odd, row),
                             .by_velocity = velocity});
       }
     }

@@ -8,8 +8,10 @@
 
 /// \file Where a Lagrangian is not smooth. abs(u), min(a, b), max(a, b) and step(u) are smooth on both sides
 /// of a surface u(q, q', t) = 0, with u = a − b for min and max. Beside it
-///   L = smooth part + w |u|,   w = ∂L/∂|u|, the mean of both sides,
-/// so that ∂L/∂q jumps by 2 w ∂u/∂q from u < 0 to u > 0: max(a, b) = (a + b + |a − b|)/2, and min likewise.
+///   L = smooth part + w |u| + a sign u.
+/// A Lagrangian has a = 0 there, or its action would jump with the time of the crossing. That of two copies
+/// (system/copies.hpp) has a = λ·F₁ where a force has a part F₁ sign u, as friction has: a vanishes with λ
+/// along the path, its slope does not. So ∂L/∂q jumps by 2 (w ∂u/∂q + ∂a/∂q) from u < 0 to u > 0.
 
 namespace extremal {
 
@@ -17,8 +19,8 @@ namespace extremal {
 struct KinkSurface {
   std::shared_ptr<const Lagrangian> u;
   std::shared_ptr<const Lagrangian> u_by_time;  ///< ∂u/∂t
-  std::shared_ptr<const Lagrangian> weight;     ///< w
-  bool by_velocity = false;                     ///< u depends on velocities
+  std::shared_ptr<const Lagrangian> odd;  ///< 2 w |u| + 2 a sign u: L − (L of the other side, continued)
+  bool by_velocity = false;               ///< u depends on velocities
 };
 
 /// The surfaces of a Lagrangian; at least one.

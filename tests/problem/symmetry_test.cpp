@@ -8,6 +8,7 @@
 
 #include "action/systems.hpp"
 #include "problem/problem.hpp"
+#include "system/formula.hpp"
 
 /// \file Generators against the groups that are known.
 
@@ -71,6 +72,18 @@ TEST(Symmetry, TranslationsInAMagneticField) {
     return (v[0] * v[0] + v[1] * v[1]) / 2 + 0.7 * (q[0] * v[1] - q[1] * v[0]);
   });
   EXPECT_EQ(count(closed(field)), 3u);
+}
+
+/// About the guess they are zero to roundoff, or exactly. A symmetry holds beyond as well.
+TEST(Symmetry, OfPotentialsThatAreFlatInOnePlace) {
+  const auto bottom = trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 - pow(q[0] / 30.0, 16); });
+  EXPECT_EQ(count(closed(bottom)), 0u);
+  const auto written = [](std::vector<std::string> coordinates, std::string lagrangian) {
+    return compile({.coordinates = std::move(coordinates), .lagrangian = std::move(lagrangian)}).lagrangian;
+  };
+  EXPECT_EQ(count(closed(written({"x"}, "x'^2/2 - max(0, abs(x) - 9000)^2"))), 0u);
+  EXPECT_EQ(count(closed(written({"x", "y"}, "(x'^2 + y'^2)/2 - max(0, abs(x - y) - 9000)^2"))), 1u);
+  EXPECT_EQ(count(closed(written({"x", "y"}, "(x'^2 + y'^2)/2 - max(0, x^2 + y^2 - 9000)^2"))), 1u);
 }
 
 /// L depends on time, the rotation is there.

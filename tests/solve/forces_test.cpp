@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -272,6 +274,109 @@ TEST(Forces, VanDerPolsLimitCycle) {
   }
 }
 
+/// Of one coordinate: trace and determinant of the monodromy matrix.
+struct Monodromy {
+  double trace = 0, determinant = 0;
+};
+
+Monodromy monodromy_of(const Solution& solution) {
+  const auto& multipliers = solution.floquet->multipliers;
+  return {(multipliers[0] + multipliers[1]).real(), (multipliers[0] * multipliers[1]).real()};
+}
+
+/// x'' = −2 z x' − x + f, where f jumps with the sign of x': turning points, and where x is.
+struct Turn {
+  double t, x;
+};
+
+std::vector<Turn> turns_of(const Solution& solution) {
+  std::vector<Turn> turns;
+  double x = 0, v = 0;
+  const auto velocity = [&](double t) {
+    solution.trajectory.at(t, {&x, 1}, {&v, 1});
+    return v;
+  };
+  constexpr int steps = 1000;
+  const double step = solution.duration() / steps;
+  for (int k = 0; k < steps; ++k) {
+    double left = k * step, right = left + step;
+    const bool falling = velocity(left) > 0;
+    if (falling == (velocity(right) > 0)) continue;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double middle = 0.5 * (left + right);
+      ((velocity(middle) > 0) == falling ? left : right) = middle;
+    }
+    velocity(left);
+    turns.push_back({left, x});
+  }
+  return turns;
+}
+
+/// Friction of a given size against the motion, under a drive: between turning points a rotation, at each the
+/// velocity of a motion beside is multiplied by the ratio of accelerations after and before.
+TEST(Forces, MultipliersOfDryFriction) {
+  constexpr double c = 0.2, w = 0.7;
+  const Problem problem =
+      closed_problem({{"x"}, "x'^2/2 - x^2/2", {"-0.2*x'/abs(x') + cos(0.7*t)"}}, 2 * pi / w, false,
+                     [](double tau) { return 2 * std::cos(2 * pi * tau); });
+  const Solution solution = Solver().solve(problem, {.tolerance = 1e-11});
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  const std::vector<Turn> turns = turns_of(solution);
+  ASSERT_EQ(turns.size(), 2u);
+  Eigen::Matrix2d monodromy = Eigen::Matrix2d::Identity();
+  const auto flow = [&](double time) {
+    Eigen::Matrix2d rotation;
+    rotation << std::cos(time), std::sin(time), -std::sin(time), std::cos(time);
+    monodromy = (rotation * monodromy).eval();
+  };
+  double last = 0;
+  for (const Turn& turn : turns) {
+    flow(turn.t - last);
+    const double mean = std::cos(w * turn.t) - turn.x, change = mean > 0 ? -c : c;  // x' rises or falls
+    monodromy.row(1) *= (mean + change) / (mean - change);
+    last = turn.t;
+  }
+  flow(solution.duration() - last);
+  ASSERT_TRUE(solution.floquet);
+  EXPECT_NEAR(monodromy_of(solution).trace, monodromy.trace(), 1e-8);
+  EXPECT_NEAR(monodromy_of(solution).determinant, monodromy.determinant(), 1e-8);
+}
+
+/// A clock: dry friction that drives, and damping. A shift in time has the multiplier 1, exactly; the other
+/// is the determinant.
+TEST(Forces, MultipliersOfAnEscapement) {
+  constexpr double z = 0.05, c = 0.3;
+  const Problem problem = closed_problem({{"x"}, "x'^2/2 - x^2/2", {"-0.1*x' + 0.3*x'/abs(x')"}}, 6.2, true,
+                                         [](double tau) { return 3.8 * std::cos(2 * pi * tau); });
+  const Solution solution = Solver().solve(problem, {.tolerance = 1e-11});
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  double determinant = std::exp(-2 * z * solution.duration());
+  for (const Turn& turn : turns_of(solution)) {
+    const double change = turn.x < 0 ? c : -c;
+    determinant *= (-turn.x + change) / (-turn.x - change);
+  }
+  ASSERT_TRUE(solution.floquet);
+  EXPECT_EQ(solution.floquet->multipliers[0], 1.0);
+  EXPECT_NEAR(solution.floquet->multipliers[1].real(), determinant, 1e-8);
+}
+
+/// A force that jumps with the place, and the potential that it has.
+TEST(Forces, MultipliersOfARelay) {
+  const auto orbit = [](const ForcedSystem& system) {
+    const Problem problem =
+        closed_problem(system, 2 * pi / 0.7, false, [](double tau) { return 2 * std::cos(2 * pi * tau); });
+    return Solver().solve(problem, {.tolerance = 1e-11});
+  };
+  const Solution relay = orbit({{"x"}, "x'^2/2 - x^2/2", {"-0.2*x/abs(x) - 0.1*x' + cos(0.7*t)"}}),
+                 potential = orbit({{"x"}, "x'^2/2 - x^2/2 - 0.2*abs(x)", {"-0.1*x' + cos(0.7*t)"}});
+  ASSERT_TRUE(relay.converged()) << relay.message;
+  ASSERT_TRUE(potential.converged()) << potential.message;
+  EXPECT_LE(relay.iterations, potential.iterations + 1);
+  ASSERT_TRUE(relay.floquet && potential.floquet);
+  EXPECT_NEAR(monodromy_of(relay).trace, monodromy_of(potential).trace, 1e-8);
+  EXPECT_NEAR(monodromy_of(relay).determinant, std::exp(-0.1 * 2 * pi / 0.7), 1e-8);
+}
+
 /// a'' = m − c a' turns at the rate m/c.
 TEST(Forces, APeriodOfItsOwnUpToAMap) {
   const Problem problem = closed_problem(
@@ -355,6 +460,25 @@ TEST(Forces, FoldsOfDuffingsResponse) {
   ASSERT_EQ(folds.size(), 2u);
   EXPECT_NEAR(folds[0], 1.7797195, 1e-6);
   EXPECT_NEAR(folds[1], 1.3242362, 1e-6);
+}
+
+/// At the first orbit the potential is flat to roundoff, so that the orbit may be shifted, as no other may.
+/// Each closes, by an integration of its own.
+TEST(Forces, FamiliesFromTheBottomOfAFlatPotential) {
+  const auto driven = [](double f) {
+    return closed_problem({{"x"}, "x'^2/2 - (x/0.6)^16/16", {fmt::format("-0.1*x' + {:.17g}*cos(1.5*t)", f)}},
+                          2 * pi / 1.5, false, [](double tau) { return -0.02 * std::cos(2 * pi * tau); });
+  };
+  Diagram diagram(driven_family(driven, 0.05, 1.5), {{.tolerance = 1e-9}, 60, false});
+  while (diagram.advance()) {
+    const BranchPoint& point = diagram.point();
+    const Slope slope = [f = point.parameter](double t, std::array<double, 2> y) {
+      return std::array{y[1], -0.1 * y[1] - std::pow(y[0] / 0.6, 15) / 0.6 + f * std::cos(1.5 * t)};
+    };
+    const auto start = start_of(point.solution), end = integrate(slope, start, 2 * pi / 1.5, 4000);
+    EXPECT_NEAR(end[0], start[0], 1e-7) << point.parameter;
+    EXPECT_NEAR(end[1], start[1], 1e-7) << point.parameter;
+  }
 }
 
 /// The pendulum with q = 2 driven at the rate 2/3: symmetric orbits lose their stability to a pair that is

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "problem/closing.hpp"
 #include "problem/symmetry.hpp"
 #include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
@@ -275,9 +276,11 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
   if (solution.converged()) {
     const bool indefinite = problem.paired || problem.phase;  // nothing is minimal
     const double distance = indefinite ? INFINITY : read_minimality(problem, options, w.variation, solution);
-    if (indefinite && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers)
-      w.variation.assemble(problem.lagrangian, solution.trajectory, {}, nullptr,
+    if (indefinite && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers) {
+      const ClosingMap closed = closing_map(problem);
+      w.variation.assemble(problem.lagrangian, solution.trajectory, {}, &closed,
                            problem.paired ? Definite::paired : Definite::none);
+    }
     read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
     if (found.family == 0) explain_nullity(problem, solution);
     if (found.family == 0) tell_continuum(problem, solution);

@@ -24,7 +24,8 @@ struct BranchPoint {
   /// Of the momenta from the derivatives of the action against ∂L/∂q' at the ends of the trajectory, the
   /// most, relative to the largest there or the mean along the path.
   double momentum_difference = 0;
-  bool resolved = true;  ///< the energy is conserved, roughly, and elements end at kinks
+  /// The energy is conserved, roughly, the equations hold along what is held too, and elements end at kinks.
+  bool resolved = true;
 };
 
 /// A path next to where another branch begins.

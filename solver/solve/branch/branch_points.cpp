@@ -85,8 +85,7 @@ FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, doub
   }
   FoundBranchPoint found;
   if (reached) {
-    const double allowed = std::max(momentum_tolerances * tracker.tolerance(), least_momentum);
-    found.balanced = tracker.branch().residual() <= allowed;
+    found.balanced = tracker.balanced();
     found.point = read_point(tracker, PointKind::branch);
   }
   tracker.hold({});

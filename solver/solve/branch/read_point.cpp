@@ -74,8 +74,9 @@ BranchPoint read_state(Tracker& tracker, PointKind kind) {
   solution.morse_index = branch.inertia().negative;
   solution.nullity = branch.inertia().zero;
   const std::optional<Survey> survey = observe_energy(*problem.lagrangian, solution);
-  point.resolved = !problem.lagrangian->structure().autonomous || problem.paired ||
-                   (survey && survey->energy_drift <= limits::continuation::unresolved * survey->terms);
+  const bool conserved = !problem.lagrangian->structure().autonomous || problem.paired ||
+                         (survey && survey->energy_drift <= limits::continuation::unresolved * survey->terms);
+  point.resolved = conserved && (kind == PointKind::branch || tracker.balanced());
   const auto middle = branch.momenta().begin() + problem.coordinates();
   solution.momentum_start.assign(branch.momenta().begin(), middle);
   solution.momentum_end.assign(middle, branch.momenta().end());

@@ -175,6 +175,12 @@ void Tracker::measure_anew() {
   state.scale(1 / std::sqrt(branch_.dot(state.tangent, state.tangent)));
 }
 
+bool Tracker::balanced() const {
+  const double allowed =
+      std::max(limits::branch_points::momentum_tolerances * tolerance_, limits::branch_points::least_momentum);
+  return branch_.residual() <= allowed;
+}
+
 Scales Tracker::sizes() const {
   Scales size = scales(path_, branch_.tables());
   if (size.q <= rest_) size.q = 0;

@@ -78,6 +78,9 @@ class Tracker {
   /// cannot be solved.
   bool respond(Move& response);
 
+  /// Whether the equations hold at the path, along directions that are held too.
+  bool balanced() const;
+
   Branch& branch() { return branch_; }
   const Branch& branch() const { return branch_; }
   /// Sizes of the path, that of a path at rest zero.
