@@ -50,37 +50,46 @@ MatrixXd motion_transfer(const Piece& piece, const VectorXd& unit) {
   return result;
 }
 
+/// What a crossing does to (q, p) of a motion beside, and the field of the shift in time after it.
+struct Saltation {
+  MatrixXd matrix;
+  VectorXd shift;
+};
+
 /// Where a force jumps at u(q, q', t) = 0, a motion y = (q, p) beside another, δy, crosses later by
 /// δt = −∇u·δy/u', and until then has the slope f₋ in place of f₊:
 ///   δy₊ = (I + (f₊ − f₋) ∇uᵀ/u') δy₋,   u' by f₋.
 /// Of f = (q', p') the second half jumps alone, and δq' = L_vv⁻¹(δp − L_vq δq).
-MatrixXd saltation(const Lagrangian& copies, const Switch& at, double length, const VectorXd& unit) {
+Saltation saltation(const Lagrangian& copies, const Switch& at, double length, const VectorXd& unit) {
   const auto n = unit.size();
   Scratch memory;
+  const auto evaluate = [&](double u, double time, Order order) {  // on the side before
+    return evaluate_at(copies, at.q, at.velocity_at(u * at.before), time, order, memory);
+  };
   // Second derivatives of a force lose digits beside its jump.
-  const PointValues second =
-      evaluate_at(copies, at.q, at.velocity_at(0x1p-20 * at.before), at.t, Order::hessian, memory);
-  const PointValues values =
-      evaluate_at(copies, at.q, at.velocity_at(0x1p-40 * at.before), at.t, Order::gradient, memory);
+  constexpr double near = 0x1p-40, apart = 0x1p-20;
+  const PointValues first = evaluate(near, at.t, Order::gradient),
+                    second = evaluate(apart, at.t, Order::hessian);
   const auto one = [&](const std::vector<double>& both) -> MatrixXd {
     return linearised(Eigen::Map<const RowMajor>(both.data(), 2 * n, 2 * n));
   };
   const auto sum = [&](const std::vector<double>& both) -> VectorXd {
     return VectorXd::Map(both.data(), n) + VectorXd::Map(both.data() + n, n);
   };
-  const auto first = [&](const std::vector<double>& both) { return VectorXd::Map(both.data(), n); };
+  const auto half = [&](const std::vector<double>& both) { return VectorXd::Map(both.data(), n); };
   // ∂p/∂t at given q and q'.
   const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * length;
-  const PointValues earlier = evaluate_at(copies, at.q, at.v, at.t - step, Order::gradient, memory);
-  const PointValues later = evaluate_at(copies, at.q, at.v, at.t + step, Order::gradient, memory);
-  const VectorXd drift = (first(later.dv) - first(earlier.dv)) / (2 * step);
+  const PointValues earlier = evaluate(near, at.t - step, Order::gradient),
+                    later = evaluate(near, at.t + step, Order::gradient);
+  const VectorXd drift = (half(later.dv) - half(earlier.dv)) / (2 * step);
   const VectorXd by_p = solved(one(second.vv).transpose(), sum(at.by_v));
   const VectorXd by_q = sum(at.by_q) - one(second.vq).transpose() * by_p;
-  const double rate = at.by_t + by_q.dot(first(at.v)) + by_p.dot(first(values.dq) - drift);
-  const VectorXd jump = unit.cwiseInverse().asDiagonal() * first(at.jump) / rate;
-  MatrixXd result = MatrixXd::Identity(2 * n, 2 * n);
-  result.bottomLeftCorner(n, n) += jump * (unit.cwiseInverse().asDiagonal() * by_q).transpose();
-  result.bottomRightCorner(n, n) += jump * (unit.asDiagonal() * by_p).transpose();
+  const double rate = at.by_t + by_q.dot(half(at.v)) + by_p.dot(half(first.dq) - drift);
+  const VectorXd inverse = unit.cwiseInverse(), jump = inverse.asDiagonal() * half(at.jump);
+  Saltation result{MatrixXd::Identity(2 * n, 2 * n), VectorXd(2 * n)};
+  result.matrix.bottomLeftCorner(n, n) += jump / rate * (inverse.asDiagonal() * by_q).transpose();
+  result.matrix.bottomRightCorner(n, n) += jump / rate * (unit.asDiagonal() * by_p).transpose();
+  result.shift << unit.asDiagonal() * half(at.v), inverse.asDiagonal() * half(first.dq) + jump;
   return result;
 }
 
@@ -105,12 +114,15 @@ Factors factors_of(const SecondVariation& variation, const ClosedOrbit& orbit) {
   const VectorXd unit = symplectic_units(variation).head(n);
   Factors result;
   std::vector<VectorXd> shifts;
+  for (int k = 0; k <= count; ++k) shifts.push_back(shift_of_one(variation, k % count, unit));
   for (int k = 0; k < count; ++k) {
     const Piece piece = variation.piece(k);
     result.flow.push_back(motion_transfer(piece, unit));
-    for (const Switch& at : variation.switches_after(k))
-      result.flow.back() = saltation(variation.lagrangian(), at, piece.length, unit) * result.flow.back();
-    shifts.push_back(shift_of_one(variation, k, unit));
+    for (const Switch& at : variation.switches_after(k)) {
+      const Saltation crossing = saltation(variation.lagrangian(), at, piece.length, unit);
+      result.flow.back() = (crossing.matrix * result.flow.back()).eval();
+      shifts[k + 1] = crossing.shift;
+    }
   }
   if (orbit.map.size() > 0) {
     const MatrixXd map = orbit.map.topLeftCorner(n, n);
@@ -118,8 +130,10 @@ Factors factors_of(const SecondVariation& variation, const ClosedOrbit& orbit) {
     MatrixXd& last = result.flow.back();
     last.topRows(n) = solved(scaled, last.topRows(n));
     last.bottomRows(n) = (scaled.transpose() * last.bottomRows(n)).eval();
+    shifts.back() = shifts.front();
+  } else {
+    shifts.front() = shifts.back();
   }
-  shifts.push_back(shifts.front());
   result.shifted = orbit.autonomous;
   for (int k = 0; k < count && result.shifted; ++k) {
     const double size = shifts[k + 1].norm();
