@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/document.hpp"
 #include "scene/schema.hpp"
@@ -73,13 +75,24 @@ struct Checker {
     throw SceneError(document.at(node), message);
   }
 
-  void check_finite(const toml::node& node, const std::string& label) const {
+  /// An infinite number may be meant for one of the choices.
+  void check_finite(const toml::node& node, const std::string& label,
+                    std::vector<std::string> choices = {}) const {
     const auto number = node.value<double>();
     if (node.is_floating_point() && !std::isfinite(*number))
-      refuse(node, fmt::format("{} must be finite, found {}", label, *number));
+      throw UnknownName(document.at(node), fmt::format("{} must be finite, found {}", label, *number),
+                        fmt::format("{}", *number), std::move(choices));
   }
 
-  void check_value(const toml::node& node, Kind kind, const std::string& label) const {
+  void check_choice(const toml::node& node, std::string_view key, std::vector<std::string> choices) const {
+    const Text text{*node.value<std::string>(), document.at(node)};
+    if (std::ranges::find(choices, text.value) == choices.end())
+      throw UnknownChoice(position(text, 0), fmt::format("unknown {} '{}'", key, text.value), text.value,
+                          std::move(choices));
+  }
+
+  void check_value(const toml::node& node, Kind kind, const std::string& label,
+                   const std::vector<std::string>& choices = {}) const {
     Kind element;
     if (node.is_array() && list_elements(kind, element)) {
       int k = 0;
@@ -94,7 +107,7 @@ struct Checker {
     }
     if (!single(kind, node))
       refuse(node, fmt::format("{} must be {}, found {}", label, description(kind), type_name(node)));
-    check_finite(node, label);
+    check_finite(node, label, choices);
   }
 
   /// A key outside every table may belong to one of them.
@@ -105,7 +118,7 @@ struct Checker {
     for (const std::string& other : table.empty() ? known : std::vector<std::string>{})
       if (const KeyRecord* record = find_key(other, key); record && record->key == key)
         throw SceneError(at, fmt::format("{}; did you mean '{}.{}'?", message, other, key));
-    throw UnknownName(at, message, key, std::move(known));
+    throw UnknownChoice(at, message, key, std::move(known));
   }
 
   void check_table(const toml::table& table, std::string_view name) const {
@@ -128,8 +141,14 @@ struct Checker {
         check_named(*value->as_table(), record->kind,
                     top ? std::string(key->str()) : fmt::format("{}.{}", name, key->str()));
       else
-        check_value(*value, record->kind, label);
+        check_one(*value, *record, label);
     }
+  }
+
+  void check_one(const toml::node& node, const KeyRecord& record, const std::string& label) const {
+    const std::vector<std::string> choices(record.choices.begin(), record.choices.end());
+    check_value(node, record.kind, label, choices);
+    if (record.kind == Kind::text && !choices.empty()) check_choice(node, record.key, choices);
   }
 
   void check_tables(const toml::node& node, std::string_view name, const std::string& label) const {

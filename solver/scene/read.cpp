@@ -1,7 +1,5 @@
 #include "scene/read.hpp"
 
-#include <algorithm>
-
 #include "scene/schema.hpp"
 
 namespace extremal {
@@ -147,13 +145,6 @@ SolveTable read_solve_table(const Document& document, const toml::table& table) 
   solve.steps = text(document, table, "steps");
   solve.budget = number(document, table, "budget");
   solve.method = text(document, table, "method");
-  if (solve.method) {
-    std::vector<std::string> names;
-    for (const MethodRecord& m : method_records()) names.emplace_back(m.name);
-    const std::string& method = solve.method->value;
-    if (std::find(names.begin(), names.end(), method) == names.end())
-      throw UnknownName(position(*solve.method, 0), "unknown method '" + method + "'", method, names);
-  }
   return solve;
 }
 

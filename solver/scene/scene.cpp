@@ -64,9 +64,11 @@ void check_where_list(const Scene& scene) {
   if (given != wanted)
     throw SceneError(
         at, fmt::format("'where' has {} equation{}, and {} {} to be determined: the unknowns{}; "
-                        "give as many equations, or more unknowns",
+                        "give {}",
                         given, given == 1 ? "" : "s", wanted, wanted == 1 ? "number is" : "numbers are",
-                        boundary.free && !boundary.energy ? " and the duration" : ""));
+                        boundary.free && !boundary.energy ? " and the duration" : "",
+                        given < wanted ? "as many equations, between end values that are not fixed"
+                                       : "as many equations, or more unknowns"));
   if (!boundary.free && boundary.energy)
     throw SceneError(
         boundary.energy->at,

@@ -6,6 +6,15 @@
 namespace extremal {
 namespace {
 
+constexpr MethodRecord methods[] = {
+    {"newton", "damped Newton method; elements and degree rise until the tolerance is met"},
+    {"ceres", "least squares of the residual by Ceres, then Newton's method"},
+    {"ipopt", "interior point method of Ipopt with the equations as constraints, then Newton's method"},
+};
+constexpr std::string_view method_names[] = {methods[0].name, methods[1].name, methods[2].name};
+constexpr std::string_view durations[] = {"free", "infinite"}, times[] = {"free"},
+                           losses[] = {"squared", "huber", "cauchy"};
+
 constexpr KeyRecord keys[] = {
     {"", "title", Kind::text, "empty", "Text above tables and plots.", R"(title = "Planar transfer")"},
     {"", "system", Kind::table, "required",
@@ -42,7 +51,7 @@ constexpr KeyRecord keys[] = {
      "parameters = { mu = 0.1, m = [\"1 - mu\", \"mu\"] }", true},
     {"system", "definitions", Kind::text, "none",
      "Named parts of formulas, in any order. `X'` is the velocity of a definition `X`, `X(0)` its value at "
-     "an end. One that is not used costs nothing.",
+     "an end. One that is not used costs nothing; a cycle is an error.",
      "definitions = { r = \"sqrt(x^2 + y^2)\" }", true},
     {"system", "lagrangian", Kind::text, "required without `use`",
      "Formula of L in coordinates, velocities (`x'`), `t`, parameters and definitions.",
@@ -76,7 +85,7 @@ constexpr KeyRecord keys[] = {
      R"(T > 0, or `"free"` with `energy` or `where`; a free period with forces needs neither. )"
      R"(Or `"infinite"`: an end at which every coordinate is fixed at an equilibrium of L is approached )"
      "exponentially; both ends such are (−∞, ∞), one is [0, ∞) or (−∞, 0].",
-     "duration = \"2*pi/sqrt(mu)\""},
+     "duration = \"2*pi/sqrt(mu)\"", false, durations},
     {"boundary", "energy", Kind::quantity, "none",
      "Energy p·q' − L of the extremal; it determines a free duration.", "energy = -0.4"},
     {"boundary", "where", Kind::note, "none",
@@ -110,7 +119,8 @@ constexpr KeyRecord keys[] = {
      "constraints = [\"x^2 + y^2 >= 1\"]"},
 
     {"waypoints", "at", Kind::quantity, "no default",
-     R"(Time between 0 and T, or `"free"`: the action is stationary in the time too.)", "at = 1.5"},
+     R"(Time between 0 and T, or `"free"`: the action is stationary in the time too.)", "at = 1.5", false,
+     times},
     {"waypoints", "*", Kind::quantities, "none",
      "Coordinate that is fixed there; its momentum may jump. At least one.", "x = 0.2"},
 
@@ -149,7 +159,7 @@ constexpr KeyRecord keys[] = {
      "budget = 600.0"},
     {"solve", "method", Kind::text, R"("newton")",
      R"(Method for the first approach from each guess: `"newton"`, `"ceres"` or `"ipopt"`.)",
-     R"(method = "ceres")"},
+     R"(method = "ceres")", false, method_names},
 
     {"search", "solutions", Kind::integer, "required", "Number of distinct extremals wanted, 1 to 1000.",
      "solutions = 5"},
@@ -197,7 +207,7 @@ constexpr KeyRecord keys[] = {
     {"fit", "loss", Kind::text, R"("squared")",
      R"(ρ of the least sum Σ ρ((observed − computed)²/σ²): `"squared"`; `"huber"` or `"cauchy"`, which )"
      "count outliers less.",
-     R"(loss = "huber")"},
+     R"(loss = "huber")", false, losses},
 
     {"system file", "about", Kind::note, "none",
      "Texts about the system. The first is shown by `extremal list`; pictures use `axes` and `centres`.",
@@ -238,12 +248,6 @@ constexpr Requirement needs[] = {
     {"solve.steps", "solve.elements", "the times of the nodes are found for a given number of elements"},
     {"guess.orbit", "guess.file", "it chooses an orbit of a file"},
     {"boundary.map", "boundary.periodic", "a map relates the ends of a periodic orbit"},
-};
-
-constexpr MethodRecord methods[] = {
-    {"newton", "damped Newton method; elements and degree rise until the tolerance is met"},
-    {"ceres", "least squares of the residual by Ceres, then Newton's method"},
-    {"ipopt", "interior point method of Ipopt with the equations as constraints, then Newton's method"},
 };
 
 }  // namespace
@@ -294,6 +298,11 @@ std::vector<std::string> keys_of(std::string_view table) {
   for (const KeyRecord& k : keys)
     if (k.table == table && k.key != "*") names.emplace_back(k.key);
   return names;
+}
+
+std::vector<std::string> choices_of(std::string_view table, std::string_view key) {
+  const std::span<const std::string_view> choices = find_key(table, key)->choices;
+  return {choices.begin(), choices.end()};
 }
 
 }  // namespace extremal

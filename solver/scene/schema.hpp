@@ -35,6 +35,8 @@ struct KeyRecord {
   std::string_view meaning = {};
   std::string_view example = {};  ///< as TOML within its table
   bool by_name = false;           ///< a table of such values, under names of the user's
+  std::span<const std::string_view> choices =
+      {};  ///< the texts that there are; of a quantity, beside formulas
 };
 
 /// All keys, table by table.
@@ -43,8 +45,9 @@ std::span<const KeyRecord> key_records();
 /// The record of a key, or of "*", or null.
 const KeyRecord* find_key(std::string_view table, std::string_view key);
 
-/// The keys of a table, for suggestions.
+/// The keys of a table, and the choices of a key, for suggestions.
 std::vector<std::string> keys_of(std::string_view table);
+std::vector<std::string> choices_of(std::string_view table, std::string_view key);
 
 /// Two keys that exclude each other, as "table.key", and why.
 struct Exclusion {

@@ -48,6 +48,11 @@ struct UnknownName : SceneError {
         prefix(std::move(prefix)) {}
 };
 
+/// The same where `known` is all that can stand there: it is listed where none of it is near.
+struct UnknownChoice : UnknownName {
+  using UnknownName::UnknownName;
+};
+
 /// A string of a scene. `at` is its opening quote.
 struct Text {
   std::string value;

@@ -60,8 +60,8 @@ void read_axes(const Text& entry, const System& system, std::map<std::string, st
   const std::vector<std::string> known = axis_names(system);
   for (const Part& name : parts(entry.value, 0, colon)) {
     if (std::find(known.begin(), known.end(), name.text) == known.end())
-      throw UnknownName(position(entry, name.offset), fmt::format("there is no axis '{}'", name.text),
-                        name.text, known);
+      throw UnknownChoice(position(entry, name.offset), fmt::format("there is no axis '{}'", name.text),
+                          name.text, known);
     units[name.text] = unit;
   }
 }
@@ -81,7 +81,7 @@ Centre read_centre(const Text& entry, const System& system, const Vocabulary& vo
     try {
       centre.at.push_back(number(formula.text, vocabulary, ""));
     } catch (const FormulaError& e) {
-      throw SceneError(position(entry, formula.offset + e.offset), e.what());
+      throw FaultyFormula(position(entry, formula.offset + e.offset), e.what());
     }
   }
   return centre;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "linear/dense.hpp"
+#include "scene/schema.hpp"
 #include "study/naming.hpp"
 
 namespace extremal {
@@ -254,7 +255,7 @@ Duration read_duration(const BoundaryTable& boundary, const System& system) {
   duration.free = boundary.free;
   if (boundary.infinite) return duration;
   if (!boundary.free) {
-    duration.value = evaluate(boundary.duration, system);
+    duration.value = evaluate_beside(choices_of("boundary", "duration"), boundary.duration, system);
     if (!(duration.value > 0))
       throw SceneError(boundary.duration.at,
                        fmt::format("duration = {}; it must be positive", duration.value));

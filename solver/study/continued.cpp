@@ -195,7 +195,8 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
   if (known == system.parameters.end()) {
     std::vector<std::string> names{"duration", "energy"};
     for (const auto& [other, value] : system.parameters) names.push_back(other);
-    throw UnknownName(position(table.parameter, 0), fmt::format("unknown parameter '{}'", name), name, names);
+    throw UnknownChoice(position(table.parameter, 0), fmt::format("unknown parameter '{}'", name), name,
+                        names);
   }
   if (known->second.list)
     throw SceneError(position(table.parameter, 0),

@@ -29,7 +29,7 @@ EndCondition condition(const Text& text, const System& host, const Dependents& c
                 : end_condition(written.text, host, where);
   } catch (const FormulaError& e) {
     if (e.where.starts_with("definitions.")) throw;
-    throw SceneError(position(text, written.original(e.offset)), e.what());
+    throw FaultyFormula(position(text, written.original(e.offset)), e.what());
   }
 }
 

@@ -36,7 +36,7 @@ std::vector<std::string> known_names(const FitTable& table, const System& system
   return names;
 }
 
-/// The column of a name that is observed; throws UnknownName at the cell for another.
+/// The column of a name that is observed; throws UnknownChoice at the cell for another.
 ObservedColumn column_of(const std::string& name, const CsvCell& cell, const FitTable& table,
                          const System& system) {
   for (std::size_t k = 0; k < table.observe.size(); ++k)
@@ -54,31 +54,29 @@ ObservedColumn column_of(const std::string& name, const CsvCell& cell, const Fit
             static_cast<int>(found - system.names.begin()),
             0,
             {}};
-  throw UnknownName(cell.at,
-                    fmt::format("unknown column '{}': it is no coordinate, no velocity and no name in "
-                                "fit.observe",
-                                name),
-                    name, known_names(table, system));
+  throw UnknownChoice(cell.at,
+                      fmt::format("unknown column '{}': it is no coordinate, no velocity and no name in "
+                                  "fit.observe",
+                                  name),
+                      name, known_names(table, system));
 }
 
 Columns read_header(const CsvFile& file, const FitTable& table, const System& system) {
   Columns columns;
-  std::optional<std::size_t> time;
   std::vector<std::string> seen;
+  const auto time = std::ranges::find(file.header, std::string_view("t"), &CsvCell::text);
+  if (time == file.header.end()) throw missing_column(file, "t");
+  columns.time = time - file.header.begin();
   for (std::size_t c = 0; c < file.header.size(); ++c) {
     const std::string name(file.header[c].text);
     if (std::ranges::find(seen, name) != seen.end())
       throw SceneError(file.header[c].at, fmt::format("there are two columns '{}'", name));
     seen.push_back(name);
-    if (name == "t") {
-      time = c;
-    } else if (!name.starts_with(sigma)) {
+    if (c != columns.time && !name.starts_with(sigma)) {
       columns.observed.push_back(column_of(name, file.header[c], table, system));
       columns.values.push_back(c);
     }
   }
-  if (!time) throw SceneError(file.header.front().at, "the file has no column 't'");
-  columns.time = *time;
   columns.sigmas.resize(columns.observed.size());
   for (std::size_t c = 0; c < file.header.size(); ++c) {
     const std::string name(file.header[c].text);

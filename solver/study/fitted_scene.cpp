@@ -79,7 +79,7 @@ void FittedScene::read_parameters(const Scene& scene, const System& system) {
     if (known == system.parameters.end()) {
       std::vector<std::string> names;
       for (const auto& [other, value] : system.parameters) names.push_back(other);
-      throw UnknownName(position(text, 0), fmt::format("unknown parameter '{}'", name), name, names);
+      throw UnknownChoice(position(text, 0), fmt::format("unknown parameter '{}'", name), name, names);
     }
     if (known->second.list)
       throw SceneError(position(text, 0),

@@ -120,13 +120,7 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
   auto request = std::make_shared<FitRequest>();
   FitTask& task = request->task;
   const Problem& problem = study.problem;
-  if (table.loss) {
-    const std::optional<Loss> loss = find_loss(table.loss->value);
-    if (!loss)
-      throw UnknownName(position(*table.loss, 0), fmt::format("unknown loss '{}'", table.loss->value),
-                        table.loss->value, {"squared", "huber", "cauchy"});
-    task.loss = *loss;
-  }
+  if (table.loss) task.loss = find_loss(table.loss->value).value();
   const double latest =
       problem.duration.free ? std::numeric_limits<double>::infinity() : problem.duration.value;
   task.data = read_observations(table, scene.path, study.system, latest);

@@ -22,9 +22,10 @@ struct Integral {
 Integral integral_of(const Text& text) {
   const std::size_t equals = text.value.find('=');
   if (equals == std::string::npos || text.value.find('=', equals + 1) != std::string::npos)
-    throw SceneError(position(text, 0),
-                     "an integral is an equation: the integrand on the left, its integral from 0 to T on the "
-                     "right, as in \"sqrt(1 + y'^2) = 4\"");
+    throw FaultyFormula(
+        position(text, 0),
+        "an integral is an equation: the integrand on the left, its integral from 0 to T on the "
+        "right, as in \"sqrt(1 + y'^2) = 4\"");
   return {{text.value.substr(0, equals), text.at}, text.value.substr(equals + 1), equals + 1};
 }
 
@@ -58,8 +59,8 @@ double value_of_integral(const Text& text, const Scene& scene, const System& sys
     if (std::isfinite(value)) return of_unknowns(integral, scene) ? 0 : value;
   } catch (const FormulaError& e) {
     if (e.where.starts_with("definitions.")) throw;
-    throw SceneError(position(text, integral.value_offset + e.offset),
-                     fmt::format("{}; the right side of an integral is a number", e.what()));
+    throw FaultyFormula(position(text, integral.value_offset + e.offset),
+                        fmt::format("{}; the right side of an integral is a number", e.what()));
   }
   throw SceneError(position(text, integral.value_offset), "the value of the integral is not finite");
 }

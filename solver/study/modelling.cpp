@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "study/naming.hpp"
 #include "system/hamiltonian.hpp"
 
 namespace extremal {
@@ -81,7 +80,7 @@ SystemText system_text(const SystemTable& table) {
   return text;
 }
 
-SceneError at_its_place(const SystemTable& table, const FormulaError& e) {
+FaultyFormula at_its_place(const SystemTable& table, const FormulaError& e) {
   const std::map<std::string, Text> places = places_of(table);
   const auto place = places.find(e.where);
   return {place == places.end() ? table.at : position(place->second, e.offset), e.what()};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
+#include "study/naming.hpp"
 #include "system/constraints.hpp"
 #include "system/formula.hpp"
 
@@ -30,6 +31,6 @@ ConstrainedGraph make_constrained(const SystemTable& table);
 ConstrainedGraph make_constrained(const SystemTable& table, const System& system);
 
 /// An error of a formula of the system, at its place.
-SceneError at_its_place(const SystemTable& table, const FormulaError& error);
+FaultyFormula at_its_place(const SystemTable& table, const FormulaError& error);
 
 }  // namespace extremal

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
+
+#include "system/formula_lexer.hpp"
 
 namespace extremal {
 namespace {
@@ -28,6 +32,21 @@ double evaluate(const Quantity& quantity, const Vocabulary& vocabulary, int inde
   if (!std::isfinite(value))
     throw SceneError(position(text, 0), fmt::format("'{}' is not finite", text.value));
   return value;
+}
+
+double evaluate_beside(const std::vector<std::string>& words, const Quantity& quantity,
+                       const Vocabulary& vocabulary) {
+  const std::string* const written = std::get_if<std::string>(&quantity.value);
+  if (!written || !formula::is_name(*written)) return evaluate(quantity, vocabulary);
+  const Text text{*written, quantity.at};
+  std::vector<std::string> known;
+  for (const auto& [name, value] : vocabulary.parameters) known.push_back(name);
+  for (const auto& [name, definition] : vocabulary.definitions) known.push_back(name);
+  known.insert(known.end(), words.begin(), words.end());
+  if (std::ranges::find(words, nearest_name(text.value, known)) != words.end())
+    throw UnknownName(position(text, 0), fmt::format("unknown name '{}'", text.value), text.value,
+                      std::move(known));
+  return evaluate(quantity, vocabulary);
 }
 
 Range range_of(const std::string& name, const Location& at, const System& system,

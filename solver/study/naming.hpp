@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "scene/scene.hpp"
 #include "system/formula.hpp"
@@ -10,7 +11,12 @@
 
 namespace extremal {
 
-/// Calls f with the formula; its FormulaError becomes a SceneError at the place in the scene. That of a
+/// A formula that cannot be read, or names what does not exist.
+struct FaultyFormula : SceneError {
+  using SceneError::SceneError;
+};
+
+/// Calls f with the formula; its FormulaError becomes a FaultyFormula at the place in the scene. That of a
 /// definition goes on, see make_system.
 template <class Function>
 auto placed(const Text& text, Function&& f) {
@@ -18,13 +24,18 @@ auto placed(const Text& text, Function&& f) {
     return f(text.value);
   } catch (const FormulaError& e) {
     if (e.where.starts_with("definitions.")) throw;
-    throw SceneError(position(text, e.offset), e.what());
+    throw FaultyFormula(position(text, e.offset), e.what());
   }
 }
 
 /// The number, or the value of the formula, where `index` > 0 with the index i. Throws SceneError if it is
 /// not finite.
 double evaluate(const Quantity& quantity, const Vocabulary& vocabulary, int index = 0);
+
+/// The same of a quantity that may be a word too ("free") and is none. Throws UnknownName where the formula
+/// is such a word, misspelt.
+double evaluate_beside(const std::vector<std::string>& words, const Quantity& quantity,
+                       const Vocabulary& vocabulary);
 
 /// A coordinate or an element of an array: q[first] … q[first + count - 1].
 struct Range {

@@ -32,7 +32,7 @@ Equation equation_of(const Text& inequality) {
   std::string& text = equation.text.value;
   const std::size_t sign = text.find_first_of("<>=");
   const auto refuse = [&](std::size_t offset, const char* what) {
-    throw SceneError(position(inequality, offset), what);
+    throw FaultyFormula(position(inequality, offset), what);
   };
   if (sign == std::string::npos || text[sign] == '=')
     refuse(sign == std::string::npos ? 0 : sign,
@@ -80,17 +80,17 @@ void check_formulas(const InequalityTable& inequalities) {
   constexpr std::string_view velocities = "stands for velocities";
   for (std::size_t k = 0; k < inequalities.equations.size(); ++k) try {
       inequalities.graph({static_cast<int>(k)}, false);
-    } catch (const SceneError& e) {
+    } catch (const FaultyFormula& e) {
       const std::string what = e.what();
       const std::size_t found = what.find(velocities);
       if (found == std::string::npos) throw;
       const std::size_t begin = what.rfind(": ", found);
-      throw SceneError(e.at,
-                       what.substr(begin == std::string::npos ? 0 : begin + 2,
-                                   found + velocities.size() - (begin == std::string::npos ? 0 : begin + 2)) +
-                           "; an inequality along the path holds between coordinates: where a velocity is "
-                           "at its bound, the motion is that of a system without inertia, whose switches "
-                           "this method does not find. Write it between coordinates");
+      throw FaultyFormula(
+          e.at, what.substr(begin == std::string::npos ? 0 : begin + 2,
+                            found + velocities.size() - (begin == std::string::npos ? 0 : begin + 2)) +
+                    "; an inequality along the path holds between coordinates: where a velocity is "
+                    "at its bound, the motion is that of a system without inertia, whose switches "
+                    "this method does not find. Write it between coordinates");
     }
 }
 

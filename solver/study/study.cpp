@@ -266,7 +266,6 @@ Study make_study(const Scene& scene, Purpose purpose) {
     study.files.push_back(beside(scene.path, scene.spectrum->against->value));
   if (scene.fit) study.files.push_back(beside(scene.path, scene.fit->data.value));
   study.title = scene.title;
-  check_parameters_used(scene);
   study.forces = scene.system.force;
   study.constraints = scene.system.constraints;
   study.integrals = scene.boundary.integrals;
@@ -296,7 +295,7 @@ template <class Where>
 Study load_checked(const Where& where, const std::vector<std::string>& sets, Purpose purpose) {
   const Scene scene = with_unknowns(read_scene(where, sets));
   try {
-    return make_study(scene, purpose);
+    return with_parameters_used(scene, [&] { return make_study(scene, purpose); });
   } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
     throw at_its_place(scene.system, e);
   }

@@ -15,7 +15,7 @@ namespace {
 WaypointCondition read_waypoint(const WaypointTable& table, const System& system) {
   WaypointCondition waypoint;
   waypoint.free = table.free;
-  if (!table.free) waypoint.time = evaluate(table.time, system);
+  if (!table.free) waypoint.time = evaluate_beside(choices_of("waypoints", "at"), table.time, system);
   std::vector<char> fixed(system.names.size());
   for (const Assignment& a : table.values)
     for_each_value(a, range_of(a.name, a.name_at, system, keys_of("waypoints")),

@@ -169,7 +169,7 @@ std::set<std::string> names_in(const std::string& formula);
 /// The coordinate whose velocity a name of another notation means ("x" for dx, x_dot, v_x), or empty.
 std::string velocity_meant(const std::string& name, std::span<const Coordinate> coordinates);
 
-/// The nearest of `known` to a misspelt name, or empty if none is near.
+/// The nearest of `known` to a misspelt name, or one that begins with it, or empty if none is near.
 std::string nearest_name(const std::string& name, std::span<const std::string> known);
 
 }  // namespace extremal

@@ -159,7 +159,7 @@ Names names_of(const SystemText& text) {
   names.kind = text.hamiltonian ? Kind::hamiltonian : Kind::lagrangian;
   if (names.kind == Kind::hamiltonian) names.declare_momenta();
   names.declare(text.definitions);
-  for (Formula& definition : names.definitions) definition = parse(definition.text, definition.where);
+  parse_definitions(names);
   return names;
 }
 

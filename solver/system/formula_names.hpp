@@ -31,6 +31,9 @@ enum class Kind {
   hamiltonian,  ///< coordinates, momenta, t; so are definitions, where a Hamiltonian is written
 };
 
+/// Whether the formula is read along a motion.
+inline bool in_motion(Kind kind) { return kind == Kind::lagrangian || kind == Kind::hamiltonian; }
+
 /// What a declared name is.
 struct Known {
   Meaning meaning = Meaning::none;
@@ -72,6 +75,9 @@ Names names_of(Kind kind, const Vocabulary& vocabulary);
 /// Gives every name in the formula its meaning, and likewise in all definitions that it needs, which are
 /// parsed for that.
 void resolve(Formula& formula, Names& names);
+
+/// Parses all definitions. Throws FormulaError, also for a cycle among them.
+void parse_definitions(Names& names);
 
 /// Makes i = `index` known to a formula, unless it is 0, and resolves that. Returns the values of the
 /// indices.

@@ -42,7 +42,7 @@ std::string velocity_meant(const std::string& name, std::span<const Coordinate> 
 }
 
 std::string nearest_name(const std::string& name, std::span<const std::string> known) {
-  constexpr std::size_t longest = 64;
+  constexpr std::size_t longest = 64, shortest_beginning = 3;
   const auto same_letters = [&](const std::string& other) {
     return std::ranges::equal(name, other, {}, lower, lower);
   };
@@ -56,7 +56,10 @@ std::string nearest_name(const std::string& name, std::span<const std::string> k
     least = distance;
     nearest = candidate;
   }
-  return nearest;
+  if (!nearest.empty() || name.size() < shortest_beginning) return nearest;
+  const auto longer = [&](const std::string& other) { return other.starts_with(name); };
+  const auto found = std::ranges::find_if(known, longer);
+  return found == known.end() ? nearest : *found;
 }
 
 }  // namespace extremal

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "system/formula_lexer.hpp"
-#include "system/formula_syntax.hpp"
+#include "system/formula_names.hpp"
 
 namespace extremal::formula {
 
@@ -48,7 +48,10 @@ class Parser {
 
   static std::uint32_t narrow(std::size_t offset) { return static_cast<std::uint32_t>(offset); }
 
-  void advance() { token_ = lexer_.next(); }
+  void advance() {
+    previous_ = token_;
+    token_ = lexer_.next();
+  }
 
   [[noreturn]] void stop(std::size_t offset, std::string message) const {
     fail(formula_, offset, std::move(message));
@@ -58,6 +61,10 @@ class Parser {
     if (token_.kind == TokenKind::end) stop(token_.offset, "the formula ends where a value is expected");
     std::string mend;
     if (token_.kind != TokenKind::symbol || token_.is('(')) mend = "; write '*' to multiply";
+    if (token_.kind == TokenKind::name && previous_.kind == TokenKind::number)
+      mend += ", and numbers without units";
+    if (previous_.kind == TokenKind::name && find_function(previous_.text) != nullptr)
+      mend = fmt::format("; write {}(…)", previous_.text);
     if (token_.is(')')) mend = "; no '(' is open";
     if (token_.is('=')) mend = "; a formula has no '='";
     if (token_.is('*') && formula_.text[token_.offset - (token_.offset > 0)] == '*')
@@ -211,7 +218,7 @@ class Parser {
 
   Formula& formula_;
   Lexer lexer_;
-  Token token_;
+  Token token_, previous_;
   int depth_ = 0;
 };
 

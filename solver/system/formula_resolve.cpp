@@ -1,10 +1,9 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "system/formula_mend.hpp"
 #include "system/formula_names.hpp"
 
 namespace extremal::formula {
@@ -92,8 +91,7 @@ class Resolver {
       return;
     } else if (name == "pi") {
       node.meaning = Meaning::pi;
-    } else if (name == "t" &&
-               (kind_ == Kind::guess || kind_ == Kind::lagrangian || kind_ == Kind::hamiltonian)) {
+    } else if (name == "t" && (in_motion(kind_) || kind_ == Kind::guess)) {
       node.meaning = Meaning::time;
     } else {
       unknown(node, name);
@@ -112,13 +110,13 @@ class Resolver {
         stop(node, fmt::format("'{}' is a momentum and has no velocity", name));
       if (node.velocity && kind_ == Kind::hamiltonian)
         stop(node, fmt::format("\"{0}'\" is a velocity; a hamiltonian has momenta: {1}", name,
-                               momentum_of(name, known)));
+                               momentum_of(name, known.array)));
       if (kind_ == Kind::condition)
         stop(node, fmt::format("write {0}(0) or {0}(T): a condition holds between end values",
-                               spelled(name, known)));
+                               spelled(name, known.array)));
       if (kind_ == Kind::quantity)
         stop(node, fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values",
-                               spelled(name, known)));
+                               spelled(name, known.array)));
       if (kind_ == Kind::number || kind_ == Kind::guess)
         stop(node, fmt::format("'{}' is a coordinate; only parameters can stand here", name));
       if (node.velocity && kind_ == Kind::map)
@@ -137,17 +135,12 @@ class Resolver {
     return formula.nodes[formula.root];
   }
 
-  static std::string momentum_of(const std::string& coordinate, const Known& known) {
-    return fmt::format("p_{}{}", coordinate, known.array ? "[1]" : "");
-  }
-
   /// Whether a definition may stand in a formula of this kind, by what it is made of.
   void defined(const Syntax& node, const std::string& name) const {
     const std::uint8_t reads = root_of(node).reads;
     if (node.velocity && kind_ == Kind::hamiltonian)
       stop(node, fmt::format("\"{0}'\" is a velocity; a hamiltonian has momenta: {1}", name,
-                             momentum_of(names_.coordinates.front().name,
-                                         {.array = names_.coordinates.front().array})));
+                             momentum_of(names_.coordinates.front().name, names_.coordinates.front().array)));
     if (node.velocity && kind_ != Kind::lagrangian)
       stop(node, fmt::format("\"{}'\" is a velocity; it can stand in the Lagrangian only", name));
     if (node.velocity && (reads & of_velocities))
@@ -157,19 +150,15 @@ class Resolver {
     if (kind_ == Kind::quantity && (reads & ~of_time))
       stop(node,
            fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values", name));
-    const std::uint8_t allowed = kind_ == Kind::lagrangian || kind_ == Kind::hamiltonian ? 0xff
-                                 : kind_ == Kind::map                                    ? of_coordinates
-                                 : kind_ == Kind::guess                                  ? of_time
-                                                                                         : 0;
+    const std::uint8_t allowed = in_motion(kind_)       ? 0xff
+                                 : kind_ == Kind::map   ? of_coordinates
+                                 : kind_ == Kind::guess ? of_time
+                                                        : 0;
     if (reads & ~allowed)
       stop(node, fmt::format("the definition '{}' depends on {}, which cannot stand here", name,
                              reads & ~allowed & of_coordinates  ? "coordinates"
                              : reads & ~allowed & of_velocities ? "velocities"
                                                                 : "t"));
-  }
-
-  static std::string spelled(const std::string& name, const Known& known) {
-    return known.array ? name + "[1]" : name;
   }
 
   void check_index(const Syntax& node, const std::string& name, const Known& known) const {
@@ -206,11 +195,12 @@ class Resolver {
     const bool definition = known != nullptr && known->meaning == Meaning::definition;
     const Syntax& argument = child(node, node.indexed);
     if (!index && argument.form == Form::reference && formula_.name(argument) == "t")
-      stop(node, fmt::format("write {0}{1} for {0}{1}(t)", spelled(name, *known), node.velocity ? "'" : ""));
+      stop(node,
+           fmt::format("write {0}{1} for {0}{1}(t)", spelled(name, known->array), node.velocity ? "'" : ""));
     if (index || (known->meaning != Meaning::coordinate && !definition) || !ends)
       stop(node, fmt::format("'{}' is {}, not a function; write {}*(…) to multiply", name,
                              kind_of(index ? Meaning::index : known->meaning),
-                             index ? name : spelled(name, *known)));
+                             index ? name : spelled(name, known->array)));
     if (node.velocity && kind_ == Kind::condition)
       stop(node, fmt::format("\"{}'\" is a velocity; conditions hold between coordinates", name));
     if (node.indexed) visit(formula_.children(node)[0].node);
@@ -219,7 +209,7 @@ class Resolver {
     const bool start = when.form == Form::number && when.value == 0;
     const bool end = when.form == Form::reference && !when.indexed && formula_.name(when) == "T";
     if (node.count != 1u + node.indexed || (!start && !end))
-      stop(node, fmt::format("write {0}(0) or {0}(T) for the value at an end", spelled(name, *known)));
+      stop(node, fmt::format("write {0}(0) or {0}(T) for the value at an end", spelled(name, known->array)));
     node.id = known->id;
     node.meaning = definition ? (start ? Meaning::definition_start : Meaning::definition_end)
                               : (start ? Meaning::start : Meaning::end);
@@ -236,70 +226,8 @@ class Resolver {
     const bool call = node.form == Form::call;
     if (!call && find_function(name) != nullptr)
       stop(node, fmt::format("'{}' is a function; write {}(…)", name, name));
-    std::vector<std::string> known;
-    if (!call) known = indices_;
-    for (const auto& [other, meaning] : names_.table)
-      if (!call || kind_ == Kind::condition || kind_ == Kind::quantity) known.push_back(other);
-    for (const Function& function : functions()) known.emplace_back(function.name);
-    known.insert(known.end(), {"sum", "pi"});
-    const std::string nearest = nearest_name(name, known);
-    std::string mend = nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
-    if (nearest.empty() && !call) mend = "; is it a parameter that is not declared?" + declared_parameters();
-    if (nearest.empty() && call) {
-      mend = "; known are sum";
-      for (const Function& function : functions()) mend += fmt::format(" {}", function.name);
-    }
-    if (kind_ == Kind::lagrangian && !velocity_mend(name, call).empty()) mend = velocity_mend(name, call);
-    if (kind_ != Kind::guess && !call && !momentum_mend(name).empty()) mend = momentum_mend(name);
-    if (call && kind_ == Kind::condition && !end_momentum_mend(name).empty()) mend = end_momentum_mend(name);
-    if (name == "t") mend = "; the time cannot stand here";
-    if (name == "T") mend = "; T is the duration only in a guess, and in x(T) in a condition";
-    stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80), mend));
-  }
-
-  /// The names of parameters, if they are few.
-  std::string declared_parameters() const {
-    constexpr std::size_t few = 8;
-    std::vector<std::string> names;
-    for (const auto& [name, known] : names_.table)
-      if (known.meaning == Meaning::parameter || known.meaning == Meaning::active) names.push_back(name);
-    if (names.empty() || names.size() > few) return {};
-    return fmt::format(" Declared: {}", fmt::join(names, ", "));
-  }
-
-  /// For p_x where it does not stand for a momentum, and p_y where there is no y.
-  std::string momentum_mend(const std::string& name) const {
-    if (!name.starts_with("p_") || names_.coordinates.empty()) return {};
-    const Coordinate& first = names_.coordinates.front();
-    const Known* known = names_.find(name.substr(2));
-    if (known != nullptr && known->meaning == Meaning::coordinate && kind_ == Kind::lagrangian)
-      return fmt::format("; momenta stand in a hamiltonian; here are velocities: {}{}'", name.substr(2),
-                         known->array ? "[1]" : "");
-    if (kind_ != Kind::hamiltonian) return {};
-    return fmt::format("; there is no coordinate '{}'; momenta are those of coordinates: {}", name.substr(2),
-                       momentum_of(first.name, {.array = first.array}));
-  }
-
-  /// For p_x(0) and p_x(T).
-  std::string end_momentum_mend(const std::string& name) const {
-    if (!name.starts_with("p_")) return {};
-    const Known* known = names_.find(name.substr(2));
-    if (known == nullptr || known->meaning != Meaning::coordinate) return {};
-    return fmt::format(
-        "; conditions hold between coordinates, and a momentum is given at its end: start = {{ "
-        "{0} = … }} or end = {{ {0} = … }}",
-        name);
-  }
-
-  /// For dx/dt, x_dot, v_x, diff(x, t) and the like.
-  std::string velocity_mend(const std::string& name, bool call) const {
-    constexpr std::array derivatives{"diff", "dot", "ddt", "der", "deriv", "derivative", "D", "d"};
-    std::string coordinate = velocity_meant(name, names_.coordinates);
-    const bool other = call ? std::ranges::find(derivatives, name) != derivatives.end() : name == "dt";
-    if (other && !names_.coordinates.empty()) coordinate = names_.coordinates.front().name;
-    if (coordinate.empty()) return {};
-    const bool array = names_.find(coordinate)->array;
-    return fmt::format("; velocities are written {}{}'", coordinate, array ? "[1]" : "");
+    stop(node, fmt::format("unknown {} '{}'{}", call ? "function" : "name", name.substr(0, 80),
+                           mend_of_unknown(name, call, names_, kind_, indices_)));
   }
 
   /// Properties of a node from those of its children.
@@ -395,12 +323,13 @@ struct Visit {
        fmt::format("definitions form a cycle: {}{}", cycle, name(again)));
 }
 
-}  // namespace
-
-void resolve(Formula& formula, Names& names) {
+/// Parses the definitions that `used` needs, and calls ready(id) for each after those that it needs itself;
+/// at last ready(-1).
+template <class Ready>
+void visit_definitions(Names& names, std::vector<std::pair<int, std::uint32_t>> used, const Ready& ready) {
   enum State : char { unseen, open, done };
   std::vector<State> state(names.definitions.size(), unseen);
-  std::vector<Visit> path{{-1, definitions_in(formula, names)}};
+  std::vector<Visit> path{{-1, std::move(used)}};
   while (!path.empty()) {
     Visit& visit = path.back();
     if (visit.next < visit.used.size()) {
@@ -414,13 +343,27 @@ void resolve(Formula& formula, Names& names) {
       }
       continue;
     }
-    if (visit.definition < 0)
-      Resolver(formula, names, names.kind, names.indices).visit(formula.root);
-    else if (Formula& needed = names.definitions[visit.definition]; true)
-      Resolver(needed, names, names.of_definitions(), {}).visit(needed.root);
+    ready(visit.definition);
     if (visit.definition >= 0) state[visit.definition] = done;
     path.pop_back();
   }
+}
+
+}  // namespace
+
+void resolve(Formula& formula, Names& names) {
+  visit_definitions(names, definitions_in(formula, names), [&](int definition) {
+    if (definition < 0)
+      Resolver(formula, names, names.kind, names.indices).visit(formula.root);
+    else if (Formula& needed = names.definitions[definition]; true)
+      Resolver(needed, names, names.of_definitions(), {}).visit(needed.root);
+  });
+}
+
+void parse_definitions(Names& names) {
+  std::vector<std::pair<int, std::uint32_t>> all;
+  for (std::size_t k = 0; k < names.definitions.size(); ++k) all.emplace_back(static_cast<int>(k), 0);
+  visit_definitions(names, std::move(all), [](int) {});
 }
 
 std::vector<double> resolve_at(Formula& formula, Names& names, int index) {

@@ -72,7 +72,7 @@ std::vector<Case> cases() {
       {"HugeArray", with("\"q\"", "\"q[1000000000000]\""), "scene.toml:3:"},
       {"HugeSum", with("cos(q)", "sum(i, 1, 1000000000000, q*i)"), "scene.toml:4:"},
       {"UnknownKeyOfATable", pendulum + "[path]\nto = 5\n",
-       "scene.toml:10:1: unknown key 'to' in [path]\n"},
+       "scene.toml:10:1: unknown key 'to' in [path]; there is 'constraints'\n"},
       {"NoSolutionsWanted", pendulum + "[search]\nsolutions = 0\n",
        "scene.toml:10:13: solutions = 0; need 1 to 1000\n"},
   };

@@ -177,6 +177,30 @@ TEST_F(Scenes, ParametersThatNothingUses) {
   EXPECT_EQ(refused("a = 1", {"continuation.parameter=a", "continuation.to=2"}), "");
 }
 
+TEST_F(Scenes, FaultsOfFormulasAreToldBeforeUnusedParameters) {
+  const auto refused = [&](const std::string& lagrangian, const std::string& parameter = "k",
+                           const std::string& end = "1", const std::string& more = "") {
+    return message("[system]\ncoordinates = [\"x\"]\nparameters = { " + parameter +
+                   " = 1 }\nlagrangian = \"" + lagrangian +
+                   "\"\n[boundary]\nstart = { x = 0 }\nend = { x = " + end + " }\nduration = 1\n" + more);
+  };
+  EXPECT_EQ(refused("x'^2/2 - kx^2/2"), "scene.toml:4:24: unknown name 'kx'; did you mean 'k*x'?");
+  EXPECT_EQ(refused("x'^2/2 - mu*x^2/2", "Mu"), "scene.toml:4:24: unknown name 'mu'; did you mean 'Mu'?");
+  EXPECT_EQ(refused("x'^2/2 - /2"), "scene.toml:4:24: unexpected '/'");
+  EXPECT_EQ(refused(""), "scene.toml:4:15: the formula is empty");
+  EXPECT_EQ(refused("x'^2/2", "k", "\"2*kk\""), "scene.toml:7:16: unknown name 'kk'; did you mean 'k*k'?");
+  EXPECT_EQ(refused("x'^2/2", "k", "1", "[path]\nconstraints = [\"x >= -kk\"]\n").substr(0, 33),
+            "scene.toml:10:23: unknown name 'k");
+  EXPECT_EQ(refused("x'^2/2", "k", "1", "[guess]\nx = \"t/T + kt\"\n"),
+            "scene.toml:10:12: unknown name 'kt'; did you mean 'k*t'?");
+  EXPECT_EQ(refused("x'^2/2", "k", "1", "[guess]\nX = \"t/T\"\n").substr(0, 40),
+            "scene.toml:10:1: unknown coordinate 'X';");
+  // What else is wrong may follow from the parameter.
+  EXPECT_EQ(refused("x'^2/2", "k", "1", "[[waypoints]]\nat = 2\nx = 0.2\n"),
+            "scene.toml:3:16: nothing uses the parameter 'k'");
+  EXPECT_EQ(refused("x'^2/2"), "scene.toml:3:16: nothing uses the parameter 'k'");
+}
+
 TEST_F(Scenes, ErrorsOfFormulasPointIntoTheScene) {
   EXPECT_EQ(
       message(masses + "[boundary]\nstart = { x = \"2*kk\" }\nduration = 2\n").rfind("scene.toml:7:18: ", 0),
@@ -194,6 +218,13 @@ TEST_F(Scenes, CyclicDefinitionsAreNamed) {
       "\"x'^2/2 - a\"\n" +
       ends);
   EXPECT_EQ(text.rfind("scene.toml:3:", 0), 0u) << text;
+  const auto unused = [&](const std::string& definitions) {
+    return message("[system]\ncoordinates = [\"x\"]\ndefinitions = { " + definitions +
+                   " }\nlagrangian = \"x'^2/2\"\n" + ends);
+  };
+  EXPECT_EQ(unused("r = \"r + 1\""), "scene.toml:3:22: definitions form a cycle: r -> r");
+  EXPECT_EQ(unused("a = \"b\", b = \"a\""), "scene.toml:3:31: definitions form a cycle: a -> b -> a");
+  EXPECT_EQ(unused("a = \"b\", b = \"x\""), "");
 }
 
 TEST_F(Scenes, Durations) {

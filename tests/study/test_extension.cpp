@@ -236,8 +236,13 @@ TEST_F(Scenes, ExtensionsThatAreRefused) {
       0u);
   EXPECT_EQ(message(free + fixed + "integrals = [\"x'*zz = 1\"]\n").rfind("scene.toml:8:18: ", 0), 0u);
   EXPECT_EQ(
-      message(free + fixed + "unknowns = { k = 1 }\n").rfind("scene.toml:8:14: 'where' has 0 equations", 0),
-      0u);
+      message(free + fixed + "unknowns = { k = 1 }\n"),
+      "scene.toml:8:14: 'where' has 0 equations, and 1 number is to be determined: the unknowns; give as "
+      "many equations, between end values that are not fixed");
+  EXPECT_EQ(
+      message(free + fixed + "unknowns = { k = 1 }\nwhere = [\"x(0) = 1\", \"x(T) = 1\"]\n"),
+      "scene.toml:9:10: 'where' has 2 equations, and 1 number is to be determined: the unknowns; give as "
+      "many equations, or more unknowns");
   EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[fit]\ndata = \"observed.csv\"\n")
                 .rfind("scene.toml:9:", 0),
             0u);

@@ -406,7 +406,7 @@ TEST_F(Fits, RefuseBadInput) {
   const std::string good = "t,theta\n0,1\n1,0.5\n2,0.2\n3,0.1\n";
   EXPECT_NE(message(start + "data = \"none.csv\"\n").find("no such file: 'none.csv'"), std::string::npos);
   EXPECT_EQ(with("t,phi\n0,1\n", all).substr(0, 34), "data.csv:1:3: unknown column 'phi'");
-  EXPECT_EQ(with("s,theta\n0,1\n", all).substr(0, 13), "data.csv:1:1:");
+  EXPECT_EQ(with("time,theta\n0,1\n", all), "data.csv:1:1: the file has no column 't'; it has time, theta");
   EXPECT_EQ(with("x,t,theta\n", fit).substr(0, 13), "data.csv:1:1:");
   EXPECT_EQ(with("t,theta\n", all), "data.csv: the file has no observations");
   EXPECT_EQ(with("t,theta\n0,1\n3.5,1\n", all), "data.csv:3:1: t = 3.5 is not between 0 and the duration, 3");

@@ -89,13 +89,24 @@ TEST_F(Scenes, GuessFilesThatAreWrong) {
     write("g.csv", content);
     return message(masses + ends + "[guess]\nfile = \"g.csv\"\n");
   };
-  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"), "g.csv:1:1: the file has no column 'q[3]'");
+  EXPECT_EQ(csv("t,x,q[1],q[2]\n0,0,0,0\n1,1,1,1\n"),
+            "g.csv:1:1: the file has no column 'q[3]'; it has t, x, q[1], q[2]");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,a,1,1\n"), "g.csv:3:5: 'a' is not a finite number");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,nan,1,1\n"), "g.csv:3:5: 'nan' is not a finite number");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,1,1\n"), "g.csv:3:1: found 4 values for 5 columns");
-  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n"), "g.csv: found 1 samples; need at least 2");
+  EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n"), "g.csv:2:1: found 1 sample; need at least 2");
+  EXPECT_EQ(csv("x,t,q[1],q[2],q[3]\n# none\n"), "g.csv:1:1: found 0 samples; need at least 2");
+  EXPECT_EQ(csv("# none\n"), "g.csv: the file has no columns; write a column t and one for each coordinate");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"),
-            "g.csv: the times must increase; found 0 after 0");
+            "g.csv:3:1: the times must increase; found 0 after 0");
+  EXPECT_EQ(csv("x,t,q[1],q[2],q[3]\n0,0,0,0,0\n0,2,0,0,0\n\n0,1,0,0,0\n"),
+            "g.csv:5:3: the times must increase; found 1 after 2");
+  EXPECT_EQ(csv("time,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,1,1,1\n"),  // without velocities: a path
+            "g.csv:1:1: the file has no column 't'; it has time, x, q[1], q[2], q[3]");
+  EXPECT_EQ(csv("time,x,x',q[1],q[2],q[3]\n0,0,0,0,0,0\n"),  // a state
+            "g.csv:1:1: the file has no column 'q[1]''; it has time, x, x', q[1], q[2], q[3]");
+  EXPECT_EQ(csv("t;x\n0;1\n"),
+            "g.csv:1:1: the file has no column 't'; it has t;x alone: commas separate columns");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"none.csv\"\n"),
             "scene.toml:11:8: no such file: 'none.csv'");
 }

@@ -27,7 +27,55 @@ TEST_F(Scenes, UnknownNamesGetASuggestion) {
   misspelt.replace(misspelt.find("lagrangian"), 10, "lagrangain");
   EXPECT_EQ(message(misspelt),
             "scene.toml:5:1: unknown key 'lagrangain' in [system]; did you mean 'lagrangian'?");
-  EXPECT_EQ(message(masses + ends + "[xyzzy]\n"), "scene.toml:10:2: unknown key 'xyzzy'");
+  EXPECT_EQ(message(masses + ends + "[xyzzy]\n"),
+            "scene.toml:10:2: unknown key 'xyzzy'; there are 'title', 'system', 'boundary', 'waypoints', "
+            "'guess', 'solve', 'search', 'continuation', 'spectrum', 'units', 'fit', 'path'");
+}
+
+TEST_F(Scenes, ChoicesAreListedWhereNoneIsNear) {
+  const std::string scene = masses + ends;  // 9 lines
+  EXPECT_EQ(message(scene + "[solve]\nmethod = \"bfgs\"\n"),
+            "scene.toml:11:11: unknown method 'bfgs'; there are 'newton', 'ceres', 'ipopt'");
+  EXPECT_EQ(message(scene + "[solve]\nmethod = \"Newton\"\n"),
+            "scene.toml:11:11: unknown method 'Newton'; did you mean 'newton'?");
+  EXPECT_EQ(message(scene + "[solve]\ntol = 1e-6\n"),
+            "scene.toml:11:1: unknown key 'tol' in [solve]; did you mean 'tolerance'?");
+  EXPECT_EQ(message(scene + "[fit]\ndata = \"d.csv\"\nloss = \"l1\"\n"),
+            "scene.toml:12:9: unknown loss 'l1'; there are 'squared', 'huber', 'cauchy'");
+  EXPECT_EQ(message(scene + "[continuation]\nparameter = \"k\"\nfrom = 1\nto = 2\n"),
+            "scene.toml:12:1: unknown key 'from' in [continuation]; there are 'parameter', 'to', 'points', "
+            "'switch'");
+  EXPECT_EQ(message(scene + "[path]\nwithin = []\n"),
+            "scene.toml:11:1: unknown key 'within' in [path]; there is 'constraints'");
+  std::string begin = scene;
+  begin.replace(begin.find("start"), 5, "begin");
+  EXPECT_EQ(message(begin),
+            "scene.toml:7:1: unknown key 'begin' in [boundary]; there are 'start', 'end', 'duration', "
+            "'energy', 'where', 'periodic', 'map', 'conditions', 'integrals', 'unknowns'");
+}
+
+TEST_F(Scenes, WordsBesideNumbersAreSuggested) {
+  const auto lasting = [&](const std::string& duration) {
+    return message(masses + "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = " + duration + "\n");
+  };
+  EXPECT_EQ(lasting("\"infinity\""), "scene.toml:9:13: unknown name 'infinity'; did you mean 'infinite'?");
+  EXPECT_EQ(lasting("\"inf\""), "scene.toml:9:13: unknown name 'inf'; did you mean 'infinite'?");
+  EXPECT_EQ(lasting("inf"),
+            "scene.toml:9:12: 'duration' in [boundary] must be finite, found inf; did you mean 'infinite'?");
+  EXPECT_EQ(lasting("nan"), "scene.toml:9:12: 'duration' in [boundary] must be finite, found nan");
+  EXPECT_EQ(lasting("\"Free\""), "scene.toml:9:13: unknown name 'Free'; did you mean 'free'?");
+  EXPECT_EQ(lasting("\"1 s\""),
+            "scene.toml:9:15: unexpected 's'; write '*' to multiply, and numbers without units");
+  EXPECT_EQ(lasting("\"k\""), "");
+  EXPECT_EQ(
+      message(masses + ends, {"system.parameters.fr=2", "system.parameters.ee=1", "boundary.duration=fr*ee"}),
+      "");
+  const auto at = [&](const std::string& time) {
+    return message(masses + ends + "[[waypoints]]\nat = " + time + "\nx = 0.2\n");
+  };
+  EXPECT_EQ(at("\"fre\""), "scene.toml:11:7: unknown name 'fre'; did you mean 'free'?");
+  EXPECT_EQ(at("\"mid\""),  // min is a function
+            "scene.toml:11:7: unknown name 'mid'; is it a parameter that is not declared? Declared: k, m");
 }
 
 TEST_F(Scenes, LagrangiansThatAreNotRegular) {

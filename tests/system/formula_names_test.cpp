@@ -172,13 +172,15 @@ TEST(FormulaNames, DefinitionsAreResolvedByDependence) {
 
 TEST(FormulaNames, CyclesArePrinted) {
   SystemText text{.coordinates = {"x"},
-                  .definitions = {{"a", "b + x"}, {"b", "2*c"}, {"c", "x*b"}, {"d", "d"}},
+                  .definitions = {{"a", "b + x"}, {"b", "2*c"}, {"c", "x*b"}, {"d", "2"}},
                   .lagrangian = free_particle};
-  EXPECT_EQ(error_of(text), "no error");
+  EXPECT_EQ(error_of(text), "definitions form a cycle: b -> c -> b | definitions.c | 2");
   text.lagrangian = "a";
   EXPECT_EQ(error_of(text), "definitions form a cycle: b -> c -> b | definitions.c | 2");
-  text.lagrangian = "d";
+  text.definitions = {{"d", "d + 1"}};
   EXPECT_EQ(error_of(text), "definitions form a cycle: d -> d | definitions.d | 0");
+  text.definitions = {{"a", "b + c"}, {"b", "c"}, {"c", "x"}};
+  EXPECT_EQ(error_of(text), "no error");
 }
 
 TEST(FormulaNames, UnusedDefinitionsAreOnlyParsed) {

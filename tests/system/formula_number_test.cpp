@@ -80,7 +80,10 @@ TEST(FormulaNumber, MalformedFormulasAreRefusedWhereTheyBreak) {
   EXPECT_EQ(refusal(""), "the formula is empty | duration | 0");
   EXPECT_EQ(refusal("  "), "the formula is empty | duration | 0");
   EXPECT_EQ(refusal("1 +"), "the formula ends where a value is expected | duration | 3");
-  EXPECT_EQ(refusal("2 a"), "unexpected 'a'; write '*' to multiply | duration | 2");
+  EXPECT_EQ(refusal("2 a"),
+            "unexpected 'a'; write '*' to multiply, and numbers without units | duration | 2");
+  EXPECT_EQ(refusal("(a) a"), "unexpected 'a'; write '*' to multiply | duration | 4");
+  EXPECT_EQ(refusal("sin a"), "unexpected 'a'; write sin(…) | duration | 4");
   EXPECT_EQ(refusal("(1)(2)"), "unexpected '('; write '*' to multiply | duration | 3");
   EXPECT_EQ(refusal("2**3"), "unexpected '*'; a power is written '^' | duration | 2");
   EXPECT_EQ(refusal("1)"), "unexpected ')'; no '(' is open | duration | 1");
@@ -106,6 +109,10 @@ TEST(FormulaNumber, MalformedFormulasAreRefusedWhereTheyBreak) {
 
 TEST(FormulaNumber, UnknownNamesAreMended) {
   EXPECT_EQ(refusal("1 + sn(a)"), "unknown function 'sn'; did you mean 'sin'? | duration | 4");
+  EXPECT_EQ(refusal("a*sqr"),
+            "unknown name 'sqr'; is it a parameter that is not declared? Declared: a, m, n | duration | 2");
+  EXPECT_EQ(refusal("2*na"), "unknown name 'na'; did you mean 'n*a'? | duration | 2");
+  EXPECT_EQ(refusal("npi"), "unknown name 'npi'; did you mean 'n*pi'? | duration | 0");
   EXPECT_EQ(refusal("sqr(a)"), "unknown function 'sqr'; did you mean 'sqrt'? | duration | 0");
   EXPECT_EQ(refusal("q + 1"),
             "unknown name 'q'; is it a parameter that is not declared? Declared: a, m, n | duration | 0");

@@ -147,6 +147,7 @@ GuessFile read_auto_file(const SourcePointer& source, const std::vector<std::str
                                        header.label, header.columns - 1, names.size()));
     Words inside = words;
     chosen = read_solution(inside, header, names.size());
+    check_times(chosen->t, [&](std::size_t) { return at; });
     for (long k = 0; k < header.lines; ++k) words.rest_of_line();
   }
   if (!orbit && labels.size() > 1)

@@ -1,6 +1,7 @@
 #include "study/files/csv_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -40,6 +41,17 @@ double number_in(const CsvCell& cell) {
   if (error != std::errc() || stop != end || !std::isfinite(value))
     throw SceneError(cell.at, fmt::format("'{}' is not a finite number", cell.text));
   return value;
+}
+
+SceneError missing_column(const CsvFile& file, std::string_view name) {
+  constexpr std::size_t most_listed = 12;
+  std::vector<std::string_view> names;
+  for (const CsvCell& cell : file.header) names.push_back(cell.text);
+  if (names.size() > most_listed) names[most_listed] = "…";
+  names.resize(std::min(names.size(), most_listed + 1));
+  return {file.header.front().at,
+          fmt::format("the file has no column '{}'; it has {}{}", name, fmt::join(names, ", "),
+                      names.size() == 1 ? " alone: commas separate columns" : "")};
 }
 
 CsvFile read_csv(const SourcePointer& source) {

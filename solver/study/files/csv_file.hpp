@@ -25,6 +25,9 @@ struct CsvFile {
 /// Throws SceneError, with the line, where a row has more or fewer cells than the header.
 CsvFile read_csv(const std::shared_ptr<const Source>& source);
 
+/// "the file has no column 'x'; it has t, y", at the header, which is not empty.
+SceneError missing_column(const CsvFile& file, std::string_view name);
+
 /// Throws SceneError, with line and column, where the cell is not a finite number.
 double number_in(const CsvCell& cell);
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,13 @@
 /// \file One reader for each kind of guess file. All throw SceneError.
 
 namespace extremal {
+
+/// Throws SceneError unless there are two times or more, each after the one before it; place(k) is where the
+/// k-th is written, place(0) also where there is none.
+void check_times(std::span<const double> t, const std::function<Location(std::size_t)>& place);
+
+/// Whether the table has the velocity of a coordinate, by one of its names: then its rows are initial states.
+bool has_velocities(const CsvFile& table, const std::vector<std::string>& names);
 
 /// The row `orbit` of initial states. Coordinates are called as in the scene, `x` or `x0`; velocities `x'`,
 /// `vx` or `vx0`; the duration `period`. Capitals and units in parentheses do not count.

@@ -34,6 +34,7 @@ class Columns {
   GuessFile path() const {
     GuessFile path;
     path.t = columns_.front();
+    check_times(path.t, [&](std::size_t) { return whole_; });
     for (std::size_t k = 0; k < path.t.size(); ++k)
       for (std::size_t a = 1; a < columns_.size(); ++a) path.q.push_back(columns_[a][k]);
     return path;
@@ -47,24 +48,28 @@ class Columns {
 GuessFile read_csv_guess(const SourcePointer& source, const std::vector<std::string>& names,
                          const std::optional<Number>& orbit) {
   const CsvFile file = read_csv(source);
-  if (file.header.empty()) return {};
+  if (file.header.empty())
+    throw SceneError({source, 0, 0}, "the file has no columns; write a column t and one for each coordinate");
   const auto find = [&](const std::string& name) {
     return std::find_if(file.header.begin(), file.header.end(),
                         [&](const CsvCell& c) { return c.text == name; });
   };
-  if (find("t") == file.header.end() && !file.rows.empty())
-    return read_orbit_table(file, source, {names.begin() + 1, names.end()}, orbit);
+  const std::vector<std::string> coordinates(names.begin() + 1, names.end());
+  if (find("t") == file.header.end() && has_velocities(file, coordinates))
+    return read_orbit_table(file, source, coordinates, orbit);
   GuessFile path;
   std::vector<std::size_t> columns;
   for (const std::string& name : names) {
-    if (find(name) == file.header.end())
-      throw SceneError(file.header.front().at, fmt::format("the file has no column '{}'", name));
+    if (find(name) == file.header.end()) throw missing_column(file, name);
     columns.push_back(find(name) - file.header.begin());
   }
   for (const std::vector<CsvCell>& row : file.rows) {
     path.t.push_back(number_in(row[columns[0]]));
     for (std::size_t a = 1; a < columns.size(); ++a) path.q.push_back(number_in(row[columns[a]]));
   }
+  check_times(path.t, [&](std::size_t k) {
+    return file.rows.empty() ? file.header.front().at : file.rows[k][columns[0]].at;
+  });
   return path;
 }
 
@@ -131,6 +136,15 @@ GuessFile read_any(const std::string& path, const std::vector<std::string>& name
 
 }  // namespace
 
+void check_times(std::span<const double> t, const std::function<Location(std::size_t)>& place) {
+  if (t.size() < 2)
+    throw SceneError(place(0),
+                     fmt::format("found {} sample{}; need at least 2", t.size(), t.empty() ? "s" : ""));
+  for (std::size_t k = 1; k < t.size(); ++k)
+    if (!(t[k] > t[k - 1]))
+      throw SceneError(place(k), fmt::format("the times must increase; found {} after {}", t[k], t[k - 1]));
+}
+
 GuessFile read_guess_file(const std::string& path, const std::vector<std::string>& names,
                           const std::optional<Number>& orbit) {
   SourcePointer source;
@@ -141,12 +155,6 @@ GuessFile read_guess_file(const std::string& path, const std::vector<std::string
       throw SceneError(whole, fmt::format("the period is {}; it must be positive", *guess.duration));
     return guess;
   }
-  if (guess.t.size() < 2)
-    throw SceneError(whole, fmt::format("found {} samples; need at least 2", guess.t.size()));
-  for (std::size_t k = 1; k < guess.t.size(); ++k)
-    if (!(guess.t[k] > guess.t[k - 1]))
-      throw SceneError(whole,
-                       fmt::format("the times must increase; found {} after {}", guess.t[k], guess.t[k - 1]));
   if (!guess.duration) guess.duration = guess.t.back() - guess.t.front();
   return guess;
 }

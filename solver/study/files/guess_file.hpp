@@ -22,7 +22,9 @@ struct GuessFile {
 /// Reads what the file is, by its ending and by its content:
 /// - a result in JSON with samples; CSV with a column t and one for each coordinate; NumPy's .npz with such
 ///   arrays: a path;
-/// - JSON or CSV of JPL's catalogue of periodic orbits, and other CSV without t: rows with initial states;
+/// - JSON or CSV of JPL's catalogue of periodic orbits, and other CSV without t and with velocities: rows
+/// with
+///   initial states;
 /// - AUTO's fort.8 (also called s.NAME), whose first variables are the coordinates in their order: a path;
 /// - NumPy's .npy of real numbers of the shape (bodies, dimension, samples) over a period, as choreo writes
 /// with

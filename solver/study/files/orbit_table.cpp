@@ -30,6 +30,16 @@ std::optional<std::size_t> find_column(const std::vector<std::string>& columns,
   return {};
 }
 
+std::vector<std::string> velocity_names(const std::string& name) {
+  return {name + "'", "v" + name, "v" + name + "0", name + "dot"};
+}
+
+std::vector<std::string> columns_of(const CsvFile& table) {
+  std::vector<std::string> columns;
+  for (const CsvCell& cell : table.header) columns.emplace_back(cell.text);
+  return columns;
+}
+
 /// Columns of initial states.
 struct StateColumns {
   std::vector<std::size_t> q, v;
@@ -50,7 +60,7 @@ StateColumns state_columns(std::vector<std::string> columns, const std::vector<s
   for (const std::string& declared : names) {
     const std::string name = plain(declared);
     result.q.push_back(column({name, name + "0"}));
-    result.v.push_back(column({name + "'", "v" + name, "v" + name + "0", name + "dot"}));
+    result.v.push_back(column(velocity_names(name)));
   }
   result.period = find_column(columns, {"period", "t", "duration"});
   return result;
@@ -87,11 +97,17 @@ std::size_t chosen_row(std::size_t count, const std::optional<Number>& orbit, co
   return static_cast<std::size_t>(orbit->value) - 1;
 }
 
+bool has_velocities(const CsvFile& table, const std::vector<std::string>& names) {
+  std::vector<std::string> columns = columns_of(table);
+  for (std::string& name : columns) name = plain(name);
+  return std::ranges::any_of(names, [&](const std::string& declared) {
+    return find_column(columns, velocity_names(plain(declared))).has_value();
+  });
+}
+
 GuessFile read_orbit_table(const CsvFile& table, const SourcePointer& source,
                            const std::vector<std::string>& names, const std::optional<Number>& orbit) {
-  std::vector<std::string> columns;
-  for (const CsvCell& cell : table.header) columns.emplace_back(cell.text);
-  const StateColumns wanted = state_columns(columns, names, table.header.front().at);
+  const StateColumns wanted = state_columns(columns_of(table), names, table.header.front().at);
   const std::vector<CsvCell>& row = table.rows.at(chosen_row(table.rows.size(), orbit, source));
   return state_in(wanted, [&](std::size_t k) { return number_in(row[k]); });
 }
