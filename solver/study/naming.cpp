@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "system/formula_lexer.hpp"
+#include "system/formula_syntax.hpp"
 
 namespace extremal {
 namespace {
