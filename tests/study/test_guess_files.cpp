@@ -137,6 +137,9 @@ TEST_F(Scenes, GuessFromAutosSolutions) {
   write("fort.8", solution(3, 6.25).substr(0, 300));
   EXPECT_EQ(message(oscillator).rfind("fort.8:", 0), 0u);
   EXPECT_NE(message(oscillator).find("ends within a solution"), std::string::npos) << message(oscillator);
+  std::string standing = solution(3, 6.25);
+  write("fort.8", standing.replace(standing.find("2.5000000000E-01"), 16, "0.0000000000E+00"));
+  EXPECT_EQ(message(oscillator), "fort.8:1:1: the times must increase; found 0 after 0");
   write("fort.8", "1 1 1 1 1 1 -5 3 4 5 6\n");
   EXPECT_EQ(message(oscillator), "fort.8:1:1: the numbers of points, columns and lines cannot be negative");
   write("fort.8", "1 1 1 1 1 1 5 1 4 5 6\n");
