@@ -17,7 +17,9 @@ constexpr double least_share = 3e5;
 }  // namespace
 
 void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements,
-                           bool border, bool condense) {
+                           bool border, Condense condensed) {
+  const bool condense = condensed != Condense::nothing;
+  condense_ = condensed;
   lagrangian_ = &lagrangian;
   tables_ = &tables;
   assembly_ = &assembly();
@@ -45,7 +47,7 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   sums_.resize(batches_ * sizes_.sums);
   nodes.gradient.resize(static_cast<std::size_t>(elements + 1) * n_);
   nodes.border.resize(border ? nodes.gradient.size() : 0);
-  if (condense) {
+  if (condensed == Condense::to_nodes) {
     nodes.chain.resize(std::max(elements - 1, 0), n_);
     for (auto* block : {&nodes.first, &nodes.last, &nodes.first_lower, &nodes.last_lower})
       block->resize(static_cast<std::size_t>(n_) * n_);
@@ -240,12 +242,19 @@ void DiscreteAction::condense(const Path& path, int b, Buffers& buffers) {
 void DiscreteAction::evaluate(const Path& path) {
   clear_sums();
   extended_ready_ = extended_on_ && extended_.evaluate(*lagrangian_, *tables_, path);
-  std::fill_n(nodes.chain.diagonal(0), static_cast<std::size_t>(nodes.chain.blocks()) * n_ * n_, 0.0);
-  for (auto* block : {&nodes.first, &nodes.last, &nodes.border}) std::fill(block->begin(), block->end(), 0.0);
-  nodes.corner = 0;
   nodes.negative = 0;
   nodes.pivot_ratio = 1;
   const auto evaluate = [&](Buffers& buffers, int b) { condense(path, b, buffers); };
+  if (condense_ == Condense::elements) {
+    for_batches(evaluate, [&](int b) {
+      gather(path, b);
+      gather_pivots(b);
+    });
+    return finish_sums();
+  }
+  std::fill_n(nodes.chain.diagonal(0), static_cast<std::size_t>(nodes.chain.blocks()) * n_ * n_, 0.0);
+  for (auto* block : {&nodes.first, &nodes.last, &nodes.border}) std::fill(block->begin(), block->end(), 0.0);
+  nodes.corner = 0;
   for_batches(evaluate, [&](int b) {
     gather(path, b);
     gather_pivots(b);

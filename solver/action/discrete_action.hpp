@@ -46,14 +46,19 @@ struct BatchValues {
   const double* slope;     ///< ∂L_d/∂h; null unless T is an unknown
 };
 
+/// What evaluate() makes of the Hessians of elements: nothing; of each by itself, its Schur complement in its
+/// ends; and of these the node equations.
+enum class Condense { nothing, elements, to_nodes };
+
 /// Evaluates a path, batch by batch in one pass: points, tape, gradient, Hessian, condensation.
 /// Keeps factors of the last factored path, so that a gradient elsewhere can be reduced with them.
 class DiscreteAction {
  public:
-  /// Binds to tables (which must outlive it) and N elements. `border`: T is an unknown. Without `condense`
-  /// only visit() and evaluate_plain() may be called, and no dense matrix is held.
+  /// Binds to tables (which must outlive it) and N elements. `border`: T is an unknown. To condense nothing,
+  /// only visit() and evaluate_plain() may be called, and no dense matrix is held. Of elements by themselves
+  /// `nodes` has the pivots only.
   void reset(const Lagrangian& lagrangian, const ElementTables& tables, int elements, bool border,
-             bool condense = true);
+             Condense condense = Condense::to_nodes);
 
   /// From now on values and gradients are those of another Lagrangian of as many coordinates or of another
   /// quadrature, on tables of the same degree bound to it; the factors stay. evaluate() needs what reset()
@@ -137,6 +142,10 @@ class DiscreteAction {
     const std::size_t place = condensation_->fronts.ends() + std::size_t(i) * 2 * n_ + j;
     return matrix(k / lanes_)[place * lanes_ + k % lanes_];
   }
+  /// Of each element of a batch the n × n blocks (q_a, q_a), (q_b, q_a) and (q_b, q_b) of it, row by row; the
+  /// first alone, if the others are empty.
+  void copy_condensed(int batch, std::span<double* const> start, std::span<double* const> lower = {},
+                      std::span<double* const> end = {}) const;
 
   /// ∂x_u/∂x_e of inner unknown u of element k by the ends e (q_a, then q_b), at fields[u*2n + e], by the
   /// elimination that evaluate() made.
@@ -182,6 +191,7 @@ class DiscreteAction {
   Blocks blocks(int k);
   void gather_schur(int b);
   void gather_large_schur(int b);
+  static void mirror(double* block, int n);
   void mirror_blocks();
   void gather_border(int b);
   void gather_gradient(int b);
@@ -206,6 +216,7 @@ class DiscreteAction {
   const ElementTables::Condensation* condensation_ = nullptr;
   int lanes_ = simd_lanes();
   int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
+  Condense condense_ = Condense::to_nodes;
   bool border_ = false, finite_ = false;
   bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path
   ExtendedGradient extended_;

@@ -68,14 +68,40 @@ void DiscreteAction::gather_large_schur(int b) {
   }
 }
 
+/// Tile by tile, so that the rows that are written stay in the nearest cache.
+void DiscreteAction::mirror(double* block, int n) {
+  constexpr int tile = 32;
+  for (int rows = 0; rows < n; rows += tile)
+    for (int columns = 0; columns <= rows; columns += tile)
+      for (int i = rows; i < std::min(rows + tile, n); ++i)
+        for (int j = columns; j < std::min(columns + tile, i); ++j)
+          block[std::size_t(j) * n + i] = block[std::size_t(i) * n + j];
+}
+
 void DiscreteAction::mirror_blocks() {
-  const auto mirror = [n = n_](double* block) {
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < i; ++j) block[j * n + i] = block[i * n + j];
+  mirror(nodes.first.data(), n_);
+  mirror(nodes.last.data(), n_);
+  for (int k = 0; k < nodes.chain.blocks(); ++k) mirror(nodes.chain.diagonal(k), n_);
+}
+
+void DiscreteAction::copy_condensed(int batch, std::span<double* const> start, std::span<double* const> lower,
+                                    std::span<double* const> end) const {
+  const double* row = matrix(batch) + static_cast<std::size_t>(condensation_->fronts.ends()) * lanes_;
+  const std::size_t stride = static_cast<std::size_t>(2 * n_) * lanes_;
+  const int used = static_cast<int>(start.size());
+  double* to[most_lanes];
+  const auto copy = [&](const double* from, int count, std::span<double* const> blocks, int i) {
+    for (std::size_t k = 0; k < blocks.size(); ++k) to[k] = blocks[k] + std::size_t(i) * n_;
+    if (!blocks.empty()) elimination_->scatter(from, count, used, false, to);
   };
-  mirror(nodes.first.data());
-  mirror(nodes.last.data());
-  for (int k = 0; k < nodes.chain.blocks(); ++k) mirror(nodes.chain.diagonal(k));
+  for (int i = 0; i < n_; ++i, row += stride) {
+    const double* const second = row + n_ * stride;
+    copy(row, i + 1, start, i);
+    copy(second, n_, lower, i);
+    copy(second + std::size_t(n_) * lanes_, i + 1, end, i);
+  }
+  for (double* const block : start) mirror(block, n_);
+  for (double* const block : end) mirror(block, n_);
 }
 
 void DiscreteAction::gather_border(int b) {

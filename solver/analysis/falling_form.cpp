@@ -18,37 +18,37 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int nodes = form_samples + 1;
+constexpr int most_nodes = form_samples + 1;
 
 /// The points, zeros of Chebyshev's polynomial, and 1 after them; their barycentric weights, and those of the
 /// points without 1.
 struct Chebyshev {
-  std::array<double, nodes> points;
-  std::array<double, nodes> weights, weights_inside;
-  Chebyshev() {
-    static_assert(form_samples % 2 == 0);
-    for (int j = 0; j < form_samples; ++j) {
-      const double angle = (j + 0.5) * std::numbers::pi / form_samples;
+  int samples;
+  std::array<double, most_nodes> points;
+  std::array<double, most_nodes> weights, weights_inside;
+  explicit Chebyshev(int count) : samples(count) {
+    static_assert(form_samples % 2 == 0 && part_samples % 2 == 0);
+    for (int j = 0; j < samples; ++j) {
+      const double angle = (j + 0.5) * std::numbers::pi / samples;
       points[j] = (1 - std::cos(angle)) / 2;
       weights_inside[j] = (j % 2 == 0 ? 1 : -1) * std::sin(angle);
-      weights[j] = weights_inside[j] / (2 * form_samples * (1 - points[j]));
+      weights[j] = weights_inside[j] / (2 * samples * (1 - points[j]));
     }
-    points[form_samples] = weights[form_samples] = 1;
-    weights_inside[form_samples] = 0;
+    points[samples] = weights[samples] = 1;
+    weights_inside[samples] = 0;
   }
 };
 
-const Chebyshev& chebyshev() {
-  static const Chebyshev points;
-  return points;
+const Chebyshev& chebyshev(int samples) {
+  static const Chebyshev whole(form_samples), part(part_samples);
+  return samples == form_samples ? whole : part;
 }
 
 /// Shares of the nodes in the value at `at` in (0, 1].
-std::array<double, nodes> shares(double at, const std::array<double, nodes>& weights) {
-  const Chebyshev& c = chebyshev();
-  std::array<double, nodes> result{};
+std::array<double, most_nodes> shares(double at, const Chebyshev& c, const double* weights) {
+  std::array<double, most_nodes> result{};
   double sum = 0;
-  for (int j = 0; j < nodes; ++j) {
+  for (int j = 0; j <= c.samples; ++j) {
     if (at == c.points[j] && weights[j] != 0) {
       result.fill(0);
       result[j] = 1;
@@ -98,7 +98,9 @@ struct FallingForm::Search {
   bool first_only = false;
 };
 
-std::span<const double> FallingForm::points() { return chebyshev().points; }
+std::span<const double> FallingForm::points() {
+  return {chebyshev(form_samples).points.data(), form_samples};
+}
 
 std::optional<FallingForm> FallingForm::of(double from, double to, int before, std::vector<MatrixXd> samples,
                                            const MatrixXd& last) {
@@ -107,19 +109,47 @@ std::optional<FallingForm> FallingForm::of(double from, double to, int before, s
   form.to_ = to;
   form.before_ = before;
   form.size_ = static_cast<int>(last.rows());
-  for (int j = 0; j < form_samples; ++j) form.values_.push_back(form.time(j) * packed(samples[j]));
+  const Chebyshev& c = chebyshev(form_samples);
+  for (int j = 0; j < c.samples; ++j)
+    form.values_.push_back((from + c.points[j] * (to - from)) * packed(samples[j]));
   form.values_.push_back(to * packed(last));
-  VectorXd inside(form.values_.back().size());
-  const Shares of_inside = shares(1, chebyshev().weights_inside);
-  form.sum({&of_inside, 1}, {&inside, 1});
-  const double error = (inside - form.values_.back()).cwiseAbs().maxCoeff();
-  if (!(error <= most_form_error)) return std::nullopt;
+  if (!(form.error() <= most_form_error)) return std::nullopt;
+  return form;
+}
+
+/// Of what the samples give at the end.
+double FallingForm::error() const {
+  VectorXd inside;
+  const Chebyshev& c = chebyshev(samples());
+  const Shares of_inside = shares(1, c, c.weights_inside.data());
+  sum({&of_inside, 1}, {&inside, 1});
+  return (inside - values_.back()).cwiseAbs().maxCoeff();
+}
+
+/// The same form by fewer samples between two times, if they give it to roundoff.
+std::optional<FallingForm> FallingForm::part(Place low, Place high) const {
+  FallingForm form;
+  form.from_ = low.tau;
+  form.to_ = high.tau;
+  form.before_ = low.negative;
+  form.size_ = size_;
+  const Chebyshev& c = chebyshev(part_samples);
+  std::array<Shares, part_samples + 1> shares;
+  for (int j = 0; j <= part_samples; ++j) {
+    const double tau = low.tau + c.points[j] * (high.tau - low.tau);
+    shares[j] = shares_at(tau);
+    for (double& share : shares[j]) share *= tau;
+  }
+  form.values_.resize(shares.size());
+  sum(shares, form.values_);
+  if (!(form.error() <= most_part_error)) return std::nullopt;
   return form;
 }
 
 /// Of the nodes in F(tau).
 FallingForm::Shares FallingForm::shares_at(double tau) const {
-  Shares result = shares((tau - from_) / (to_ - from_), chebyshev().weights);
+  const Chebyshev& c = chebyshev(samples());
+  Shares result = shares((tau - from_) / (to_ - from_), c, c.weights.data());
   for (double& share : result) share /= tau;
   return result;
 }
@@ -129,13 +159,13 @@ FallingForm::Shares FallingForm::shares_of_slope(double tau) const {
   const double step = slope_step * (tau - from_);
   Shares result = shares_at(tau + step);
   const Shares before = shares_at(tau - step);
-  for (int j = 0; j < nodes; ++j) result[j] = (result[j] - before[j]) / (2 * step);
+  for (int j = 0; j <= samples(); ++j) result[j] = (result[j] - before[j]) / (2 * step);
   return result;
 }
 
 /// Sums over the nodes with these shares. Part by part, so that what is read serves all of them.
 void FallingForm::sum(std::span<const Shares> shares, std::span<VectorXd> sums) const {
-  static_assert(nodes % 4 == 1);
+  static_assert(form_samples % 4 == 0 && part_samples % 4 == 0);
   constexpr Eigen::Index part = 256;
   const Eigen::Index all = values_[0].size();
   for (VectorXd& s : sums) s.resize(all);
@@ -145,8 +175,8 @@ void FallingForm::sum(std::span<const Shares> shares, std::span<VectorXd> sums) 
     for (std::size_t k = 0; k < shares.size(); ++k) {
       const Shares& share = shares[k];
       auto to = sums[k].segment(from, count);
-      to = share[form_samples] * value(form_samples);
-      for (int j = 0; j < form_samples; j += 4)
+      to = share[samples()] * value(samples());
+      for (int j = 0; j < samples(); j += 4)
         to += share[j] * value(j) + share[j + 1] * value(j + 1) + share[j + 2] * value(j + 2) +
               share[j + 3] * value(j + 3);
     }
@@ -199,6 +229,8 @@ std::optional<double> FallingForm::single(Place low, Place high, Search& search)
 bool FallingForm::find(Place low, Place high, Search& search) const {
   const int count = high.negative - low.negative;
   if (count <= 0) return count == 0;
+  if (samples() > part_samples && count >= part_zeros)
+    if (const std::optional<FallingForm> form = part(low, high)) return form->find(low, high, search);
   const double middle = (low.tau + high.tau) / 2;
   if (high.tau - low.tau <= zero_resolution * to_) {
     search.found.insert(search.found.end(), count, middle);

@@ -36,7 +36,9 @@ class FallingForm {
     int negative;
   };
   using Shares = std::array<double, limits::falling_form::form_samples + 1>;
-  double time(int sample) const { return from_ + points()[sample] * (to_ - from_); }
+  int samples() const { return static_cast<int>(values_.size()) - 1; }
+  double error() const;
+  std::optional<FallingForm> part(Place low, Place high) const;
   Shares shares_at(double tau) const;
   Shares shares_of_slope(double tau) const;
   void sum(std::span<const Shares> shares, std::span<Eigen::VectorXd> sums) const;

@@ -8,6 +8,7 @@
 #include "analysis/limits.hpp"
 #include "linear/dense.hpp"
 #include "linear/equilibration.hpp"
+#include "machine/simd.hpp"
 
 namespace extremal {
 
@@ -143,8 +144,11 @@ bool JacobiFields::advance_large(SecondVariation& variation, int k, bool first_o
       elimination_->pivot_row(i)[j] = whole_(j, i);
       elimination_->rest_row(i)[j] = piece.d(j, i);
     }
-    for (int j = 0; j < n; ++j) elimination_->coupled_row(i)[j] = piece.b(j, i);
   }
+  for (int columns = 0; columns < n; columns += most_lanes)  // few rows of B at a time
+    for (int i = 0; i < n; ++i)
+      for (int j = columns; j < std::min(columns + most_lanes, n); ++j)
+        elimination_->coupled_row(i)[j] = piece.b(j, i);
   if (!elimination_->eliminate()) return false;
   MatrixXd next(n, n);
   for (int i = 0; i < n; ++i)

@@ -11,6 +11,10 @@ namespace falling_form {
 /// zeros.
 inline constexpr int form_samples = 16;
 inline constexpr double most_form_error = 3e-10;
+/// Points of a part of the interval, the error that they may leave there, and the zeros for which it pays to
+/// sample the part.
+inline constexpr int part_samples = 8, part_zeros = 4;
+inline constexpr double most_part_error = 1e-12;
 /// Of a zero, relative to the end of the interval.
 inline constexpr double zero_resolution = 1e-13;
 /// Steps of safeguarded iteration to one zero: they converge quadratically, once the cosine of the angle

@@ -177,7 +177,7 @@ void SecondVariation::evaluate(std::span<const Part> parts) {
     }
     path_.set_apart(k, values_.data());
   }
-  action_.reset(*lagrangian_, tables_, count, false);
+  action_.reset(*lagrangian_, tables_, count, false, Condense::elements);
   action_.evaluate(path_);
 }
 
@@ -238,18 +238,18 @@ void SecondVariation::keep(const DiscreteAction& action, std::span<const Part> p
 
 /// Appends the forms of the elements that were evaluated last.
 void SecondVariation::keep_forms(const DiscreteAction& action, int count) {
-  const int n = coordinates();
-  const std::size_t size = static_cast<std::size_t>(n) * n;
-  for (int k = 0; k < count; ++k) {
-    const std::size_t at = forms_.size();
-    forms_.resize(at + 3 * size);
-    double *const a = forms_.data() + at, *const b = a + size, *const d = b + size;
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j) {
-        a[j * n + i] = action.condensed(k, std::max(i, j), std::min(i, j));
-        b[j * n + i] = action.condensed(k, n + i, j);
-        d[j * n + i] = action.condensed(k, n + std::max(i, j), n + std::min(i, j));
-      }
+  const int n = coordinates(), lanes = simd_lanes();
+  const std::size_t size = static_cast<std::size_t>(n) * n, first = forms_.size();
+  forms_.resize(first + 3 * count * size);
+  for (int k = 0; k < count; k += lanes) {
+    double *a[most_lanes], *b[most_lanes], *d[most_lanes];
+    const std::size_t used = std::min(lanes, count - k);
+    for (std::size_t j = 0; j < used; ++j) {
+      a[j] = forms_.data() + first + 3 * (k + j) * size;
+      b[j] = a[j] + size;
+      d[j] = b[j] + size;
+    }
+    action.copy_condensed(k / lanes, {a, used}, {b, used}, {d, used});
   }
 }
 
@@ -284,11 +284,9 @@ std::vector<Eigen::MatrixXd> SecondVariation::start_forms(int k, std::span<const
     for (std::size_t j = first; j < first + batch; ++j)
       batch_.push_back({whole.element, whole.tau0, whole.tau0 + tau[j] * (whole.tau1 - whole.tau0)});
     evaluate(batch_);
-    for (std::size_t j = 0; j < batch; ++j) {
-      Eigen::MatrixXd& a = forms.emplace_back(n, n);
-      for (int i = 0; i < n; ++i)
-        for (int l = 0; l <= i; ++l) a(i, l) = a(l, i) = action_.condensed(static_cast<int>(j), i, l);
-    }
+    double* a[most_lanes];
+    for (std::size_t j = 0; j < batch; ++j) a[j] = forms.emplace_back(n, n).data();
+    action_.copy_condensed(0, {a, batch});
   }
   return forms;
 }

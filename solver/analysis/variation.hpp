@@ -17,7 +17,9 @@ namespace extremal {
 /// and so their momenta L_vv η' + L_vq η are −(A x_a + Bᵀx_b) at the start and B x_a + D x_b at the end.
 struct Piece {
   double start = 0, length = 0;
-  Eigen::Map<const Eigen::MatrixXd> a, b, d;  ///< n × n
+  Eigen::Map<const Eigen::MatrixXd> a;  ///< n × n
+  Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> b;
+  Eigen::Map<const Eigen::MatrixXd> d;
 };
 
 /// What evaluated the elements of a trajectory last, if anything did, and how large the two highest Legendre

@@ -83,7 +83,16 @@ bool eliminate(const DenseEliminationShape& shape, double* m, double* v, double*
   return true;
 }
 
+/// A single column: a row of Lᵀ at a time is multiplied with it.
+void substitute_one(const DenseEliminationShape& s, double* m, double* x) {
+  for (int j = s.pivots - 1; j >= 0; --j) {
+    double* const row = m + long(j) * s.stride;
+    x[j] = row[s.half] = (row[s.half] - dot(row + j + 1, x + j + 1, s.pivots - j - 1)) / row[j];
+  }
+}
+
 void substitute(const DenseEliminationShape& s, double* m, double* v) {
+  if (s.rest == 1) return substitute_one(s, m, v);
   const auto row = [&](int i) { return m + long(i) * s.stride; };
   const int begin = s.half & -lanes;
   for (int first = (s.pivots - 1) / block * block; first >= 0; first -= block) {

@@ -153,6 +153,36 @@ class Elements {
 
 class Elimination : public testing::TestWithParam<Graph> {};
 
+TEST_P(Elimination, OfElementsByThemselvesIsThatForTheNodes) {
+  const int elements = 11;
+  Elements d(coupled(GetParam(), terms[0]), lobatto(4), elements);
+  d.action.evaluate(d.path);
+  DiscreteAction apart;
+  apart.reset(*d.lagrangian, d.tables, elements, false, Condense::elements);
+  apart.evaluate(d.path);
+  EXPECT_EQ(apart.nodes.negative, d.action.nodes.negative);
+  EXPECT_EQ(apart.nodes.pivot_ratio, d.action.nodes.pivot_ratio);
+  const int n = d.tables.coordinates(), lanes = simd_lanes();
+  for (int first = 0; first < elements; first += lanes) {
+    const std::size_t used = std::min(lanes, elements - first);
+    std::vector<std::vector<double>> blocks(3 * used, std::vector<double>(n * n, NAN));
+    std::vector<double*> to;
+    for (std::vector<double>& block : blocks) to.push_back(block.data());
+    const std::span<double* const> all = to;
+    apart.copy_condensed(first / lanes, all.first(used), all.subspan(used, used), all.last(used));
+    for (std::size_t k = 0; k < used; ++k)
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto entry = [&](int row, int column) {
+            return d.action.condensed(first + int(k), std::max(row, column), std::min(row, column));
+          };
+          EXPECT_EQ(blocks[k][i * n + j], entry(i, j)) << i << ", " << j;
+          EXPECT_EQ(blocks[used + k][i * n + j], entry(n + i, j)) << i << ", " << j;
+          EXPECT_EQ(blocks[2 * used + k][i * n + j], entry(n + i, n + j)) << i << ", " << j;
+        }
+  }
+}
+
 TEST_P(Elimination, IsThatOfTheDenseMatrix) {
   for (const char* term : terms)
     for (const Scheme& scheme : {lobatto(2), lobatto(5), gauss(3)}) {

@@ -65,7 +65,7 @@ TEST(Extended, IsTheGradientToRoundoff) {
       ExtendedGradient extended;
       ASSERT_TRUE(extended.evaluate(*lagrangian, d.tables, d.path));
       DiscreteAction action;
-      action.reset(*lagrangian, d.tables, elements, true, false);
+      action.reset(*lagrangian, d.tables, elements, true, Condense::nothing);
       action.evaluate_plain(d.path);
       const double scale = action.momentum_scale();
       EXPECT_NEAR(to_double(extended.values().action), action.action(), 1e-12 * scale);
@@ -102,7 +102,7 @@ TEST(Extended, FeelsForcesThatAreDifferences) {
   ExtendedGradient here, there;
   ASSERT_TRUE(here.evaluate(*lagrangian, d.tables, d.path) && there.evaluate(*lagrangian, d.tables, shifted));
   DiscreteAction action;
-  action.reset(*lagrangian, d.tables, elements, false, false);
+  action.reset(*lagrangian, d.tables, elements, false, Condense::nothing);
   std::vector<double> plain;
   double plain_change = 0;
   for (const Path* path : {&d.path, &shifted})
@@ -140,7 +140,7 @@ TEST(Extended, ChangesByTheSecondVariation) {
       ASSERT_TRUE(extended.evaluate(*lagrangian, d.tables, d.path));
       extended.evaluate_change(*lagrangian, d.path, {nodes, step, 0});
       DiscreteAction action;
-      action.reset(*lagrangian, d.tables, elements, false, false);
+      action.reset(*lagrangian, d.tables, elements, false, Condense::nothing);
       std::vector<double> hessian(m * m), gradient(m), at_nodes(nodes.size());
       double scale = 0;
       for (int k = 0; k < elements; ++k) {

@@ -24,6 +24,14 @@ MatrixXd reflected(const VectorXd& diagonal) {
   return mirror * diagonal.asDiagonal() * mirror;
 }
 
+/// The value at the end is not sampled again.
+TEST(FallingForm, IsSampledInside) {
+  const std::span<const double> points = FallingForm::points();
+  ASSERT_EQ(points.size(), limits::falling_form::form_samples);
+  EXPECT_GT(points.front(), 0);
+  EXPECT_LT(points.back(), 1);
+}
+
 /// ω cot(ωτ) is zero at π/2ω. Every fifth frequency is that before it.
 TEST(FallingForm, ZerosOfACotangent) {
   for (const int n : {10, 12, 60, 130}) {

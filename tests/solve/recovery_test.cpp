@@ -25,7 +25,7 @@ Trajectory recovered(const Problem& problem, const Trajectory& found) {
   for (int k = 0; k < found.elements(); ++k) path.set_element(k, found.nodes.data() + k * size);
   path.load_ends();
   DiscreteAction action;
-  action.reset(*problem.lagrangian, tables, found.elements(), false, false);
+  action.reset(*problem.lagrangian, tables, found.elements(), false, Condense::nothing);
   Recovery recovery;
   if (!recovery.measure(*problem.lagrangian, action, path)) throw std::runtime_error("L_vv is singular");
   recovery.raise(path, more, interpolation_matrix(found.degree, raised.lobatto), result);

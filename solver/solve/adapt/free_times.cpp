@@ -14,7 +14,7 @@ using namespace limits::free_times;
 
 FreeTimes::FreeTimes(const Problem& problem, const ElementTables& tables, int elements)
     : problem_(problem), elements_(elements), times_(elements - 1 + problem.duration.free) {
-  action_.reset(*problem.lagrangian, tables, elements, true, false);
+  action_.reset(*problem.lagrangian, tables, elements, true, Condense::nothing);
   action_.give_momenta(problem.boundary.momenta);
   equations_.reset(problem, tables, elements);
   entries_.resize(equations_.rows().size());

@@ -22,7 +22,7 @@ void BorderedEquations::reset(const Problem& problem, const ElementTables& table
   local_ = tables.unknowns();
   leg_.clear();
   for (int l = 0; l < mesh.legs(); ++l) leg_.resize(mesh.first[l + 1], l);
-  action_.reset(*extension().lagrangian, tables, elements_, true, false);
+  action_.reset(*extension().lagrangian, tables, elements_, true, Condense::nothing);
   number_unknowns();
   gradient_.resize(2 * static_cast<std::size_t>(all_));
   hessian_.resize(4 * static_cast<std::size_t>(all_) * all_);

@@ -8,7 +8,7 @@ namespace extremal {
 
 Displacement::Displacement(const Problem& problem, const ElementTables& tables, Path& path)
     : problem_(problem), path_(path), start_(path) {
-  action_.reset(*problem.lagrangian, tables, path.elements(), problem.duration.free, false);
+  action_.reset(*problem.lagrangian, tables, path.elements(), problem.duration.free, Condense::nothing);
   action_.give_momenta(problem.boundary.momenta);
   action_.give_costs(problem.boundary.costs);
   equations_.reset(problem, tables, path.elements());

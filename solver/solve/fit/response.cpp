@@ -39,7 +39,7 @@ void ExtremalResponse::keep_columns() {
   const int m = tables_->unknowns(), elements = path_->elements();
   const std::size_t batch = static_cast<std::size_t>(m) * lanes_;
   const ElementTables::Entries& entries = tables_->entries();
-  plain_.reset(*problem_->lagrangian, *tables_, elements, true, false);
+  plain_.reset(*problem_->lagrangian, *tables_, elements, true, Condense::nothing);
   by_duration_.assign(path_->batches() * batch, 0);
   corner_ = 0;
   const auto keep = [&](std::vector<double>& matrix, const BatchValues& values, int lane) {

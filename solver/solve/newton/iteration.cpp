@@ -57,7 +57,8 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   tables_ = &tables;
   elements_ = elements;
   const bool sparse = tables.unknowns() > most_dense_unknowns;
-  action_.reset(*problem.lagrangian, tables, elements, problem.duration.free, !sparse);
+  action_.reset(*problem.lagrangian, tables, elements, problem.duration.free,
+                sparse ? Condense::nothing : Condense::to_nodes);
   action_.give_momenta(problem.boundary.momenta);
   action_.give_costs(problem.boundary.costs);
   if (tables.kinks() && problem.periodic) {

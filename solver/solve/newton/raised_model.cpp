@@ -50,7 +50,7 @@ void RaisedModel::reset(const Problem& problem, const ElementTables& tables, int
   const Matrix rest = inverse_stiffness(scheme) - up * inverse_stiffness(low_scheme) * up.transpose();
   up_.assign(up.data(), up.data() + up.size());
   rest_.assign(rest.data(), rest.data() + rest.size());
-  low_action_.reset(*problem.lagrangian, low_tables_, elements, problem.duration.free, false);
+  low_action_.reset(*problem.lagrangian, low_tables_, elements, problem.duration.free, Condense::nothing);
   low_gradient_.resize(static_cast<std::size_t>(low_tables_.unknowns()) * lanes);
   const std::size_t batches = (elements + lanes - 1) / lanes;
   high_step_.resize(batches * inner_ * n_ * lanes);
