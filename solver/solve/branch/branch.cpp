@@ -163,6 +163,19 @@ void Branch::note_action() {
   momenta_.assign(action.start_gradient().begin(), action.start_gradient().end());
   for (double& p : momenta_) p = -p;
   momenta_.insert(momenta_.end(), action.end_gradient().begin(), action.end_gradient().end());
+  const NodeEquations& nodes = action.nodes;
+  forces_ = nodes.gradient;
+  const std::size_t n = nodes.end_parts.size() / 2, last = forces_.size() - n;
+  for (std::size_t a = 0; a < n; ++a) {
+    forces_[a] += nodes.end_parts[a];
+    forces_[last + a] += nodes.end_parts[n + a];
+  }
+}
+
+double Branch::force_along(const Move& direction) const {
+  std::vector<double> along = direction.step.nodes;
+  if (problem_.paired) negate_second(along);  // the derivative by the difference of the copies
+  return std::inner_product(along.begin(), along.end(), forces_.begin(), 0.0);
 }
 
 bool Branch::linearise_duration(Factors factors) {
@@ -322,13 +335,14 @@ double Branch::varied_unit() const {
   return unit_;
 }
 
-void Branch::respond(const Move& onward, Move& response) {
+void Branch::respond(const Move& onward, Move& response, int which) {
   const std::size_t n = path_.coordinates(), count = path_.elements() + 1;
   std::vector<double> load(count * n);
   for (std::size_t k = 1; k + 1 < count; ++k)
     for (std::size_t a = 0; a < n; ++a) {
       const double tau = path_.mesh()[k], weight = path_.mesh()[k + 1] - path_.mesh()[k - 1];
-      load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau) + std::sin(2 + 1.3 * a + 17.3 * tau));
+      load[k * n + a] = weight * (std::cos(1 + 2.4 * a + 5.1 * tau + which * (0.7 + 1.1 * a + 0.9 * tau)) +
+                                  std::sin(2 + 1.3 * a + 17.3 * tau + which * (1.9 + 0.6 * a + 2.3 * tau)));
     }
   if (problem_.paired) {  // a force, which is the derivative by the difference of the copies
     for (std::size_t i = 0; i < load.size(); ++i)

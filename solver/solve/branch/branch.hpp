@@ -68,9 +68,10 @@ class Branch : public ExtremalCurve {
   /// linearised at last, whose tangent is given. Empty: the energy does.
   std::vector<double> closing_row(const Move& onward) const;
   void close_by(const std::vector<double>& row) { closing_.row = row; }
-  /// The response of the equations linearised last, with the tangent `onward` as their last row, to a load
-  /// without any symmetry: the nearer to a branch point, the longer, and along the branch that crosses.
-  void respond(const Move& onward, Move& response);
+  /// The response of the equations linearised last, with the tangent `onward` as their last row, to one of
+  /// several loads without any symmetry: the nearer to a branch point, the longer, and along null directions
+  /// there. Where these have one eigenvalue the response to a load has nothing across that to another.
+  void respond(const Move& onward, Move& response, int which = 0);
   /// How far a node of the path that was linearised last moves across the direction, relative to the extent,
   /// to where the equations hold under another quadrature, on tables of the same degree: to first order.
   double step_under(const ElementTables& quadrature);
@@ -83,6 +84,8 @@ class Branch : public ExtremalCurve {
   double energy() const { return energy_; }
   /// The largest force left there, relative to the largest momentum.
   double residual() const { return residual_; }
+  /// What is left of the forces there along a direction.
+  double force_along(const Move& direction) const;
   /// −∂S/∂q(0), then ∂S/∂q(T).
   std::span<const double> momenta() const { return momenta_; }
   /// The number that varies.
@@ -158,8 +161,9 @@ class Branch : public ExtremalCurve {
   PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
   std::vector<Move> held_;
   std::vector<double> momenta_;
-  std::vector<double> ends_;  ///< nonlinear part of the last apply(), 2n
-  double stretch_ = 0;        ///< and the duration
+  std::vector<double> forces_;  ///< (N + 1) × n
+  std::vector<double> ends_;    ///< nonlinear part of the last apply(), 2n
+  double stretch_ = 0;          ///< and the duration
 };
 
 }  // namespace extremal

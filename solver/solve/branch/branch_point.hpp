@@ -28,12 +28,17 @@ struct BranchPoint {
   bool resolved = true;
 };
 
-/// A path next to where another branch begins.
+/// Where other branches begin: the branch point, and a state of the known branch beside it, on the same
+/// elements. After a period doubling both are orbits run through twice.
 struct BranchStart {
-  PointKind kind;     ///< branch or period_doubling
-  Path path;          ///< after a period doubling that of the orbit run through twice
-  double coordinate;  ///< see Branch
+  PointKind kind;  ///< branch or period_doubling
+  struct Place {
+    Path path;
+    double coordinate, varied;  ///< see Branch
+    double action;
+  } at, beside;
   Branch::Units units;
+  int count = 1;         ///< of the directions in which the equations are singular
   bool regular = false;  ///< see Branch, of the branch that is left
 };
 
@@ -85,8 +90,14 @@ bool may_cross(const BranchStep& step);
 /// A change of the index alone is a fold of the duration, or of the number that varies.
 bool branches_cross(const BranchState& a, const BranchState& b);
 
-/// A place next to a point at which another branch begins, if it is asked for.
+/// Where branches begin at a point so far along the tangent, if they are asked for. At a branch point the
+/// tracker's state is that of the point.
 std::optional<BranchStart> branch_start(Tracker& tracker, const EventSearch& search, PointKind kind,
-                                        const BranchState& from, double at);
+                                        const BranchState& from, double at, int count);
+
+/// Along which the equations at the tracker's path are most nearly singular, of length one: the direction of
+/// the response, then the one across the first that responds most, and so on, while they respond by more than
+/// `least`.
+std::vector<Move> singular_directions(Tracker& tracker, const Move& response, int count, double least);
 
 }  // namespace extremal

@@ -7,7 +7,6 @@
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/branch/root.hpp"
-#include "solve/periodic/doubled_orbit.hpp"
 
 /// \file Points of a step where other branches cross.
 
@@ -31,27 +30,6 @@ int passing(const BranchState& a, const BranchState& b) {
   const int change = std::abs(a.index - b.index);
   const bool turns = (change % 2 != 0) == (a.orientation == b.orientation);
   return std::max(std::abs(change - turns), 1);
-}
-
-/// Along which the equations at the tracker's path are most nearly singular, of length one: the direction of
-/// the response, then the one across the first that responds most, and so on, while they respond by more than
-/// `least`.
-std::vector<Move> singular_directions(Tracker& tracker, const Move& response, int count, double least) {
-  const Branch& branch = tracker.branch();
-  std::vector<Move> found;
-  Move next = response;
-  for (int k = 0; k < count; ++k) {
-    if (k > 0) {
-      tracker.hold(found);
-      if (!tracker.respond(next)) break;
-    }
-    const double size = std::sqrt(branch.dot(next, next));
-    if (!std::isfinite(size) || size == 0 || (k > 0 && size < least)) break;
-    found.push_back(next);
-    found.back().scale(1 / size);
-  }
-  tracker.hold({});
-  return found;
 }
 
 /// The branch point. Nothing along the singular directions is corrected there: the other equations are
@@ -255,7 +233,8 @@ bool find_between(Tracker& tracker, const EventSearch& search, const BranchState
     if (crosses)
       found.events.push_back(
           {first.at,
-           {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at)}});
+           {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at,
+                                                 static_cast<int>(point.singular.size()))}});
     low = first.at + beyond_it * high;
     if (!(low < high) || !tracker.reach(from, low, true)) return false;
     if (crosses) count_null_directions(found.events.back().found.point.solution, before, tracker.state);
@@ -270,6 +249,24 @@ std::vector<Sample> crossings_on(const BranchStep& step) {
 }
 
 }  // namespace
+
+std::vector<Move> singular_directions(Tracker& tracker, const Move& response, int count, double least) {
+  const Branch& branch = tracker.branch();
+  std::vector<Move> found;
+  Move next = response;
+  for (int k = 0; k < count; ++k) {
+    if (k > 0) {
+      tracker.hold(found);
+      if (!tracker.respond(next, k)) break;
+    }
+    const double size = std::sqrt(branch.dot(next, next));
+    if (!std::isfinite(size) || size == 0 || (k > 0 && size < least)) break;
+    found.push_back(next);
+    found.back().scale(1 / size);
+  }
+  tracker.hold({});
+  return found;
+}
 
 bool branches_cross(const BranchState& a, const BranchState& b) {
   return a.orientation != b.orientation || std::abs(a.index - b.index) >= 2;
@@ -305,20 +302,6 @@ Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const 
     low = sample.at;
   }
   return found;
-}
-
-std::optional<BranchStart> branch_start(Tracker& tracker, const EventSearch& search, PointKind kind,
-                                        const BranchState& from, double at) {
-  if (!search.starts) return std::nullopt;
-  if (!tracker.reach(from, at - start_distance) && !tracker.reach(from, at + start_distance))
-    return std::nullopt;
-  const BranchState& state = tracker.state;
-  BranchStart start{kind, state.path, state.coordinate, state.units, tracker.branch().regular()};
-  if (kind == PointKind::branch) return start;
-  double_path(tracker.branch().problem(), state.path, tracker.branch().tables(), start.path);
-  start.units.duration *= 2;
-  if (search.family.varied != Varied::parameter) start.coordinate *= 2;
-  return start;
 }
 
 }  // namespace extremal

@@ -126,12 +126,11 @@ Continuation::Continuation(ProblemFamily family, ContinuationOptions options)
       options_(std::move(options)),
       tracker_(family_, options_.solve.tolerance) {}
 
-Continuation::Continuation(ProblemFamily family, ContinuationOptions options, BranchStart start, int side)
+Continuation::Continuation(ProblemFamily family, ContinuationOptions options, FirstState first)
     : family_(with_common_symmetries(std::move(family))),
       options_(std::move(options)),
       tracker_(family_, options_.solve.tolerance),
-      start_(std::move(start)),
-      side_(side) {}
+      start_(std::move(first)) {}
 
 bool Continuation::stop(BranchEnd end, std::string message) {
   end_ = end;
@@ -166,7 +165,7 @@ bool Continuation::advance() {
 bool Continuation::begin() {
   longest_ = std::clamp(coverage / options_.points, least_longest, most_longest);
   length_ = std::min(first_length, longest_);
-  if (!(start_ ? begin_from_start() : begin_from_solve())) return false;
+  if (!(start_ ? begin_from_state() : begin_from_solve())) return false;
   tracker_.measure_anew();
   FoundPoint point{read_point(tracker_, PointKind::regular)};
   add(first_point_ ? *std::exchange(first_point_, std::nullopt) : std::move(point));
@@ -206,8 +205,10 @@ bool Continuation::begin_from_solve() {
 
 /// The first member alone may have symmetries, or other directions, along which its extremals are a family.
 /// Its point is found with these held, and the branch begins beside it: on a branch that leads on from it the
-/// extremal half as far beside is about half as far away. It begins so far beside that symmetries alone leave
-/// null directions: eigenvalues that are zero at the first member tell the index there.
+/// extremal half as far beside is about half as far away. Directions that are null at the first member are
+/// soft beside it, and enlarge roundoff the more the nearer, so that extremals are sought ever farther. It
+/// begins so far beside that symmetries alone leave null directions: eigenvalues that are zero at the first
+/// member tell the index there.
 bool Continuation::begin_beside(const Path& path, double at_rest) {
   if (family_.varied != Varied::parameter) return false;
   const ProblemFamily alone = with_symmetries_of_first(family_);
@@ -238,29 +239,11 @@ bool Continuation::end_at_first() {
                   family_.from));
 }
 
-/// Along the response of the equations next to where they are singular: it has little of the branch that is
-/// crossed, and across it that branch does not go far.
-bool Continuation::begin_from_start() {
-  const BranchStart start = *std::exchange(start_, std::nullopt);
-  if (start.regular) tracker_.branch().set_regular();
-  if (tracker_.begin(start.path, start.coordinate, start.units, rest * start.units.extent)) {
-    Branch& branch = tracker_.branch();
-    const BranchState& state = tracker_.state;
-    BranchState from = state;
-    branch.respond(state.tangent, from.tangent);
-    from.tangent.scale(side_ / std::sqrt(branch.dot(from.tangent, from.tangent)));
-    // The number varies with the square of the length, perhaps fast: not past the value wanted at once.
-    double past = 0;
-    for (double length = first_departure; length > least_departure; length *= shorter_departure) {
-      // Where several directions are open at once, so near nothing tells paths in between from extremals.
-      if (!tracker_.reach(from, length) || (start.regular && branch.open() > 0)) continue;
-      if ((state.varied - family_.to) * (from.varied - family_.to) > 0) return true;
-      past = length;
-    }
-    if (past > 0 && tracker_.reach(from, past)) return true;
-  }
-  return stop(BranchEnd::not_started,
-              "no other branch was found where the equations are singular; others may begin there");
+bool Continuation::begin_from_state() {
+  const auto [first, regular] = *std::exchange(start_, std::nullopt);
+  if (regular) tracker_.branch().set_regular();
+  return tracker_.begin(first, rest * first.units.extent) ||
+         stop(BranchEnd::not_started, "the equations of the branch are singular at its first point");
 }
 
 /// The next step that succeeds, with all that is found on it: a shorter one where the value that the branch

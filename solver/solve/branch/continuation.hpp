@@ -6,6 +6,7 @@
 
 #include "solve/adapt/options.hpp"
 #include "solve/branch/events.hpp"
+#include "solve/branch/other_branches.hpp"
 
 /// \file A branch of extremals, point by point.
 
@@ -37,9 +38,8 @@ class Continuation {
   };
 
   Continuation(ProblemFamily family, ContinuationOptions options);
-  /// The branch that crosses another one near a start, one way (side = 1) or the other (−1). The family is
-  /// that of its orbits: after a period doubling, that of twice the period.
-  Continuation(ProblemFamily family, ContinuationOptions options, BranchStart start, int side);
+  /// The branch on from a state; see other_branches().
+  Continuation(ProblemFamily family, ContinuationOptions options, FirstState first);
 
   /// To the next point. False where the branch has ended.
   bool advance();
@@ -64,7 +64,7 @@ class Continuation {
   bool begin_from_solve();
   bool begin_beside(const Path& path, double at_rest);
   bool end_at_first();
-  bool begin_from_start();
+  bool begin_from_state();
   bool step();
   void end_beside_crossing();
   bool retry(double length);
@@ -79,8 +79,7 @@ class Continuation {
   ProblemFamily family_;
   ContinuationOptions options_;
   Tracker tracker_;
-  std::optional<BranchStart> start_;  ///< the branch begins there
-  int side_ = 1;
+  std::optional<FirstState> start_;        ///< the branch begins there
   std::optional<FoundPoint> first_point_;  ///< where the branch begins beside it
   BranchState first_;
   int index_ = 0, unknown_indices_ = 0;

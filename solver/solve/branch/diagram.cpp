@@ -5,6 +5,7 @@
 #include "problem/copies.hpp"
 #include "solution/in_phase_space.hpp"
 #include "solution/one_copy.hpp"
+#include "solve/branch/other_branches.hpp"
 #include "solve/guess/hamilton_path.hpp"
 #include "solve/periodic/doubled_orbit.hpp"
 
@@ -79,15 +80,16 @@ Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
 }
 
 bool Diagram::advance() {
-  while (!current_->advance()) {
+  while (current_ && !current_->advance()) {
     if (count_ == 0 && current_->singular_at_first() && family_.varied == Varied::duration) {
       family_ = by_parameter(std::move(family_));
       current_.emplace(family_, options_);
       continue;
     }
     note();
-    if (!begin_next()) return false;
+    if (!begin_next()) current_.reset();
   }
+  if (!current_) return false;
   note();
   point_ = current_->point();
   if (with_forces_)
@@ -100,10 +102,7 @@ bool Diagram::advance() {
   }
   point_.branch = static_cast<int>(branches_.size()) - 1;
   ++branches_.back().points;
-  if (const std::optional<BranchStart>& start = current_->start()) {
-    waiting_.push_back({count_, *start, 1});
-    if (start->kind == PointKind::branch) waiting_.push_back({count_, *start, -1});
-  }
+  if (const std::optional<BranchStart>& start = current_->start()) find_others(*start);
   ++count_;
   return true;
 }
@@ -119,22 +118,35 @@ void Diagram::note() {
   record.worst_momentum = current_->worst_momentum();
 }
 
+void Diagram::find_others(const BranchStart& start) {
+  const bool twice = start.kind == PointKind::period_doubling;
+  const OtherBranches others = other_branches(twice ? doubled(family_) : family_, options_.solve, start);
+  for (const FirstState& first : others.found) waiting_.push_back({count_, first, twice});
+  if (!others.complete) waiting_.push_back({.origin = count_});
+}
+
 bool Diagram::begin_next() {
-  if (waiting_.empty()) return false;
-  Waiting next = std::move(waiting_.front());
-  waiting_.pop_front();
   ContinuationOptions options = options_;
   options.other_branches = false;
-  if (const Deadline& deadline = options.solve.deadline; deadline.passed()) {
-    branches_.push_back(
-        {next.origin, BranchEnd::budget, deadline.budget_text() + " (solve.budget) is spent; raise it"});
-    waiting_.clear();
-    return false;
+  const Deadline& deadline = options.solve.deadline;
+  while (!waiting_.empty()) {
+    Waiting next = std::move(waiting_.front());
+    waiting_.pop_front();
+    BranchRecord& record = branches_.emplace_back();
+    record.origin = next.origin;
+    if (deadline.passed()) {
+      record.end = BranchEnd::budget;
+      record.message = deadline.budget_text() + " (solve.budget) is spent; raise it";
+      waiting_.clear();
+    } else if (!next.first) {
+      record.end = BranchEnd::not_started;
+      record.message = "no other branch was found where the equations are singular; others may begin there";
+    } else {
+      current_.emplace(next.twice ? doubled(family_) : family_, options, *std::move(next.first));
+      return true;
+    }
   }
-  const bool twice = next.start.kind == PointKind::period_doubling;
-  current_.emplace(twice ? doubled(family_) : family_, options, std::move(next.start), next.side);
-  branches_.push_back({.origin = next.origin});
-  return true;
+  return false;
 }
 
 }  // namespace extremal

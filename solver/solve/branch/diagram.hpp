@@ -21,8 +21,8 @@ struct BranchRecord {
   std::optional<double> worst_momentum = 0;      ///< likewise
 };
 
-/// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches
-/// cross, one way and the other; where a period doubles, the orbits of twice the period. Each has as many
+/// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches meet,
+/// all others one way and the other; where a period doubles, the orbits of twice the period. Each has as many
 /// points as the options allow.
 class Diagram {
  public:
@@ -36,18 +36,20 @@ class Diagram {
   const std::vector<BranchRecord>& branches() const { return branches_; }
 
  private:
+  /// A branch that begins at a point, or the lack of any.
   struct Waiting {
     int origin;
-    BranchStart start;
-    int side;
+    std::optional<FirstState> first = {};
+    bool twice = false;
   };
+  void find_others(const BranchStart& start);
   bool begin_next();
   void note();
 
   std::optional<ProblemFamily> with_forces_;  ///< of one copy, if the family is of two
   ProblemFamily family_;
   ContinuationOptions options_;
-  std::optional<Continuation> current_;
+  std::optional<Continuation> current_;  ///< none where all have ended
   std::deque<Waiting> waiting_;
   std::vector<BranchRecord> branches_;
   BranchPoint point_;

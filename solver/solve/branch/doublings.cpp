@@ -121,10 +121,11 @@ std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, c
   const auto& from = step.from;
   const std::size_t count = test_count(step);
   std::vector<Event> found;
-  const auto add = [&](double at) {
+  const auto add = [&](double at, int passing) {
     BranchPoint point = read_point(tracker, PointKind::period_doubling);
     found.push_back(
-        {at, {std::move(point), branch_start(tracker, search, PointKind::period_doubling, from, at)}});
+        {at,
+         {std::move(point), branch_start(tracker, search, PointKind::period_doubling, from, at, passing)}});
   };
   const DoublingSamples divided = divided_by_index(tracker, step);
   DoublingSamples between(std::next(divided.begin()), std::prev(divided.end()));
@@ -139,12 +140,12 @@ std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, c
         if (between.size() == most_samples || !tracker.reach(from, at)) return double(NAN);
         return test_of(between[at] = read_doubling_tests(tracker), k, count);
       });
-    find_roots(tracker, search.family, from, samples, std::nullopt, test, add);
+    find_roots(tracker, search.family, from, samples, std::nullopt, test, [&](double at) { add(at, 1); });
   }
   for (auto low = divided.begin(), high = std::next(low); high != divided.end(); ++low, ++high)
     if (hides_doublings(low->second, high->second, count))
       if (const double at = find_passing_pair(tracker, search.family, from, *low, *high); std::isfinite(at))
-        add(at);
+        add(at, 2);
   return found;
 }
 

@@ -42,6 +42,33 @@ inline constexpr double beside_motion = 1e-4;
 
 }  // namespace branch_points
 
+namespace bifurcation_equations {
+
+/// Descents begin along the points of the lattice with entries up to this.
+inline constexpr int lattice = 2, most_descents = 50;
+inline constexpr double first_damping = 1e-3, least_damping = 1e-10, difference = 1e-5;
+/// Of the largest forces: what descents leave, and what roundoff does of differences.
+inline constexpr double enough = 1e-8;
+/// Descents that end so near each other found one direction.
+inline constexpr double same_direction = 1e-6;
+
+}  // namespace bifurcation_equations
+
+namespace other_branches {
+
+/// From a branch point to the first state on another branch, in turn until all solutions of the bifurcation
+/// equations at that distance are states before the value wanted.
+inline constexpr double distances[] = {0.05, 0.01, 2e-3, 4e-4, 1e-4};
+/// Differences and descents for more null directions than this would be too many.
+inline constexpr int most_directions = 4;
+/// The cosine between directions that are opposite.
+inline constexpr double opposite = -1 + 1e-6;
+/// Equal actions and durations agree to this; values of states as far from the point nearly do.
+inline constexpr double copies = 1e-6, nearly_as_far = 1e-2;
+inline constexpr double action_roundoff = 16 * unit_roundoff;
+
+}  // namespace other_branches
+
 namespace common_symmetries {
 
 /// Symmetries differ by less than this, relative, if they are the same.
@@ -88,8 +115,6 @@ inline constexpr double half_as_far = 0.75;
 inline constexpr double half_period = 1e-6;
 /// Of the size of the guess: a path smaller than this is at rest.
 inline constexpr double rest = 1e-9;
-/// The first step onto a branch that crosses another; at least; and the next try.
-inline constexpr double first_departure = 0.05, least_departure = 1e-4, shorter_departure = 0.7;
 /// The action is compared with its derivatives at one point of so many, over half the lengths in turn until
 /// the difference is so small.
 inline constexpr int unchecked = 8;

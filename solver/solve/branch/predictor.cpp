@@ -138,7 +138,6 @@ Move Tracker::transferred(const Move& move, const Path& from) {
   return result;
 }
 
-/// From the path to that of another state, on the elements of the path.
 Move Tracker::difference_to(const BranchState& to) {
   w_.other = to.path;
   if (!same_elements(to.path, path_)) w_.other.resample_from(to.path, branch_.tables(), path_.mesh());

@@ -39,6 +39,12 @@ bool Tracker::begin(const Path& path, double coordinate, const Branch::Units& un
   return update_tangent(true);
 }
 
+bool Tracker::begin(const BranchState& from, double rest) {
+  rest_ = rest;
+  state.units = from.units;
+  return return_to(from) && update_tangent();
+}
+
 std::optional<double> Tracker::begin_beside(const BranchState& from, double value, double rest) {
   rest_ = rest;
   branch_.ask_regular();
@@ -67,12 +73,21 @@ bool Tracker::return_to(const BranchState& from) {
   return true;
 }
 
-bool Tracker::reach(const BranchState& from, double length, bool same_elements, const double* landing) {
+/// By a move of this length from a state, and back across its tangent.
+bool Tracker::displace(const BranchState& from, const Move& by, double length, const double* landing) {
   state.units = from.units;
   landed_ = 0;
   failure_ = StepFailure::no_problem;
-  if (!return_to(from)) return false;
-  if (!branch_.apply(from.predicted(length), 1) || !correct(std::abs(length), landing)) return false;
+  return return_to(from) && branch_.apply(by, 1) && correct(length, landing);
+}
+
+bool Tracker::reach(const BranchState& from, const Move& by) {
+  const double length = std::sqrt(branch_.dot(by, by));
+  return displace(from, by, length, nullptr) && update_tangent();
+}
+
+bool Tracker::reach(const BranchState& from, double length, bool same_elements, const double* landing) {
+  if (!displace(from, from.predicted(length), std::abs(length), landing)) return false;
   for (int k = 0; k < most_resolutions && !same_elements; ++k) {
     const Fit fit = fit_elements();
     if (fit == Fit::too_many) {
@@ -159,9 +174,9 @@ double Tracker::crossing_test() {
   return state.orientation / (state.units.extent * std::sqrt(branch_.dot(response, response)));
 }
 
-bool Tracker::respond(Move& response) {
+bool Tracker::respond(Move& response, int which) {
   if (!branch_.linearise()) return false;
-  branch_.respond(state.tangent, response);
+  branch_.respond(state.tangent, response, which);
   return true;
 }
 

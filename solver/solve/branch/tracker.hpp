@@ -35,6 +35,8 @@ class Tracker {
   bool begin(Path path, double coordinate, double rest);
   /// Begins next to where branches meet, on the elements that there are, in these units of length.
   bool begin(const Path& path, double coordinate, const Branch::Units& units, double rest);
+  /// Begins at a state.
+  bool begin(const BranchState& from, double rest);
 
   /// Begins at the extremal with this value of the number that varies, near that of a state, and to which
   /// Newton's method leads from where its tangent does. How far that is from the state; nothing if it fails.
@@ -44,7 +46,9 @@ class Tracker {
   /// varies has that value. On elements that meet the tolerance, or on those of the state. False if it fails.
   bool reach(const BranchState& from, double length, bool same_elements = false,
              const double* landing = nullptr);
-  /// The same, and onto no other branch that is near.
+  /// By a move from a state, on its elements, and back across its tangent.
+  bool reach(const BranchState& from, const Move& by);
+  /// Along the tangent, and onto no other branch that is near.
   bool reach_smoothly(const BranchState& from, double length, bool same_elements = false);
   /// From the path to where the number that varies has a value near its own.
   bool land(double value);
@@ -74,9 +78,11 @@ class Tracker {
   /// Corrections have nothing along these directions, which belong to the elements of the path, until the
   /// next call: branch points are reached so. Empty for none.
   void hold(const std::vector<Move>& directions) { branch_.hold(directions); }
+  /// From the path to that of another state, on the elements of the path.
+  Move difference_to(const BranchState& to);
   /// The response of the equations at the path, with what is held; see Branch::respond. False where they
   /// cannot be solved.
-  bool respond(Move& response);
+  bool respond(Move& response, int which = 0);
 
   /// Whether the equations hold at the path, along directions that are held too.
   bool balanced() const;
@@ -113,8 +119,8 @@ class Tracker {
   void adopt(const Plan& plan);
   void change_elements(int degree, const std::vector<double>& mesh);
   Move transferred(const Move& move, const Path& from);
-  Move difference_to(const BranchState& to);
   bool return_to(const BranchState& from);
+  bool displace(const BranchState& from, const Move& by, double length, const double* landing);
 
   const ProblemFamily& family_;
   const double tolerance_;
