@@ -23,8 +23,8 @@ constexpr double least_step = 1e-4, growth_of_steps = 1.5;
 /// Where a path is nearer to its equilibrium than this part of its range, its guess for the next one ends.
 constexpr double at_rest = 1e-4;
 constexpr int samples = 1024, element_samples = 8;
-/// With a scheme, how far a path may move in a step, relative to its range; and, where the index changes, in
-/// the shortest one: at a branch point hardly, beyond a fold far.
+/// With a scheme, how far a path may move in a step, relative to its range; and, where the index changes, any
+/// path in the shortest one: at a branch point hardly, beyond a fold far.
 constexpr double most_moved = 0.5, most_moved_at_change = 0.05;
 constexpr int compared = 64;  ///< places along both paths
 
@@ -138,11 +138,41 @@ double distance(const Trajectory& a, const Trajectory& b) {
   return range > 0 ? most / range : 0;
 }
 
-/// Whether an extremal of a scheme is the next one on the branch of another.
-bool continues(const Solution& before, const Solution& found, bool shortest) {
-  const double moved = distance(before.trajectory, found.trajectory);
-  if (found.morse_index == before.morse_index) return moved <= most_moved;
-  return shortest && moved <= most_moved_at_change;
+/// The same of paths without an origin of time, between the curves that they run through.
+double distance_of_curves(const Trajectory& a, const Trajectory& b) {
+  const std::size_t n = a.coordinates;
+  const auto points_of = [n](const Trajectory& path) {
+    std::vector<std::vector<double>> points(samples + 1, std::vector<double>(n));
+    std::vector<double> v(n);
+    for (int k = 0; k <= samples; ++k) path.at(path.duration() * k / samples, points[k], v);
+    return points;
+  };
+  const auto apart = [](const std::vector<double>& p, const std::vector<double>& q) {
+    double most = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) most = std::max(most, std::abs(p[i] - q[i]));
+    return most;
+  };
+  const auto of_a = points_of(a), of_b = points_of(b);
+  double most = 0, range = 0;
+  for (const std::vector<double>& p : of_a) {
+    double least = INFINITY;
+    for (const std::vector<double>& q : of_b) least = std::min(least, apart(p, q));
+    most = std::max(most, least);
+    range = std::max(range, apart(p, of_a.front()));
+  }
+  return range > 0 ? most / range : 0;
+}
+
+/// Whether an extremal is the next one on the branch of another: of the same index, which Newton's method
+/// finds (and of a scheme, near it), or, in the shortest step, beyond a branch point.
+bool continues(const Solution& before, const Solution& found, const Problem& problem, bool of_scheme,
+               bool shortest) {
+  if (found.morse_index == before.morse_index)
+    return !of_scheme || distance(before.trajectory, found.trajectory) <= most_moved;
+  if (!shortest) return false;
+  const double moved = problem.infinite ? distance_of_curves(before.trajectory, found.trajectory)
+                                        : distance(before.trajectory, found.trajectory);
+  return moved <= most_moved_at_change;
 }
 
 /// What make_problem() fills in: symmetries, and with forces both copies. Nothing where it is refused.
@@ -195,9 +225,10 @@ FollowedBranch follow_by_values(const Study& study, const Continued& continued,
   Solver solver;
   Problem here = study.problem;
   Solution solution = solver.solve(here, options);
+  std::string changes;
   const auto finish = [&](BranchEnd end, std::string message) {
     record.end = end;
-    record.message = std::move(message);
+    record.message = std::move(message) + changes;
     if (of_scheme && !followed.points.empty())
       record.message += fmt::format(
           "; each point is an extremal of {}, from the one before: folds end the branch, and "
@@ -215,6 +246,7 @@ FollowedBranch follow_by_values(const Study& study, const Continued& continued,
   const double from = continued.family.from, to = continued.family.to;
   const double longest = (to - from) / std::max(1, continued.points - 1);
   double value = from, step = longest;
+  bool bisecting = false;  // between values where the index differs
   add(value);
   while (value != to) {
     if (static_cast<int>(followed.points.size()) >= continued.points)
@@ -234,19 +266,29 @@ FollowedBranch follow_by_values(const Study& study, const Continued& continued,
     }
     const bool shortest = std::abs(step) / 2 <= least_step * std::abs(to - from);
     const bool near = found.converged() && found.strategy == "newton from the guess";
-    if (!near ||
-        !(of_scheme ? continues(solution, found, shortest) : found.morse_index == solution.morse_index)) {
+    if (!near || !continues(solution, found, here, of_scheme, shortest)) {
       step /= 2;
+      bisecting = found.converged() && found.morse_index != solution.morse_index;
       if (!shortest) continue;
       return finish(there ? BranchEnd::too_short : BranchEnd::limit,
                     fmt::format("beyond {} = {:.10g} Newton's method does not lead on: {}",
                                 continued.parameter, value, obstacle(there, found, solution)));
     }
+    if (found.morse_index != solution.morse_index) {
+      changes += fmt::format(
+          "; between {:.10g} and {:.10g} the index changes: another branch begins there, "
+          "which is not followed",
+          value, next);
+      step = longest;
+      bisecting = false;
+    }
     here = *std::move(there);
     solution = std::move(found);
     value = next;
-    add(value);
-    step = std::copysign(std::min(std::abs(longest), growth_of_steps * std::abs(step)), step);
+    bisecting = bisecting && !shortest;
+    if (!bisecting) add(value);
+    const double growth = bisecting ? 0.5 : growth_of_steps;
+    step = std::copysign(std::min(std::abs(longest), growth * std::abs(step)), step);
   }
   return finish(BranchEnd::target, fmt::format("{} is {:.10g}", continued.parameter, to));
 }

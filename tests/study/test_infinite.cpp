@@ -157,6 +157,24 @@ TEST_F(InfiniteEndsOf, BouncesFromDimensionToDimension) {
   for (const BranchPoint& point : branch.points) EXPECT_EQ(point.solution.morse_index, 1) << point.parameter;
 }
 
+/// x = tanh t along y = 0, whose second variation by y is −∂² + s² − 2/cosh² t: walls with y ≠ 0 begin at s
+/// = 1.
+TEST_F(InfiniteEndsOf, AFamilyGoesOnWhereAnotherOneBegins) {
+  std::string scene = scene_of(R"(["x", "y"])", "(x'^2 + y'^2)/2 + (x^2 + y^2 - 1)^2/2 + s^2*y^2/2",
+                               "start = { x = -1.0, y = 0.0 }\nend = { x = 1.0, y = 0.0 }\n",
+                               "[continuation]\nparameter = \"s\"\nto = 0.6\npoints = 60\n");
+  scene.replace(scene.find("lagrangian"), 0, "parameters = { s = 1.25 }\n");
+  const FollowedBranch branch = follow(study(scene));
+  const BranchRecord& record = branch.branches.front();
+  EXPECT_LT(branch.points.back().parameter, 0.65) << record.message;
+  EXPECT_NE(record.message.find("the index changes"), std::string::npos) << record.message;
+  for (const BranchPoint& point : branch.points) {
+    EXPECT_NEAR(point.solution.action, 4.0 / 3, 1e-9) << point.parameter;
+    if (std::abs(point.parameter - 1) < 1e-3) continue;
+    EXPECT_EQ(point.solution.morse_index, point.parameter < 1 ? 1 : 0) << point.parameter;
+  }
+}
+
 TEST_F(InfiniteEndsOf, AreRefusedWhereTheyCannotBe) {
   const auto refused = [&](const std::string& content, const std::string& part) {
     const std::string text = message(content);
