@@ -77,7 +77,10 @@ Matrix graph(const Matrix& sign, double side) {
   return 0.5 * (p + p.transpose());
 }
 
-/// (η, π)' = A (η, π) with L = ½ η'ᵀMη' + η'ᵀCη + ½ ηᵀKη and π = Mη' + Cη.
+double least_real_part(const Eigen::VectorXcd& exponents) { return exponents.real().cwiseAbs().minCoeff(); }
+
+}  // namespace
+
 Matrix linear_motion(const PointValues& values, Eigen::Index n) {
   const Matrix c = square(values.vq, n), inverse = solved(square(values.vv, n), Matrix::Identity(n, n)),
                slope = inverse * c;
@@ -85,10 +88,6 @@ Matrix linear_motion(const PointValues& values, Eigen::Index n) {
   a << -slope, inverse, square(values.qq, n) - c.transpose() * slope, slope.transpose();
   return a;
 }
-
-double least_real_part(const Eigen::VectorXcd& exponents) { return exponents.real().cwiseAbs().minCoeff(); }
-
-}  // namespace
 
 double slowest_rate(const Lagrangian& lagrangian, std::span<const double> q, double t) {
   const auto n = static_cast<Eigen::Index>(q.size());

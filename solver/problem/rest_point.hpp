@@ -27,6 +27,10 @@ struct RestPoint {
   Eigen::MatrixXd stable, unstable;
 };
 
+/// (η, π)' = A (η, π) for small deviations η of q and π of ∂L/∂q' from a point at rest where L has these
+/// values: L = ½ η'ᵀMη' + η'ᵀCη + ½ ηᵀKη and π = Mη' + Cη. 2n × 2n.
+Eigen::MatrixXd linear_motion(const PointValues& values, Eigen::Index n);
+
 /// Beside the point that is given. Throws std::invalid_argument where L has no finite derivatives there.
 RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near, double t);
 

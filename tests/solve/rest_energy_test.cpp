@@ -38,9 +38,10 @@ struct Turning {
 };
 
 RestEnergy between(const State& before, const State& after, bool begins) {
-  const NearEquilibrium equilibrium(*turning_drift(), Values{1e-3, 0});
+  const auto drift = turning_drift();
+  const NearEquilibrium equilibrium(*drift, Values{1e-3, 0});
   EXPECT_TRUE(equilibrium.hyperbolic());
-  return equilibrium.energy({before.q, before.v, begins}, {after.q, after.v}, 1e-12);
+  return equilibrium.energy({before.q, before.v, begins}, {after.q, after.v}, 1e-12, 0);
 }
 
 /// The tails stay as they are when a rest becomes longer; its energy changes like e^−al cos(ωl + phase).
@@ -56,9 +57,9 @@ TEST(RestEnergy, BetweenTailsThatTurn) {
                 1e-4 * std::abs(rest.at(l).stiffness) + 1e-5);
   }
   for (double l = 2; l < 2 + std::numbers::pi / omega; l += 0.05) {
-    const std::optional<double> held = rest.held_near(l, true);
+    const std::optional<double> held = rest.held_near(l);
     ASSERT_TRUE(held.has_value()) << l;
-    EXPECT_TRUE(rest.held_at(*held, true)) << l;
+    EXPECT_TRUE(rest.held_at(*held)) << l;
     EXPECT_LT(std::abs(*held - l), std::numbers::pi / omega + 0.1) << l;
   }
 }
@@ -72,6 +73,26 @@ TEST(RestEnergy, FromAnEnd) {
   const double longer = rest.at(3).log - rest.at(40).log;
   EXPECT_NEAR(longer, 2 * a * 37, 2e-4);
   EXPECT_NEAR(rest.at(40).stiffness, 2 * a, 1e-9);
+}
+
+/// Of w(a) = w + c₁ a + c₂ a² three tails tell w, also where it passes zero between them; the doubt is what
+/// c₂ makes of 2w(a) − w(2a).
+TEST(RestEnergy, ExtrapolatedFromThreeTails) {
+  const Complex w = 2e-3 - 1e-3i, linear = -0.3 + 0.2i, quadratic = 1.0 - 2.0i, rate = 1.5 + 4i;
+  std::vector<RestEnergy> tails;
+  std::array<double, 3> excess{};
+  for (int k = 0; k < 3; ++k) {
+    const double a = 0.04 / (1 << k);
+    excess[k] = 0.7 * k;
+    const Complex weight = (w + linear * a + quadratic * a * a) * std::exp(rate * excess[k]);
+    tails.push_back(RestEnergy({{weight, rate}, {std::conj(weight), std::conj(rate)}}));
+  }
+  const std::optional<RestEnergy> rest = RestEnergy::extrapolated({&tails[0], &tails[1], &tails[2]}, excess);
+  ASSERT_TRUE(rest.has_value());
+  const RestEnergy::Action action = rest->action(2, 0);
+  EXPECT_NEAR(action.energy, 2 * (w * std::exp(-2.0 * rate)).real(), 1e-16);
+  EXPECT_NEAR(action.doubt, 2 * 2 * std::abs(quadratic) * 1e-4 * std::exp(-3.0), 1e-12);
+  EXPECT_NEAR(action.value, 2 * (w * std::exp(-2.0 * rate) / rate).real(), 1e-16);
 }
 
 /// b = −∇U + c J ∇U across the saddle at 0 of U = (u² − 1)²/4 + v²/2. Actions by collocation of Hamilton's
@@ -94,6 +115,49 @@ TEST(RestEnergy, MinimisersAcrossASaddleThatTheyTurnInto) {
     EXPECT_NEAR(s.action, action, 1e-10) << c << " " << T;
     EXPECT_EQ(s.morse_index, 0);
   }
+}
+
+/// About the nodes the paths turn so fast that the energy of a rest there oscillates with its length.
+TEST(RestEnergy, MinimisersBetweenRestsThatTheyTurnAbout) {
+  const auto drift = trace(2, [](auto q, auto v, auto) {
+    const auto g = q[0] * q[0] * q[0] - q[0];
+    const auto x = v[0] + g + 4.0 * q[1], y = v[1] + q[1] - 4.0 * g;
+    return (x * x + y * y) / 2.0;
+  });
+  for (const double T : {16.0, 30.0}) {
+    const Solution s = solve(fixed_ends(drift, {-1, 0}, {1, 0}, T), within(1e-9));
+    ASSERT_TRUE(s.converged()) << T << ": " << s.message;
+    EXPECT_NEAR(s.action, T < 20 ? 0.500000034988 : 0.5, 1e-11) << T;
+    EXPECT_EQ(s.morse_index, 0);
+    EXPECT_LT(s.error_estimate, 1e-5) << T;
+  }
+}
+
+/// The drift of FitzHugh and Nagumo between two nodes, whose slow rate is r = (4.5 − √4.25)/2, across a
+/// saddle that is left at the fast rate ν = (1.5 + √10.25)/2. All rests become longer by a duration as 1/2r
+/// and 1/ν: so the passage to the saddle is later by 1/2r of 1/r + 1/ν. At T = 25 Newton's method finds it.
+TEST(RestEnergy, SlowMotionsOfNoEnergyHoldNothing) {
+  const auto drift = trace(2, [](auto q, auto v, auto) {
+    const auto x = v[0] - 2.0 * (q[0] - q[0] * q[0] * q[0]) - (0.5 * q[0] - q[1]),
+               y = v[1] - 0.5 * (q[0] - 2.0 * q[1]);
+    return (x * x + y * y) / 2.0;
+  });
+  const double r = (4.5 - std::sqrt(4.25)) / 2, nu = (1.5 + std::sqrt(10.25)) / 2;
+  const auto passage = [&](double T) {
+    const Solution s = solve(fixed_ends(drift, {-1, -0.5}, {1, 0.5}, T), within(1e-9));
+    EXPECT_TRUE(s.converged()) << T << ": " << s.message;
+    EXPECT_NEAR(s.action, 0.481466957407, T < 30 ? 1e-8 : 1e-11) << T;
+    EXPECT_EQ(s.nullity, T < 30 ? 0 : 2) << T;
+    double before = 0, after = T / 2;
+    for (int k = 0; k < 60 && s.converged(); ++k) {
+      const double t = 0.5 * (before + after);
+      (at(s.trajectory, t).q[0] < -0.5 ? before : after) = t;
+    }
+    return before;
+  };
+  const double share = 1 / (2 * r) / (1 / r + 1 / nu), at40 = passage(40);
+  EXPECT_NEAR(at40 - passage(25), 15 * share, 1e-3);
+  EXPECT_NEAR(passage(60) - at40, 20 * share, 1e-5);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ Refinement::Refinement(const Problem& problem, const SolveOptions& options, Work
 void Refinement::rebind() {
   w_.iteration.reset(problem_, *tables_, path_.elements(), &w_.levels.at(first_degree));
   w_.iteration.hold_shifts(outcome_.shifts_held);
+  w_.iteration.move_nodes(nodes_move_);
 }
 
 bool Refinement::count_step() {
@@ -37,7 +38,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
 
 void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
-  mesh_kept_ = false;
+  mesh_kept_ = nodes_move_ = false;
   digits_ = Digits::of_double;
   outcome_.shifts_held = false;
   w_.iteration.forget();

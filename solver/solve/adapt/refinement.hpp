@@ -60,6 +60,12 @@ class Refinement {
     doubled,  ///< from the first step on
   };
   void set_digits(Digits digits) { digits_ = digits; }
+  /// Steps from the path that was opened move its nodes in time: a soft shift of what lies between two rests
+  /// bends values at fixed times by more than the forces that hold it.
+  void move_nodes() {
+    nodes_move_ = true;
+    w_.iteration.move_nodes(true);
+  }
   /// Binds the workspace's iteration to the problem again, after it was used for another.
   void rebind();
   /// Counts a step that the caller takes; false if there may be no more.
@@ -132,6 +138,7 @@ class Refinement {
   double first_magnitude_ = 0;  ///< of the path that is pursued
   bool varied_mass_ = false;    ///< with q
   bool mesh_kept_ = false;      ///< see keep_mesh()
+  bool nodes_move_ = false;     ///< see move_nodes()
   Digits digits_ = Digits::of_double;
   double inertia_ = 0;         ///< of momenta by velocities where these are not all of momenta
   double momentum_range_ = 0;  ///< when last known

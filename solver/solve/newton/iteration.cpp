@@ -68,7 +68,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   norm_ = contraction_ = noise_ = 0;
   damping_ = predicted_ = 1;
   count_ = 0;
-  phase_free_ = shifts_held_ = false;
+  phase_free_ = shifts_held_ = nodes_move_ = false;
   held_.clear();
   if (!sparse) {
     use_dense();
@@ -160,7 +160,7 @@ bool NewtonIteration::leaves_duration(const Path& path, const Step& step) const 
 
 /// `corners` are those of the path before. False if an element would become too short or too long for it.
 bool NewtonIteration::apply(Path& path, const Step& step, double factor, std::span<const Corner> corners) {
-  if (in_twice_the_precision())
+  if (moves_nodes())
     MovingStep().add(step, factor, path);
   else
     path.add(step.nodes, step.inner, factor);
@@ -172,7 +172,7 @@ bool NewtonIteration::apply(Path& path, const Step& step, double factor, std::sp
 
 /// The path as it was saved, and its mesh where that may have moved.
 void NewtonIteration::restore(Path& path) {
-  if (saved_corners_.empty() && !in_twice_the_precision())
+  if (saved_corners_.empty() && !moves_nodes())
     path.copy_values(saved_);
   else
     path = saved_;
@@ -259,7 +259,7 @@ StepResult NewtonIteration::step_without_trial(Path& path, double expected) {
 std::optional<StepResult> NewtonIteration::damp(Path& path, double step, double enough,
                                                 double least_damping) {
   saved_corners_.assign(action_.corners().begin(), action_.corners().end());
-  if (saved_corners_.empty() && !in_twice_the_precision())
+  if (saved_corners_.empty() && !moves_nodes())
     saved_.copy_values(path);
   else
     saved_ = path;

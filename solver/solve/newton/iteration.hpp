@@ -82,6 +82,10 @@ class NewtonIteration {
   /// How many shifts the factors hold.
   int held_shifts() const { return shifts_held_ ? phases_.count : 0; }
 
+  /// Whether steps move the nodes in time with the path, see MovingStep (by default only those in twice the
+  /// precision do). Forgotten by reset().
+  void move_nodes(bool on) { nodes_move_ = on; }
+
   /// One more correction with the factors there are.
   StepResult chord_step(Path& path);
   /// The length of that correction with the gradient of another quadrature on the same elements, and of
@@ -136,6 +140,7 @@ class NewtonIteration {
   void use_dense();
   bool dense() const { return model_ == condensed_.get() || in_twice_the_precision(); }
   bool in_twice_the_precision() const { return doubled_ && model_ == doubled_.get(); }
+  bool moves_nodes() const { return nodes_move_ || in_twice_the_precision(); }
   bool doubles_digits() const;
   bool lost_digits() const;
   bool restart_in_twice_the_precision(Path& path);
@@ -165,7 +170,8 @@ class NewtonIteration {
   Step step_, simplified_;
   ClosingEquation closing_;
   PhaseConditions phases_;
-  bool phase_free_ = false, shifts_held_ = false, extended_ = false, refined_ = false, doubling_ = false;
+  bool phase_free_ = false, shifts_held_ = false, nodes_move_ = false, extended_ = false, refined_ = false,
+       doubling_ = false;
   std::vector<double> held_;  ///< (N + 1) × n, or empty
   Path saved_;
   ClosingMap closed_;  ///< of a periodic problem with kinks

@@ -118,12 +118,11 @@ Balance::Balance(const Problem& problem, const Path& path, Accuracy accuracy) {
     const std::optional<Rest> rest = measure(*problem.lagrangian, speeds, slowest, accuracy);
     all = rest.has_value();
     if (all) rests_.push_back(*rest);
-    rest_speed_ = std::max(rest_speed_, speeds.values[slowest] / speeds.fastest);
   }
   if (all) balance();
 }
 
-/// Nothing if the path has no such tail at all, or none of an energy.
+/// Nothing if the path has no such tail at all.
 std::optional<Balance::Tails> Balance::tails(const NearEquilibrium& equilibrium, Speeds& speeds,
                                              std::size_t slowest, double speed) {
   const std::size_t last = speeds.times.size() - 1;
@@ -137,9 +136,8 @@ std::optional<Balance::Tails> Balance::tails(const NearEquilibrium& equilibrium,
   found.span.from = speeds.tail_end(slowest, before, speed);
   const std::vector<double> q = speeds.q(), v = speeds.v();
   found.span.to = speeds.tail_end(slowest, after, speed);
-  found.energy =
-      equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends}, speed_roundoff * speeds.fastest);
-  if (!std::isfinite(found.value().log)) return std::nullopt;
+  found.energy = equilibrium.energy({q, v, begins}, {speeds.q(), speeds.v(), ends},
+                                    speed_roundoff * speeds.fastest, speed / speeds.fastest);
   return found;
 }
 
@@ -153,8 +151,11 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
                tail = std::max(tail_speed * speeds.fastest, least);
   const std::optional<Tails> found = tails(equilibrium, speeds, slowest, tail);
   if (!found) return std::nullopt;
-  Rest rest{.tails = *found, .slow = {}, .cost = equilibrium.cost(), .doubt = tail / speeds.fastest};
-  if (accuracy == Accuracy::extrapolated) extrapolate(equilibrium, speeds, slowest, 4 * tail, least, rest);
+  Rest rest{.tails = *found, .slow = {}, .cost = equilibrium.cost()};
+  if (accuracy == Accuracy::extrapolated)
+    rest.tails.energy = extrapolate(equilibrium, speeds, slowest, 4 * tail, least, *found);
+  rest.tails.energy = rest.tails.energy.known();
+  if (!std::isfinite(rest.value().log)) return std::nullopt;
   std::size_t before = slowest, after = slowest;
   while (before > 0 && speeds.values[before] < moving * speeds.fastest) --before;
   while (after + 1 < speeds.times.size() && speeds.values[after] < moving * speeds.fastest) ++after;
@@ -162,78 +163,122 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   return rest;
 }
 
-/// What the equations of a tail of speed a are not linear in changes the logarithm of the energy by
-/// c₁ a + c₂ a² + …; tails of a, 2a and 4a tell c₁ and c₂. The slower the tails, the less is left of that,
-/// and the more of the errors of the path: the speed is taken at which c₂ changes the result least.
-void Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
-                          double fastest_tail, double least, Rest& rest) {
-  const double measured = rest.tails.value().log;
-  std::vector<double> logs;
-  for (double speed = fastest_tail; speed >= least && logs.size() < most_tails; speed /= 2) {
-    const std::optional<Tails> found = tails(equilibrium, speeds, slowest, speed);
-    if (!found) return;
-    logs.push_back(found->value().log);
-    if (logs.size() < 3) continue;
-    const double four = logs[logs.size() - 3], two = logs[logs.size() - 2], one = logs.back();
-    const double linear = 2 * one - two, quadratic = (8 * one - 6 * two + four) / 3;
-    if (!(std::abs(quadratic - linear) < rest.doubt)) continue;
-    rest.doubt = std::abs(quadratic - linear);
-    rest.correction = quadratic - measured;
+/// What the equations of a tail of speed a are not linear in changes each weight by c₁ a + c₂ a² + …; tails
+/// of a, 2a and 4a tell c₁ and c₂. The slower the tails, the less is left of that, and the more of the errors
+/// of the path: the speed is taken at which c₂ changes the energy least.
+RestEnergy Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
+                                double fastest_tail, double least, const Tails& measured) {
+  const double length = measured.span.length(), exponent = -measured.energy.log_size(length);
+  RestEnergy best = measured.energy;
+  std::vector<Tails> all;
+  for (double speed = fastest_tail; speed >= least && all.size() < most_tails; speed /= 2) {
+    std::optional<Tails> found = tails(equilibrium, speeds, slowest, speed);
+    if (!found) return best;
+    all.push_back(*std::move(found));
+    if (all.size() < 3) continue;
+    const Tails* const last = &all.back();
+    const std::optional<RestEnergy> extrapolated = RestEnergy::extrapolated(
+        {&last[-2].energy, &last[-1].energy, &last->energy},
+        {last[-2].span.length() - length, last[-1].span.length() - length, last->span.length() - length});
+    if (!extrapolated) return best;
+    if (extrapolated->action(length, exponent).doubt < best.action(length, exponent).doubt)
+      best = *extrapolated;
   }
+  return best;
 }
 
-RestEnergy::Value Balance::Rest::at(double length) const {
-  RestEnergy::Value value = tails.energy.at(length);
-  value.log += correction;
-  return value;
+/// Of all rests, by e^exponent, with given shifts of the parts between.
+Balance::Actions Balance::actions(const Eigen::VectorXd& shifts, double exponent) const {
+  const Eigen::VectorXd lengths = lengths_ + by_shifts_ * shifts;
+  Actions all{
+      .value = 0, .energy = lengths, .stiffness = lengths, .most_stiffness = lengths, .doubt = lengths};
+  for (Eigen::Index j = 0; j < lengths.size(); ++j) {
+    const Rest& rest = rests_[static_cast<std::size_t>(j)];
+    const RestEnergy::Action action = rest.tails.energy.action(lengths[j], exponent);
+    if (!(rest.slow.length() + lengths[j] > rest.length())) return {};
+    all.value += action.value;
+    all.size += std::abs(action.value);
+    all.energy[j] = action.energy;
+    all.stiffness[j] = action.stiffness;
+    all.most_stiffness[j] = action.most_stiffness;
+    all.doubt[j] = action.doubt;
+  }
+  return all;
 }
 
-/// Lengths of rests, the sum of which is given, for which the logarithms of the energies agree; before the
-/// first rest and after the last nothing is shifted.
+double Balance::largest_log(const Eigen::VectorXd& shifts) const {
+  const Eigen::VectorXd lengths = lengths_ + by_shifts_ * shifts;
+  double largest = -INFINITY;
+  for (std::size_t j = 0; j < rests_.size(); ++j)
+    largest = std::max(largest, rests_[j].tails.energy.log_size(lengths[static_cast<Eigen::Index>(j)]));
+  return largest;
+}
+
+/// Newton's method, damped by the curvature that there were if no terms cancelled: the action falls in each
+/// step, also where energies oscillate with the length. Of an exponential function a step is 1/rate, so it is
+/// doubled where energies differ by many powers.
+std::optional<Eigen::VectorXd> Balance::least_action() const {
+  Eigen::VectorXd shifts = Eigen::VectorXd::Zero(by_shifts_.cols());
+  double damping = 0, stride = 1, fastest = 0;
+  for (const Rest& rest : rests_) fastest = std::max(fastest, rest.tails.energy.fastest_rate());
+  const double roundoff = action_roundoff * (1 + fastest * lengths_.sum());
+  for (int step = 0; step < most_shift_steps && damping < most_damping; ++step) {
+    const double log = largest_log(shifts);
+    const Actions now = actions(shifts, -log);
+    Eigen::MatrixXd bound = by_shifts_.transpose() * now.most_stiffness.asDiagonal() * by_shifts_;
+    bound.diagonal().array() += least_bound * bound.diagonal().maxCoeff();
+    const Eigen::LLT<Eigen::MatrixXd> equations(hessian(now) + damping * bound);
+    const Eigen::VectorXd change = equations.solve(by_shifts_.transpose() * now.energy);
+    const Eigen::VectorXd next = shifts + stride * change;
+    const double fall = log - largest_log(next);
+    const bool falls = equations.info() == Eigen::Success && (stride == 1 || fall > far) &&
+                       actions(next, -log).value <= now.value + roundoff * now.size;
+    if (!falls) {
+      if (stride == 1) damping = std::max(first_damping, damping_growth * damping);
+      stride = 1;
+      continue;
+    }
+    shifts = next;
+    if (damping == 0 && stride == 1 && change.cwiseAbs().maxCoeff() * fastest < converged) return shifts;
+    stride = fall > far ? 2 * stride : 1;
+    damping = damping > least_damping ? damping / damping_growth : 0;
+  }
+  return std::nullopt;
+}
+
+/// Of the action, in the shifts.
+Eigen::MatrixXd Balance::hessian(const Actions& rests) const {
+  return by_shifts_.transpose() * rests.stiffness.asDiagonal() * by_shifts_;
+}
+
+/// Shifts of the parts between rests for which the action of these is least; before the first rest and after
+/// the last nothing is shifted.
 void Balance::balance() {
-  if (rests_.size() < 2) return;
-  const bool positive = std::ranges::any_of(rests_, [](const Rest& rest) { return rest.value().positive; });
-  std::vector<double> longer;
-  for (const Rest& rest : rests_) {
-    const std::optional<double> held = rest.tails.energy.held_near(rest.length(), positive);
-    if (!held) return;
-    longer.push_back(*held - rest.length());
-  }
-  double change = INFINITY;
-  for (int step = 0; step < most_length_steps && change > balanced; ++step) {
-    double sum = 0, weights = 0;
-    std::vector<RestEnergy::Value> values;
-    for (std::size_t j = 0; j < rests_.size(); ++j) {
-      values.push_back(rests_[j].at(rests_[j].length() + longer[j]));
-      sum += longer[j] + values[j].log / values[j].stiffness;
-      weights += 1 / values[j].stiffness;
-    }
-    change = 0;
-    for (std::size_t j = 0; j < rests_.size(); ++j) {
-      double more = (values[j].log - sum / weights) / values[j].stiffness;
-      if (!std::isfinite(more)) return;
-      change = std::max(change, std::abs(more * values[j].stiffness));
-      const double length = rests_[j].length() + longer[j];
-      while (!rests_[j].tails.energy.held_at(length + more, positive)) more /= 2;
-      longer[j] += more;
-    }
-  }
-  if (!(change <= balanced)) return;
+  const auto count = std::ssize(rests_);
+  if (count < 2) return;
+  lengths_.resize(count);
+  for (Eigen::Index j = 0; j < count; ++j) lengths_[j] = rests_[static_cast<std::size_t>(j)].length();
+  by_shifts_ = Eigen::MatrixXd::Zero(count, count - 1);
+  by_shifts_.diagonal().setOnes();
+  by_shifts_.diagonal(-1).setConstant(-1);
+  const std::optional<Eigen::VectorXd> least = least_action();
+  if (!least) return;
   exists_ = true;
-  double shift = 0;
-  for (std::size_t j = 0; j < rests_.size(); ++j) {
-    const Rest& rest = rests_[j];
-    shift += longer[j];
-    shifts_.push_back(shift);
-    const double stiffness = rest.at(rest.length() + longer[j]).stiffness;
-    error_ = std::max(error_, fastest_ * rest.doubt / stiffness);
-    largest_shift_ = std::max(largest_shift_, std::abs(longer[j]) * stiffness);
+  shifts_.assign(least->begin(), least->end());
+  shifts_.push_back(0);
+  const Eigen::VectorXd longer = by_shifts_ * *least;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Rest& rest = rests_[static_cast<std::size_t>(j)];
+    largest_shift_ = std::max(largest_shift_, std::abs(longer[j]) * rest.tails.energy.fastest_rate());
     // With tails that are faster than those measured there may still be a rest.
     const bool long_enough = rest.length() + longer[j] > still_long * rest.length();
     stretched_.push_back(long_enough ? rest.tails.span : rest.slow);
     exists_ = exists_ && stretched_.back().length() + longer[j] > 0;
   }
-  shifts_.back() = 0;
+  const Actions held = actions(*least, -largest_log(*least));
+  const Eigen::MatrixXd doubts = by_shifts_.transpose() * held.doubt.asDiagonal();
+  energy_ = std::exp(largest_log(*least)) / kinetic_;
+  error_ = fastest_ * hessian(held).llt().solve(doubts).cwiseAbs().rowwise().sum().maxCoeff();
 }
 
 bool Balance::apply(Path& path) const {
@@ -255,7 +300,7 @@ std::size_t Balance::falling() const {
   std::size_t gone = rests_.size();
   if (rests_.size() < 2) return gone;
   for (std::size_t j = 0; j < rests_.size(); ++j) {
-    if (excess(rests_[j]) == 0 && rests_[j].tails.energy.held_near(rests_[j].length(), true)) continue;
+    if (excess(rests_[j]) == 0 && rests_[j].tails.energy.held_near(rests_[j].length())) continue;
     const bool worse =
         gone == rests_.size() || excess(rests_[j]) > excess(rests_[gone]) ||
         (excess(rests_[j]) == excess(rests_[gone]) && rests_[j].value().log > rests_[gone].value().log);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Dense>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,21 +17,21 @@ namespace extremal {
 
 /// A path between fixed ends that rests near equilibria, at its ends or between. What lies between two rests
 /// is held in time by the energy, which is the same in all of them. In a rest the motion is linear, and its
-/// tails give the energy by exponential functions of the length of the rest. So the shifts of the parts for
-/// which the energies agree are known also where the energies themselves are below roundoff.
+/// tails give the energy and the action by exponential functions of the length of the rest. So the shifts of
+/// the parts for which the action of all rests is least are known also where energies are below roundoff.
 class Balance {
  public:
   /// Of the energies in the rests: by linear tails, or also by what these leave out.
   enum class Accuracy { linear, extrapolated };
   Balance(const Problem& problem, const Path& path, Accuracy accuracy = Accuracy::linear);
 
-  /// Whether there are shifts for which the energies agree.
+  /// Whether there are shifts for which the action is least.
   bool exists() const { return exists_; }
-  /// Of the slowest speeds of the rests the largest, by the largest speed of the path.
-  double rest_speed() const { return rest_speed_; }
-  /// The largest shift, times the rate of a rest beside it.
+  /// In the rests, where the action is least, by q'·Mq' where the path is fastest.
+  double energy() const { return energy_; }
+  /// The largest change of the length of a rest, times its fastest rate.
   double largest_shift() const { return largest_shift_; }
-  /// Of q, absolute: the largest speed by the time in which the shifts are in doubt.
+  /// Of q, absolute: the largest speed by what doubts of energies change of the shifts.
   double error() const { return error_; }
   /// Shifts the parts of `path`, by stretching and compressing the elements of the rests. False, and nothing
   /// is done, if those are too short.
@@ -51,33 +53,40 @@ class Balance {
   struct Tails {
     Span span;
     RestEnergy energy;  ///< by the length of span
-    RestEnergy::Value value() const { return energy.at(span.length()); }
   };
   struct Rest {
     Tails tails;
-    Span slow;              ///< with all that is slower than the moving parts
-    double cost;            ///< L at the equilibrium
-    double correction = 0;  ///< of the logarithm of the energy, for tails that are no longer linear
-    double doubt = 0;       ///< of that logarithm
+    Span slow;    ///< with all that is slower than the moving parts
+    double cost;  ///< L at the equilibrium
     double length() const { return tails.span.length(); }
-    RestEnergy::Value at(double length) const;
-    RestEnergy::Value value() const { return at(length()); }
+    RestEnergy::Value value() const { return tails.energy.at(length()); }
   };
   class Speeds;
   static std::optional<Tails> tails(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
                                     double speed);
   static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest,
                                      Accuracy accuracy);
-  static void extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
-                          double fastest_tail, double least, Rest& rest);
+  static RestEnergy extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
+                                double fastest_tail, double least, const Tails& measured);
+  /// The values of RestEnergy::Action in all rests; the sum of the actions, and of their sizes.
+  struct Actions {
+    double value = std::numeric_limits<double>::infinity(), size = 0;
+    Eigen::VectorXd energy, stiffness, most_stiffness, doubt;
+  };
+  Actions actions(const Eigen::VectorXd& shifts, double exponent) const;
+  double largest_log(const Eigen::VectorXd& shifts) const;
+  Eigen::MatrixXd hessian(const Actions& rests) const;
+  std::optional<Eigen::VectorXd> least_action() const;
   void balance();
   double excess(const Rest& rest) const;
   std::size_t falling() const;
 
   std::vector<Rest> rests_;
+  Eigen::VectorXd lengths_;      ///< of the rests
+  Eigen::MatrixXd by_shifts_;    ///< what a shift of each part changes of the lengths
   std::vector<Span> stretched_;  ///< of the rests, to shift what is between
   std::vector<double> shifts_;   ///< of the parts after the rests; the last is 0
-  double rest_speed_ = 0, largest_shift_ = 0, kinetic_ = 0, fastest_ = 0, error_ = 0;
+  double energy_ = 0, largest_shift_ = 0, kinetic_ = 0, fastest_ = 0, error_ = 0;
   bool exists_ = false;
 };
 

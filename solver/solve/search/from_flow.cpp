@@ -96,8 +96,8 @@ bool Search::flow_from(double away, double side) {
 }
 
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
-/// shifted to where energies in all rests agree, and tried without and, where roundoff hides those, with its
-/// shifts held.
+/// shifted to where the action of all rests is least, and tried without or, where roundoff hides their
+/// energy, with its shifts held.
 bool Search::held_in_time(const char* strategy, const std::function<void()>& renew) {
   Acceptance* const acceptance = std::exchange(acceptance_, nullptr);
   const auto again = [&](bool held) {
@@ -105,40 +105,42 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
     refinement_.take(refinement_.tables());
     outcome_.shifts_held = held;
     refinement_.rebind();
+    if (!held) refinement_.move_nodes();
     return found(strategy);
   };
   bool balance_found = false;
-  double speed = 1;
+  double energy = INFINITY, shift = INFINITY;
   for (int pass = 0; pass < rest_limits::most_balances; ++pass) {
     again(true);  // where the balance is far off, elements may disagree
     if (w_.iteration.held_shifts() == 0) break;
     const Balance balance(problem_, path_, Balance::Accuracy::extrapolated);
-    speed = balance.rest_speed();
+    energy = balance.energy();
+    shift = balance.largest_shift();
     balance_found = balance.exists() && !balance.falls();
     outcome_.shift_error = balance.error();
-    if (!balance_found || !balance.apply(path_) || balance.largest_shift() < rest_limits::balanced) break;
+    if (!balance_found || !balance.apply(path_) || shift < rest_limits::balanced) break;
   }
   acceptance_ = acceptance;
   if (!balance_found) {
     outcome_.shifts_held = false;
     return false;
   }
-  const Path balanced_path = path_;
-  const ElementTables& tables = refinement_.tables();
-  if (again(false)) return true;
-  path_ = balanced_path;
-  refinement_.take(tables);
-  if (speed > rest_limits::loose) {
-    refinement_.keep_mesh();
-    refinement_.set_digits(Refinement::Digits::doubled_where_lost);
-    if (found(strategy)) return true;
+  if (energy > rest_limits::loose) {
+    const Path balanced_path = path_;
+    const ElementTables& tables = refinement_.tables();
+    if (again(false)) return true;
     path_ = balanced_path;
     refinement_.take(tables);
+    refinement_.move_nodes();
+    refinement_.keep_mesh();
+    refinement_.set_digits(Refinement::Digits::doubled_where_lost);
+    return found(strategy);
   }
   // Beside the largest energy of a rest, as those have that paths turn about, its length holds nothing.
+  const double range = scales(path_, refinement_.tables()).range;
   const bool known =
-      outcome_.shift_error <= rest_limits::most_error * scales(path_, refinement_.tables()).range;
-  const bool result = speed < rest_limits::loose && known && again(true);
+      shift <= rest_limits::most_error && outcome_.shift_error <= rest_limits::most_error * range;
+  const bool result = known && again(true);
   outcome_.shifts_held = result;
   return result;
 }

@@ -48,14 +48,21 @@ inline constexpr double moving = 0.1;
 /// Of speeds at an end, by the largest of the path: an end so near to an equilibrium is at it.
 inline constexpr double speed_roundoff = 1e-12;
 /// Slower than this, by the fastest, a motion near an equilibrium neither approaches nor leaves.
-inline constexpr double slowest_rate = 1e-8;
+inline constexpr double least_rate = 1e-8;
 /// Steps from a rest to the equilibrium; and roundoff of L there, by its size and the kinetic energy of the
 /// path.
 inline constexpr int newton_steps = 3;
 inline constexpr double cost_roundoff = 1e-14;
-/// Lengths of rests are looked along by this, by the fastest rate; and steps to balanced ones at most.
+/// Lengths of a rest are looked along by this, by the fastest rate, at most so often.
 inline constexpr double length_step = 0.1;
-inline constexpr int most_length_steps = 200;
+inline constexpr int most_lengths = 200;
+/// Steps to the least action of all rests; they are doubled as long as the logarithm of the largest energy
+/// falls by this. Damping where the action does not fall, by the bound of its curvature, which is at least
+/// that part of the largest; roundoff of the action; and the last change, by the fastest rate.
+inline constexpr int most_shift_steps = 2000;
+inline constexpr double far = 0.5;
+inline constexpr double first_damping = 0.25, damping_growth = 4, least_damping = 1e-3, most_damping = 1e9;
+inline constexpr double least_bound = 1e-12, action_roundoff = 1e-15, converged = 1e-8;
 /// Of a rest between its tails, what must remain if only that is to be compressed.
 inline constexpr double still_long = 0.3;
 /// An element of a rest becomes no shorter than this part of itself.
@@ -66,10 +73,10 @@ inline constexpr double holding_tolerance = 1e-9;
 /// A shift by the rate, after which the tails need not be measured again; and passes at most.
 inline constexpr double balanced = 1e-5;
 inline constexpr int most_balances = 4;
-/// Of what is not known of shifts, by the range of the path.
+/// Of what is not known of shifts, by the range of the path; and of the last shift, as above.
 inline constexpr double most_error = 1e-3;
-/// Rests slower than this, by the largest speed, hold what lies between them in time by forces of 1e-12.
-inline constexpr double loose = 1e-6;
+/// A smaller energy in rests, by that of the motion, holds what lies between them in time by roundoff.
+inline constexpr double loose = 1e-13;
 
 }  // namespace balance
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "linear/dense.hpp"
+#include "problem/rest_point.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -24,42 +25,79 @@ VectorXcd coefficients(const MatrixXcd& columns, const VectorXcd& right) {
 
 }  // namespace
 
-RestEnergy::RestEnergy(std::vector<Term> terms) {
-  double largest = 0;
-  for (const Term& term : terms) largest = std::max(largest, std::abs(term.weight));
-  for (const Term& term : terms)
-    if (std::abs(term.weight) > tail_speed * tail_speed * largest) terms_.push_back(term);
+double RestEnergy::log_size(double length) const {
+  double log = -INFINITY;
+  for (const Term& term : terms_)
+    if (term.weight != 0.0) log = std::max(log, std::log(std::abs(term.weight)) - term.rate.real() * length);
+  return log;
+}
+
+double RestEnergy::fastest_rate() const {
+  double fastest = 0;
+  for (const Term& term : terms_) fastest = std::max(fastest, std::abs(term.rate));
+  return fastest;
+}
+
+RestEnergy RestEnergy::known() const {
+  RestEnergy result(terms_);
+  for (Term& term : result.terms_)
+    if (std::abs(term.weight) < term.doubt) term.weight = 0;
+  return result;
+}
+
+RestEnergy::Action RestEnergy::action(double length, double exponent) const {
+  Action sum;
+  for (const Term& term : terms_) {
+    const Complex fall = std::exp(exponent - term.rate * length);
+    sum.doubt += std::abs(fall) * term.doubt;
+    if (term.weight == 0.0) continue;  // by an overflow this is no number
+    const Complex part = term.weight * fall;
+    sum.value += (part / term.rate).real();
+    sum.energy += part.real();
+    sum.stiffness += (part * term.rate).real();
+    sum.most_stiffness += std::abs(part * term.rate);
+  }
+  return sum;
 }
 
 RestEnergy::Value RestEnergy::at(double length) const {
-  double slowest = INFINITY;
-  for (const Term& term : terms_) slowest = std::min(slowest, term.rate.real());
-  double sum = 0, fall = 0;
-  for (const Term& term : terms_) {
-    const Complex part = term.weight * std::exp((slowest - term.rate) * length);
-    sum += part.real();
-    fall += (part * term.rate).real();
-  }
-  return {std::log(std::abs(sum)) - slowest * length, fall / sum, sum > 0};
+  const double log = log_size(length);
+  const Action scaled = action(length, -log);
+  return {std::log(std::abs(scaled.energy)) + log, scaled.stiffness / scaled.energy, scaled.energy > 0};
 }
 
-bool RestEnergy::held_at(double length, bool positive) const {
+bool RestEnergy::held_at(double length) const {
   const Value value = at(length);
-  return value.positive == positive && value.stiffness > 0;
+  return value.positive && value.stiffness > 0;
 }
 
-/// The action of the rest falls on the way: longer where the energy rises, shorter where its sign is wrong.
-std::optional<double> RestEnergy::held_near(double length, bool positive) const {
-  double fastest = 0;
-  for (const Term& term : terms_) fastest = std::max(fastest, std::abs(term.rate));
-  const double step = (at(length).positive == positive ? length_step : -length_step) / fastest;
-  for (int k = 0; k < most_length_steps && length > 0; ++k, length += step)
-    if (held_at(length, positive)) return length;
+/// The action of the rest falls on the way: longer where the energy rises, shorter where it is negative.
+std::optional<double> RestEnergy::held_near(double length) const {
+  const double step = (at(length).positive ? length_step : -length_step) / fastest_rate();
+  for (int k = 0; k < most_lengths && length > 0; ++k, length += step)
+    if (held_at(length)) return length;
   return std::nullopt;
 }
 
+std::optional<RestEnergy> RestEnergy::extrapolated(const std::array<const RestEnergy*, 3>& tails,
+                                                   const std::array<double, 3>& excess) {
+  const std::size_t count = tails[0]->terms_.size();
+  if (tails[1]->terms_.size() != count || tails[2]->terms_.size() != count) return std::nullopt;
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Complex rate = tails[0]->terms_[i].rate;
+    const auto weight = [&](int tail) {
+      return tails[tail]->terms_[i].weight * std::exp(-rate * excess[tail]);
+    };
+    const Complex linear = 2.0 * weight(2) - weight(1),
+                  quadratic = (8.0 * weight(2) - 6.0 * weight(1) + weight(0)) / 3.0;
+    terms.push_back({quadratic, rate, std::abs(quadratic - linear)});
+  }
+  return RestEnergy(std::move(terms));
+}
+
 NearEquilibrium::NearEquilibrium(const Lagrangian& lagrangian, std::span<const double> q)
-    : q_(q.begin(), q.end()) {
+    : lagrangian_(lagrangian), q_(q.begin(), q.end()) {
   const auto n = static_cast<Eigen::Index>(q_.size());
   const std::vector<double> none(q_.size(), 0);
   Scratch scratch;
@@ -69,21 +107,16 @@ NearEquilibrium::NearEquilibrium(const Lagrangian& lagrangian, std::span<const d
     const Eigen::Map<const Eigen::VectorXd> force(values_.dq.data(), n);
     Eigen::Map<Eigen::VectorXd>(q_.data(), n) -= solved(Rows(values_.qq.data(), n, n), force).col(0);
   }
-  const Rows mass(values_.vv.data(), n, n), stiffness(values_.qq.data(), n, n), turn(values_.vq.data(), n, n);
-  MatrixXd system = MatrixXd::Zero(2 * n, 2 * n);
-  system.topRightCorner(n, n).setIdentity();
-  system.bottomLeftCorner(n, n) = solved(mass, stiffness);
-  system.bottomRightCorner(n, n) = solved(mass, turn.transpose() - MatrixXd(turn));
-  form_ = MatrixXd::Zero(2 * n, 2 * n);
-  form_.topLeftCorner(n, n) = -stiffness;
-  form_.bottomRightCorner(n, n) = mass;
+  const MatrixXd system = linear_motion(values_, n);
+  form_.resize(2 * n, 2 * n);
+  form_ << -system.bottomRows(n), system.topRows(n);
   if (!system.allFinite()) return;
   const ComplexEigen eigen = complex_eigen(system, 0);
   const double fastest = eigen.values.cwiseAbs().maxCoeff();
   std::vector<Eigen::Index> falling, rising;
   for (Eigen::Index i = 0; i < 2 * n; ++i) {
     const double rate = eigen.values[i].real();
-    if (std::abs(rate) > slowest_rate * fastest) (rate < 0 ? falling : rising).push_back(i);
+    if (std::abs(rate) > least_rate * fastest) (rate < 0 ? falling : rising).push_back(i);
   }
   if (static_cast<Eigen::Index>(falling.size()) != n || static_cast<Eigen::Index>(rising.size()) != n) return;
   stable_ = eigen.vectors(Eigen::all, falling);
@@ -94,10 +127,12 @@ NearEquilibrium::NearEquilibrium(const Lagrangian& lagrangian, std::span<const d
 
 VectorXcd NearEquilibrium::deviation(const Passage& passage) const {
   const auto n = static_cast<Eigen::Index>(q_.size());
+  Scratch scratch;
+  const PointValues values = evaluate_at(lagrangian_, passage.q, passage.v, 0, Order::gradient, scratch);
   VectorXcd z(2 * n);
   for (Eigen::Index a = 0; a < n; ++a) {
     z[a] = passage.q[a] - q_[a];
-    z[n + a] = passage.v[a];
+    z[n + a] = values.dv[a] - values_.dv[a];
   }
   return z;
 }
@@ -106,21 +141,27 @@ VectorXcd NearEquilibrium::deviation(const Passage& passage) const {
 /// and columns `back` make up for what it lacks of q there. A rest that ends is the same backwards in time.
 std::vector<RestEnergy::Term> NearEquilibrium::from_end(const VectorXcd& leaving, const VectorXcd& rates,
                                                         const MatrixXcd& away, const MatrixXcd& back,
-                                                        const VectorXcd& displaced) const {
+                                                        const VectorXcd& displaced, double nonlinear) const {
   const Eigen::Index n = rates.size();
   const auto positions = back.topRows(n).partialPivLu();
-  const MatrixXcd parts = away * leaving.asDiagonal(), left = form_.cast<Complex>() * parts;
-  const VectorXcd fixed = left.transpose() * (back * positions.solve(displaced));
-  const MatrixXcd made_up = left.transpose() * (back * positions.solve(MatrixXcd(-parts.topRows(n))));
+  const MatrixXcd left = away.transpose() * form_.cast<Complex>() * back;
+  const VectorXcd fixed = left * positions.solve(displaced);
+  const MatrixXcd made_up = -left * positions.solve(MatrixXcd(away.topRows(n)));
+  const double error = nonlinear * leaving.cwiseAbs().maxCoeff();
   std::vector<RestEnergy::Term> terms;
   for (Eigen::Index j = 0; j < n; ++j) {
-    terms.push_back({fixed[j], rates[j]});
-    for (Eigen::Index k = 0; k < n; ++k) terms.push_back({made_up(j, k), rates[j] + rates[k]});
+    if (!displaced.isZero(0)) terms.push_back({leaving[j] * fixed[j], rates[j], error * std::abs(fixed[j])});
+    for (Eigen::Index k = 0; k <= j; ++k) {
+      const Complex both = j == k ? made_up(j, j) : made_up(j, k) + made_up(k, j);
+      const double off = error * (std::abs(leaving[j]) + std::abs(leaving[k]));
+      terms.push_back({leaving[j] * both * leaving[k], rates[j] + rates[k], off * std::abs(both)});
+    }
   }
   return terms;
 }
 
-RestEnergy NearEquilibrium::energy(const Passage& before, const Passage& after, double roundoff) const {
+RestEnergy NearEquilibrium::energy(const Passage& before, const Passage& after, double roundoff,
+                                   double nonlinear) const {
   const auto n = static_cast<Eigen::Index>(q_.size());
   MatrixXcd columns(2 * n, 2 * n);
   columns << stable_, unstable_;
@@ -130,12 +171,20 @@ RestEnergy NearEquilibrium::energy(const Passage& before, const Passage& after, 
     const VectorXcd q = deviation(end).head(n);
     return q.cwiseAbs().maxCoeff() * decays_.real().maxCoeff() > roundoff ? q : VectorXcd::Zero(n);
   };
-  if (before.end) return RestEnergy(from_end(out, growths_, unstable_, stable_, displaced(before)));
-  if (after.end) return RestEnergy(from_end(in, decays_, stable_, unstable_, displaced(after)));
+  if (before.end)
+    return RestEnergy(from_end(out, growths_, unstable_, stable_, displaced(before), nonlinear));
+  if (after.end) return RestEnergy(from_end(in, decays_, stable_, unstable_, displaced(after), nonlinear));
   std::vector<RestEnergy::Term> terms;
-  const VectorXcd leaving = form_.cast<Complex>() * (unstable_ * out);
-  for (Eigen::Index i = 0; i < n; ++i)
-    terms.push_back({leaving.cwiseProduct(stable_.col(i)).sum() * in[i], decays_[i]});
+  // W pairs a motion that approaches with that which leaves at its rate.
+  const MatrixXcd pairs = unstable_.transpose() * form_.cast<Complex>() * stable_;
+  const VectorXcd leaving = pairs.transpose() * out;
+  const double in_error = nonlinear * in.cwiseAbs().maxCoeff(),
+               out_error = nonlinear * out.cwiseAbs().maxCoeff();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double size = pairs.col(i).cwiseAbs().maxCoeff();
+    terms.push_back({leaving[i] * in[i], decays_[i],
+                     std::abs(leaving[i]) * in_error + size * out_error * std::abs(in[i])});
+  }
   return RestEnergy(std::move(terms));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <complex>
 #include <optional>
 #include <vector>
@@ -16,29 +17,47 @@ class RestEnergy {
  public:
   struct Term {
     std::complex<double> weight, rate;  ///< weight · e^−rate·length
+    double doubt = 0;                   ///< of the weight
   };
   struct Value {
     double log;        ///< of its size
     double stiffness;  ///< −∂log/∂length
     bool positive;
   };
+  /// The action of the rest, of which the energy is −∂/∂length; all by e^exponent.
+  struct Action {
+    double value = 0, energy = 0;
+    double stiffness = 0;       ///< the second derivative of the action
+    double most_stiffness = 0;  ///< its bound, where no terms cancel
+    double doubt = 0;           ///< of the energy
+  };
   RestEnergy() = default;
-  /// Terms that are smaller than errors of the tails are left out.
-  explicit RestEnergy(std::vector<Term> terms);
+  explicit RestEnergy(std::vector<Term> terms) : terms_(std::move(terms)) {}
   Value at(double length) const;
-  /// The length next to this one at which the energy has that sign and falls in size as the rest becomes
-  /// longer; so long a rest is held in time. Motions that turn about the equilibrium have many such lengths.
-  std::optional<double> held_near(double length, bool positive) const;
-  bool held_at(double length, bool positive) const;
+  Action action(double length, double exponent) const;
+  /// Of the largest term.
+  double log_size(double length) const;
+  double fastest_rate() const;
+  /// Without the weights that are less than their doubts.
+  RestEnergy known() const;
+  /// The length next to this one at which the energy is positive and falls as the rest becomes longer.
+  /// Motions that turn about the equilibrium have many such lengths.
+  std::optional<double> held_near(double length) const;
+  bool held_at(double length) const;
+  /// What the weights of three tails tend to, of speeds 4a, 2a and a, in which errors are c₁ a + c₂ a² + …;
+  /// the doubt is what c₂ changes. `excess` are the lengths between the tails less that of which the result
+  /// is a function. Nothing where the terms of the three are not the same.
+  static std::optional<RestEnergy> extrapolated(const std::array<const RestEnergy*, 3>& tails,
+                                                const std::array<double, 3>& excess);
 
  private:
   std::vector<Term> terms_;
 };
 
-/// Motion near an equilibrium, z = (q − equilibrium, q') with z' = Az: M q'' = K q + (Cᵀ − C) q' with the
-/// second derivatives of L. What approaches the equilibrium and what leaves it, z = z_s + z_u, are
-/// exponential functions, also where C turns the path; the energy z·Wz/2 is z_u·W z_s, for each of them alone
-/// has none.
+/// Motion near an equilibrium, z' = Az for the deviations z of (q, ∂L/∂q'). What approaches the equilibrium
+/// and what leaves it, z = z_s + z_u, are exponential functions, also where drifts turn the path; the energy
+/// z·Wz/2 is z_u·W z_s, for each of them alone has none. By the momentum, not by q', motions along a drift
+/// have no part of those that overcome it, also where the drift is not linear.
 class NearEquilibrium {
  public:
   /// Near q, where L is stationary without velocity.
@@ -55,15 +74,17 @@ class NearEquilibrium {
     std::span<const double> q, v;
     bool end = false;
   };
-  /// Of a rest from one passage to another.
-  RestEnergy energy(const Passage& before, const Passage& after, double roundoff) const;
+  /// Of a rest from one passage to another. Speeds of ends are known to `roundoff`; `nonlinear` is the part
+  /// by which the motion in the tails is none of the linear equations.
+  RestEnergy energy(const Passage& before, const Passage& after, double roundoff, double nonlinear) const;
 
  private:
   Eigen::VectorXcd deviation(const Passage& passage) const;
   std::vector<RestEnergy::Term> from_end(const Eigen::VectorXcd& leaving, const Eigen::VectorXcd& rates,
                                          const Eigen::MatrixXcd& away, const Eigen::MatrixXcd& back,
-                                         const Eigen::VectorXcd& displaced) const;
+                                         const Eigen::VectorXcd& displaced, double nonlinear) const;
 
+  const Lagrangian& lagrangian_;
   std::vector<double> q_;
   PointValues values_;
   Eigen::MatrixXd form_;                ///< W
