@@ -2,10 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
 #include <utility>
+
+#include "problem/extension.hpp"
 
 namespace extremal {
 
@@ -34,6 +37,56 @@ BoundaryRelation relation_of_both(const BoundaryRelation& one) {
     for (const Triplet& e : one.matrix)
       both.matrix.push_back({copy * one.rows + e.row, (e.column < n ? 0 : n) + copy * n + e.column, e.value});
   both.value.insert(both.value.end(), one.value.begin(), one.value.end());
+  return both;
+}
+
+/// Where coordinate a of a copy, or constant a − n, is among the coordinates of both and the constants.
+std::size_t of_both(std::size_t a, std::size_t n, std::size_t copy) { return a < n ? copy * n + a : n + a; }
+
+/// Σ_copies part · g of that copy and the constants.
+EndCondition of_copies(const EndCondition& one, std::size_t n, const std::array<double, 2>& parts) {
+  return {[one, n, parts](std::span<const double> start, std::span<const double> end,
+                          std::span<double> gradient, std::span<double> hessian) {
+    const std::size_t both = start.size(), all = both - n;
+    std::vector<double> q(all), last(all), slopes(2 * all), bends(hessian.empty() ? 0 : 4 * all * all);
+    double value = 0;
+    std::ranges::fill(gradient, 0.0);
+    std::ranges::fill(hessian, 0.0);
+    for (const std::size_t copy : {0, 1}) {
+      if (parts[copy] == 0) continue;
+      const auto place = [&](std::size_t e) { return (e < all ? 0 : both) + of_both(e % all, n, copy); };
+      for (std::size_t a = 0; a < all; ++a) {
+        q[a] = start[place(a)];
+        last[a] = end[place(a)];
+      }
+      value += parts[copy] * one.function(q, last, slopes, bends);
+      for (std::size_t e = 0; e < 2 * all; ++e) {
+        gradient[place(e)] += parts[copy] * slopes[e];
+        for (std::size_t f = 0; !hessian.empty() && f < 2 * all; ++f)
+          hessian[place(e) * 2 * both + place(f)] += parts[copy] * bends[e * 2 * all + f];
+      }
+    }
+    return value;
+  }};
+}
+
+/// Each condition and each waypoint holds for both copies, with multipliers that differ in sign; what
+/// replaces equations of constants, of their mean.
+std::shared_ptr<const Extension> extension_of_both(const Extension& one, int n) {
+  auto both = std::make_shared<Extension>();
+  both->lagrangian = one.copies;
+  both->names = one.names;
+  both->guess = one.guess;
+  for (const std::array<double, 2>& parts : {std::array{1.0, 0.0}, std::array{0.0, 1.0}})
+    for (const EndCondition& r : one.conditions) both->conditions.push_back(of_copies(r, n, parts));
+  for (const EndCondition& e : one.end_terms) both->end_terms.push_back(of_copies(e, n, {1, -1}));
+  for (const EndCondition& w : one.where) both->where.push_back(of_copies(w, n, {0.5, 0.5}));
+  both->waypoints = one.waypoints;
+  for (WaypointCondition& waypoint : both->waypoints) {
+    const auto fixed = waypoint.fixed;
+    for (const auto& [a, value] : fixed) waypoint.fixed.emplace_back(n + a, value);
+  }
+  both->at = one.copies_at;
   return both;
 }
 
@@ -105,7 +158,10 @@ Problem pair_of(const Problem& problem) {
   pair.periodic = problem.periodic;
   pair.duration = problem.duration;
   if (problem.duration.where) pair.duration.where = of_mean(problem.duration.where);
-  if (problem.duration.free && !problem.duration.where) pair.duration.energy = 0;
+  if (problem.extension)
+    pair.extension = extension_of_both(*problem.extension, problem.coordinates());
+  else if (problem.duration.free && !problem.duration.where)
+    pair.duration.energy = 0;
   if (problem.initial) {
     const auto& [q, p, paired] = *problem.initial;
     InitialData both{q, p, true};

@@ -54,6 +54,10 @@ struct Extension {
   /// With constraints: their manifold for these values. Empty: there are none.
   std::function<std::shared_ptr<const Manifold>(const std::vector<double>& constants)> manifold_at{};
   std::vector<ImpliedCondition> implied{};  ///< over the ends of all coordinates
+  /// With forces: the Lagrangian of both copies, of 2n + u coordinates q₁, q₂, k, and that for given values
+  /// of k. Null and empty: there are none.
+  std::shared_ptr<const Lagrangian> copies{};
+  std::function<std::shared_ptr<const Lagrangian>(const std::vector<double>& constants)> copies_at{};
 
   int unknowns() const { return static_cast<int>(names.size()); }
   int multipliers() const { return static_cast<int>(integrals.size()); }

@@ -23,9 +23,9 @@ struct Inequalities {
   /// Of all of them as equations, for their values and derivatives alone. An inequality "left <= right" has
   /// g = right − left.
   std::shared_ptr<const Manifold> all;
-  /// The motion with these held, at least one and at most as many as coordinates. Throws
+  /// The motion by L + Σ ν g with these held, at least one and at most as many as coordinates. Throws
   /// std::invalid_argument.
-  std::function<HeldSystem(const std::vector<int>& held)> hold;
+  std::function<HeldSystem(const std::vector<int>& held, const std::vector<double>& multipliers)> hold;
 
   int count() const { return static_cast<int>(texts.size()); }
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -58,6 +59,7 @@ void check_duration(const Problem& problem) {
     require(given == wanted, "{} conditions close {} unknown constants and the duration; need {}", given,
             problem.extension->unknowns(), wanted);
     require(autonomous, "a free duration needs a Lagrangian that does not depend on t");
+    require(!problem.copies || !duration.energy, "with forces the energy varies; it closes no free duration");
     return;
   }
   require(!problem.copies || !duration.energy, "with forces the energy varies; it closes no free duration");
@@ -136,6 +138,11 @@ Problem without_squares(Problem problem) {
 }
 
 }  // namespace
+
+bool Problem::shifts_in_time() const {
+  if (!(periodic || (infinite && infinite->both())) || !lagrangian->structure().autonomous) return false;
+  return !extension || std::ranges::all_of(extension->waypoints, &WaypointCondition::free);
+}
 
 Problem initial_problem(std::shared_ptr<const Lagrangian> lagrangian, InitialData initial, double duration) {
   Problem problem;

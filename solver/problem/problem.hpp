@@ -139,9 +139,7 @@ struct Problem {
   const Lagrangian& motion() const { return copies ? *copies : *lagrangian; }
   int motion_copies() const { return copies ? 2 : 1; }  ///< of the coordinates there
   /// Whether shifts in time move one extremal to others.
-  bool shifts_in_time() const {
-    return (periodic || (infinite && infinite->both())) && lagrangian->structure().autonomous;
-  }
+  bool shifts_in_time() const;
   /// Whether both ends are at finite times, and apart.
   bool has_ends() const { return !periodic && !infinite; }
 };

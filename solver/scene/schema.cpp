@@ -228,7 +228,6 @@ constexpr Exclusion pairs[] = {
     {"system.force", "system.curvature", "with forces there are no windows to certify"},
     {"boundary.energy", "boundary.where", "exactly one of them closes a free duration", "boundary.unknowns"},
     {"boundary.integrals", "system.force", "with forces there is no action that could be stationary"},
-    {"boundary.unknowns", "system.force", "with forces unknown constants are not available"},
     {"boundary.integrals", "system.hamiltonian",
      "integrals join a Lagrangian; write the 'lagrangian' instead"},
     {"boundary.unknowns", "system.hamiltonian", "unknowns join a Lagrangian; write the 'lagrangian' instead"},

@@ -56,7 +56,7 @@ double given_size(const Problem& problem) {
 
 /// Several solutions of a problem with an extension.
 std::vector<Solution> bordered_all(const Problem& problem, const SolveOptions& options, int most) {
-  const bool orbits = problem.periodic && problem.lagrangian->structure().autonomous;
+  const bool orbits = problem.periodic && problem.shifts_in_time();
   const double size = given_size(problem), tolerance = options.tolerance;
   return solve_bordered_all(problem, options, most, [=](const Solution& a, const Solution& b) {
     if (orbits) return same_orbit(a, b, tolerance);
@@ -239,16 +239,35 @@ ArcSolve arc_solve(Workspace& w) {
   return [&w](const Problem& part, const SolveOptions& how) {
     SolveOptions quiet = how;
     quiet.progress = nullptr;
-    if (part.extension) return solve_bordered(part, quiet);
-    Solution solution = solve_finite(part, quiet, w, true);
+    Solution solution = part.extension ? solve_bordered(part, quiet) : solve_finite(part, quiet, w, true);
     if (part.manifold) move_onto_manifold(part, solution);
     return solution;
   };
 }
 
+/// The problem with the constants that were found, and what was found beside its path for one of the copies.
+Problem with_found_constants(const Problem& problem, Solution& solution) {
+  const Extension& extension = *problem.extension;
+  auto values = std::make_shared<ExtensionValues>(*solution.extension);
+  std::vector<double> constants;
+  for (const auto& [name, value] : values->unknowns) constants.push_back(value);
+  for (WaypointImpulse& waypoint : values->waypoints)
+    std::erase_if(waypoint.impulse, [&](const auto& jump) { return jump.first >= problem.coordinates(); });
+  Problem found = problem;
+  found.lagrangian = values->lagrangian = extension.at(constants);
+  found.copies = extension.copies_at(constants);
+  solution.extension = std::move(values);
+  return found;
+}
+
 /// With forces, given the solution of both copies.
 Solution one_of_copies(const Problem& problem, Solution pair, const SolveOptions& options) {
-  Solution solution = one_copy(problem, std::move(pair), options.scheme ? &*options.scheme : nullptr);
+  const Scheme* scheme = options.scheme ? &*options.scheme : nullptr;
+  if (pair.extension) {
+    const Problem found = with_found_constants(problem, pair);
+    return one_copy(found, std::move(pair), scheme);
+  }
+  Solution solution = one_copy(problem, std::move(pair), scheme);
   if (problem.manifold) move_onto_manifold(problem, solution);
   return solution;
 }

@@ -258,7 +258,7 @@ FollowedBranch follow_by_values(const Study& study, const Continued& continued,
     if (there) {
       guess_by(here, solution.trajectory, *there);
       guess_constants_by(solution, *there);
-      if (of_scheme)
+      if (of_scheme || there->copies)
         there = checked(std::move(there));
       else
         there->symmetries = own_symmetries(*there);

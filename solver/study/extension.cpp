@@ -69,6 +69,11 @@ SystemTable extended_table(const Scene& scene, const Dependents& dependents) {
   return table;
 }
 
+SystemTable without_forces(SystemTable table) {
+  table.force.clear();
+  return table;
+}
+
 /// The system with L + Σ ν g for values of the unknowns, then of the multipliers.
 SystemTable table_at(const Scene& scene, const std::vector<double>& constants) {
   SystemTable table = scene.system;
@@ -77,15 +82,14 @@ SystemTable table_at(const Scene& scene, const std::vector<double>& constants) {
   for (std::size_t k = 0; k < unknowns; ++k)
     for (Assignment& p : table.parameters)
       if (p.name == scene.boundary.unknowns[k].name) p.values.front().value = constants[k];
-  std::vector<std::string> multipliers;
-  for (std::size_t j = unknowns; j < constants.size(); ++j)
-    multipliers.push_back(fmt::format("{:.17g}", constants[j]));
-  if (!multipliers.empty()) table.lagrangian = law_with(scene, multipliers);
+  if (constants.size() > unknowns)
+    table.lagrangian =
+        law_at(scene, {constants.begin() + static_cast<std::ptrdiff_t>(unknowns), constants.end()});
   return table;
 }
 
 std::shared_ptr<const Lagrangian> lagrangian_at(const Scene& scene, const std::vector<double>& constants) {
-  return make_system(table_at(scene, constants)).lagrangian;
+  return make_system(without_forces(table_at(scene, constants))).lagrangian;
 }
 
 /// The guesses of the unknowns, and 1 for each multiplier.
@@ -181,6 +185,20 @@ void check_extended_family(const Scene& scene, const std::string& asks) {
                                      table.parameter.value));
 }
 
+/// Forces have no action, but the principle of Lagrange and d'Alembert says what conditions and waypoints
+/// ask.
+void check_extended_forces(const Scene& scene, const std::string& asks) {
+  const Location& at = scene.system.force.front().name_at;
+  if (!scene.system.constraints.empty())
+    throw SceneError(at, asks + "and constraints forces are not available; leave one or the other out");
+  if (scene.boundary.periodic && scene.boundary.free)
+    throw SceneError(scene.boundary.duration.at,
+                     asks + "and forces the period must be given; write a number");
+  for (const WaypointTable& waypoint : scene.waypoints)
+    if (waypoint.free)
+      throw SceneError(waypoint.time.at, "with forces the time of a waypoint must be given; write a number");
+}
+
 }  // namespace
 
 ExtendedScene split(const Scene& scene, const System& system) {
@@ -226,9 +244,7 @@ void check_extended(const Scene& scene, Purpose purpose) {
   if (purpose == Purpose::comparison)
     throw SceneError(scene.boundary.at,
                      asks + "shooting is not available to compare with; write 'solve' instead");
-  if (!scene.system.force.empty())
-    throw SceneError(scene.system.force.front().name_at,
-                     asks + "there must be an action; forces have none: leave them out");
+  if (!scene.system.force.empty()) check_extended_forces(scene, asks);
   if (scene.boundary.infinite)
     throw SceneError(scene.boundary.duration.at,
                      asks + "an infinite duration is not available; give a number");
@@ -248,8 +264,6 @@ void check_extended(const Scene& scene, Purpose purpose) {
     throw SceneError(scene.solve.elements->at,
                      fmt::format("elements = {}; need at least {}, one for each leg between waypoints",
                                  scene.solve.elements->value, legs));
-  if (scene.boundary.periodic && !scene.waypoints.empty())
-    throw SceneError(scene.waypoints.front().at, "a periodic orbit has no waypoints; leave them out");
 }
 
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene) {
@@ -267,7 +281,7 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
                     const CompletedEnds& completed, Problem& problem) {
   const Dependents dependents = dependents_of(scene), constants = constants_of(scene, dependents);
   const SystemTable table = extended_table(scene, dependents);
-  System host = make_system(table);
+  System host = make_system(without_forces(table));
   const std::size_t most = 2 * system.names.size(), given = problem.boundary.rows + parts.conditions.size();
   if (given > most)
     throw SceneError(parts.conditions.back().at,
@@ -304,6 +318,12 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
     extension->where.push_back(condition(text, host, constants, "where", ends));
   extension->waypoints = read_waypoints(scene, system, problem);
   extension->at = [scene](const std::vector<double>& values) { return lagrangian_at(scene, values); };
+  if (problem.copies) {
+    extension->copies = make_copies(table, static_cast<int>(extension->names.size()));
+    extension->copies_at = [scene](const std::vector<double>& values) {
+      return make_copies(table_at(scene, values), 0);
+    };
+  }
   if (problem.manifold) complete_waypoints(scene, problem, extension->waypoints);
   if (!extension->waypoints.empty()) guess_through(extension->waypoints, problem);
   if (problem.manifold) {

@@ -42,8 +42,10 @@ namespace {
 }  // namespace
 
 void check_determined(const Scene& scene, const ExtendedScene& parts, const Problem& problem) {
-  const std::optional<Indeterminacy> found = indeterminacy(problem);
+  std::optional<Indeterminacy> found = indeterminacy(problem.pair ? *problem.pair : problem);
   if (!found) return;
+  // With forces each copy has all conditions.
+  if (found->kind == Indeterminacy::Kind::condition) found->last %= std::ssize(parts.conditions);
   switch (found->kind) {
     case Indeterminacy::Kind::integral: {
       const Text& text = scene.boundary.integrals[found->last];

@@ -84,4 +84,11 @@ Text law_with(const Scene& scene, const std::vector<std::string>& multipliers) {
   return law;
 }
 
+Text law_at(const Scene& scene, const std::vector<double>& multipliers) {
+  if (multipliers.empty()) return scene.system.law();
+  std::vector<std::string> texts;
+  for (const double nu : multipliers) texts.push_back(fmt::format("{:.17g}", nu));
+  return law_with(scene, texts);
+}
+
 }  // namespace extremal

@@ -19,5 +19,7 @@ void check_integrands(const Scene& scene);
 
 /// L + Σ ν g with ν as the texts given.
 Text law_with(const Scene& scene, const std::vector<std::string>& multipliers);
+/// The same for numbers; L alone where there are none.
+Text law_at(const Scene& scene, const std::vector<double>& multipliers);
 
 }  // namespace extremal

@@ -108,6 +108,17 @@ System make_system(const SystemTable& table, const std::vector<std::string>& act
   }
 }
 
+std::shared_ptr<const Lagrangian> make_copies(const SystemTable& table, int constants) {
+  SystemTable without = table;
+  without.force.clear();
+  const std::vector<ForceText> forces = forces_of(table, make_system(without));
+  try {
+    return compile_forces(system_text(table), forces, constants);
+  } catch (const FormulaError& e) {
+    throw at_its_place(table, e);
+  }
+}
+
 namespace {
 
 ConstrainedGraph constrained_with(const SystemTable& table, const std::vector<ForceText>& forces) {

@@ -25,6 +25,10 @@ struct NoLegendreTransform : SceneError {
 System make_system(const SystemTable& table, const std::vector<std::string>& active = {},
                    Formulation formulation = Formulation::legendre);
 
+/// The Lagrangian of two copies of a system with forces, of which the last coordinates are constants. Throws
+/// SceneError likewise.
+std::shared_ptr<const Lagrangian> make_copies(const SystemTable& table, int constants);
+
 /// The same with its constraints, as expressions; without its forces. Throws SceneError likewise.
 ConstrainedGraph make_constrained(const SystemTable& table);
 /// With its forces too; `system` has its names.

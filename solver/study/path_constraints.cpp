@@ -7,10 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/nearby.hpp"
 #include "solve/external/method.hpp"
 #include "study/constraints.hpp"
+#include "study/integrals.hpp"
 #include "study/limits.hpp"
 #include "study/modelling.hpp"
 #include "system/constraints.hpp"
@@ -106,25 +108,40 @@ bool fixed(const Problem& problem, bool at_end) {
   return std::all_of(begin, begin + n, [](char f) { return f; });
 }
 
-void check_end(const Scene& scene, const Inequalities& inequalities, bool at_end, const Problem& problem) {
-  if (!fixed(problem, at_end)) return;
+/// A point that is fixed must keep the inequalities.
+void check_point(const Location& where, const char* name, const Inequalities& inequalities,
+                 const std::vector<double>& q, double t, double size) {
+  const ConstraintValues values = inequalities.all->at(q, t);
+  for (int k = 0; k < inequalities.count(); ++k) {
+    if (!std::isfinite(values.g[k]))
+      throw SceneError(where, fmt::format("the inequality '{}' is not finite at the {}; give another point",
+                                          inequalities.texts[k], name));
+    if (values.g[k] >= -end_distance * size * values.slopes.row(k).norm()) continue;
+    throw SceneError(where,
+                     fmt::format("the {} does not keep the inequality '{}': it is missed by {:.6g} there; "
+                                 "give values that keep it",
+                                 name, inequalities.texts[k], -values.g[k]));
+  }
+}
+
+void check_points(const Scene& scene, const Inequalities& inequalities, const Problem& problem) {
   const int n = problem.coordinates();
-  const auto begin = problem.ends.offset.begin() + (at_end ? n : 0);
-  const std::vector<double> q(begin, begin + n);
   double size = 0;
   for (const double x : problem.ends.offset) size = std::max(size, std::abs(x));
   if (size == 0) size = 1;
-  const ConstraintValues values = inequalities.all->at(q, at_end ? problem.duration.value : 0);
-  for (int k = 0; k < inequalities.count(); ++k) {
-    if (!std::isfinite(values.g[k]))
-      throw SceneError(place_of(scene.boundary, at_end),
-                       fmt::format("the inequality '{}' is not finite at the {}; give another point",
-                                   inequalities.texts[k], at_end ? "end" : "start"));
-    if (values.g[k] >= -end_distance * size * values.slopes.row(k).norm()) continue;
-    throw SceneError(place_of(scene.boundary, at_end),
-                     fmt::format("the {} does not keep the inequality '{}': it is missed by {:.6g} there; "
-                                 "give values that keep it",
-                                 at_end ? "end" : "start", inequalities.texts[k], -values.g[k]));
+  for (const bool at_end : {false, true}) {
+    if (!fixed(problem, at_end)) continue;
+    const auto begin = problem.ends.offset.begin() + (at_end ? n : 0);
+    check_point(place_of(scene.boundary, at_end), at_end ? "end" : "start", inequalities, {begin, begin + n},
+                at_end ? problem.duration.value : 0, size);
+  }
+  if (!problem.extension) return;
+  for (std::size_t w = 0; w < problem.extension->waypoints.size(); ++w) {
+    const WaypointCondition& waypoint = problem.extension->waypoints[w];
+    if (std::ssize(waypoint.fixed) < n) continue;
+    std::vector<double> q;
+    for (const auto& [a, value] : waypoint.fixed) q.push_back(value);
+    check_point(scene.waypoints[w].at, "waypoint", inequalities, q, waypoint.time, size);
   }
 }
 
@@ -199,13 +216,10 @@ void check_inequalities(const Scene& scene, Purpose purpose) {
            "inequalities");
   if (boundary.infinite)
     refuse(boundary.duration.at, "the duration must be finite; write a number, or leave [path] out");
-  if (!boundary.integrals.empty())
-    refuse(position(boundary.integrals.front(), 0),
-           "integrals are not available; leave one or the other out");
   if (!boundary.unknowns.empty())
     refuse(boundary.unknowns.front().name_at, "unknowns are not available; leave one or the other out");
-  if (!scene.waypoints.empty())
-    refuse(scene.waypoints.front().at, "waypoints are not available; leave one or the other out");
+  for (const WaypointTable& waypoint : scene.waypoints)
+    if (waypoint.free) refuse(waypoint.time.at, "the time of a waypoint must be given; write a number");
   if (scene.fit) refuse(scene.fit->at, "a fit is not available; leave one or the other out");
   if (scene.continuation && purpose == Purpose::family)
     refuse(scene.continuation->at,
@@ -217,6 +231,13 @@ void check_inequalities(const Scene& scene, Purpose purpose) {
            "elements end where contacts begin and end, and follow the tolerance; leave 'scheme' out");
   if (scene.solve.method && scene.solve.method->value == name(Method::ceres))
     refuse(position(*scene.solve.method, 0), "the method is \"ipopt\"; write that, or leave 'method' out");
+  if (boundary.integrals.empty() && scene.waypoints.empty()) return;
+  const char* const other = scene.waypoints.empty() ? "integrals" : "waypoints";
+  if (boundary.free)
+    refuse(boundary.duration.at, fmt::format("and {} the duration must be given; write a number", other));
+  if (boundary.periodic)
+    refuse(boundary.at,
+           fmt::format("and {} orbits are not available; fix the ends, or leave one of them out", other));
 }
 
 void put_inequalities(const Scene& scene, const System& system, Problem& problem) {
@@ -243,15 +264,19 @@ void put_inequalities(const Scene& scene, const System& system, Problem& problem
   const Eigen::MatrixXd metric = metric_of_motion(system, problem);
   const double rate = growth / problem.duration.value;
   inequalities->all = constrained_values(table.graph(numbers, false), system, metric);
-  inequalities->hold = [table, system, metric, rate](const std::vector<int>& held) -> HeldSystem {
-    ConstrainedSystem found = constrained_system(table.graph(held, true), system, metric, rate);
+  inequalities->hold = [table, scene, system, metric, rate](const std::vector<int>& held,
+                                                            const std::vector<double>& nu) -> HeldSystem {
+    InequalityTable there = table;
+    if (!nu.empty()) there.table.lagrangian = law_at(scene, nu);
+    const System moved = nu.empty() ? system : make_system(there.table);
+    ConstrainedSystem found = constrained_system(there.graph(held, true), moved, metric, rate);
     return {std::move(found.lagrangian), std::move(found.manifold)};
   };
   if (problem.duration.free && problem.duration.energy && !inequalities->all->autonomous())
     throw SceneError(scene.inequalities->at,
                      "inequalities that depend on t change the energy; with 'energy' they must not: write "
                      "'where', or give the duration as a number");
-  for (const bool at_end : {false, true}) check_end(scene, *inequalities, at_end, problem);
+  check_points(scene, *inequalities, problem);
   check_closed(scene, *inequalities, problem);
   problem.inequalities = std::move(inequalities);
 }

@@ -21,12 +21,12 @@ NodeId copied(const Graph& from, NodeId body, std::span<const NodeId> inputs, Gr
 
 namespace {
 
-/// Global inputs of Λ: q₁, q₂, q₁', q₂' (n each), t, numbers.
+/// Global inputs of Λ: q₁, q₂, k, their velocities, t, numbers.
 class Doubling {
  public:
-  Doubling(const LagrangianGraph& lagrangian, const LagrangianGraph& power)
-      : n_(lagrangian.coordinates), l_(lagrangian), power_(power) {
-    result_.coordinates = 2 * lagrangian.coordinates;
+  Doubling(const LagrangianGraph& lagrangian, const LagrangianGraph& power, int shared)
+      : n_(lagrangian.coordinates), own_(n_ - shared), all_(n_ + own_), l_(lagrangian), power_(power) {
+    result_.coordinates = static_cast<int>(all_);
     result_.parameters = lagrangian.parameters;
     result_.uniforms = lagrangian.uniforms;
     result_.uniforms.insert(result_.uniforms.end(), power.uniforms.begin() + power.parameters,
@@ -49,9 +49,9 @@ class Doubling {
     Term added{copied(l_.graph, term.body, inputs, result_.graph), term.arity, term.table};
     if (copy == 1) added.body = result_.graph.unary(Op::neg, added.body);
     for (std::uint32_t& global : added.table)
-      global = global < n_       ? copy * n_ + global
-               : global < 2 * n_ ? 2 * n_ + copy * n_ + global - n_
-                                 : 4 * n_ + global - 2 * n_;
+      global = global < n_       ? coordinate(global, copy)
+               : global < 2 * n_ ? all_ + coordinate(global - n_, copy)
+                                 : 2 * (all_ - n_) + global;
     result_.terms.push_back(std::move(added));
   }
 
@@ -63,7 +63,7 @@ class Doubling {
     std::uint32_t arity = 0;
     for (int m = 0; m < term.arity; ++m) {
       const std::uint32_t kind = term.table[m] / n_;
-      twice.push_back(kind < 4);
+      twice.push_back(kind < 4 && term.table[m] % n_ < own_);
       const NodeId first = graph.input(arity++);
       if (!twice.back()) {
         inputs.push_back(first);
@@ -77,8 +77,10 @@ class Doubling {
     for (std::size_t e = 0; e < term.table.size(); ++e) {
       const std::uint32_t global = term.table[e], kind = global / n_;
       if (twice[e % term.arity]) {
-        const std::uint32_t first = (kind < 2 ? 0 : 2 * n_) + global % n_;
-        added.table.insert(added.table.end(), {first, first + n_});
+        const std::uint32_t first = (kind < 2 ? 0 : all_) + global % n_;
+        added.table.insert(added.table.end(), {first, first + own_});
+      } else if (kind < 4) {
+        added.table.push_back((kind < 2 ? 0 : all_) + coordinate(global % n_, 0));
       } else {
         added.table.push_back(number(global));
       }
@@ -86,24 +88,29 @@ class Doubling {
     result_.terms.push_back(std::move(added));
   }
 
+  /// Of Λ, coordinate a of one copy.
+  std::uint32_t coordinate(std::uint32_t a, std::uint32_t copy) const {
+    return a < own_ ? copy * own_ + a : own_ + a;
+  }
+
   /// t or a number.
   std::uint32_t number(std::uint32_t global) const {
     const std::uint32_t active = 4 * n_ + 1 + power_.parameters;
     const auto before = static_cast<std::uint32_t>(l_.uniforms.size() - l_.parameters);
-    return global < active ? global : global + before;
+    return 2 * all_ - 4 * n_ + (global < active ? global : global + before);
   }
 
-  const std::uint32_t n_;
+  const std::uint32_t n_, own_, all_;  ///< coordinates of L, of one copy alone, of Λ
   const LagrangianGraph &l_, &power_;
   LagrangianGraph result_;
 };
 
 }  // namespace
 
-LagrangianGraph two_copies(const LagrangianGraph& lagrangian, const LagrangianGraph& power) {
+LagrangianGraph two_copies(const LagrangianGraph& lagrangian, const LagrangianGraph& power, int shared) {
   if (power.coordinates != 2 * lagrangian.coordinates || power.parameters != lagrangian.parameters)
     throw std::invalid_argument("F·λ and L belong to different systems");
-  return Doubling(lagrangian, power).run();
+  return Doubling(lagrangian, power, shared).run();
 }
 
 }  // namespace extremal

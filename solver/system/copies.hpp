@@ -21,8 +21,9 @@
 namespace extremal {
 
 /// Λ in 2n coordinates (q₁, q₂), of L in n and of `power` = F·λ in 2n, (q, λ). In each term of `power` an
-/// input is of one kind in all rows.
-LagrangianGraph two_copies(const LagrangianGraph& lagrangian, const LagrangianGraph& power);
+/// input is of one kind in all rows. The last `shared` coordinates k are constants of both copies, which have
+/// no velocity and no force: Λ has the coordinates (q₁, q₂, k).
+LagrangianGraph two_copies(const LagrangianGraph& lagrangian, const LagrangianGraph& power, int shared = 0);
 
 /// An expression of another graph, with expressions in place of its inputs.
 NodeId copied(const Graph& from, NodeId body, std::span<const NodeId> inputs, Graph& to);

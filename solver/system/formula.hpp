@@ -100,8 +100,10 @@ struct ForceText {
   std::string where{};  ///< names the text in errors
 };
 
-/// The Lagrangian of two copies of a system with forces, see two_copies(). Throws FormulaError.
-std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces);
+/// The Lagrangian of two copies of a system with forces, of which the last `shared` coordinates are
+/// constants, see two_copies(). Throws FormulaError.
+std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces,
+                                                 int shared = 0);
 
 /// An equation "left = right" between coordinates; `where` names the text in errors.
 struct ConstraintText {

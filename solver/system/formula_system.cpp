@@ -83,14 +83,15 @@ System compile(const SystemText& text, Formulation formulation) {
   return system;
 }
 
-std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces) {
+std::shared_ptr<const Lagrangian> compile_forces(const SystemText& text, std::span<const ForceText> forces,
+                                                 int shared) {
   SystemText of_velocities = text;
   of_velocities.hamiltonian.reset();
   formula::Names names = formula::names_of(text), of_forces = formula::names_of(of_velocities);
   const LagrangianGraph lagrangian =
       text.hamiltonian ? transformed(formula::graph_of(names, *text.hamiltonian, "hamiltonian"))
                        : formula::graph_of(names, text.lagrangian, "lagrangian");
-  return make_lagrangian(two_copies(lagrangian, formula::power_of(of_forces, forces)));
+  return make_lagrangian(two_copies(lagrangian, formula::power_of(of_forces, forces), shared));
 }
 
 ConstrainedGraph constrained_graph(const SystemText& text, std::span<const ConstraintText> constraints,

@@ -122,3 +122,20 @@ TEST_F(Scenes, DurationsThatShrinkToNothing) {
                 "where = \"y(T) = -0.7\"\n[guess]\nx = \"t\"\ny = \"-t/2\"\nduration = 1\n"));
   EXPECT_FALSE(solution.converged());
 }
+
+/// x = 1 is a double root: the condition holds there to roundoff for 1 ± 10⁻⁸ too.
+TEST_F(Scenes, ConditionsWithADoubleRoot) {
+  const auto told = [&](const std::string& boundary) {
+    const Solution solution = run(
+        study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - k*x^2/2\"\nparameters = { k = 1.0 }\n"
+              "[boundary]\nduration = 1\n" +
+              boundary));
+    return solution.converged() ? std::string() : solution.message;
+  };
+  expect_start(told("conditions = [\"x(0) = 0\", \"x(T)^2 - 2*x(T) + 1 = 0\"]\n"),
+               "the derivative of condition 1 vanishes where it holds");
+  expect_start(told("start = { x = 1 }\nunknowns = { k = 1.0 }\nwhere = [\"x(T)^2 - x(T) + 0.25 = 0\"]\n"),
+               "the derivative of 'where' condition 1 vanishes where it holds");
+  EXPECT_EQ(told("conditions = [\"x(0) = 0\", \"x(T) = 1\"]\n"), "");
+  EXPECT_EQ(told("conditions = [\"x(0) = 0\", \"x(T)^2 - 2*x(T) + 0.999 = 0\"]\n"), "");
+}

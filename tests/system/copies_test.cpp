@@ -44,6 +44,17 @@ TEST(TwoCopies, OfTracedFunctors) {
   EXPECT_THROW(two_copies(l, l), std::invalid_argument);
 }
 
+/// A constant of both copies is one coordinate, behind them.
+TEST(TwoCopies, ShareConstants) {
+  const SystemText text{.coordinates = {"x", "k"}, .lagrangian = "x'^2/2 - k*x^2/2"};
+  const auto both =
+      compile_forces(text, std::vector<ForceText>{{.formula = "-k^2*x'", .where = "force.x"}}, 1);
+  EXPECT_EQ(both->structure().coordinates, 3);
+  const double k = 1.5, x = 0.6, y = -0.2, vx = 1.3, vy = 0.4;
+  EXPECT_NEAR(value(*both, {x, y, k}, {vx, vy, 0}),
+              (vx * vx - vy * vy) / 2 - k * (x * x - y * y) / 2 - k * k * (vx + vy) / 2 * (x - y), 1e-15);
+}
+
 /// Where the copies agree the derivatives by the first are those of L and the force, by the second their
 /// opposites.
 TEST(TwoCopies, GiveTheForceWhereTheyAgree) {

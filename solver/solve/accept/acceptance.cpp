@@ -10,7 +10,6 @@
 #include "problem/closing.hpp"
 #include "problem/symmetry.hpp"
 #include "solution/on_manifold.hpp"
-#include "solution/one_copy.hpp"
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
 #include "solve/accept/limits.hpp"
@@ -81,16 +80,6 @@ struct Examined {
   std::optional<Survey> survey = {};
   bool hopeless = false;
 };
-
-/// Copies that differ are no motion.
-std::optional<Refusal> copies_differ(const Trajectory& pair, double size) {
-  const double difference = difference_of_copies(pair);
-  if (difference <= most_difference_of_copies * size) return std::nullopt;
-  return Refusal{Status::not_converged,
-                 fmt::format("two copies of the coordinates, which agree along a motion with forces, differ "
-                             "by {:.1e}; try another guess",
-                             difference)};
-}
 
 Examined refused(Refusal refusal, Solution& solution) {
   solution.status = refusal.status;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "action/energies.hpp"
+#include "solution/one_copy.hpp"
 #include "solve/accept/limits.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/resolution.hpp"
@@ -124,6 +125,15 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
         "conjugate, or forces vanish along the path; move an end, change the duration, or try a better "
         "guess"};
   return std::nullopt;
+}
+
+std::optional<Refusal> copies_differ(const Trajectory& pair, double size) {
+  const double difference = difference_of_copies(pair);
+  if (difference <= limits::acceptance::most_difference_of_copies * size) return std::nullopt;
+  return Refusal{Status::not_converged,
+                 fmt::format("two copies of the coordinates, which agree along a motion with forces, differ "
+                             "by {:.1e}; try another guess",
+                             difference)};
 }
 
 }  // namespace extremal

@@ -33,4 +33,7 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
                                      const std::optional<Survey>& found, const DiscreteAction& action,
                                      Solution& solution);
 
+/// Two copies of the coordinates that differ are no motion with forces. `size`: of the path.
+std::optional<Refusal> copies_differ(const Trajectory& pair, double size);
+
 }  // namespace extremal

@@ -75,8 +75,7 @@ void BorderedEquations::number_unknowns() {
     time_unknown_[l] = first + static_cast<int>(free_times_.size());
     free_times_.push_back(l);
   }
-  const bool shifts = problem_->periodic && problem_->lagrangian->structure().autonomous;
-  held_ = problem_->periodic ? static_cast<int>(problem_->symmetries.size()) + shifts : 0;
+  held_ = problem_->periodic ? static_cast<int>(problem_->symmetries.size()) + problem_->shifts_in_time() : 0;
   unknowns_ = first_held() + held_;
   replaced_.assign(unknowns_, 0);
   closing_rows_.clear();

@@ -10,6 +10,7 @@
 #include "problem/symmetry.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/observe.hpp"
+#include "solve/accept/conditions.hpp"
 #include "solve/accept/minimality.hpp"
 #include "solve/accept/symmetries.hpp"
 #include "solve/bordered/bordered_newton.hpp"
@@ -168,13 +169,25 @@ std::vector<Generator> symmetries_of(const Problem& held, const BorderedState& s
   return symmetries_that_keep(values, all);
 }
 
+/// With forces there is no second variation, but the orbit has multipliers.
+void read_forced_stability(const Problem& held, const BorderedState& state, double size, Solution& solution) {
+  if (!held.periodic || state.mesh.legs() > 1) return;
+  SecondVariation variation;
+  variation.assemble(held.lagrangian, solution.trajectory, {}, nullptr, Definite::paired);
+  read_stability(held, variation, size, solution);
+}
+
 /// Windows, conjugate times and multipliers of L + Σ ν g with all constants held; with waypoints leg by leg.
 void read_variation(const Problem& problem, const SolveOptions& options, const BorderedState& state,
                     double size, Solution& solution) {
   Problem held = problem;
   held.lagrangian = solution.extension->lagrangian;
   held.duration.value = state.times.back();
-  if (state.mesh.legs() > 1) return read_legs(held, options, state, solution);
+  if (problem.paired) return read_forced_stability(held, state, size, solution);
+  if (state.mesh.legs() > 1) {
+    held.periodic = false;  // legs are not closed
+    return read_legs(held, options, state, solution);
+  }
   SecondVariation variation;
   const std::optional<int> index = solution.morse_index;
   const bool minimizing = solution.minimizing;
@@ -214,7 +227,8 @@ bool goes_on(BorderedEquations& equations, const BorderedState& state, const Eig
 void tell_continuum(const Problem& problem, const SolveOptions& options, BorderedEquations& equations,
                     BorderedState state, Solution& solution) {
   const Freedom freedom = freedom_of(equations, state);
-  const int count = freedom.count();
+  // Of two copies both the motion and the adjoint field have each direction.
+  const int count = problem.paired ? (freedom.count() + 1) / 2 : freedom.count();
   if (count == 0) return;
   std::vector<std::string> open;
   for (std::size_t k = 0; k < freedom.moves.size(); ++k)
@@ -278,6 +292,9 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   Path path;
   without_constants(state.path, own, path);
   solution.trajectory = trajectory_of(path);
+  if (problem.paired)
+    if (const std::optional<Refusal> fails = copies_differ(solution.trajectory, size))
+      return refused(fails->message);
   const DiscreteAction& action = equations.action();
   const Extension& extension = *problem.extension;
   solution.action = action.action();
@@ -296,8 +313,8 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
   observe_energy(*solution.extension->lagrangian, solution);
-  if (inertia.negative == 0 && inertia.zero > 0 && !problem.periodic && problem.boundary.momenta.empty() &&
-      extension.end_terms.empty()) {
+  if (inertia.negative == 0 && inertia.zero > 0 && !problem.periodic && !problem.paired &&
+      problem.boundary.momenta.empty() && extension.end_terms.empty()) {
     Problem held = problem;
     held.lagrangian = solution.extension->lagrangian;
     held.duration.value = state.times.back();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "solution/solution.hpp"
+#include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/newton/ends.hpp"
 
@@ -110,6 +111,7 @@ BorderedState StartingStates::at(const LegMesh& mesh, const Elements& elements, 
   start_path(problem_, starting_ends(problem_), *elements.own, path);
   bend(start, *elements.own, path);
   pass_waypoints(*elements.own, path);
+  if (problem_.paired) make_agree(path);
   std::vector<double> constants = extension_.guess;
   constants.resize(extension_.constants(), 0);
   with_constants(path, *elements.tables, constants, state.path);

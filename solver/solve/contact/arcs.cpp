@@ -80,18 +80,24 @@ Guess guess_of(const Trajectory& trajectory) {
 }
 
 Arcs::Arcs(const Problem& problem, const SolveOptions& options, const ArcSolve& solve)
-    : problem_(problem), options_(options), solve_(solve) {
-  systems_[{}] = {problem.lagrangian, problem.manifold};
+    : problem_(problem), options_(options), solve_(solve) {}
+
+HeldSystem Arcs::build(const std::vector<int>& held, const std::vector<double>& multipliers) const {
+  if (!held.empty()) return problem_.inequalities->hold(held, multipliers);
+  if (multipliers.empty()) return {problem_.lagrangian, problem_.manifold};
+  const Extension& extension = *problem_.extension;
+  return {extension.at(multipliers), problem_.manifold ? extension.manifold_at(multipliers) : nullptr};
 }
 
-const HeldSystem& Arcs::system(const std::vector<int>& held) {
+const HeldSystem& Arcs::system(const std::vector<int>& held, const std::vector<double>& multipliers) {
   const auto found = systems_.find(held);
-  return found != systems_.end() ? found->second
-                                 : systems_.emplace(held, problem_.inequalities->hold(held)).first->second;
+  if (found != systems_.end() && found->second.multipliers == multipliers) return found->second.system;
+  return (systems_[held] = {multipliers, build(held, multipliers)}).system;
 }
 
-bool Arcs::project(const std::vector<int>& held, double t, VectorXd& q) {
-  const std::shared_ptr<const Manifold> onto = manifold(held);
+bool Arcs::project(const std::vector<int>& held, const std::vector<double>& multipliers, double t,
+                   VectorXd& q) {
+  const std::shared_ptr<const Manifold> onto = manifold(held, multipliers);
   return !onto || onto->project({q.data(), static_cast<std::size_t>(q.size())}, t);
 }
 
@@ -100,10 +106,26 @@ bool Arcs::determined(const std::vector<int>& held) const {
   return static_cast<int>(held.size()) + constraints() == problem_.coordinates();
 }
 
+/// Those at times between the ends of an arc, at its own times.
+std::vector<WaypointCondition> Arcs::waypoints_in(const PathArc& arc) const {
+  std::vector<WaypointCondition> found;
+  if (!problem_.extension) return found;
+  for (WaypointCondition waypoint : problem_.extension->waypoints) {
+    if (!(waypoint.time > arc.from && waypoint.time < arc.to)) continue;
+    waypoint.time -= arc.from;
+    found.push_back(std::move(waypoint));
+  }
+  return found;
+}
+
 SolvedArc Arcs::solve(const PathArc& arc) {
+  SolvedArc none;
   if (!(arc.to > arc.from)) {
-    SolvedArc none;
     none.message = "an arc has no length";
+    return none;
+  }
+  if (!arc.held.empty() && !waypoints_in(arc).empty()) {
+    none.message = "a waypoint lies within a contact";
     return none;
   }
   if (determined(arc.held)) return solve_determined(arc);
@@ -120,7 +142,7 @@ SolvedArc Arcs::solve(const PathArc& arc) {
 }
 
 SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
-  const HeldSystem& system = this->system(arc.held);
+  const HeldSystem& system = this->system(arc.held, arc.multipliers);
   const int n = problem_.coordinates();
   Problem problem;
   problem.lagrangian = shift_time(system.lagrangian, arc.from);
@@ -131,6 +153,13 @@ SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
   for (int a = 0; a < n; ++a) problem.boundary.fix(a, true, arc.end[a]);
   problem.duration.value = arc.to - arc.from;
   problem.guess = fitted(arc);
+  if (std::vector<WaypointCondition> waypoints = waypoints_in(arc); !waypoints.empty()) {
+    auto extension = std::make_shared<Extension>();
+    extension->lagrangian = problem.lagrangian;
+    extension->waypoints = std::move(waypoints);
+    extension->at = [l = problem.lagrangian](const std::vector<double>&) { return l; };
+    problem.extension = std::move(extension);
+  }
   return solve_problem(arc, std::move(problem), tolerance);
 }
 
@@ -141,7 +170,7 @@ SolvedArc Arcs::solve_closed(const PathArc& arc) {
     none.message = "a path that is held throughout has no duration of its own";
     return none;
   }
-  const HeldSystem& system = this->system(arc.held);
+  const HeldSystem& system = this->system(arc.held, arc.multipliers);
   Problem problem = problem_;
   problem.inequalities = nullptr;
   problem.lagrangian = system.lagrangian;
@@ -178,6 +207,8 @@ SolvedArc Arcs::solve_problem(const PathArc& arc, Problem problem, double tolera
   result.iterations = solution.iterations;
   result.degree = solution.degree;
   result.minimizing = !solution.morse_index || *solution.morse_index == 0;
+  if (solution.extension) result.waypoints = solution.extension->waypoints;
+  for (WaypointImpulse& waypoint : result.waypoints) waypoint.time += arc.from;
   measure(arc, result);
   result.p_start = vector_of(solution.momentum_start);
   result.p_end = vector_of(solution.momentum_end);
@@ -186,22 +217,44 @@ SolvedArc Arcs::solve_problem(const PathArc& arc, Problem problem, double tolera
   std::vector<double> q(n), v(n);
   result.trajectory.at(result.trajectory.duration(), q, v);
   Scratch scratch;
-  result.energy_end = result.p_end.dot(result.v_end) -
-                      evaluate_at(motion(), q, values_of(result.v_end), later, Order::value, scratch).value;
+  result.energy_end =
+      result.p_end.dot(result.v_end) -
+      evaluate_at(motion(arc.multipliers), q, values_of(result.v_end), later, Order::value, scratch).value;
+  integrate(arc, result);
   return result;
+}
+
+/// The derivatives of L + Σ ν g by ν.
+void Arcs::integrate(const PathArc& arc, SolvedArc& solved) const {
+  solved.integrals.assign(arc.multipliers.size(), 0);
+  if (arc.multipliers.empty()) return;
+  const Extension& extension = *problem_.extension;
+  const std::size_t n = problem_.coordinates(), m = arc.multipliers.size();
+  const Rule rule = gauss_rule(std::min(solved.trajectory.degree + 2, max_points));
+  std::vector<double> q(n + m), v(n + m, 0);
+  std::ranges::copy(arc.multipliers, q.begin() + static_cast<std::ptrdiff_t>(n));
+  Scratch scratch;
+  for (int k = 0; k < solved.trajectory.elements(); ++k)
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+      const double h = solved.trajectory.length(k);
+      solved.trajectory.in_element(k, rule.nodes[i], std::span(q).first(n), std::span(v).first(n));
+      const double t = arc.from + solved.trajectory.times[k] + rule.nodes[i] * h;
+      const PointValues l = evaluate_at(*extension.lagrangian, q, v, t, Order::gradient, scratch);
+      for (std::size_t j = 0; j < m; ++j) solved.integrals[j] += rule.weights[i] * h * l.dq[n + j];
+    }
 }
 
 /// Velocities at the ends, and momenta by them.
 void Arcs::measure(const PathArc& arc, SolvedArc& solved) {
   const int n = problem_.coordinates();
-  const std::shared_ptr<const Manifold> onto = manifold(arc.held);
+  const std::shared_ptr<const Manifold> onto = manifold(arc);
   Scratch scratch;
   for (const bool at_end : {false, true}) {
     std::vector<double> q(n), v(n);
     const double t = arc.from + (at_end ? solved.trajectory.duration() : 0);
     solved.trajectory.at(at_end ? solved.trajectory.duration() : 0, q, v);
     if (onto) onto->make_tangent(q, t, v);
-    const PointValues l = evaluate_at(motion(), q, v, t, Order::gradient, scratch);
+    const PointValues l = evaluate_at(motion(arc.multipliers), q, v, t, Order::gradient, scratch);
     (at_end ? solved.v_end : solved.v_start) = vector_of(v);
     (at_end ? solved.p_end : solved.p_start) = vector_of(l.dv);
     if (at_end) solved.energy_end = solved.p_end.dot(solved.v_end) - l.value;
@@ -211,7 +264,7 @@ void Arcs::measure(const PathArc& arc, SolvedArc& solved) {
 /// As many constraints as coordinates: they alone determine the path.
 SolvedArc Arcs::solve_determined(const PathArc& arc) {
   const std::size_t n = problem_.coordinates();
-  const std::shared_ptr<const Manifold> onto = manifold(arc.held);
+  const std::shared_ptr<const Manifold> onto = manifold(arc);
   const double duration = arc.to - arc.from;
   const Guess guess = fitted(arc);
   SolvedArc result;
@@ -250,8 +303,9 @@ SolvedArc Arcs::solve_determined(const PathArc& arc) {
         path.in_element(k, rule.nodes[i], between, slope);
         for (std::size_t a = 0; a < n; ++a)
           error = std::max({error, std::abs(q[a] - between[a]), 0.1 * duration * std::abs(v[a] - slope[a])});
-        result.action += rule.weights[i] * path.length(k) *
-                         evaluate_at(motion(), q, v, arc.from + t, Order::value, scratch).value;
+        result.action +=
+            rule.weights[i] * path.length(k) *
+            evaluate_at(motion(arc.multipliers), q, v, arc.from + t, Order::value, scratch).value;
       }
     result.error = error;
     result.trajectory = std::move(path);
@@ -260,6 +314,7 @@ SolvedArc Arcs::solve_determined(const PathArc& arc) {
   result.degree = held_degree;
   result.found = std::isfinite(result.action);
   measure(arc, result);
+  integrate(arc, result);
   return result;
 }
 

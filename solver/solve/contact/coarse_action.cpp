@@ -21,27 +21,47 @@ const std::vector<EndCondition>& conditions_of(const Problem& problem) {
   return problem.extension ? problem.extension->conditions : none;
 }
 
+/// q(0) and q(T) of a path of nodes.
+std::vector<double> ends_of_nodes(std::span<const double> z, int n) {
+  std::vector<double> ends(z.begin(), z.begin() + n);
+  ends.insert(ends.end(), z.end() - n, z.end());
+  return ends;
+}
+
 /// Of a condition at the ends of a path of nodes.
-RowMajor second_derivatives(const EndCondition& condition, std::span<const double> z, int n) {
+RowMajor second_derivatives(const Problem& problem, const EndCondition& condition,
+                            std::span<const double> z) {
+  const int n = problem.coordinates();
   const auto size = static_cast<std::size_t>(n);
   std::vector<double> slope(2 * size);
   RowMajor second(2 * n, 2 * n);
-  condition.function(z.first(size), z.last(size), slope, {second.data(), 4 * size * size});
+  condition_at(problem, condition, ends_of_nodes(z, n), slope, {second.data(), 4 * size * size});
   return second;
 }
 
-/// Of equal elements.
-std::vector<double> node_times(double duration, int elements) {
+/// The inner node that is nearest to a time.
+int nearest_node(const std::vector<double>& times, double t) {
+  const auto after = std::lower_bound(times.begin() + 1, times.end() - 2, t);
+  const bool before = after != times.begin() + 1 && t - *(after - 1) < *after - t;
+  return static_cast<int>(after - times.begin()) - before;
+}
+
+/// Of equal elements, but for the nodes at waypoints.
+std::vector<double> node_times(const Problem& problem, int elements) {
+  const double duration = problem.duration.value;
   std::vector<double> times(elements + 1);
   for (int k = 0; k < elements; ++k) times[k] = duration * k / elements;
   times.back() = duration;
+  if (problem.extension)
+    for (const WaypointCondition& waypoint : problem.extension->waypoints)
+      times[nearest_node(times, waypoint.time)] = waypoint.time;
   return times;
 }
 
 }  // namespace
 
 CoarseAction::CoarseAction(const Problem& problem, int elements)
-    : CoarseAction(problem, node_times(problem.duration.value, elements)) {}
+    : CoarseAction(problem, node_times(problem, elements)) {}
 
 CoarseAction::CoarseAction(const Problem& problem, std::vector<double> times)
     : problem_(problem),
@@ -49,6 +69,7 @@ CoarseAction::CoarseAction(const Problem& problem, std::vector<double> times)
       n_(problem.coordinates()),
       elements_(static_cast<int>(times.size()) - 1),
       times_(std::move(times)) {
+  put_waypoints();
   for (int k = 0; k <= elements_; ++k) {
     // The end of a closed path is its start.
     if (fixed(k) || (problem.periodic && k == elements_)) continue;
@@ -57,7 +78,15 @@ CoarseAction::CoarseAction(const Problem& problem, std::vector<double> times)
   }
 }
 
+void CoarseAction::put_waypoints() {
+  if (!problem_.extension) return;
+  for (const WaypointCondition& waypoint : problem_.extension->waypoints)
+    for (const auto& [a, value] : waypoint.fixed)
+      waypoints_.push_back({nearest_node(times_, waypoint.time), a, value});
+}
+
 bool CoarseAction::fixed(int node) const {
+  if (std::ranges::count(waypoints_, node, &FixedCoordinate::node) == n_) return true;
   if (node != 0 && node != elements_) return false;
   const auto begin = problem_.ends.fixed.begin() + (node == 0 ? 0 : n_);
   return std::all_of(begin, begin + n_, [](char f) { return f; });
@@ -73,11 +102,54 @@ void CoarseAction::midpoint(std::span<const double> z, int k, Point& point) cons
   }
 }
 
-PointValues CoarseAction::values(std::span<const double> z, int k, Order order) const {
+PointValues CoarseAction::values(std::span<const double> z, int k, Order order,
+                                 std::span<const double> nu) const {
   Point point;
   Scratch scratch;
   midpoint(z, k, point);
-  return evaluate_at(*problem_.lagrangian, point.q, point.v, (times_[k] + times_[k + 1]) / 2, order, scratch);
+  point.q.insert(point.q.end(), nu.begin(), nu.end());
+  point.v.resize(point.q.size(), 0);
+  const Lagrangian& lagrangian = nu.empty() ? *problem_.lagrangian : *problem_.extension->lagrangian;
+  return evaluate_at(lagrangian, point.q, point.v, (times_[k] + times_[k + 1]) / 2, order, scratch);
+}
+
+ElementHessian CoarseAction::element(std::span<const double> z, int k, std::span<const double> nu,
+                                     double kinetic_only) const {
+  const int all = n_ + static_cast<int>(nu.size());
+  ElementHessian found = element_hessian(values(z, k, Order::hessian, nu), length(k), all, kinetic_only);
+  if (nu.empty()) return found;
+  for (MatrixXd* block : {&found.aa, &found.ba, &found.bb}) *block = block->topLeftCorner(n_, n_).eval();
+  return found;
+}
+
+std::vector<double> CoarseAction::integral_values(std::span<const double> z) const {
+  std::vector<double> sums(integrals());
+  if (sums.empty()) return sums;
+  for (int k = 0; k < elements_; ++k) {
+    const PointValues l = values(z, k, Order::gradient);
+    for (std::size_t j = 0; j < sums.size(); ++j) sums[j] += length(k) * l.dq[n_ + j];
+  }
+  return sums;
+}
+
+/// ∂∫g/∂z, a row of each.
+MatrixXd CoarseAction::integral_slopes(std::span<const double> z) const {
+  const int m = integrals(), all = n_ + m;
+  MatrixXd rows = MatrixXd::Zero(m, static_cast<Index>(z.size()));
+  for (int k = 0; k < elements_ && m > 0; ++k) {
+    const PointValues l = values(z, k, Order::hessian);
+    const Square qq(l.qq.data(), all, all), vq(l.vq.data(), all, all);
+    const MatrixXd by_q = 0.5 * length(k) * qq.bottomLeftCorner(m, n_),
+                   by_v = vq.topRightCorner(n_, m).transpose();
+    rows.middleCols(k * n_, n_) += by_q - by_v;
+    rows.middleCols((k + 1) * n_, n_) += by_q + by_v;
+  }
+  return rows;
+}
+
+std::vector<double> CoarseAction::integral_multipliers(const MinimumReport& report) const {
+  const auto first = report.of_equations.begin() + linear_equations();
+  return {first, first + integrals()};
 }
 
 ConstraintValues CoarseAction::at(const Manifold& manifold, std::span<const double> z, int node) const {
@@ -95,6 +167,20 @@ MatrixXd CoarseAction::curvature(const Manifold& manifold, std::span<const doubl
   return Square(form.qq.data(), all, all).topLeftCorner(n_, n_);
 }
 
+/// Of factor L + Σ ν g.
+ElementHessian CoarseAction::weighted(std::span<const double> z, int k, double factor,
+                                      std::span<const double> nu) const {
+  const std::vector<double> none(nu.size());
+  ElementHessian found = element(z, k, none, 0);
+  for (MatrixXd* block : {&found.aa, &found.ba, &found.bb}) *block *= factor;
+  if (nu.empty()) return found;
+  const ElementHessian with = element(z, k, nu, 0), without = element(z, k, none, 0);
+  found.aa += with.aa - without.aa;
+  found.ba += with.ba - without.ba;
+  found.bb += with.bb - without.bb;
+  return found;
+}
+
 bool CoarseAction::hessian(std::span<const double> z, double factor, std::span<const double> multipliers,
                            std::span<double> entries) const {
   std::size_t at = 0;
@@ -102,19 +188,20 @@ bool CoarseAction::hessian(std::span<const double> z, double factor, std::span<c
     for (int i = 0; i < n_; ++i)
       for (int j = 0; j <= i; ++j) entries[at++] = block(i, j);
   };
-  for (int k = 0; k < elements_; ++k) {
-    const ElementHessian element = element_hessian(values(z, k, Order::hessian), length(k), n_, 0);
-    put_lower(factor * element.aa);
-    put_lower(factor * element.bb);
-    for (int i = 0; i < n_; ++i)
-      for (int j = 0; j < n_; ++j) entries[at++] = factor * element.ba(i, j);
-  }
   const std::size_t m = inequalities_.count();
+  const std::span<const double> nu = multipliers.subspan(places_.size() + linear_equations(), integrals());
+  for (int k = 0; k < elements_; ++k) {
+    const ElementHessian element = weighted(z, k, factor, nu);
+    put_lower(element.aa);
+    put_lower(element.bb);
+    for (int i = 0; i < n_; ++i)
+      for (int j = 0; j < n_; ++j) entries[at++] = element.ba(i, j);
+  }
   for (std::size_t place = 0; place < places_.size(); place += m)
     put_lower(curvature(*inequalities_.all, z, places_[place].node, multipliers.subspan(place, m)));
-  std::size_t row = places_.size() + problem_.boundary.rows;
+  std::size_t row = places_.size() + linear_equations() + integrals();
   for (const EndCondition& condition : conditions_of(problem_)) {
-    const RowMajor second = multipliers[row++] * second_derivatives(condition, z, n_);
+    const RowMajor second = multipliers[row++] * second_derivatives(problem_, condition, z);
     put_lower(second.topLeftCorner(n_, n_));
     put_lower(second.bottomRightCorner(n_, n_));
     for (int i = 0; i < n_; ++i)
@@ -136,13 +223,16 @@ InequalityMinimum CoarseAction::minimum(std::span<const double> z, double size) 
   minimum.inequalities = rows;
   const std::vector<EndCondition>& conditions = conditions_of(problem_);
   const int constraints = problem_.manifold ? problem_.manifold->constraints() : 0;
-  minimum.equations = problem_.boundary.rows + static_cast<int>(conditions.size()) +
+  minimum.equations = linear_equations() + integrals() + static_cast<int>(conditions.size()) +
                       constraints * static_cast<int>(constrained_.size());
   const auto variable = [this](int e) { return e < n_ ? e : elements_ * n_ + e - n_; };
   for (int i = 0; i < rows; ++i)
     for (int a = 0; a < n_; ++a) minimum.slopes.push_back({i, places_[i].node * n_ + a});
   for (const Triplet& b : relation) minimum.slopes.push_back({rows + b.row, variable(b.column)});
   int row = rows + problem_.boundary.rows;
+  for (const FixedCoordinate& w : waypoints_) minimum.slopes.push_back({row++, w.node * n_ + w.coordinate});
+  for (int j = 0; j < integrals(); ++j, ++row)
+    for (int a = 0; a < minimum.variables; ++a) minimum.slopes.push_back({row, a});
   for (std::size_t i = 0; i < conditions.size(); ++i, ++row)
     for (int e = 0; e < 2 * n_; ++e) minimum.slopes.push_back({row, variable(e)});
   for (const int node : constrained_)
@@ -240,8 +330,12 @@ void CoarseAction::put_functions(InequalityMinimum& minimum) const {
     for (const Triplet& b : relation) a[rows + b.row] += b.value * z[variable(b.column)];
     std::vector<double> slope(2 * size);
     auto next = a.begin() + rows + problem_.boundary.rows;
+    for (const FixedCoordinate& w : waypoints_) *next++ = z[w.node * n_ + w.coordinate] - w.value;
+    const std::vector<double> integrals = integral_values(z);
+    for (std::size_t j = 0; j < integrals.size(); ++j)
+      *next++ = integrals[j] - problem_.extension->integrals[j];
     for (const EndCondition& condition : conditions)
-      *next++ = condition.function(z.first(size), z.last(size), slope, {});
+      *next++ = condition_at(problem_, condition, ends_of_nodes(z, n_), slope, {});
     for (const int node : constrained_) next = std::ranges::copy(at(*problem_.manifold, z, node).g, next).out;
     return std::ranges::all_of(a, [](double x) { return std::isfinite(x); });
   };
@@ -254,9 +348,12 @@ void CoarseAction::put_functions(InequalityMinimum& minimum) const {
     };
     for (int i = 0; i < rows; i += m) put(*inequalities_.all, places_[i].node);
     for (const Triplet& b : relation) *next++ = b.value;
+    next = std::fill_n(next, waypoints_.size(), 1.0);
+    const RowMajor of_integrals = integral_slopes(z);
+    next = std::copy_n(of_integrals.data(), of_integrals.size(), next);
     for (const EndCondition& condition : conditions) {
       std::vector<double> slope(2 * size);
-      condition.function(z.first(size), z.last(size), slope, {});
+      condition_at(problem_, condition, ends_of_nodes(z, n_), slope, {});
       next = std::ranges::copy(slope, next).out;
     }
     for (const int node : constrained_) put(*problem_.manifold, node);
@@ -268,9 +365,8 @@ void CoarseAction::put_functions(InequalityMinimum& minimum) const {
 
 double CoarseAction::closing(std::span<const double> z) const {
   if (closed_by_condition(problem_)) {
-    std::vector<double> ends(z.begin(), z.begin() + n_), gradient(2 * static_cast<std::size_t>(n_));
-    ends.insert(ends.end(), z.end() - n_, z.end());
-    return closing_condition(problem_, ends, gradient);
+    std::vector<double> gradient(2 * static_cast<std::size_t>(n_));
+    return closing_condition(problem_, ends_of_nodes(z, n_), gradient);
   }
   double energy = 0;
   for (int k = 0; k < elements_; ++k) {

@@ -6,8 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/problem.hpp"
+#include "solve/contact/element_hessian.hpp"
 #include "solve/contact/end_equations.hpp"
 #include "solve/external/inequality_minimum.hpp"
 
@@ -20,11 +22,18 @@ struct NodeInequality {
   int node, constraint;
 };
 
+/// A coordinate that a waypoint fixes at a node.
+struct FixedCoordinate {
+  int node, coordinate;
+  double value;
+};
+
 /// What a path touches, for its second variation: for each node what is held, and μ of all inequalities.
 struct CoarseContacts {
   std::vector<std::vector<int>> held;
   std::vector<std::vector<double>> forces;
   EndCurvature ends;
+  std::vector<double> multipliers = {};  ///< ν of integrals
 };
 
 /// S_h = Σ h_k L((q_k + q_{k+1})/2, (q_{k+1} − q_k)/h_k, t_k + h_k/2) of N + 1 nodes z = (q_0 … q_N).
@@ -56,9 +65,12 @@ class CoarseAction {
   /// the condition that closes the duration.
   double closing(std::span<const double> z) const;
 
-  /// Whether the second variation of S_h − Σ h μ g + Σ η r is positive, but for what symmetries make zero,
-  /// among the displacements that keep constraints, conditions of the ends and the inequalities that are
-  /// held.
+  /// ν of integrals at a minimum.
+  std::vector<double> integral_multipliers(const MinimumReport& report) const;
+
+  /// Whether the second variation of S_h + Σ ν ∫ g − Σ h μ g + Σ η r is positive, but for what symmetries
+  /// make zero, among the displacements that keep integrals, constraints, conditions of the ends and the
+  /// inequalities that are held.
   bool positive(std::span<const double> z, const CoarseContacts& contacts) const;
 
  private:
@@ -67,7 +79,17 @@ class CoarseAction {
     std::vector<double> q, v;
   };
   void midpoint(std::span<const double> z, int k, Point& point) const;
-  PointValues values(std::span<const double> z, int k, Order order) const;
+  /// Of L + Σ ν g; zeros: of L.
+  PointValues values(std::span<const double> z, int k, Order order, std::span<const double> nu) const;
+  PointValues values(std::span<const double> z, int k, Order order) const {
+    return values(z, k, order, std::vector<double>(integrals()));
+  }
+  int integrals() const { return problem_.extension ? problem_.extension->multipliers() : 0; }
+  ElementHessian element(std::span<const double> z, int k, std::span<const double> nu,
+                         double kinetic_only) const;
+  ElementHessian weighted(std::span<const double> z, int k, double factor, std::span<const double> nu) const;
+  std::vector<double> integral_values(std::span<const double> z) const;
+  Block integral_slopes(std::span<const double> z) const;
   /// Σ λ_k ∂²g_k/∂q² of inequalities or constraints.
   Block curvature(const Manifold& manifold, std::span<const double> z, int node,
                   std::span<const double> multipliers) const;
@@ -76,6 +98,9 @@ class CoarseAction {
   Block end_displacements(std::span<const double> z, const CoarseContacts& contacts) const;
   ConstraintValues at(const Manifold& manifold, std::span<const double> z, int node) const;
   bool fixed(int node) const;
+  void put_waypoints();
+  /// Of the relation of the ends and of waypoints.
+  int linear_equations() const { return problem_.boundary.rows + static_cast<int>(waypoints_.size()); }
   void put_functions(InequalityMinimum& minimum) const;
   void put_units(std::span<const double> z, double size, InequalityMinimum& minimum) const;
   bool hessian(std::span<const double> z, double factor, std::span<const double> multipliers,
@@ -86,6 +111,7 @@ class CoarseAction {
   int n_, elements_;
   std::vector<double> times_;  ///< of nodes, from 0 to T
   std::vector<NodeInequality> places_;
+  std::vector<FixedCoordinate> waypoints_;
   std::vector<int> constrained_;  ///< nodes at which the constraints are equations
 };
 

@@ -33,11 +33,12 @@ MatrixXd CoarseAction::contact_curvature(std::span<const double> z, int node,
   return own + curvature(manifold, z, node, {normal.data(), static_cast<std::size_t>(normal.size())});
 }
 
-/// Displacements of an inner node that keep what is held there.
+/// Displacements of an inner node that keep what is held or fixed there.
 MatrixXd CoarseAction::displacements(std::span<const double> z, int node,
                                      const std::vector<int>& held) const {
   const Index constraints = problem_.manifold ? problem_.manifold->constraints() : 0;
-  const Index count = constraints + static_cast<Index>(held.size());
+  const Index fixed = std::ranges::count(waypoints_, node, &FixedCoordinate::node);
+  const Index count = constraints + fixed + static_cast<Index>(held.size());
   if (count == 0) return MatrixXd::Identity(n_, n_);
   if (count >= n_) return MatrixXd(n_, 0);
   MatrixXd normals(n_, count);
@@ -45,6 +46,9 @@ MatrixXd CoarseAction::displacements(std::span<const double> z, int node,
   const ConstraintValues found = at(*inequalities_.all, z, node);
   for (std::size_t i = 0; i < held.size(); ++i)
     normals.col(constraints + static_cast<Index>(i)) = found.slopes.row(held[i]);
+  Index column = count - fixed;
+  for (const FixedCoordinate& w : waypoints_)
+    if (w.node == node) normals.col(column++) = Eigen::VectorXd::Unit(n_, w.coordinate);
   return complement(normals);
 }
 
@@ -101,8 +105,7 @@ bool CoarseAction::positive(std::span<const double> z, const CoarseContacts& con
     if (a != b) put(first[b], first[a], reduced.transpose());
   };
   for (int k = 0; k < elements_; ++k) {
-    const ElementHessian element =
-        element_hessian(values(z, k, Order::hessian), length(k), n_, limits::contact::shift);
+    const ElementHessian element = this->element(z, k, contacts.multipliers, limits::contact::shift);
     add(k, k, element.aa);
     add(k + 1, k + 1, element.bb);
     add(k + 1, k, element.ba);
@@ -112,11 +115,17 @@ bool CoarseAction::positive(std::span<const double> z, const CoarseContacts& con
       add(k, k, (cell_end(k) - cell_begin(k)) * contact_curvature(z, k, contacts.forces[k]));
   if (contacts.ends.slopes.rows() > 0)
     put(first[0], first[0], ends.transpose() * contacts.ends.curvature * ends);
-  Eigen::SparseMatrix<double> matrix(columns, columns);
+  // Rows of integrals come last: each takes one direction, and makes one pivot negative.
+  const MatrixXd integrals = integral_slopes(z);
+  for (int k = 0; k <= elements_ && integrals.rows() > 0; ++k)
+    put(columns, first[k], integrals.middleCols(k * n_, n_) * free[k]);
+  const Index all = columns + integrals.rows();
+  Eigen::SparseMatrix<double> matrix(all, all);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> factors(
       matrix);
-  return factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all();
+  return factors.info() == Eigen::Success && (factors.vectorD().array() < 0).count() == integrals.rows() &&
+         (factors.vectorD().array() > 0).count() == columns;
 }
 
 }  // namespace extremal

@@ -108,7 +108,7 @@ class LawCheck {
   void check_forces(std::size_t i) {
     const PathArc& arc = path_.arcs()[i];
     const Trajectory& trajectory = path_.solved()[i].trajectory;
-    const std::shared_ptr<const Manifold> manifold = arcs_.manifold(arc.held);
+    const std::shared_ptr<const Manifold> manifold = arcs_.manifold(arc);
     std::vector<Sampled> sampled(arc.held.size(), {times_of(trajectory), {}});
     const int constraints = arcs_.constraints();
     double largest = 0;
@@ -144,15 +144,20 @@ class LawCheck {
   std::optional<Violation> worst_;
 };
 
-/// Times of elements that end where arcs do.
+/// Times of elements that end where arcs do, and at waypoints.
 std::vector<double> aligned_times(const Junctions& path, int elements) {
   std::vector<double> times = {0};
-  for (const PathArc& arc : path.arcs()) {
+  for (std::size_t part = 0; part < path.arcs().size(); ++part) {
+    const PathArc& arc = path.arcs()[part];
+    const SolvedArc& solved = path.solved()[part];
     const double share = (arc.to - arc.from) / path.duration();
     const int count = std::max(least_arc_elements, static_cast<int>(std::lround(share * elements)));
     for (int i = 1; i <= count; ++i)
       times.push_back(i == count ? arc.to : arc.from + (arc.to - arc.from) * i / count);
+    for (const WaypointImpulse& waypoint : solved.waypoints) times.push_back(waypoint.time);
   }
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
@@ -167,7 +172,7 @@ std::vector<double> mean_forces(Arcs& arcs, const Junctions& path, double from, 
     if (arc.held.empty() || !(end > begin)) continue;
     const Trajectory& trajectory = path.solved()[i].trajectory;
     trajectory.at(std::clamp(t - arc.from, 0.0, trajectory.duration()), q, v);
-    const std::shared_ptr<const Manifold> manifold = arcs.manifold(arc.held);
+    const std::shared_ptr<const Manifold> manifold = arcs.manifold(arc);
     manifold->make_tangent(q, t, v);
     const std::vector<double> found = manifold->multipliers(q, t, v);
     for (std::size_t h = 0; h < arc.held.size(); ++h)
@@ -198,6 +203,7 @@ bool is_positive(Arcs& arcs, const Junctions& path, int elements) {
   }
   const std::vector<EndContact>& ends = path.end_contacts();
   contacts.ends = path.end_curvature();
+  contacts.multipliers = path.multipliers();
   for (std::size_t c = 0; c < ends.size(); ++c)
     if (!ends[c].holonomic) {
       std::vector<int>& held = ends[c].at_end ? contacts.held.back() : contacts.held.front();

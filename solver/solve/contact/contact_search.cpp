@@ -53,6 +53,13 @@ int pulled_touch(const Junctions& path) {
   return -1;
 }
 
+/// Whether each waypoint lies within an arc.
+bool meets_waypoints(const Problem& problem, const Junctions& path) {
+  std::size_t met = 0;
+  for (const SolvedArc& arc : path.solved()) met += arc.waypoints.size();
+  return !problem.extension || met == problem.extension->waypoints.size();
+}
+
 /// Whether q(T) = q(0), and any time may be the first one.
 bool may_be_shifted(const Problem& problem) {
   if (!problem.periodic || problem.duration.where || problem.extension) return false;
@@ -111,6 +118,7 @@ Solution ContactSearch::run(std::vector<double> z) {
       continue;
     }
     guess_ = guess_of_nodes(elements, z);
+    multipliers_ = CoarseAction(problem_, elements).integral_multipliers(report);
     if (std::optional<Solution> found = join(coarse_intervals(elements, z, std::move(report.multipliers))))
       return *std::move(found);
     if (saddle_) break;
@@ -149,7 +157,7 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
   std::optional<Junctions> junctions, before;
   for (int k = 0; k < most_changes && !options_.deadline.passed(); ++k) {
     tidy(intervals, problem_.duration.value);
-    junctions.emplace(arcs_, intervals, path);
+    junctions.emplace(arcs_, intervals, path, multipliers_);
     const Junctions::Result result = junctions->run();
     if (result == Junctions::Result::failed) {
       refuse(Status::not_converged, "no local minimiser was found near the guess: " + junctions->message() +
@@ -169,13 +177,18 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
     if (take_away_touch(*junctions, intervals)) continue;
     if (problem_.duration.free) problem_.duration.value = junctions->duration();
     const std::optional<Violation> violation = worst_violation(arcs_, *junctions);
-    if (!violation) return accept(*junctions);
+    if (!violation && meets_waypoints(problem_, *junctions)) return accept(*junctions);
+    if (!violation) {
+      refuse(Status::not_converged, "a contact begins or ends at a waypoint; give another guess, or move it");
+      return std::nullopt;
+    }
     refuse(Status::not_converged, describe(*violation));
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       intervals[i].from = junctions->arcs()[i].from;
       intervals[i].to = junctions->arcs()[i].to;
     }
     before.emplace(*std::move(junctions));
+    multipliers_ = before->multipliers();
     path = [&before](double t, std::span<double> q) { point_of(*before, t, q); };
     const double middle = (violation->from + violation->to) / 2;
     const double half = (violation->to - violation->from) / 2 * (violation->forbidden ? 1 : freed_stretch);

@@ -44,6 +44,7 @@ class ContactSearch {
   Arcs arcs_;
   bool several_;
   Guess guess_;
+  std::vector<double> multipliers_;  ///< ν of integrals on the path found last
   Solution failure_;
   bool singular_ = false, saddle_ = false, no_duration_ = false;
 };

@@ -22,15 +22,31 @@ bool fixed(const Problem& problem, bool at_end) {
 
 }  // namespace
 
+double condition_at(const Problem& problem, const EndCondition& condition, std::span<const double> ends,
+                    std::span<double> gradient, std::span<double> hessian) {
+  const std::size_t n = problem.coordinates(), all = n + problem.extension->constants();
+  if (all == n) return condition.function(ends.first(n), ends.last(n), gradient, hessian);
+  std::vector<double> start(all), end(all), slope(2 * all), second(hessian.empty() ? 0 : 4 * all * all);
+  std::ranges::copy(ends.first(n), start.begin());
+  std::ranges::copy(ends.last(n), end.begin());
+  const double value = condition.function(start, end, slope, second);
+  const auto place = [&](std::size_t e) { return e < n ? e : all + e - n; };
+  for (std::size_t e = 0; e < 2 * n; ++e) {
+    gradient[e] = slope[place(e)];
+    for (std::size_t f = 0; !hessian.empty() && f < 2 * n; ++f)
+      hessian[e * 2 * n + f] = second[place(e) * 2 * all + place(f)];
+  }
+  return value;
+}
+
 bool closed_by_condition(const Problem& problem) {
   return problem.duration.where || (problem.extension && !problem.extension->where.empty());
 }
 
 double closing_condition(const Problem& problem, std::span<const double> ends, std::span<double> gradient) {
   const std::size_t n = problem.coordinates();
-  const std::span<const double> start = ends.first(n), end = ends.last(n);
-  if (problem.duration.where) return problem.duration.where(start, end, gradient);
-  return problem.extension->where.front().function(start, end, gradient, {});
+  if (problem.duration.where) return problem.duration.where(ends.first(n), ends.last(n), gradient);
+  return condition_at(problem, problem.extension->where.front(), ends, gradient, {});
 }
 
 EndEquations::EndEquations(const Problem& problem, std::vector<EndContact> contacts)
@@ -105,8 +121,8 @@ std::vector<EndEquations::Condition> EndEquations::conditions(const VectorXd& x)
   std::vector<Condition> found;
   for (std::size_t i = 0; i < conditions_; ++i) {
     Condition condition{0, VectorXd::Zero(2 * n_)};
-    condition.value = problem_.extension->conditions[i].function({ends.data(), n}, {ends.data() + n, n},
-                                                                 {condition.slope.data(), 2 * n}, {});
+    condition.value = condition_at(problem_, problem_.extension->conditions[i], {ends.data(), 2 * n},
+                                   {condition.slope.data(), 2 * n}, {});
     found.push_back(std::move(condition));
   }
   for (const EndContact& each : contacts_) found.push_back(contact(each, ends, duration(x)));
@@ -152,8 +168,8 @@ EndCurvature EndEquations::curvature(const VectorXd& x) const {
   for (std::size_t i = 0; i < conditions_; ++i) {
     VectorXd slope(2 * n_);
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> second(2 * n_, 2 * n_);
-    problem_.extension->conditions[i].function({ends.data(), n}, {ends.data() + n, n}, {slope.data(), 2 * n},
-                                               {second.data(), 4 * n * n});
+    condition_at(problem_, problem_.extension->conditions[i], {ends.data(), 2 * n}, {slope.data(), 2 * n},
+                 {second.data(), 4 * n * n});
     found.slopes.row(static_cast<Index>(i)) = slope.transpose();
     const double eta = x[unknowns() - multipliers() + static_cast<Index>(i)];
     if (const double length = slope.norm(); length > 0) found.curvature += eta / length * second;

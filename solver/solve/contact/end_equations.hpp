@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "problem/extension.hpp"
 #include "problem/problem.hpp"
 
 /// \file The ends of a path of arcs, its duration and what determines them.
@@ -78,6 +79,11 @@ class EndEquations {
   std::vector<EndContact> contacts_;
   double size_ = 1, momentum_ = 1, time_ = 1;
 };
+
+/// A condition of an extension, of which no constant is part, at ends (2n): its value, its gradient (2n) and,
+/// unless `hessian` is empty, its second derivatives (2n × 2n).
+double condition_at(const Problem& problem, const EndCondition& condition, std::span<const double> ends,
+                    std::span<double> gradient, std::span<double> hessian);
 
 /// The condition that closes a free duration in place of the energy: value and gradient (2n); for a problem
 /// that has one.

@@ -48,7 +48,7 @@ std::shared_ptr<const PathContacts> contacts_of(Arcs& arcs, const Junctions& pat
     const PathArc& arc = parts[i];
     if (i > 0 && path.touched()[i - 1] >= 0)
       found->contacts.push_back({path.touched()[i - 1], arc.from, arc.from});
-    found->arcs.push_back({arc.from, arc.to, arc.held, arcs.manifold(arc.held)});
+    found->arcs.push_back({arc.from, arc.to, arc.held, arcs.manifold(arc)});
     for (const int k : arc.held) {
       const auto lasting = std::ranges::find_if(
           found->contacts, [&](const Contact& c) { return c.constraint == k && c.to == arc.from; });
@@ -60,6 +60,19 @@ std::shared_ptr<const PathContacts> contacts_of(Arcs& arcs, const Junctions& pat
   }
   touches(true);
   return found;
+}
+
+/// Multipliers of integrals and impulses at waypoints; nothing where there are none.
+std::shared_ptr<const ExtensionValues> extension_values(const Problem& problem, const Junctions& path) {
+  auto values = std::make_shared<ExtensionValues>();
+  for (const SolvedArc& arc : path.solved())
+    values->waypoints.insert(values->waypoints.end(), arc.waypoints.begin(), arc.waypoints.end());
+  values->integral_multipliers = path.multipliers();
+  if (values->waypoints.empty() && values->integral_multipliers.empty()) return nullptr;
+  values->lagrangian = problem.extension->at(path.multipliers());
+  if (problem.manifold && problem.extension->manifold_at)
+    values->manifold = problem.extension->manifold_at(path.multipliers());
+  return values;
 }
 
 }  // namespace
@@ -84,6 +97,8 @@ Solution joined_path(Arcs& arcs, const Junctions& path) {
     solution.residual = std::max(solution.residual, solved.residual);
     solution.unknowns += (solved.degree * solved.trajectory.elements() - 1) * problem.coordinates();
   }
+  for (std::size_t j = 0; j < path.multipliers().size(); ++j)
+    solution.action -= path.multipliers()[j] * problem.extension->integrals[j];
   solution.error_estimate = solution.error_estimate * (1 + path.amplification()) + path.movement();
   for (std::size_t j = 0; j < path.touched().size(); ++j)  // in place of arcs that are shorter
     solution.error_estimate += (path.solved()[j].v_end - path.solved()[j + 1].v_start).norm() *
@@ -91,8 +106,9 @@ Solution joined_path(Arcs& arcs, const Junctions& path) {
   solution.momentum_start = {path.solved().front().p_start.begin(), path.solved().front().p_start.end()};
   solution.momentum_end = {path.solved().back().p_end.begin(), path.solved().back().p_end.end()};
   solution.contacts = contacts_of(arcs, path);
+  solution.extension = extension_values(problem, path);
   solution.iterations = arcs.iterations();
-  if (problem.inequalities->all->autonomous()) observe_energy(arcs.motion(), solution);
+  if (problem.inequalities->all->autonomous()) observe_energy(arcs.motion(path.multipliers()), solution);
   solution.minimizing = true;
   solution.status = Status::converged;
   const std::size_t count = solution.contacts->contacts.size();

@@ -26,12 +26,13 @@ bool Junctions::singular() {
   return svd.values[svd.values.size() - 1] < singular_rank * svd.values[0];
 }
 
-/// A step of the ends, then of the point and the time of each junction: in units of size and duration. A
-/// point moves along the path with its time.
+/// A step of the ends, the multipliers, then of the point and the time of each junction: in units of size and
+/// duration. A point moves along the path with its time.
 Junctions::State Junctions::moved(const VectorXd& step) const {
   State state = state_;
-  Index at = ends_.unknowns();
-  state.ends += ends_.scaled(step.head(at));
+  state.ends += ends_.scaled(step.head(ends_.unknowns()));
+  state.multipliers += multiplier_units_.cwiseProduct(step.segment(ends_.unknowns(), integrals()));
+  Index at = first_of_junctions();
   for (int j = 0; j < count(); ++j) {
     const MatrixXd directions = basis(j);
     state.q[j] += directions * (size_ * step.segment(at, directions.cols()));
@@ -55,14 +56,18 @@ bool Junctions::differentiate() {
   const int all = unknowns(), last = static_cast<int>(parts_.size()) - 1;
   slopes_ = MatrixXd::Zero(residual_.size(), all);
   int column = 0;
-  const auto take = [&](bool first_moves, bool last_moves, int junction) {
+  const auto take = [&](bool first_moves, bool last_moves, int junction, bool all_move = false) {
     VectorXd step = VectorXd::Zero(all);
     const double by = junction < 0 ? difference : difference_at(junction);
     step[column] = by;
     Trial trial{moved(step), parts_, solved_, {}};
     if (!place(trial.state, trial.parts)) return false;
-    if (first_moves && !solve(trial, 0, 0)) return false;
-    if (last_moves && !(first_moves && last == 0) && !solve(trial, last, last)) return false;
+    if (all_move) {
+      if (!solve(trial, 0, last)) return false;
+    } else {
+      if (first_moves && !solve(trial, 0, 0)) return false;
+      if (last_moves && !(first_moves && last == 0) && !solve(trial, last, last)) return false;
+    }
     if (junction >= 0 && !solve(trial, junction, junction + 1)) return false;
     slopes_.col(column++) = (residual(trial) - residual_) / by;
     return true;
@@ -72,6 +77,8 @@ bool Junctions::differentiate() {
   if (ends_.free_duration() && !take(false, true, -1)) return false;
   for (int i = 0; i < ends_.multipliers(); ++i)
     if (!take(false, false, -1)) return false;
+  for (int i = 0; i < integrals(); ++i)
+    if (!take(true, true, -1, true)) return false;
   for (int j = 0; j < count(); ++j)
     for (Index c = 0; c < directions(j) + (timed(j) ? 1 : 0); ++c)
       if (!take(false, false, j)) return false;
@@ -93,7 +100,7 @@ VectorXd Junctions::newton_step() {
 /// The part of a step that leaves every arc a part of its length.
 double Junctions::longest_step(const VectorXd& step) const {
   std::vector<double> later(count() + 2, 0.0);
-  Index at = ends_.unknowns();
+  Index at = first_of_junctions();
   for (int j = 0; j < count(); ++j) {
     at += directions(j);
     if (timed(j)) later[j + 1] = duration_ * step[at++];
@@ -114,7 +121,9 @@ double Junctions::movement_of(const VectorXd& step) const {
   const int free = ends_.coordinates();
   if (free > 0) most = step.head(free).lpNorm<Eigen::Infinity>();
   if (ends_.free_duration()) most = std::max(most, std::abs(step[free]) * duration_ * speed_ / size_);
-  Index at = ends_.unknowns();
+  if (integrals() > 0)
+    most = std::max(most, step.segment(ends_.unknowns(), integrals()).lpNorm<Eigen::Infinity>());
+  Index at = first_of_junctions();
   for (int j = 0; j < count(); ++j) {
     const Index columns = directions(j);
     if (columns > 0) most = std::max(most, step.segment(at, columns).norm());

@@ -36,13 +36,14 @@ std::vector<EndContact> end_contacts(const Problem& problem, const std::vector<I
 
 }  // namespace
 
-Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const PathPoints& path)
+Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const PathPoints& path,
+                     const std::vector<double>& multipliers)
     : arcs_(arcs),
       problem_(arcs.problem()),
       n_(problem_.coordinates()),
       ends_(problem_, extremal::end_contacts(problem_, intervals)),
       duration_(problem_.duration.value),
-      phase_held_(problem_.periodic && problem_.lagrangian->structure().autonomous &&
+      phase_held_(problem_.periodic && problem_.shifts_in_time() &&
                   problem_.inequalities->all->autonomous()) {
   const auto point = [&](double t) {
     VectorXd q(n_);
@@ -51,7 +52,7 @@ Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const P
   };
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const Interval& interval = intervals[i];
-    PathArc arc{interval.held, interval.from, interval.to, {}, {}, {}};
+    PathArc arc{interval.held, interval.from, interval.to, {}, {}, {}, multipliers};
     for (int k = 0; k <= guess_points; ++k) {
       const double tau = static_cast<double>(k) / guess_points;
       const VectorXd q = point(interval.from + tau * (interval.to - interval.from));
@@ -70,6 +71,7 @@ Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const P
   path(0, {ends.data(), static_cast<std::size_t>(n_)});
   path(duration_, {ends.data() + n_, static_cast<std::size_t>(n_)});
   state_.ends = ends_.at(ends, duration_);
+  state_.multipliers = Eigen::Map<const VectorXd>(multipliers.data(), static_cast<Index>(multipliers.size()));
 }
 
 Index Junctions::directions(int junction) const {
@@ -77,7 +79,7 @@ Index Junctions::directions(int junction) const {
 }
 
 int Junctions::unknowns() const {
-  Index sum = ends_.unknowns();
+  Index sum = first_of_junctions();
   for (int j = 0; j < count(); ++j) sum += directions(j) + (timed(j) ? 1 : 0);
   return static_cast<int>(sum);
 }
@@ -88,13 +90,15 @@ bool Junctions::place(State& state, std::vector<PathArc>& parts) const {
   const double duration = ends_.duration(state.ends);
   parts.front().from = 0;
   parts.back().to = duration;
+  const std::vector<double> nu(state.multipliers.begin(), state.multipliers.end());
+  for (PathArc& part : parts) part.multipliers = nu;
   if (!(duration > parts.back().from) && parts.size() == 1) return false;
   parts.front().start = ends.head(n_);
   parts.back().end = ends.tail(n_);
-  if (!arcs_.project(parts.front().held, 0, parts.front().start)) return false;
-  if (!arcs_.project(parts.back().held, duration, parts.back().end)) return false;
+  if (!arcs_.project(parts.front().held, nu, 0, parts.front().start)) return false;
+  if (!arcs_.project(parts.back().held, nu, duration, parts.back().end)) return false;
   for (std::size_t j = 0; j < state.t.size(); ++j) {
-    if (!arcs_.project(held_[j], state.t[j], state.q[j])) return false;
+    if (!arcs_.project(held_[j], nu, state.t[j], state.q[j])) return false;
     parts[j].to = parts[j + 1].from = state.t[j];
     parts[j].end = parts[j + 1].start = state.q[j];
   }
@@ -115,14 +119,30 @@ bool Junctions::solve(Trial& trial, int first, int last) {
   return true;
 }
 
-/// Equations of the ends, then jumps of the momentum.
+/// What integrals miss, in units of momentum.
+VectorXd Junctions::integral_residual(const Trial& trial) const {
+  VectorXd missed(integrals());
+  for (int j = 0; j < integrals(); ++j) {
+    const double given = problem_.extension->integrals[j];
+    double sum = 0, size = std::abs(given);
+    for (const SolvedArc& arc : trial.solved) {
+      sum += arc.integrals[j];
+      size += std::abs(arc.integrals[j]);
+    }
+    missed[j] = (sum - given) / (size > 0 ? size : 1) * momentum_;
+  }
+  return missed;
+}
+
+/// Equations of the ends, integrals, then jumps of the momentum.
 VectorXd Junctions::residual(const Trial& trial) const {
   const std::vector<SolvedArc>& solved = trial.solved;
-  const int ends = ends_.unknowns();
-  VectorXd r(ends + count() * n_);
+  const int ends = ends_.unknowns(), first = first_of_junctions();
+  VectorXd r(first + count() * n_);
+  r.segment(ends, integrals()) = integral_residual(trial);
   r.head(ends) = ends_.residual(trial.state.ends,
                                 {solved.front().p_start, solved.back().p_end, solved.back().energy_end});
-  for (int j = 0; j < count(); ++j) r.segment(ends + j * n_, n_) = jump(trial, j);
+  for (int j = 0; j < count(); ++j) r.segment(first + j * n_, n_) = jump(trial, j);
   return r;
 }
 
@@ -156,7 +176,7 @@ MatrixXd Junctions::basis(int junction) const {
   if (columns == n_) return MatrixXd::Identity(n_, n_);
   if (columns <= 0) return MatrixXd(n_, 0);
   const VectorXd& q = state_.q[junction];
-  return complement(arcs_.manifold(held_[junction])
+  return complement(arcs_.manifold(held_[junction], parts_[junction].multipliers)
                         ->at({q.data(), static_cast<std::size_t>(n_)}, state_.t[junction])
                         .slopes.transpose());
 }
@@ -179,6 +199,14 @@ void Junctions::measure() {
   if (!(size_ > 1e-12 * largest)) size_ = largest > 0 ? largest : 1;
   if (!(momentum_ > 0)) momentum_ = size_ / duration_;
   ends_.set_units(size_, momentum_, duration_);
+  // A multiplier counts by the action that it makes.
+  multiplier_units_ = state_.multipliers.cwiseAbs();
+  for (int j = 0; j < integrals(); ++j) {
+    double size = std::abs(problem_.extension->integrals[j]);
+    for (const SolvedArc& solved : solved_) size += std::abs(solved.integrals[j]);
+    if (size > 0) multiplier_units_[j] = std::max(multiplier_units_[j], momentum_ * size_ / size);
+    if (multiplier_units_[j] == 0) multiplier_units_[j] = 1;
+  }
 }
 
 }  // namespace extremal

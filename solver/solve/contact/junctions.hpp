@@ -27,17 +27,19 @@ struct Interval {
 /// q(t) of a path in [0, T].
 using PathPoints = std::function<void(double t, std::span<double> q)>;
 
-/// Newton's method for the ends, the duration, and the points and times at which arcs meet. Where arcs meet,
-/// the inequalities of both are equalities. Minimisers have no kinks: the momentum is the same on both sides.
-/// That is as many equations as there are unknowns, since a contact begins and ends tangentially. ∂S/∂t of a
-/// junction is of second order in the jump and determines nothing. A contact that is too short for an arc is
-/// a touch: the momentum may jump across the surface, a little, and the mean velocity is tangent to it. Where
-/// two contacts begin at once, there are more equations, which agree. A closed path of an autonomous system
-/// may be shifted in time; its first junction keeps its time.
+/// Newton's method for the ends, the duration, the multipliers of integrals, and the points and times at
+/// which arcs meet. Where arcs meet, the inequalities of both are equalities. Minimisers have no kinks: the
+/// momentum is the same on both sides. That is as many equations as there are unknowns, since a contact
+/// begins and ends tangentially. ∂S/∂t of a junction is of second order in the jump and determines nothing. A
+/// contact that is too short for an arc is a touch: the momentum may jump across the surface, a little, and
+/// the mean velocity is tangent to it. Where two contacts begin at once, there are more equations, which
+/// agree. A closed path of an autonomous system may be shifted in time; its first junction keeps its time.
 class Junctions {
  public:
-  /// The intervals abut, from 0 to T; `path` is where points and arcs begin. `arcs` is kept by reference.
-  Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const PathPoints& path);
+  /// The intervals abut, from 0 to T; `path` is where points and arcs begin, and `multipliers` what those of
+  /// integrals are there. `arcs` is kept by reference.
+  Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const PathPoints& path,
+            const std::vector<double>& multipliers);
 
   /// `simultaneous`: contacts that were taken to change at one junction do so at times of their own.
   enum class Result { matched, collapsed, simultaneous, failed };
@@ -46,6 +48,7 @@ class Junctions {
   const std::vector<PathArc>& arcs() const { return parts_; }
   const std::vector<SolvedArc>& solved() const { return solved_; }
   double duration() const { return parts_.back().to; }
+  const std::vector<double>& multipliers() const { return parts_.front().multipliers; }  ///< ν of integrals
   int collapsed() const { return collapsed_; }  ///< the number of an arc that has shrunk to nothing
   /// The intervals of this path, with each change of what is held at its own time.
   std::vector<Interval> separated(const std::vector<Interval>& intervals) const;
@@ -70,9 +73,9 @@ class Junctions {
   EndCurvature end_curvature() const { return ends_.curvature(state_.ends); }
 
  private:
-  /// Unknowns of the ends; points and times of junctions.
+  /// Unknowns of the ends; ν of integrals; points and times of junctions.
   struct State {
-    Eigen::VectorXd ends;
+    Eigen::VectorXd ends, multipliers;
     std::vector<Eigen::VectorXd> q;
     std::vector<double> t;
   };
@@ -88,6 +91,9 @@ class Junctions {
     double time = 0;
   };
   int count() const { return static_cast<int>(state_.t.size()); }
+  int integrals() const { return static_cast<int>(state_.multipliers.size()); }
+  int first_of_junctions() const { return ends_.unknowns() + integrals(); }
+  Eigen::VectorXd integral_residual(const Trial& trial) const;
   std::vector<Change> changes_at(int junction) const;
   bool find_changes();
   /// Directions of the point of a junction, and whether its time is an unknown.
@@ -126,6 +132,7 @@ class Junctions {
   std::vector<SolvedArc> solved_;
   Eigen::VectorXd residual_;
   Eigen::MatrixXd slopes_, range_;  ///< derivatives of the residual; an orthonormal basis of their columns
+  Eigen::VectorXd multiplier_units_;
   double size_ = 1, momentum_ = 1, speed_ = 0, mismatch_ = INFINITY, movement_ = INFINITY;
   double amplification_ = 0;
   int collapsed_ = -1;

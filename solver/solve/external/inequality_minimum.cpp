@@ -94,6 +94,9 @@ class MinimumForIpopt final : public Ipopt::TNLP {
     report_.multipliers.resize(problem_.inequalities);
     for (int i = 0; i < problem_.inequalities; ++i)
       report_.multipliers[i] = std::max(0.0, -multipliers[i]) * problem_.value_unit / constraint_unit(i);
+    report_.of_equations.clear();
+    for (int i = problem_.inequalities; i < problem_.inequalities + problem_.equations; ++i)
+      report_.of_equations.push_back(multipliers[i] * problem_.value_unit / constraint_unit(i));
   }
 
  private:

@@ -40,8 +40,9 @@ struct InequalityMinimum {
 
 struct MinimumReport {
   bool converged = false;
-  bool unbounded = false;           ///< points went beyond all bounds
-  std::vector<double> multipliers;  ///< >= 0 of the inequalities: ∂f/∂z = Σ μ ∂a/∂z + …
+  bool unbounded = false;            ///< points went beyond all bounds
+  std::vector<double> multipliers;   ///< >= 0 of the inequalities: ∂f/∂z = Σ μ ∂a/∂z + …
+  std::vector<double> of_equations;  ///< λ of the equations: … − Σ λ ∂a/∂z
 };
 
 /// Takes z to a local minimum. Throws std::invalid_argument where this build lacks Ipopt.

@@ -80,9 +80,6 @@ std::vector<double> arc_path(const Arc& arc, const std::vector<double>& ends, co
   return displacement;
 }
 
-namespace {
-
-/// The second of two copies becomes the first.
 void make_agree(Path& path) {
   const std::size_t n = path.coordinates();
   std::vector<double> values((path.degree() + 1) * n);
@@ -94,6 +91,8 @@ void make_agree(Path& path) {
   }
   path.load_ends();
 }
+
+namespace {
 
 void add_noise(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path) {
   if (bend_closed(problem, bend, tables, path)) return;

@@ -76,6 +76,9 @@ struct Bend {
 /// Paths of a periodic problem stay closed: by noise as in ClosedNoise, with their ends.
 void bend_path(const Problem& problem, const Bend& bend, const ElementTables& tables, Path& path);
 
+/// The second of two copies of the coordinates becomes the first.
+void make_agree(Path& path);
+
 /// Of the largest extent. Every other seed takes coordinates to be of one kind: a line has no extent across.
 inline constexpr double negligible_extent[] = {0.01, 0.5};
 /// Of each coordinate: its range, or its largest absolute value if that is more; where that is next to
