@@ -57,9 +57,11 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
   }
   if (solution.contacts && study->problem.inequalities) {
     PathContacts contacts = *solution.contacts;
+    const std::vector<double> multipliers =
+        solution.extension ? solution.extension->integral_multipliers : std::vector<double>();
     for (PathContacts::Arc& arc : contacts.arcs)
       if (!arc.held.empty() && !arc.manifold)
-        arc.manifold = study->problem.inequalities->hold(arc.held).manifold;
+        arc.manifold = study->problem.inequalities->hold(arc.held, multipliers).manifold;
     solution.contacts = std::make_shared<const PathContacts>(std::move(contacts));
   }
   return std::make_shared<Solved>(Solved{std::move(study), std::move(solution), std::move(fit)});

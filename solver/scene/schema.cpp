@@ -234,7 +234,6 @@ constexpr Exclusion pairs[] = {
     {"system.constraints", "system.curvature",
      "a bound along all positions says nothing of constrained ones"},
     {"system.constraints", "system.hamiltonian", "constraints hold a system that a Lagrangian describes"},
-    {"system.constraints", "fit.data", "fits with constraints are not available yet"},
     {"fit.data", "search.solutions", "a fit follows one extremal"},
     {"fit.data", "solve.steps", "a fit keeps the times of the nodes"},
     {"guess.file", "guess.state", "a guess has one source"},

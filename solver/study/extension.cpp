@@ -248,10 +248,6 @@ void check_extended(const Scene& scene, Purpose purpose) {
   if (scene.boundary.infinite)
     throw SceneError(scene.boundary.duration.at,
                      asks + "an infinite duration is not available; give a number");
-  if (scene.fit)
-    throw SceneError(scene.fit->at, asks +
-                                        "a fit is not available; leave [fit] out, or write parameters "
-                                        "that are to be found there");
   if (scene.continuation && purpose == Purpose::family) check_extended_family(scene, asks);
   if (scene.solve.method && scene.solve.method->value != "newton")
     throw SceneError(

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "problem/copies.hpp"
+#include "problem/extension.hpp"
+#include "problem/manifold.hpp"
 #include "study/boundary.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
@@ -17,6 +20,8 @@ namespace {
 /// Formulas of numbers are differentiated by central differences of fourth order over steps of this part of a
 /// parameter: their errors and roundoff are near 1e-12.
 constexpr double part = 1e-3;
+/// Slopes of constraints that are smaller, relative to the largest, determine no coordinate.
+constexpr double least_slope = 1e-6;
 constexpr std::array<double, 4> places = {-2, -1, 1, 2};
 constexpr std::array<double, 4> quotient_weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
 
@@ -54,8 +59,23 @@ bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
 
 }  // namespace
 
-FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem)
-    : fit_(*scene.fit), table_(scene.system), boundary_(scene.boundary), system_(system), problem_(problem) {
+FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem, ProblemOf load)
+    : scene_(scene),
+      load_(std::move(load)),
+      made_anew_(problem.manifold || problem.extension),
+      fit_(*scene.fit),
+      table_(scene.system),
+      boundary_(scene.boundary),
+      system_(system),
+      problem_(problem) {
+  if (!scene.boundary.unknowns.empty())
+    throw SceneError(fit_.at,
+                     "a fit finds parameters by the data, and unknowns are found by 'where'; name them in "
+                     "'parameters' of [fit] instead, or leave it out");
+  if (problem.extension && !problem.extension->conditions.empty())
+    throw SceneError(fit_.at,
+                     "a fit leaves open ends to the data, which nonlinear conditions are not available with; "
+                     "give the ends, or leave [fit] out");
   if (problem.initial)
     throw SceneError(
         fit_.at,
@@ -64,12 +84,12 @@ FittedScene::FittedScene(const Scene& scene, const System& system, const Problem
   if (problem.motion().kinks())
     throw SceneError(fit_.at,
                      "a fit needs a smooth Lagrangian, and this one has abs, min, max or step of the motion");
-  problem_.guess = {};
-  problem_.reduction = nullptr;
   read_parameters(scene, system);
   find_dependent(scene);
   find_open(system);
-  check_dependence();
+  problem_.guess = {};
+  problem_.reduction = nullptr;
+  if (!made_anew_) check_dependence();
 }
 
 void FittedScene::read_parameters(const Scene& scene, const System& system) {
@@ -116,15 +136,44 @@ void FittedScene::find_dependent(const Scene& scene) {
   boundary_depends_ = depends(scene.boundary, dependent_);
 }
 
-/// End coordinates that neither the relation nor a momentum determines. Closed orbits have none.
+/// Whether near the guess constraints leave an end coordinate no freedom, of those that the relation leaves
+/// open at its end and that come before it.
+bool FittedScene::determined_by_constraints(int e, const Guess& guess) const {
+  if (!problem_.manifold) return false;
+  const int n = problem_.coordinates();
+  std::vector<double> q(n);
+  guess.at(e < n ? 0 : 1, q);
+  const Eigen::MatrixXd slopes = problem_.manifold->at(q, e < n ? 0 : problem_.duration.value).slopes;
+  // Columns of what is still to be determined: a basis among them stays with the constraints.
+  const auto rank = [&](const std::vector<int>& columns) {
+    Eigen::MatrixXd part(slopes.rows(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      part.col(static_cast<Eigen::Index>(k)) = slopes.col(columns[k]);
+    if (part.size() == 0) return Eigen::Index{0};
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(part);
+    qr.setThreshold(least_slope);
+    return qr.rank();
+  };
+  std::vector<int> left;
+  for (const int other : ends_left_)
+    if ((other < n) == (e < n) && !is_open(other)) left.push_back(other % n);
+  std::vector<int> without = left;
+  std::erase(without, e % n);
+  return rank(without) < rank(left);
+}
+
+bool FittedScene::is_open(int e) const { return std::ranges::find(open_, e, &OpenEnd::e) != open_.end(); }
+
+/// End coordinates that neither the relation, constraints nor a momentum determines. Closed orbits have none.
 void FittedScene::find_open(const System& system) {
   if (problem_.periodic) return;
   const PlacedRelation placed = read_relation(boundary_, system);
   const int n = problem_.coordinates();
-  std::vector<int> homes = problem_.ends.home;
-  std::ranges::sort(homes);
-  for (const int e : homes)
-    if (placed.momentum_given.empty() || !placed.momentum_given[e])
+  ends_left_ = problem_.manifold ? solve_relation(placed.relation).home : problem_.ends.home;
+  std::ranges::sort(ends_left_);
+  for (const int e : ends_left_)
+    if ((placed.momentum_given.empty() || !placed.momentum_given[e]) &&
+        !determined_by_constraints(e, problem_.guess))
       open_.push_back({e, fmt::format("{}({})", system.names[e % n], e < n ? "0" : "T")});
 }
 
@@ -243,7 +292,31 @@ FittedProblem FittedScene::at(std::span<const double> values) const {
   return result;
 }
 
+/// The scene with these values; open ends are given.
+Scene FittedScene::scene_at(std::span<const double> values) const {
+  Scene scene = scene_;
+  scene.fit.reset();
+  scene.system = table_at(values);
+  for (std::size_t k = 0; k < open_.size(); ++k) {
+    const int n = problem_.coordinates(), e = open_[k].e;
+    const double value = values[parameters_.size() + k];
+    const Location& at = boundary_.at;
+    if (!boundary_.conditions.empty())
+      scene.boundary.conditions.push_back({fmt::format("{} = {:.17g}", open_[k].name, value), at});
+    else
+      (e < n ? scene.boundary.start : scene.boundary.end)
+          .push_back({system_.names[e % n], at, {{value, at}}, false, at});
+  }
+  return scene;
+}
+
 Problem FittedScene::problem(std::span<const double> values, const Guess& guess, double duration) const {
+  if (made_anew_) {
+    Problem made = load_(scene_at(values));
+    if (!made.manifold) made.guess = guess;
+    if (made.duration.free) made.duration.value = duration;
+    return made;
+  }
   Problem problem = inner_problem(numbers(values), make_system(table_at(values)));
   problem.guess = guess;
   if (problem.duration.free) problem.duration.value = duration;

@@ -8,6 +8,7 @@
 
 #include "scene/scene.hpp"
 #include "solve/fit/fit.hpp"
+#include "study/fitting.hpp"
 #include "system/formula.hpp"
 
 /// \file A scene for any values of the parameters and end coordinates that a fit looks for.
@@ -22,17 +23,22 @@ struct OpenEnd {
 
 class FittedScene {
  public:
-  /// `problem` is that of the scene. Throws SceneError for what cannot be fitted.
-  FittedScene(const Scene& scene, const System& system, const Problem& problem);
+  /// `problem` is that of the scene, and `load` makes those of scenes like it. Throws SceneError for what
+  /// cannot be fitted.
+  FittedScene(const Scene& scene, const System& system, const Problem& problem, ProblemOf load);
 
   const std::vector<OpenEnd>& open() const { return open_; }
   const std::vector<std::string>& parameters() const { return parameters_; }
   /// Of the parameters in the scene.
   std::vector<double> start() const;
 
+  /// Whether constraints, integrals or waypoints ask for a problem that is made anew for all values.
+  bool made_anew() const { return made_anew_; }
+
   /// Values: those of the parameters, then of the ends. Throw SceneError, or FormulaError of a definition.
   FittedProblem at(std::span<const double> values) const;
   Problem problem(std::span<const double> values, const Guess& guess, double duration) const;
+  ObservedFormulas formulas(std::span<const double> values) const { return formulas(table_at(values)); }
 
  private:
   /// What formulas of the scene make of the parameters.
@@ -45,6 +51,9 @@ class FittedScene {
   void read_parameters(const Scene& scene, const System& system);
   void find_dependent(const Scene& scene);
   void find_open(const System& system);
+  bool is_open(int e) const;
+  bool determined_by_constraints(int e, const Guess& guess) const;
+  Scene scene_at(std::span<const double> values) const;
   void check_dependence() const;
   SystemTable table_at(std::span<const double> values) const;
   Numbers numbers(std::span<const double> values) const;
@@ -54,6 +63,9 @@ class FittedScene {
   void put_relation_change(const Problem& inner, BoundaryRelation by, ProblemChange& change) const;
   Problem inner_problem(const Numbers& numbers, const System& system) const;
 
+  Scene scene_;
+  ProblemOf load_;
+  bool made_anew_;
   FitTable fit_;
   SystemTable table_;
   BoundaryTable boundary_;
@@ -61,6 +73,7 @@ class FittedScene {
   Problem problem_;
   std::vector<std::string> parameters_, active_;
   std::vector<OpenEnd> open_;
+  std::vector<int> ends_left_;       ///< end coordinates that the relation leaves open
   std::set<std::string> dependent_;  ///< names whose values depend on those of the parameters
   bool boundary_depends_ = false;
 };

@@ -112,11 +112,11 @@ std::vector<std::string> names_of(const std::vector<FitUnknown>& unknowns) {
 
 }  // namespace
 
-std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study) {
+std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load) {
   const FitTable& table = *scene.fit;
   if (!can_fit())
     throw SceneError(table.at, "fits are not part of this build; build with -DEXTREMAL_CERES=ON");
-  const auto fitted = std::make_shared<const FittedScene>(scene, study.system, study.problem);
+  const auto fitted = std::make_shared<const FittedScene>(scene, study.system, study.problem, load);
   auto request = std::make_shared<FitRequest>();
   FitTask& task = request->task;
   const Problem& problem = study.problem;
@@ -146,7 +146,11 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
                                  fmt::join(names_of(task.unknowns), ", ")));
   std::vector<double> values;
   for (const FitUnknown& unknown : task.unknowns) values.push_back(unknown.start);
-  fitted->at(values);  // refuses formulas that cannot be fitted
+  // Both refuse formulas that cannot be fitted.
+  if (fitted->made_anew())
+    fitted->formulas(values);
+  else
+    fitted->at(values);
   const auto tried = [](const auto& make) -> decltype(std::optional(make())) {
     try {
       return make();
@@ -157,7 +161,10 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
     }
     return std::nullopt;
   };
-  task.at = [fitted, tried](std::span<const double> x) { return tried([&] { return fitted->at(x); }); };
+  if (fitted->made_anew())
+    task.formulas = [fitted](std::span<const double> x) { return fitted->formulas(x); };
+  else
+    task.at = [fitted, tried](std::span<const double> x) { return tried([&] { return fitted->at(x); }); };
   task.problem = [fitted, tried](std::span<const double> x, const Guess& guess, double duration) {
     return tried([&] { return fitted->problem(x, guess, duration); });
   };
@@ -196,6 +203,7 @@ void use_fitted(std::span<const double> values, Study& study) {
   study.problem.lagrangian = std::move(fitted->lagrangian);
   study.problem.copies = std::move(fitted->copies);
   study.problem.pair = std::move(fitted->pair);
+  study.problem.manifold = std::move(fitted->manifold);
 }
 
 }  // namespace extremal

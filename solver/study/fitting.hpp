@@ -15,14 +15,18 @@ namespace extremal {
 
 struct Study;
 
+/// The problem of a scene.
+using ProblemOf = std::function<Problem(const Scene& scene)>;
+
 /// What a scene asks for.
 struct FitRequest {
   FitTask task;                                    ///< but for the solver
   std::vector<std::string> parameters, open_ends;  ///< names of the unknowns, in their order
 };
 
-/// Reads [fit] of a scene, of which the rest of the study stands. Throws SceneError.
-std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study);
+/// Reads [fit] of a scene, of which the rest of the study stands; `load` makes problems of scenes like it.
+/// Throws SceneError.
+std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load);
 
 /// Fits `repeat` times from the same guess, as run() solves. Throws std::invalid_argument if repeat < 1, or
 /// without a [fit].

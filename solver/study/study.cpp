@@ -229,6 +229,12 @@ void read_law(const Scene& scene, Purpose purpose, Study& study) {
   read(Formulation::phase_space);
 }
 
+/// With constraints a fit begins with, and leads to, a solution as any other.
+Scene without_fit(Scene scene) {
+  scene.fit.reset();
+  return scene;
+}
+
 /// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
 void check_memory(const Scene& scene, const Study& study) {
   const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
@@ -277,14 +283,20 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.options = read_options(scene.solve);
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
-  read_law(scene, purpose, study);
+  read_law(scene.system.constraints.empty() ? scene : without_fit(scene), purpose, study);
   check_singular_ends(scene, purpose, study.problem);
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.units) study.units = read_units(*scene.units);
   if (scene.spectrum)
     study.spectrum = read_spectrum(*scene.spectrum, scene.path, coordinate_names(study.problem));
-  if (scene.fit) study.fit = read_fit(scene, study);
+  if (scene.fit)
+    study.fit = read_fit(scene, study, [budget = study.budget](const Scene& other) {
+      Study there;
+      there.budget = budget;
+      read_law(other, Purpose::solution, there);
+      return std::move(there.problem);
+    });
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;

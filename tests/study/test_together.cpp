@@ -6,6 +6,7 @@
 #include "solution/extension_values.hpp"
 #include "solution/path_contacts.hpp"
 #include "solve/external/method.hpp"
+#include "study/fitting.hpp"
 
 /// \file Waypoints, conditions, unknowns and integrals together with closed paths, forces and inequalities.
 
@@ -21,6 +22,26 @@ class UnderInequalities : public Scenes {
   void SetUp() override {
     if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
     Scenes::SetUp();
+  }
+};
+
+class FitsTogether : public Scenes {
+ protected:
+  void SetUp() override {
+    Scenes::SetUp();
+    if (!can_fit()) GTEST_SKIP() << "this build has no Ceres";
+  }
+
+  /// The fit of a scene, which ends in [fit], to x(t) at times between 0 and T.
+  template <class Path>
+  FitResult fitted(const std::string& scene, double duration, const Path& x) {
+    std::string data = "t,x\n";
+    for (int k = 1; k < 20; ++k) {
+      const double t = duration * k / 20;
+      data += fmt::format("{},{:.17g}\n", t, x(t));
+    }
+    write("data.csv", data);
+    return run_fit(study(scene + "data = \"data.csv\"\n"));
   }
 };
 
@@ -194,4 +215,65 @@ TEST_F(UnderInequalities, AChainOnAFloor) {
   ASSERT_EQ(solution.contacts->contacts.size(), 1);
   EXPECT_NEAR(solution.contacts->contacts[0].from, width(a, 1), 1e-7);
   EXPECT_NEAR(solution.contacts->contacts[0].to, 1 - width(a, 3), 1e-7);
+}
+
+namespace {
+
+const double frequency = 1.7;
+const std::string held_oscillator =
+    "[system]\ncoordinates = [\"x\"]\nparameters = { k = 2.0 }\nlagrangian = \"x'^2/2 - k*x^2/2\"\n"
+    "[boundary]\nstart = { x = 0 }\nend = { x = 0 }\nduration = 1\n";
+
+}  // namespace
+
+/// Between its ends at rest the oscillator is held at 1 in the middle.
+TEST_F(FitsTogether, AFrequencyWithAWaypoint) {
+  const double w = frequency;
+  const FitResult fit =
+      fitted(held_oscillator + "[[waypoints]]\nat = 0.5\nx = 1\n[fit]\nparameters = [\"k\"]\n", 1,
+             [w](double t) { return std::sin(w * std::min(t, 1 - t)) / std::sin(w / 2); });
+  ASSERT_TRUE(fit.solution.converged()) << fit.solution.message;
+  EXPECT_NEAR(fit.values[0], w * w, 1e-8);
+}
+
+/// x'' = ν − k x with ∫ x dt = 1.
+TEST_F(FitsTogether, AFrequencyWithAnIntegral) {
+  const double w = frequency, mean = 1 / (1 - 2 * std::tan(w / 2) / w);
+  const FitResult fit =
+      fitted(held_oscillator + "integrals = [\"x = 1\"]\n[fit]\nparameters = [\"k\"]\n", 1,
+             [=](double t) { return mean * (1 - std::cos(w * (t - 0.5)) / std::cos(w / 2)); });
+  ASSERT_TRUE(fit.solution.converged()) << fit.solution.message;
+  EXPECT_NEAR(fit.values[0], w * w, 1e-8);
+  EXPECT_NEAR(fit.solution.extension->integral_multipliers[0], w * w * mean, 1e-7);
+}
+
+/// A pendulum in Cartesian coordinates by the motion of its angle: gravity and length, and one coordinate of
+/// each end, which determines the other.
+TEST_F(FitsTogether, APendulumUnderItsConstraint) {
+  const Solution angle =
+      run(study("[system]\ncoordinates = [\"a\"]\nlagrangian = \"a'^2/2 + 2.3*cos(a)\"\n[boundary]\n"
+                "start = { a = -0.8, p_a = 0.9 }\nduration = 2\n"));
+  const FitResult fit = fitted(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { g = 1.8, l = 1.1 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\nconstraints = [\"x^2 + y^2 = l^2\"]\n[boundary]\nduration = "
+      "2\n"
+      "[guess]\nx = \"sin(-0.8 + 0.6*t)\"\ny = \"-cos(-0.8 + 0.6*t)\"\n[fit]\nparameters = [\"g\", \"l\"]\n",
+      2, [&](double t) { return std::sin(coordinate_at(angle, t)); });
+  ASSERT_TRUE(fit.solution.converged()) << fit.solution.message;
+  ASSERT_EQ(fit.values.size(), 4);
+  EXPECT_NEAR(fit.values[0], 2.3, 1e-6);
+  EXPECT_NEAR(fit.values[1], 1, 1e-6);
+  EXPECT_NEAR(fit.values[2], std::sin(-0.8), 1e-6);
+  EXPECT_NEAR(fit.values[3], std::sin(coordinate_at(angle, 2)), 1e-6);
+}
+
+TEST_F(FitsTogether, RefuseUnknowns) {
+  write("data.csv", "t,x\n0.5,1\n");
+  EXPECT_EQ(
+      message("[system]\ncoordinates = [\"x\"]\nparameters = { c = 1.0 }\n"
+              "lagrangian = \"x'^2/2 - c*k*x^2/2\"\n[boundary]\nstart = { x = 0 }\nduration = 1\n"
+              "unknowns = { k = 2.0 }\nwhere = [\"x(T) = 1\"]\n[fit]\ndata = \"data.csv\"\n"
+              "parameters = [\"c\"]\n"),
+      "scene.toml:10:1: a fit finds parameters by the data, and unknowns are found by 'where'; name them in "
+      "'parameters' of [fit] instead, or leave it out");
 }

@@ -5,18 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "solve/fit/fitted_path.hpp"
 #include "solve/fit/limits.hpp"
+#include "solve/fit/solved_path.hpp"
 
 namespace extremal {
 
 using namespace limits::fit;
 
-namespace {
-
-/// Samples of a trajectory as a guess.
-Guess guess_of(const Trajectory& trajectory) {
+Guess guess_of_elements(const Trajectory& trajectory) {
   Guess guess;
   std::vector<double> q(trajectory.coordinates), v(q.size());
   const std::vector<double>& places = lobatto_barycentric(trajectory.degree).nodes;
@@ -31,11 +30,18 @@ Guess guess_of(const Trajectory& trajectory) {
   return guess;
 }
 
+namespace {
+
+std::unique_ptr<FittedExtremal> extremal_of(const FitTask& task, const SolveOptions& options) {
+  if (task.at) return std::make_unique<FittedPath>(task, options);
+  return std::make_unique<SolvedPath>(task, options);
+}
+
 /// Works with unknowns by their sizes, x = θ/size.
 class Fit {
  public:
   Fit(const FitTask& task, const SolveOptions& options, const std::function<void(const FitStep&)>& progress)
-      : task_(task), options_(options), progress_(progress), path_(task, options) {
+      : task_(task), options_(options), progress_(progress), path_(extremal_of(task, options)) {
     for (const FitUnknown& unknown : task.unknowns) result_.values.push_back(unknown.start);
   }
 
@@ -49,7 +55,7 @@ class Fit {
     for (int round = 0; round < most_rounds; ++round) {
       if (!minimise_on_elements() || !determined()) return std::move(result_);
       const Trajectory fitted = observed_part();
-      result_.solution = solve(guess_of(fitted), fitted.duration());
+      result_.solution = solve(guess_of_elements(fitted), fitted.duration());
       if (!result_.solution.converged()) return std::move(result_);
       if (agrees(fitted)) return covers_data() ? finished(before) : std::move(result_);
     }
@@ -86,7 +92,7 @@ class Fit {
   }
 
   bool evaluate(std::span<const double> x, std::span<double> residuals, std::span<double> jacobian) {
-    if (!path_.evaluate(unscaled(x), residuals, jacobian)) return false;
+    if (!path_->evaluate(unscaled(x), residuals, jacobian)) return false;
     const std::size_t count = x.size();
     for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= task_.unknowns[i % count].size;
     return true;
@@ -99,7 +105,7 @@ class Fit {
     for (const double radius : first_radii) {
       result_.values = start;
       result_.solution = first;
-      path_.take(first, start);
+      path_->take(first, start);
       if (minimise_from(radius)) return true;
       if (options_.deadline.passed()) break;
     }
@@ -111,20 +117,20 @@ class Fit {
         .residuals = task_.data.count(), .loss = task_.loss, .evaluate = {}, .count = {}, .radius = radius};
     fit.evaluate = [this](auto x, auto r, auto j) { return evaluate(x, r, j); };
     fit.count = [this](int iteration, double cost) {
-      if (progress_) progress_({iteration, path_.path().elements(), path_.path().degree(), 2 * cost});
+      if (progress_) progress_({iteration, path_->path().elements(), path_->path().degree(), 2 * cost});
       return !options_.deadline.passed();
     };
-    if (!path_.converge_on_elements()) {
+    if (!path_->converge_on_elements()) {
       fail("Newton's method does not converge on the elements of the first trajectory");
       return false;
     }
-    std::vector<double> x = path_.coordinates();
+    std::vector<double> x = path_->coordinates();
     for (std::size_t j = 0; j < x.size(); ++j) x[j] /= task_.unknowns[j].size;
     const CurveFitReport report = minimise(fit, x, options_.deadline);
     // The path of a step that was not taken is left for that of the minimum.
     std::vector<double> residuals(fit.residuals);
-    const bool there = path_.evaluate(unscaled(x), residuals, {});
-    if (there) result_.values = path_.values();
+    const bool there = path_->evaluate(unscaled(x), residuals, {});
+    if (there) result_.values = path_->values();
     if (!report.converged || !there)
       fail(fmt::format("the fit stopped at {}: {}; give better values in [system] parameters or [guess]",
                        values_text(), there ? report.failure : "there is no extremal"));
@@ -135,7 +141,7 @@ class Fit {
   bool determined() {
     const int rows = task_.data.count(), count = static_cast<int>(task_.unknowns.size());
     std::vector<double> residuals(rows), entries(static_cast<std::size_t>(rows) * count);
-    if (!path_.evaluate_by_values(residuals, entries)) {
+    if (!path_->evaluate_by_values(residuals, entries)) {
       fail(fmt::format("at {} the second variation is singular", values_text()));
       return false;
     }
@@ -206,7 +212,7 @@ class Fit {
 
   /// The trajectory of the fit; with forces that of one copy.
   Trajectory observed_part() const {
-    Trajectory trajectory = trajectory_of(path_.path());
+    Trajectory trajectory = trajectory_of(path_->path());
     const std::size_t n = task_.coordinates, width = trajectory.coordinates;
     if (n == width) return trajectory;
     for (std::vector<double>* rows : {&trajectory.nodes, &trajectory.slopes}) {
@@ -258,7 +264,7 @@ class Fit {
 
   FitResult finished(int before) {
     Solution& solution = result_.solution;
-    solution.iterations += before + path_.iterations();
+    solution.iterations += before + path_->iterations();
     solution.message = fmt::format("{}, fitted to {} values: chi squared {:.6g}", solution.message,
                                    task_.data.count(), result_.chi_squared);
     explain_misfit();
@@ -282,7 +288,7 @@ class Fit {
   const FitTask& task_;
   const SolveOptions& options_;
   const std::function<void(const FitStep&)>& progress_;
-  FittedPath path_;
+  std::unique_ptr<FittedExtremal> path_;
   FitResult result_;
 };
 

@@ -39,6 +39,9 @@ struct FitTask {
   /// The same problem as Solver takes it, with a guess; nothing likewise.
   std::function<std::optional<Problem>(std::span<const double> values, const Guess& guess, double duration)>
       problem;
+  /// Where `at` is empty, as with constraints, integrals and waypoints: formulas of observations for these
+  /// values. Derivatives are then differences.
+  std::function<ObservedFormulas(std::span<const double> values)> formulas = {};
   /// An extremal of it.
   std::function<Solution(const Problem&, const SolveOptions&)> solve;
   Guess guess;
@@ -64,6 +67,9 @@ struct FitResult {
   double chi_squared = 0;                      ///< Σ ρ
   std::vector<std::vector<double>> residuals;  ///< observed − computed, of each column
 };
+
+/// A trajectory at the nodes of its elements.
+Guess guess_of_elements(const Trajectory& trajectory);
 
 /// Fits by Ceres around extremals on elements that are kept while it iterates. They are then chosen anew for
 /// the extremal that was found, until they meet the tolerance along it. Where observations do not determine

@@ -36,33 +36,15 @@ bool FittedPath::bind(std::span<const double> values) {
   return true;
 }
 
-/// Elements of the scheme that was asked for, or of the degree of the trajectory, whose velocities are right
-/// to the tolerance. With forces both copies move alike.
+/// With forces both copies move alike.
 void FittedPath::take(const Solution& solution, std::span<const double> values) {
-  const Trajectory& trajectory = solution.trajectory;
-  const int degree = options_.scheme ? options_.scheme->degree : trajectory.degree;
-  scheme_ = options_.scheme ? std::make_unique<SchemeTables>(*options_.scheme, exact_points)
-                            : std::make_unique<SchemeTables>(lobatto(degree));
+  scheme_ = std::make_unique<SchemeTables>(scheme_of(solution.trajectory, options_), exact_points);
   steps_.clear();
   converged_ = false;
   ends_.clear();
   path_ = {};
   if (!bind(values)) return;
-  const std::size_t n = trajectory.coordinates, width = at_->problem.coordinates();
-  std::vector<double> mesh;
-  for (const double t : trajectory.times) mesh.push_back(t / trajectory.duration());
-  mesh.back() = 1;
-  path_.reset(tables_, mesh, trajectory.duration());
-  std::vector<double> nodes((degree + 1) * width), q(n), v(n);
-  const std::vector<double>& places = lobatto_barycentric(degree).nodes;
-  for (int k = 0; k < path_.elements(); ++k) {
-    for (int j = 0; j <= degree; ++j) {
-      trajectory.in_element(k, places[j], q, v);
-      for (std::size_t a = 0; a < width; ++a) nodes[j * width + a] = q[a % n];
-    }
-    path_.set_element(k, nodes.data());
-  }
-  path_.load_ends();
+  put_trajectory(solution.trajectory, tables_, path_);
   values_.assign(values.begin(), values.end());
 }
 

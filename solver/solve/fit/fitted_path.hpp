@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "solve/fit/fit.hpp"
+#include "solve/fit/fitted_extremal.hpp"
 #include "solve/newton/iteration.hpp"
 
 /// \file Extremals on given elements, for changing values of the unknowns of a fit.
@@ -18,28 +18,20 @@ namespace extremal {
 /// Jacobi fields that vanish at 0 are far from vanishing again. Paths are then solved for with that value
 /// given, by the same factors: what is left free is a combination of the fields that q(T) moves. Values in
 /// this form are called coordinates of a path.
-class FittedPath {
+class FittedPath final : public FittedExtremal {
  public:
   /// From an extremal of task.at(values), on elements of its own. `task` must outlive it.
   FittedPath(const FitTask& task, const SolveOptions& options);
 
-  /// Takes an extremal that was found for these values, on its mesh.
-  void take(const Solution& solution, std::span<const double> values);
-
-  /// (observed − computed)/σ at the values and, unless `jacobian` is empty, the derivatives by rows. False
-  /// where there is no extremal near, or one is not finite.
-  bool evaluate(std::span<const double> coordinates, std::span<double> residuals, std::span<double> jacobian);
-
-  /// The same derivatives by the values themselves, at the path there is.
-  bool evaluate_by_values(std::span<double> residuals, std::span<double> jacobian);
-
-  /// Of the path there is; false where Newton's method does not converge on its elements.
-  bool converge_on_elements();
-  std::vector<double> coordinates() const;
-  std::vector<double> values() const;
-
-  const Path& path() const { return path_; }
-  int iterations() const { return iterations_; }
+  void take(const Solution& solution, std::span<const double> values) override;
+  bool evaluate(std::span<const double> coordinates, std::span<double> residuals,
+                std::span<double> jacobian) override;
+  bool evaluate_by_values(std::span<double> residuals, std::span<double> jacobian) override;
+  bool converge_on_elements() override;
+  std::vector<double> coordinates() const override;
+  std::vector<double> values() const override;
+  const Path& path() const override { return path_; }
+  int iterations() const override { return iterations_; }
 
  private:
   bool bind(std::span<const double> values);

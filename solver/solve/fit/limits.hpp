@@ -28,6 +28,8 @@ inline constexpr double fallen = 0.5;
 inline constexpr double least_step = 1e-14, roundoff_of_step = 1e-10;
 /// Of times of observations, as they are written, relative to the duration.
 inline constexpr double roundoff_of_times = 1e-9;
+/// Of an unknown: extremals so far apart are compared where only differences give derivatives.
+inline constexpr double difference = 1e-3;
 /// Of the points of the quadrature that counts as exact.
 inline constexpr int exact_points = 20;
 

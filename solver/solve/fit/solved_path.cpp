@@ -1,0 +1,86 @@
+#include "solve/fit/solved_path.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "solve/fit/limits.hpp"
+
+namespace extremal {
+
+using namespace limits::fit;
+
+SolvedPath::SolvedPath(const FitTask& task, const SolveOptions& options)
+    : task_(task), options_(options), observer_(task.data, task.coordinates) {}
+
+void SolvedPath::take(const Solution& solution, std::span<const double> values) {
+  std::vector<double> residuals(task_.data.count());
+  if (!put(solution, values, residuals)) path_ = {};
+}
+
+/// The extremal for these values, from the one there is.
+bool SolvedPath::solve(std::span<const double> values, Solution& solution) {
+  const std::optional<Problem> problem =
+      task_.problem(values, guess_of_elements(solution_.trajectory), solution_.duration());
+  if (!problem || options_.deadline.passed()) return false;
+  lagrangian_ = problem->lagrangian;
+  solution = task_.solve(*problem, options_);
+  iterations_ += solution.iterations;
+  return solution.converged();
+}
+
+/// What is computed along an extremal. False where it is not finite.
+bool SolvedPath::put(const Solution& solution, std::span<const double> values, std::span<double> residuals) {
+  if (!lagrangian_) {
+    const std::optional<Problem> problem =
+        task_.problem(values, guess_of_elements(solution.trajectory), solution.duration());
+    if (!problem) return false;
+    lagrangian_ = problem->lagrangian;
+  }
+  scheme_ = std::make_unique<SchemeTables>(scheme_of(solution.trajectory, options_), exact_points);
+  tables_.bind(*scheme_, *lagrangian_);
+  put_trajectory(solution.trajectory, tables_, path_);
+  if (&solution != &solution_) solution_ = solution;
+  values_.assign(values.begin(), values.end());
+  return observer_.residuals(path_, task_.formulas(values), residuals);
+}
+
+bool SolvedPath::evaluate(std::span<const double> values, std::span<double> residuals,
+                          std::span<double> jacobian) {
+  if (!std::ranges::equal(values, values_)) {
+    Solution solution;
+    if (!solve(values, solution) || !put(solution, values, residuals)) return false;
+  } else if (!put(solution_, std::vector<double>(values.begin(), values.end()), residuals)) {
+    return false;
+  }
+  if (jacobian.empty()) return true;
+  for (std::size_t j = 0; j < values.size(); ++j)
+    if (!differentiate(j, values.size(), jacobian)) return false;
+  return true;
+}
+
+bool SolvedPath::evaluate_by_values(std::span<double> residuals, std::span<double> jacobian) {
+  return evaluate(std::vector<double>(values_), residuals, jacobian);
+}
+
+/// A column, by central differences of fourth order; the path stays.
+bool SolvedPath::differentiate(std::size_t unknown, std::size_t count, std::span<double> jacobian) {
+  constexpr std::array<double, 4> places = {-2, -1, 1, 2},
+                                  weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+  const Solution kept = solution_;
+  const std::vector<double> here = values_;
+  const double step = difference * task_.unknowns[unknown].size;
+  std::vector<double> residuals(task_.data.count()), slopes(residuals.size(), 0);
+  bool found = true;
+  for (std::size_t k = 0; k < places.size() && found; ++k) {
+    std::vector<double> moved = here;
+    moved[unknown] += places[k] * step;
+    Solution beside;
+    found = solve(moved, beside) && put(beside, moved, residuals);
+    for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] += weights[k] * residuals[i] / step;
+    solution_ = kept;
+  }
+  for (std::size_t i = 0; i < slopes.size(); ++i) jacobian[i * count + unknown] = slopes[i];
+  return put(kept, here, residuals) && found;
+}
+
+}  // namespace extremal
