@@ -243,9 +243,6 @@ TEST_F(Scenes, ExtensionsThatAreRefused) {
       message(free + fixed + "unknowns = { k = 1 }\nwhere = [\"x(0) = 1\", \"x(T) = 1\"]\n"),
       "scene.toml:9:10: 'where' has 2 equations, and 1 number is to be determined: the unknowns; give as "
       "many equations, or more unknowns");
-  EXPECT_EQ(message(free + fixed + "integrals = [\"x = 1\"]\n[fit]\ndata = \"observed.csv\"\n")
-                .rfind("scene.toml:9:", 0),
-            0u);
   EXPECT_EQ(message(free + "[boundary]\nconditions = [\"x(0)^2 = 1\", \"y(0) = 0\"]\nduration = 1\n"
                            "[continuation]\nparameter = \"duration\"\nto = 2\nswitch = true\n")
                 .rfind("scene.toml:8:14: ", 0),
