@@ -62,6 +62,7 @@ viewer-modules: configure
 
 # Each is a build of its own with all tests.
 debug asan ubsan sanitize: packages
+	@[ $@ != sanitize ] || .ci/packages .ci/checks.txt
 	@cmake --preset $@
 	@cmake --build --preset $@
 	@ctest --preset $@
@@ -69,15 +70,15 @@ debug asan ubsan sanitize: packages
 asan sanitize fuzz: export ASAN_OPTIONS = detect_leaks=1
 
 # Scenes by libFuzzer for so many seconds, from those of problems/ and from what it kept before; a scene that fails
-# is left in build/fuzz/found.
+# is left in build/sanitize/found.
 FUZZ_SECONDS = 3600
 fuzz: packages
 	@.ci/packages .ci/checks.txt
-	@cmake --preset fuzz
-	@cmake --build --preset fuzz
-	@mkdir -p build/fuzz/kept build/fuzz/found
-	@build/fuzz/fuzz_scene -max_total_time=$(FUZZ_SECONDS) -timeout=60 -rss_limit_mb=4096 -max_len=4096 -print_funcs=0 -fork=2 \
-	  -dict=tests/fuzz/scene.dict -artifact_prefix=build/fuzz/found/ build/fuzz/kept problems/scenes tests/data/refused
+	@cmake --preset sanitize
+	@cmake --build --preset sanitize --target fuzz_scene
+	@mkdir -p build/sanitize/kept build/sanitize/found
+	@build/sanitize/fuzz_scene -max_total_time=$(FUZZ_SECONDS) -timeout=60 -rss_limit_mb=4096 -max_len=4096 -print_funcs=0 -fork=2 \
+	  -dict=tests/fuzz/scene.dict -artifact_prefix=build/sanitize/found/ build/sanitize/kept problems/scenes tests/data/refused
 
 bench: build
 	@for name in $(filter-out never_wrong data,$(notdir $(patsubst %/,%,$(wildcard bench/*/)))); do \

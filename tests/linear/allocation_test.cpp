@@ -7,6 +7,7 @@
 
 #include "linear/border.hpp"
 #include "linear/sparse.hpp"
+#include "machine/sanitizer.hpp"
 #include "oracle.hpp"
 
 namespace {
@@ -15,7 +16,7 @@ std::atomic<long> allocations{0};
 
 // Counts what the program takes from the heap by operator new or, as Eigen does, by malloc. A sanitizer
 // has a malloc of its own.
-#ifndef __SANITIZE_ADDRESS__
+#if !EXTREMAL_ADDRESS_SANITIZER
 extern "C" void* __libc_malloc(std::size_t);
 extern "C" void* malloc(std::size_t size) noexcept {
   ++allocations;
@@ -27,7 +28,7 @@ namespace extremal {
 namespace {
 
 TEST(Allocation, NoneInFactorAndSolveOnceWarm) {
-#ifdef __SANITIZE_ADDRESS__
+#if EXTREMAL_ADDRESS_SANITIZER
   GTEST_SKIP() << "the sanitizer counts instead";
 #endif
   dense::Random random(1);
@@ -57,7 +58,7 @@ TEST(Allocation, NoneInFactorAndSolveOnceWarm) {
 }
 
 TEST(Allocation, NoneInSparseFactorAndSolveOnceWarm) {
-#ifdef __SANITIZE_ADDRESS__
+#if EXTREMAL_ADDRESS_SANITIZER
   GTEST_SKIP() << "the sanitizer counts instead";
 #endif
   dense::Random random(2);

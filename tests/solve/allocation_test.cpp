@@ -1,6 +1,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "machine/sanitizer.hpp"
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
@@ -8,7 +9,7 @@
 
 /// \file A Newton iteration takes nothing from the heap once its memory stands.
 
-#ifndef __SANITIZE_ADDRESS__  // which has a malloc of its own
+#if !EXTREMAL_ADDRESS_SANITIZER
 namespace {
 std::atomic<long> allocations{0};
 }
