@@ -50,13 +50,14 @@ Eigen::MatrixXd fitted(const std::vector<Eigen::VectorXd>& directions, int degre
 
 }  // namespace
 
-/// Even and odd parts of f along b give B and C; A is the mixed difference in a and b.
+/// Even and odd parts of f along b give B and C; A is the mixed difference in a and b, a of the order that
+/// it has on branches of even symmetry.
 std::optional<BifurcationEquations> BifurcationEquations::measure(int count, double size,
                                                                   const Forces& forces) {
   bool known = true;
   const auto at = [&](double along, const Eigen::VectorXd& across) -> Eigen::VectorXd {
     std::optional<Eigen::VectorXd> found;
-    if (known) found = forces({along * size, across * size});
+    if (known) found = forces({along * size * size, across * size});
     known = found.has_value() && found->allFinite();
     return known ? *found : Eigen::VectorXd(Eigen::VectorXd::Zero(count));
   };
@@ -74,7 +75,8 @@ std::optional<BifurcationEquations> BifurcationEquations::measure(int count, dou
   found.linear_.resize(count, count);
   for (int j = 0; j < count; ++j) {
     const Eigen::VectorXd unit = Eigen::VectorXd::Unit(count, j);
-    found.linear_.col(j) = (at(1, unit) + at(-1, -unit) - at(1, -unit) - at(-1, unit)) / (4 * size * size);
+    found.linear_.col(j) =
+        (at(1, unit) + at(-1, -unit) - at(1, -unit) - at(-1, unit)) / (4 * size * size * size);
   }
   return known ? std::optional(std::move(found)) : std::nullopt;
 }

@@ -27,9 +27,14 @@ void double_place(Tracker& tracker, bool by_duration, BranchStart::Place& place)
 std::optional<BranchStart> branch_start(Tracker& tracker, const EventSearch& search, PointKind kind,
                                         const BranchState& from, double at, int count) {
   if (!search.starts) return std::nullopt;
-  if (kind == PointKind::period_doubling && !tracker.reach(from, at, true)) return std::nullopt;
+  BranchState base = from;
+  if (kind == PointKind::period_doubling) {  // on elements that are its own
+    if (!tracker.reach(from, at)) return std::nullopt;
+    base = tracker.state;
+    at = 0;
+  }
   const BranchStart::Place place = place_of(tracker.state);
-  if (!tracker.reach(from, at - start_distance, true) && !tracker.reach(from, at + start_distance, true))
+  if (!tracker.reach(base, at - start_distance, true) && !tracker.reach(base, at + start_distance, true))
     return std::nullopt;
   BranchStart start{
       kind, place, place_of(tracker.state), tracker.state.units, count, tracker.branch().regular()};

@@ -124,10 +124,20 @@ struct Ways {
   bool passed = false;    ///< one of them beyond the value wanted
 };
 
+/// Of one null direction it is the direction of the branch to first order, where differences of forces are
+/// not known.
+std::vector<Displacement> directions(const std::optional<BifurcationEquations>& equations, int count,
+                                     double distance, bool both_ways) {
+  if (equations) return equations->solutions();
+  if (count > 1) return {};
+  std::vector<Displacement> found = {{0, Eigen::VectorXd::Constant(1, distance)}};
+  if (both_ways) found.push_back({0, Eigen::VectorXd::Constant(1, -distance)});
+  return found;
+}
+
 Ways ways_at(BranchPointCentre& centre, double distance, bool both_ways) {
   const std::optional<BifurcationEquations> equations = centre.equations(distance);
-  if (!equations) return {};
-  const std::vector<Displacement> solutions = equations->solutions();
+  const std::vector<Displacement> solutions = directions(equations, centre.count(), distance, both_ways);
   Ways ways;
   ways.complete = !solutions.empty();
   for (const Displacement& solution : solutions) {
@@ -137,7 +147,7 @@ Ways ways_at(BranchPointCentre& centre, double distance, bool both_ways) {
     ways.passed = ways.passed || centre.passed(*state);
     const bool copy = std::ranges::any_of(ways.found, [&](const Way& known) {
       if (both_ways && are_opposite(known.displacement, solution)) return false;
-      return centre.are_copies(known.state, *state, equations->potential(solution));
+      return centre.are_copies(known.state, *state, equations ? equations->potential(solution) : 0);
     });
     if (!copy) ways.found.push_back({solution, *state});
   }
