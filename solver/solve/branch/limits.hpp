@@ -56,9 +56,9 @@ inline constexpr double same_direction = 1e-6;
 
 namespace other_branches {
 
-/// From a branch point to the first state on another branch, in turn until all solutions of the bifurcation
-/// equations at that distance are states before the value wanted.
-inline constexpr double distances[] = {0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4};
+/// From a branch point to the first state on another branch: ever shorter, until all solutions of the
+/// bifurcation equations at that distance are states before the value wanted.
+inline constexpr double farthest = 0.03, nearest = 1e-4, shorter = 0.7;
 /// Differences and descents for more null directions than this would be too many.
 inline constexpr int most_directions = 4;
 /// The cosine between directions that are opposite.

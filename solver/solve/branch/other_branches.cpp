@@ -45,14 +45,15 @@ class BranchPointCentre {
   }
 
   /// The state on the branch that begins in this direction, so far from the point; nothing if there is none.
-  /// It is reached across its direction from the point, twice, so that copies are equally far.
+  /// It is reached across its direction from the point, twice, so that copies are equally far. The branch may
+  /// turn on that way.
   std::optional<BranchState> first_state(const Displacement& displacement, double distance) {
     const Branch& branch = tracker_.branch();
     BranchState from = centre_;
     from.tangent = move(displacement);
     for (const bool same_elements : {true, true, false}) {
       from.tangent.scale(1 / std::sqrt(branch.dot(from.tangent, from.tangent)));
-      if (!tracker_.reach_smoothly(from, distance, same_elements)) return std::nullopt;
+      if (!tracker_.reach(from, distance, same_elements)) return std::nullopt;
       // Where several directions are open at once, so near nothing tells paths in between from extremals.
       if (branch.regular() && branch.open() > 0) return std::nullopt;
       if (!same_elements) break;
@@ -161,7 +162,7 @@ OtherBranches other_branches(const ProblemFamily& family, const SolveOptions& op
   const ProblemFamily common = with_common_symmetries(family);
   BranchPointCentre centre(common, options, start);
   Ways most;
-  for (const double distance : distances) {
+  for (double distance = farthest; distance > nearest; distance *= shorter) {
     if (centre.count() == 0 || centre.count() > most_directions || centre.out_of_time()) break;
     Ways ways = ways_at(centre, distance, start.kind == PointKind::branch);
     const bool done = ways.complete && !ways.passed;
