@@ -11,8 +11,8 @@ namespace extremal {
 namespace {
 
 /// Those that leave both equilibria where they are.
-std::vector<Generator> symmetries_about_rest(const Problem& problem) {
-  std::vector<Generator> found = continuous_symmetries(problem);
+std::vector<Generator> symmetries_about_rest(const Problem& problem, const SymmetrySearch& search) {
+  std::vector<Generator> found = continuous_symmetries(problem, search);
   const std::size_t n = problem.coordinates();
   std::erase_if(found, [&](const Generator& generator) {
     constexpr double roundoff = 1e-9;
@@ -61,12 +61,12 @@ std::vector<Generator> keeping_waypoints(const Extension& extension, const std::
 
 }  // namespace
 
-std::vector<Generator> own_symmetries(const Problem& problem) {
+std::vector<Generator> own_symmetries(const Problem& problem, const SymmetrySearch& search) {
   std::vector<Generator> found;
   if (problem.periodic)
-    found = problem.phase ? phase_symmetries(problem) : continuous_symmetries(problem);
+    found = problem.phase ? phase_symmetries(problem, search) : continuous_symmetries(problem, search);
   else if (problem.infinite && problem.infinite->both())
-    found = symmetries_about_rest(problem);
+    found = symmetries_about_rest(problem, search);
   if (problem.extension) found = keeping_waypoints(*problem.extension, found);
   return problem.paired ? symmetries_of_copies(found) : found;
 }

@@ -113,9 +113,9 @@ Problem with_shift(const Problem& problem, double shift) {
   return result;
 }
 
-std::vector<Generator> phase_symmetries(Problem problem) {
+std::vector<Generator> phase_symmetries(Problem problem, const SymmetrySearch& search) {
   problem.lagrangian = problem.phase->bare;
-  const std::vector<Generator> found = continuous_symmetries(problem);
+  const std::vector<Generator> found = continuous_symmetries(problem, search);
   const Eigen::Index n = problem.coordinates(), count = std::ssize(found);
   if (count == 0) return found;
   constexpr double zero = 1e-6;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "problem/problem.hpp"
+#include "problem/symmetry.hpp"
 #include "system/phase_space.hpp"
 
 /// \file Problems in phase space: the 2n coordinates are q and p, see system/phase_space.hpp.
@@ -35,6 +36,6 @@ Problem with_shift(const Problem& problem, double shift);
 /// The symmetries of a periodic problem in phase space, by its Lagrangian without squares. Those that only
 /// translate, by amounts that depend on the place, are left out where translations by any amount are
 /// symmetries: along motions these amounts are constant, as the centre of vorticity of vortices is.
-std::vector<Generator> phase_symmetries(Problem problem);
+std::vector<Generator> phase_symmetries(Problem problem, const SymmetrySearch& search = {});
 
 }  // namespace extremal

@@ -106,8 +106,7 @@ class Equations {
     return found == points;
   }
 
-  /// Invariance of the surfaces where L is not smooth: about one point L is that of one side alone, which may
-  /// have more symmetries. At each point the surfaces together, with weights.
+  /// Invariance of the surfaces on which L is not smooth; at each point of all together, with weights.
   void add_surfaces(const Problem& problem, Cloud& cloud) {
     if (!problem.lagrangian->kinks()) return;
     const Eigen::Index before = rows_.rows(), points = columns_ + spare_points;
@@ -196,7 +195,7 @@ std::vector<Generator> continuous_symmetries(const Problem& problem, const Symme
   Cloud cloud(problem, search.scales);
   Equations equations(problem, search.most_coordinates);
   if (!equations.add_invariance(problem, cloud)) return {};
-  equations.add_surfaces(problem, cloud);
+  if (search.of_surfaces) equations.add_surfaces(problem, cloud);
   equations.add_ends(problem, cloud.extent());
   return equations.solutions(cloud.extent());
 }

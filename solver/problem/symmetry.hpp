@@ -20,10 +20,16 @@ inline constexpr int most_coordinates_for_rotations = 12;
 
 struct SymmetrySearch {
   int most_coordinates = most_coordinates_for_rotations;  ///< with more only translations are looked for
-  /// Points about the guess and their velocities are in turn multiplied by these. A symmetry holds everywhere;
-  /// in one place what breaks it may be below roundoff, far away or beside the bottom of a flat potential.
-  std::vector<double> scales{1, 8, 64};
+  /// Points about the guess and their velocities are in turn multiplied by these: far away forces may vanish.
+  std::vector<double> scales{1};
+  /// Symmetries leave the surfaces on which L is not smooth where they are: about one point L is that of one
+  /// side alone.
+  bool of_surfaces = false;
 };
+
+/// For symmetries of L wherever it is. In one place what breaks them may be below roundoff, as beside the
+/// bottom of a flat potential.
+inline SymmetrySearch everywhere() { return {.scales = {1, 8, 64}, .of_surfaces = true}; }
 
 /// Independent affine motions of configuration space that leave the boundary relation and the action of every
 /// path that satisfies it unchanged: ∂L/∂q · δq + ∂L/∂q' · δq' = 0, or b · q' where the relation holds

@@ -115,16 +115,16 @@ TEST(OtherBranches, OnBothSides) {
 /// What the bifurcation equations of the square's symmetry give: a b + b³ and 2 b b'² more of each have the
 /// axes and the diagonals.
 TEST(OtherBranches, EquationsOfASquare) {
-  const auto forces = [](const Displacement& at) -> std::optional<Eigen::VectorXd> {
+  const auto forces = [](const Departure& at) -> std::optional<Eigen::VectorXd> {
     const double x = at.across[0], y = at.across[1];
     return Eigen::Vector2d(-at.along * x + x * x * x + 2 * x * y * y,
                            -at.along * y + y * y * y + 2 * y * x * x);
   };
   const auto equations = BifurcationEquations::measure(2, 0.01, forces);
   ASSERT_TRUE(equations);
-  const std::vector<Displacement> found = equations->solutions();
+  const std::vector<Departure> found = equations->solutions();
   ASSERT_EQ(found.size(), 8u);
-  for (const Displacement& each : found) {
+  for (const Departure& each : found) {
     const double x = each.across[0] / 0.01, y = each.across[1] / 0.01;
     EXPECT_NEAR(x * y * (x * x - y * y), 0, 1e-7);
     EXPECT_NEAR(each.along / 1e-4, x * x * y * y > 0.1 ? 1.5 : 1, 1e-7);

@@ -81,7 +81,7 @@ std::optional<BifurcationEquations> BifurcationEquations::measure(int count, dou
   return known ? std::optional(std::move(found)) : std::nullopt;
 }
 
-double BifurcationEquations::potential(const Displacement& at) const {
+double BifurcationEquations::potential(const Departure& at) const {
   const Eigen::VectorXd forces = at.along / 2 * (linear_ * at.across) +
                                  quadratic_ * monomials(at.across, 2) / 3 +
                                  cubic_ * monomials(at.across, 3) / 4;
@@ -130,17 +130,17 @@ Eigen::VectorXd BifurcationEquations::descend(Eigen::VectorXd direction, double 
   return direction;
 }
 
-std::vector<Displacement> BifurcationEquations::solutions() const {
+std::vector<Departure> BifurcationEquations::solutions() const {
   const int count = static_cast<int>(linear_.rows());
   const std::vector<Eigen::VectorXd> starts = lattice_directions(count, lattice);
   double largest = 0;
   for (const Eigen::VectorXd& start : starts) largest = std::max(largest, curved(start).norm());
-  std::vector<Displacement> found;
+  std::vector<Departure> found;
   for (const Eigen::VectorXd& start : starts) {
     const Eigen::VectorXd onward = descend(start, enough * largest);
     for (const Eigen::VectorXd& direction : {onward, descend(-onward, enough * largest)}) {
       const bool solved = missed(direction).norm() <= size_ * size_ * largest;
-      const bool other = std::ranges::none_of(found, [&](const Displacement& known) {
+      const bool other = std::ranges::none_of(found, [&](const Departure& known) {
         return (known.across / size_ - direction).norm() <= same_direction;
       });
       if (solved && other) found.push_back({along(direction) * size_, direction * size_});

@@ -11,7 +11,7 @@
 namespace extremal {
 
 /// A place beside a branch point: a along the known branch, b along the null directions.
-struct Displacement {
+struct Departure {
   double along = 0;
   Eigen::VectorXd across;
 };
@@ -25,7 +25,7 @@ struct Displacement {
 class BifurcationEquations {
  public:
   /// Forces at a place; nothing where the other equations cannot be solved.
-  using Forces = std::function<std::optional<Eigen::VectorXd>(const Displacement&)>;
+  using Forces = std::function<std::optional<Eigen::VectorXd>(const Departure&)>;
 
   /// By differences over this size; the coefficients err by its square, relative. Nothing where forces are
   /// not known.
@@ -33,9 +33,9 @@ class BifurcationEquations {
 
   /// Solutions with |b| = `size`, as far as descents from a grid of directions lead. Where all directions
   /// are solutions, as under a continuous symmetry, some of them.
-  std::vector<Displacement> solutions() const;
+  std::vector<Departure> solutions() const;
   /// Of forces that have one, the action there less that of the known branch.
-  double potential(const Displacement& displacement) const;
+  double potential(const Departure& departure) const;
 
  private:
   Eigen::VectorXd curved(const Eigen::VectorXd& direction) const;

@@ -69,7 +69,7 @@ class CommonSymmetries {
     if (!problem) return std::nullopt;
     problem->guess = guess_;
     if (problem->duration.free) problem->duration.value = duration_;
-    return own_symmetries(*problem);
+    return own_symmetries(*problem, everywhere());
   }
 
   std::function<std::optional<Problem>(double)> at_;
@@ -92,7 +92,10 @@ ProblemFamily with(ProblemFamily family, Symmetries symmetries) {
 }  // namespace
 
 ProblemFamily with_common_symmetries(ProblemFamily family) {
-  if (family.varied != Varied::parameter) return family;
+  if (family.varied != Varied::parameter) {
+    family.problem.symmetries = own_symmetries(family.problem, everywhere());
+    return family;
+  }
   auto common = std::make_shared<const CommonSymmetries>(family);
   return with(std::move(family), [common = std::move(common)](double value) { return common->at(value); });
 }

@@ -38,8 +38,8 @@ class BranchPointCentre {
   /// The bifurcation equations at this distance.
   std::optional<BifurcationEquations> equations(double distance) {
     tracker_.hold(null_);
-    auto found = BifurcationEquations::measure(
-        count(), distance, [&](const Displacement& displacement) { return forces(displacement); });
+    auto found = BifurcationEquations::measure(count(), distance,
+                                               [&](const Departure& departure) { return forces(departure); });
     tracker_.hold({});
     return found;
   }
@@ -47,10 +47,10 @@ class BranchPointCentre {
   /// The state on the branch that begins in this direction, so far from the point; nothing if there is none.
   /// It is reached across its direction from the point, twice, so that copies are equally far. The branch may
   /// turn on that way.
-  std::optional<BranchState> first_state(const Displacement& displacement, double distance) {
+  std::optional<BranchState> first_state(const Departure& departure, double distance) {
     const Branch& branch = tracker_.branch();
     BranchState from = centre_;
-    from.tangent = move(displacement);
+    from.tangent = move(departure);
     for (const bool same_elements : {true, true, false}) {
       from.tangent.scale(1 / std::sqrt(branch.dot(from.tangent, from.tangent)));
       if (!tracker_.reach(from, distance, same_elements)) return std::nullopt;
@@ -86,15 +86,15 @@ class BranchPointCentre {
   bool out_of_time() const { return options_.deadline.passed(); }
 
  private:
-  Move move(const Displacement& displacement) const {
+  Move move(const Departure& departure) const {
     Move sum = centre_.tangent;
-    sum.scale(displacement.along);
-    for (int k = 0; k < count(); ++k) sum.add(null_[k], displacement.across[k]);
+    sum.scale(departure.along);
+    for (int k = 0; k < count(); ++k) sum.add(null_[k], departure.across[k]);
     return sum;
   }
 
-  std::optional<Eigen::VectorXd> forces(const Displacement& displacement) {
-    if (out_of_time() || !tracker_.reach(centre_, move(displacement))) return std::nullopt;
+  std::optional<Eigen::VectorXd> forces(const Departure& departure) {
+    if (out_of_time() || !tracker_.reach(centre_, move(departure))) return std::nullopt;
     Eigen::VectorXd found(count());
     for (int k = 0; k < count(); ++k) found[k] = tracker_.branch().force_along(null_[k]);
     return found;
@@ -110,11 +110,11 @@ class BranchPointCentre {
 
 /// A branch on one way from the point.
 struct Way {
-  Displacement displacement;
+  Departure departure;
   BranchState state;
 };
 
-bool are_opposite(const Displacement& a, const Displacement& b) {
+bool are_opposite(const Departure& a, const Departure& b) {
   return a.across.dot(b.across) <= opposite * a.across.squaredNorm();
 }
 
@@ -127,27 +127,27 @@ struct Ways {
 
 /// Of one null direction it is the direction of the branch to first order, where differences of forces are
 /// not known.
-std::vector<Displacement> directions(const std::optional<BifurcationEquations>& equations, int count,
-                                     double distance, bool both_ways) {
+std::vector<Departure> directions(const std::optional<BifurcationEquations>& equations, int count,
+                                  double distance, bool both_ways) {
   if (equations) return equations->solutions();
   if (count > 1) return {};
-  std::vector<Displacement> found = {{0, Eigen::VectorXd::Constant(1, distance)}};
+  std::vector<Departure> found = {{0, Eigen::VectorXd::Constant(1, distance)}};
   if (both_ways) found.push_back({0, Eigen::VectorXd::Constant(1, -distance)});
   return found;
 }
 
 Ways ways_at(BranchPointCentre& centre, double distance, bool both_ways) {
   const std::optional<BifurcationEquations> equations = centre.equations(distance);
-  const std::vector<Displacement> solutions = directions(equations, centre.count(), distance, both_ways);
+  const std::vector<Departure> solutions = directions(equations, centre.count(), distance, both_ways);
   Ways ways;
   ways.complete = !solutions.empty();
-  for (const Displacement& solution : solutions) {
+  for (const Departure& solution : solutions) {
     const std::optional<BranchState> state = centre.first_state(solution, distance);
     ways.complete = ways.complete && state;
     if (!state) continue;
     ways.passed = ways.passed || centre.passed(*state);
     const bool copy = std::ranges::any_of(ways.found, [&](const Way& known) {
-      if (both_ways && are_opposite(known.displacement, solution)) return false;
+      if (both_ways && are_opposite(known.departure, solution)) return false;
       return centre.are_copies(known.state, *state, equations ? equations->potential(solution) : 0);
     });
     if (!copy) ways.found.push_back({solution, *state});

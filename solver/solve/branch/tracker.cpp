@@ -191,9 +191,8 @@ void Tracker::measure_anew() {
 }
 
 bool Tracker::balanced() const {
-  const double allowed =
-      std::max(limits::branch_points::momentum_tolerances * tolerance_, limits::branch_points::least_momentum);
-  return branch_.residual() <= allowed;
+  using namespace limits::branch_points;
+  return branch_.residual() <= std::max(momentum_tolerances * tolerance_, least_momentum);
 }
 
 Scales Tracker::sizes() const {
