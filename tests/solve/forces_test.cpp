@@ -481,6 +481,31 @@ TEST(Forces, FamiliesFromTheBottomOfAFlatPotential) {
   }
 }
 
+/// Orbits of three periods of the drive lie on a closed curve between two folds. The response of a potential
+/// that is nearly a box has the first value again, in the same direction, at another orbit.
+TEST(Forces, ClosedCurvesOfOrbitsAndOthers) {
+  const auto ring = [](double w) {
+    return closed_problem({{"x"}, "x'^2/2 - x^2/2 - x^4/4", {fmt::format("-0.02*x' + cos({:.17g}*t)", w)}},
+                          6 * pi / w, false, [](double tau) { return std::cos(2 * pi * tau); });
+  };
+  Diagram closed(driven_family(ring, 4, 2.5), {{.tolerance = 1e-9}, 200, false});
+  double least = INFINITY, greatest = 0;
+  while (closed.advance()) {
+    least = std::min(least, closed.point().parameter);
+    greatest = std::max(greatest, closed.point().parameter);
+  }
+  EXPECT_EQ(closed.branches().front().end, BranchEnd::closed) << closed.branches().front().message;
+  EXPECT_NEAR(least, 3.0866, 1e-4);
+  EXPECT_NEAR(greatest, 6.8606, 1e-4);
+  const auto box = [](double f) {
+    return closed_problem({{"x"}, "x'^2/2 - (x/0.6)^16/16", {fmt::format("-0.1*x' + {:.17g}*cos(1.5*t)", f)}},
+                          2 * pi / 1.5, false, [](double tau) { return -0.1 * std::cos(2 * pi * tau); });
+  };
+  Diagram open(driven_family(box, 0.2, 1.5), {{.tolerance = 1e-9}, 200, false});
+  while (open.advance()) continue;
+  EXPECT_EQ(open.branches().front().end, BranchEnd::target) << open.branches().front().message;
+}
+
 /// The pendulum with q = 2 driven at the rate 2/3: symmetric orbits lose their stability to a pair that is
 /// not, and the period of that doubles (G. L. Baker and J. P. Gollub, Chaotic Dynamics, 2nd edition, chapter
 /// 3).

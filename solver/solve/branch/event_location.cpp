@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "solve/branch/events.hpp"
@@ -73,14 +74,29 @@ double find_rest(Tracker& tracker, const BranchState& from, const BranchState& t
       [](double off, double) { return std::abs(off) <= rest_located * nearly_rest; });
 }
 
-/// Whether a state is the first of the branch, passed in the same direction.
-bool is_first(const BranchState& state, const BranchState& first) {
+/// Mean of |q|² over τ, which a shift in time and a rotation leave as it is.
+double mean_square(const Path& path) {
+  constexpr int points = 256;
+  const Trajectory trajectory = trajectory_of(path);
+  std::vector<double> q(path.coordinates()), v(q.size());
+  double sum = 0;
+  for (int k = 0; k < points; ++k) {
+    trajectory.at(trajectory.duration() * (k + 0.5) / points, q, v);
+    sum += std::inner_product(q.begin(), q.end(), q.begin(), 0.0);
+  }
+  return sum / points;
+}
+
+/// Whether a state is the first of the branch, passed in the same direction. The action of two copies is
+/// zero.
+bool is_first(const BranchState& state, const BranchState& first, bool paired) {
   const auto equal = [](double a, double b) {
     return std::abs(a - b) <= same * std::max(std::abs(a), std::abs(b));
   };
-  return state.rate * first.rate > 0 && equal(state.action, first.action) &&
-         equal(state.coordinate, first.coordinate) && state.orientation == first.orientation &&
-         equal(state.path.duration(), first.path.duration());
+  return state.rate * first.rate > 0 && equal(state.coordinate, first.coordinate) &&
+         state.orientation == first.orientation && equal(state.path.duration(), first.path.duration()) &&
+         (paired ? equal(mean_square(state.path), mean_square(first.path))
+                 : equal(state.action, first.action));
 }
 
 /// Folds, branch points and period doublings on a step, and the number that varies at its ends and where it
@@ -147,7 +163,8 @@ End find_end(Tracker& tracker, const EventSearch& search, const BranchStep& step
             read_point(tracker, PointKind::regular)};
   if (missed) return {.missed = true};
   const BranchState& state = tracker.state;
-  if (const double at = find(search.first.varied, [&] { return is_first(state, search.first); });
+  if (const double at =
+          find(search.first.varied, [&] { return is_first(state, search.first, family.problem.paired); });
       std::isfinite(at))
     return {at, BranchEnd::closed, "the branch is closed: it came back to its first point"};
   if (const double at = find_rest(tracker, step.from, step.to, step.length); std::isfinite(at))
