@@ -158,20 +158,6 @@ TEST(Isochronous, InAParameter) {
   }
 }
 
-/// A ring of four that swings as (u, 0, −u, 0), u'' = −(a + 2) u − 2u³, and at a = 0 may also move as a
-/// whole: with the period 4 swings shrink to rest where a + 2 = (π/2)².
-TEST(FamilySymmetries, AMemberThatAloneMovesAsAWhole) {
-  const FollowedBranch found = extremal::follow(study_of(
-      "[system]\ncoordinates = [\"q[4]\"]\nparameters = { a = 0 }\nlagrangian = \"sum(i,1,4,q[i]'^2/2 - "
-      "a*q[i]^2/2) - sum(i,1,3,(q[i+1] - q[i])^2/2 + (q[i+1] - q[i])^4/4) - ((q[1] - q[4])^2/2 + (q[1] - "
-      "q[4])^4/4)\"\n[boundary]\nperiodic = true\nduration = 4\n[guess]\nq = "
-      "\"0.8*cos(2*pi*t/T)*sin(pi*i/2)\""
-      "\n[continuation]\nparameter = \"a\"\nto = 0.5\npoints = 20\n"));
-  ASSERT_EQ(found.branches[0].end, BranchEnd::rest) << found.branches[0].message;
-  EXPECT_NEAR(found.points.front().parameter, 0, 1e-12);
-  EXPECT_NEAR(found.points.back().parameter, std::pow(std::numbers::pi / 2, 2) - 2, 1e-5);
-}
-
 TEST(Isochronous, InTheEnergy) {
   std::string text = isochronous;
   text.replace(text.find("CLOSED"), 6, "energy = 0.2").replace(text.find('%'), 1, "parameters = { a = 1 }\n");

@@ -220,16 +220,11 @@ bool Continuation::begin_beside(const Path& path, double at_rest) {
     const double value = family_.from + part * (family_.to - family_.from);
     return tracker_.begin_beside(first.state, value, at_rest);
   };
-  const auto leads_on = [&](double part) {
-    const std::optional<double> near = beside(part / 2), far = beside(part);
-    return near && far && *near <= half_as_far * *far;
-  };
-  double nearest = beside_first;
-  for (; !leads_on(nearest); nearest *= 2)
-    if (2 * nearest > first_length) return false;
-  for (double part = nearest; part <= first_length; part *= 2)
+  const std::optional<double> near = beside(beside_first / 2), far = beside(beside_first);
+  if (!near || !far || *near > half_as_far * *far) return false;
+  for (double part = beside_first; part <= first_length; part *= 2)
     if (beside(part) && tracker_.state.nullity <= tracker_.branch().phases()) return true;
-  return beside(nearest / 2).has_value();
+  return beside(beside_first / 2).has_value();
 }
 
 bool Continuation::end_at_first() {
