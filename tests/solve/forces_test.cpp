@@ -481,8 +481,8 @@ TEST(Forces, FamiliesFromTheBottomOfAFlatPotential) {
   }
 }
 
-/// Orbits of three periods of the drive lie on a closed curve between two folds. The response of a potential
-/// that is nearly a box has the first value again, in the same direction, at another orbit.
+/// Orbits of three periods of the drive lie on a closed curve between two folds. Where the amplitude of a
+/// drive grows, falls and grows again, another orbit has the first value, in the same direction.
 TEST(Forces, ClosedCurvesOfOrbitsAndOthers) {
   const auto ring = [](double w) {
     return closed_problem({{"x"}, "x'^2/2 - x^2/2 - x^4/4", {fmt::format("-0.02*x' + cos({:.17g}*t)", w)}},
@@ -497,11 +497,11 @@ TEST(Forces, ClosedCurvesOfOrbitsAndOthers) {
   EXPECT_EQ(closed.branches().front().end, BranchEnd::closed) << closed.branches().front().message;
   EXPECT_NEAR(least, 3.0866, 1e-4);
   EXPECT_NEAR(greatest, 6.8606, 1e-4);
-  const auto box = [](double f) {
-    return closed_problem({{"x"}, "x'^2/2 - (x/0.6)^16/16", {fmt::format("-0.1*x' + {:.17g}*cos(1.5*t)", f)}},
-                          2 * pi / 1.5, false, [](double tau) { return -0.1 * std::cos(2 * pi * tau); });
+  const auto response = [](double f) {
+    return closed_problem({{"x"}, "x'^2/2 - x^2/2 - x^4/4", {fmt::format("-0.1*x' + {:.17g}*cos(2.5*t)", f)}},
+                          2 * pi / 2.5, false, [](double tau) { return -0.2 * std::cos(2 * pi * tau); });
   };
-  Diagram open(driven_family(box, 0.2, 1.5), {{.tolerance = 1e-9}, 200, false});
+  Diagram open(driven_family(response, 1, 8), {{.tolerance = 1e-9}, 200, false});
   while (open.advance()) continue;
   EXPECT_EQ(open.branches().front().end, BranchEnd::target) << open.branches().front().message;
 }
