@@ -179,7 +179,8 @@ RestEnergy Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& spee
     const Tails* const last = &all.back();
     const std::optional<RestEnergy> extrapolated = RestEnergy::extrapolated(
         {&last[-2].energy, &last[-1].energy, &last->energy},
-        {last[-2].span.length() - length, last[-1].span.length() - length, last->span.length() - length});
+        {last[-2].span.length() - length, last[-1].span.length() - length, last->span.length() - length},
+        path_roundoff * speeds.fastest / speed);
     if (!extrapolated) return best;
     if (extrapolated->action(length, exponent).doubt < best.action(length, exponent).doubt)
       best = *extrapolated;

@@ -47,6 +47,8 @@ inline constexpr std::size_t most_tails = 10;
 inline constexpr double moving = 0.1;
 /// Of speeds at an end, by the largest of the path: an end so near to an equilibrium is at it.
 inline constexpr double speed_roundoff = 1e-12;
+/// Of velocities and momenta, by the largest: roundings of the sums that they are.
+inline constexpr double path_roundoff = 4 * unit_roundoff;
 /// Slower than this, by the fastest, a motion near an equilibrium neither approaches nor leaves.
 inline constexpr double least_rate = 1e-8;
 /// Steps from a rest to the equilibrium; and roundoff of L there, by its size and the kinetic energy of the

@@ -80,7 +80,8 @@ std::optional<double> RestEnergy::held_near(double length) const {
 }
 
 std::optional<RestEnergy> RestEnergy::extrapolated(const std::array<const RestEnergy*, 3>& tails,
-                                                   const std::array<double, 3>& excess) {
+                                                   const std::array<double, 3>& excess, double roundoff) {
+  constexpr double amplified = (8 + 6 + 1) / 3.0;
   const std::size_t count = tails[0]->terms_.size();
   if (tails[1]->terms_.size() != count || tails[2]->terms_.size() != count) return std::nullopt;
   std::vector<Term> terms;
@@ -91,7 +92,8 @@ std::optional<RestEnergy> RestEnergy::extrapolated(const std::array<const RestEn
     };
     const Complex linear = 2.0 * weight(2) - weight(1),
                   quadratic = (8.0 * weight(2) - 6.0 * weight(1) + weight(0)) / 3.0;
-    terms.push_back({quadratic, rate, std::abs(quadratic - linear)});
+    const double doubt = std::abs(quadratic - linear) + amplified * roundoff * std::abs(quadratic);
+    terms.push_back({quadratic, rate, doubt});
   }
   return RestEnergy(std::move(terms));
 }

@@ -45,10 +45,11 @@ class RestEnergy {
   std::optional<double> held_near(double length) const;
   bool held_at(double length) const;
   /// What the weights of three tails tend to, of speeds 4a, 2a and a, in which errors are c₁ a + c₂ a² + …;
-  /// the doubt is what c₂ changes. `excess` are the lengths between the tails less that of which the result
-  /// is a function. Nothing where the terms of the three are not the same.
+  /// the doubt is what c₂ changes, and what comes of relative errors of the tails as large as `roundoff`.
+  /// `excess` are the lengths between the tails less that of which the result is a function. Nothing where
+  /// the terms of the three are not the same.
   static std::optional<RestEnergy> extrapolated(const std::array<const RestEnergy*, 3>& tails,
-                                                const std::array<double, 3>& excess);
+                                                const std::array<double, 3>& excess, double roundoff = 0);
 
  private:
   std::vector<Term> terms_;
