@@ -1,24 +1,18 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
 #include <cmath>
 #include <exception>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "scene/source.hpp"
-#include "study/study.hpp"
+#include "../repeated_solve.hpp"
 
 // Mechanisms by constraints between Cartesian coordinates and by angles: the same motions, solved in one run.
 
 namespace bench {
 namespace {
-
-using namespace extremal;
-using Clock = std::chrono::steady_clock;
 
 struct Pair {
   std::string name, constrained, minimal;
@@ -177,11 +171,7 @@ struct Times {
 };
 
 Times measure(const std::string& text) {
-  const Study study = load(std::make_shared<const Source>(Source{"scene", text}), {}, Purpose::solution);
-  const Solution warm = run(study);
-  if (!warm.converged()) throw std::runtime_error(warm.message);
-  const auto repeat = static_cast<int>(0.3 / (warm.seconds_solve + warm.seconds_analyse)) + 3;
-  const Solution solution = run(study, repeat);
+  const extremal::Solution solution = repeated_solve(text);
   return {solution.action, 1e6 * solution.seconds_solve,
           1e6 * (solution.seconds_solve + solution.seconds_analyse)};
 }

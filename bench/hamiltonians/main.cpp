@@ -2,20 +2,15 @@
 
 #include <cmath>
 #include <exception>
-#include <memory>
-#include <stdexcept>
 #include <string>
 
-#include "scene/source.hpp"
-#include "study/study.hpp"
+#include "../repeated_solve.hpp"
 
 // Solves from a Hamiltonian and from its Lagrangian, in one run. The first have L on the expression graph;
 // the momenta of the others are searched for at each point.
 
 namespace bench {
 namespace {
-
-using namespace extremal;
 
 struct Pair {
   std::string name, coordinates, hamiltonian, lagrangian, boundary;
@@ -56,10 +51,7 @@ Solved solve(const Pair& pair, bool hamiltonian) {
       "[system]\ncoordinates = [" + pair.coordinates + "]\n" +
       (hamiltonian ? "hamiltonian = \"" + pair.hamiltonian : "lagrangian = \"" + pair.lagrangian) +
       "\"\n[boundary]\n" + pair.boundary;
-  const Study study = load(std::make_shared<const Source>(Source{"scene", text}), {}, Purpose::solution);
-  const Solution warm = run(study);
-  if (!warm.converged()) throw std::runtime_error(pair.name + ": " + warm.message);
-  const Solution solution = run(study, static_cast<int>(0.3 / warm.seconds_solve) + 3);
+  const extremal::Solution solution = repeated_solve(text);
   return {solution.action, 1e6 * solution.seconds_solve};
 }
 

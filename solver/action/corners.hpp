@@ -20,13 +20,13 @@ struct Polynomials {
   int elements() const { return static_cast<int>(times.size()) - 1; }
 };
 
-/// An end of an element at which the path crosses a surface u(q, t) = 0, or a jump in t. Beside it L = smooth
-/// part + w |u| + a sign u, with a = 0 along the path, and from u < 0 to u > 0 ∂L/∂q jumps by J = 2 (w n +
-/// ∂a/∂q), n = ∂u/∂q. A change δq at the node moves the crossing by δt = −(u + n·δq)/u', and for δt the force
-/// is that of the other side. To first order that adds J (u + n·δq)/|u'| to δS at the node. With b = 2
-/// ∂a/∂q/|u'|
-///   stiffness (n·δq)² + 2 (b·δq)(n·δq),   stiffness = 2 w/|u'|,
-/// is the second variation of w |u| + a sign u: ∫ 2 δ(u) (n·δq) (w n + 2 ∂a/∂q)·δq dt.
+/// An end of an element at which the path crosses a surface u(q, t) = 0, or a jump in t. Beside it
+///   L = smooth part + w |u| + a sign u,   a = 0 along the path,
+/// and with n = ∂u/∂q, from u < 0 to u > 0, ∂L/∂q jumps by J = 2 (w n + ∂a/∂q). A change δq at the node moves
+/// the crossing by δt = −(u + n·δq)/u', and for δt the force is that of the other side. To first order that
+/// adds J (u + n·δq)/|u'| to δS at the node. The second variation of w |u| + a sign u is
+///   ∫ 2 δ(u) (n·δq) (w n + 2 ∂a/∂q)·δq dt = stiffness (n·δq)² + 2 (b·δq)(n·δq),
+/// with stiffness = 2 w/|u'| and b = 2 ∂a/∂q/|u'|.
 struct Corner {
   int node = 0;
   double u = 0, rate = 0;  ///< u there, du/dt
