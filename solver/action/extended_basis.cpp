@@ -1,8 +1,5 @@
 #include "action/extended_basis.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 namespace extremal {
 
 bool ExtendedBasis::bind(const SchemeTables& scheme) {
@@ -23,8 +20,8 @@ bool ExtendedBasis::bind(const SchemeTables& scheme) {
     const int node = node_at(element, at);
     values_at(element, at, node, values);
     derivatives_at(element, at, node, values, slopes);
-    std::transform(values.begin(), values.end(), std::back_inserter(value), wide);
-    std::transform(slopes.begin(), slopes.end(), std::back_inserter(slope), wide);
+    value.insert(value.end(), values.begin(), values.end());
+    slope.insert(slope.end(), slopes.begin(), slopes.end());
   }
   return true;
 }

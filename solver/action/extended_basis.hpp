@@ -1,7 +1,5 @@
 #pragma once
 
-#include <qd/dd_real.h>
-
 #include <vector>
 
 #include "action/real_rule.hpp"
@@ -21,15 +19,9 @@ struct ExtendedBasis {
   /// and Gauss's.
   bool bind(const SchemeTables& scheme);
 
-  DoubleDouble node(int i) const { return wide(rule.nodes[i].left); }
-  DoubleDouble before_end(int i) const { return wide(rule.nodes[i].right); }
-  DoubleDouble weight(int i) const { return wide(rule.weights[i]); }
-
- private:
-  static DoubleDouble wide(Real x) {
-    const double high = static_cast<double>(x);
-    return {high, static_cast<double>(x - high)};
-  }
+  const DoubleDouble& node(int i) const { return rule.nodes[i].left; }
+  const DoubleDouble& before_end(int i) const { return rule.nodes[i].right; }
+  const DoubleDouble& weight(int i) const { return rule.weights[i]; }
 };
 
 }  // namespace extremal

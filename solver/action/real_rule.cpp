@@ -12,14 +12,14 @@ namespace extremal {
 
 namespace {
 
-/// Newton on u = 1 − x from `u`, with the step −f/f' that `step(u)` returns.
+/// Newton on u = 1 − x from `u`, with the step −f/f' that `step(u)` returns. A step squares the error.
 template <class Step>
 Real solve_node(Real u, Step step) {
   constexpr int most = 20;
   for (int i = 0; i < most; ++i) {
     const Real change = step(u);
     u += change;
-    if (std::abs(change) <= 2 * std::numeric_limits<Real>::epsilon() * u) break;
+    if (abs(change) <= std::numeric_limits<double>::epsilon() * u) break;
   }
   return u;
 }
@@ -66,9 +66,8 @@ Legendre legendre(int n, Real u) {
 RealRule real_gauss(int n) {
   RealRule rule{std::vector<Abscissa>(n), std::vector<Real>(n)};
   for (int i = 0; 2 * i < n; ++i) {
-    const Real angle = std::numbers::pi_v<Real> * (i + 0.75L) / (n + 0.5L);
-    const Real guess = 2 * std::pow(std::sin(angle / 2), 2.0L);
-    const Real u = 2 * i + 1 == n ? 1 : solve_node(guess, [n](Real at) {
+    const double half = std::sin(std::numbers::pi * (i + 0.75) / (2 * n + 1)), guess = 2 * half * half;
+    const Real u = 2 * i + 1 == n ? Real(1) : solve_node(guess, [n](Real at) {
       const Legendre p = legendre(n, at);
       return p.value * at * (2 - at) / (n * (at * p.value - p.difference));
     });
@@ -86,8 +85,8 @@ RealRule real_lobatto(int points) {
   RealRule rule{std::vector<Abscissa>(points), std::vector<Real>(points)};
   set_pair(rule, 0, 0, 1 / Real(n * points));
   for (int i = 1; 2 * i <= n; ++i) {
-    const Real guess = 2 * std::pow(std::sin(std::numbers::pi_v<Real> * i / (2 * n)), 2.0L);
-    const Real u = 2 * i == n ? 1 : solve_node(guess, [n](Real at) {
+    const double half = std::sin(std::numbers::pi * i / (2 * n)), guess = 2 * half * half;
+    const Real u = 2 * i == n ? Real(1) : solve_node(guess, [n](Real at) {
       const Legendre p = legendre(n, at);
       return -(at * p.value - p.difference) / ((n + 1) * p.value);
     });

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <qd/dd_real.h>
+
 #include <span>
 #include <vector>
 
 #include "action/scheme.hpp"
 
-/// \file Quadrature rules and the polynomials of an element in extended precision.
+/// \file Quadrature rules and the polynomials of an element with 106 bits: equations with as many are solved
+/// on them, and a path that rests is held in time by what is beyond the digits of a double.
 
 namespace extremal {
 
-using Real = long double;
+using Real = dd_real;
 
 /// A point of [0, 1] by its distance from either end, so that differences keep their digits at both ends.
 struct Abscissa {

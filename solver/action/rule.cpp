@@ -18,19 +18,19 @@ namespace {
 Rule rounded(const RealRule& rule) {
   Rule result;
   for (const Abscissa& node : rule.nodes) {
-    const double distance = static_cast<double>(std::min(node.left, node.right));
+    const double distance = to_double(std::min(node.left, node.right));
     result.nodes.push_back(node.left <= node.right ? distance : 1 - distance);
   }
-  for (const Real weight : rule.weights) result.weights.push_back(static_cast<double>(weight));
+  for (const Real weight : rule.weights) result.weights.push_back(to_double(weight));
   return result;
 }
 
 Barycentric make_barycentric(int degree) {
   const RealElement& element = real_element(degree);
   Real largest = 0;
-  for (const Real w : element.barycentric) largest = std::max(largest, std::abs(w));
+  for (const Real w : element.barycentric) largest = std::max(largest, abs(w));
   Barycentric result{rounded(element.rule).nodes, {}};
-  for (const Real w : element.barycentric) result.weights.push_back(static_cast<double>(w / largest));
+  for (const Real w : element.barycentric) result.weights.push_back(to_double(w / largest));
   return result;
 }
 
@@ -41,8 +41,10 @@ void check_points(int points, int least) {
     throw std::invalid_argument(fmt::format("points = {}; need {} to {}", points, least, max_points));
 }
 
-/// The node that a point stands for, or -1.
+/// The node that a point stands for, or -1. Quotients by a distance less than `least` would overflow.
 int node_at(const std::vector<double>& nodes, double point) {
+  constexpr double least = 1e-150;
+  if (point < least) return 0;
   const auto found = std::lower_bound(nodes.begin(), nodes.end(), point);
   return found != nodes.end() && *found == point ? static_cast<int>(found - nodes.begin()) : -1;
 }
@@ -53,12 +55,12 @@ void round_balanced(std::span<const Real> row, double* rounded) {
   Real rest = 0;
   std::size_t largest = 0;
   for (std::size_t j = 0; j < row.size(); ++j)
-    if (std::abs(row[j]) > std::abs(row[largest])) largest = j;
+    if (abs(row[j]) > abs(row[largest])) largest = j;
   for (std::size_t j = 0; j < row.size(); ++j) {
-    rounded[j] = static_cast<double>(row[j]);
+    rounded[j] = to_double(row[j]);
     if (j != largest) rest += rounded[j];
   }
-  rounded[largest] = static_cast<double>(-rest);
+  rounded[largest] = to_double(-rest);
 }
 
 }  // namespace
@@ -104,7 +106,7 @@ void lobatto_basis_at(int degree, double point, double* value, double* derivativ
   const Abscissa at{point, 1 - Real(point)};
   const int node = node_at(nodes, point);
   values_at(element, at, node, real_value);
-  std::transform(real_value.begin(), real_value.end(), value, [](Real x) { return static_cast<double>(x); });
+  std::transform(real_value.begin(), real_value.end(), value, [](const Real& x) { return to_double(x); });
   if (!derivative) return;
   derivatives_at(element, at, node, real_value, real_slope);
   round_balanced(real_slope, derivative);
@@ -135,7 +137,7 @@ std::vector<double> legendre_matrix(int degree) {
     Legendre p;
     for (int k = 0; k < m; p = p.next(k, u), ++k) {
       const Real scale = k < degree ? 2 * k + 1 : degree;
-      matrix[k * m + j] = static_cast<double>(scale * rule.weights[j] * p.value);
+      matrix[k * m + j] = to_double(scale * rule.weights[j] * p.value);
     }
   }
   return matrix;

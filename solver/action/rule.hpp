@@ -6,7 +6,7 @@
 #include "action/scheme.hpp"
 
 /// \file Quadrature rules on [0, 1] and the polynomials of an element, which go through its s + 1
-/// Gauss-Lobatto nodes. Everything is computed in extended precision and rounded once.
+/// Gauss-Lobatto nodes. Everything is computed with 106 bits and rounded once.
 
 namespace extremal {
 

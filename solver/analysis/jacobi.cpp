@@ -80,7 +80,7 @@ void JacobiFields::begin(SecondVariation& variation, int k, double tau) {
     p_ = piece.d;
     return;
   }
-  if (variation.coordinates() >= least_large && !variation.has_kinks()) {
+  if (variation.coordinates() >= least_large && variation.has_part_forms()) {
     normalised_ = true;
     p_ = variation.end_form(k, tau);
     return;
@@ -98,7 +98,7 @@ const std::vector<double>& JacobiFields::advance(SecondVariation& variation, int
   variation.hold(k);
   const Piece piece = variation.piece(k);
   times_.clear();
-  if (normalised_ && piece.a.rows() >= least_large) {
+  if (normalised_ && piece.a.rows() >= least_large && !variation.of_scheme()) {
     if (advance_large(variation, k, first_only)) return times_;
     variation.hold(k);
   }
@@ -222,7 +222,7 @@ MatrixXd JacobiFields::orthonormal(const VectorXd& unit) const {
 double JacobiFields::distance(SecondVariation& variation, int k) {
   constexpr double step = 0.01, far = 0.05;
   variation.hold(k);
-  if (normalised_ && variation.coordinates() >= least_large) {
+  if (normalised_ && variation.coordinates() >= least_large && !variation.of_scheme()) {
     if (const std::optional<double> nearest = distance_large(variation, k, step)) return *nearest;
     variation.hold(k);
   } else if (normalised_) {

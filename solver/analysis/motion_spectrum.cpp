@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "problem/closing.hpp"
 
@@ -35,7 +36,7 @@ std::vector<std::vector<double>> samples_of(const Trajectory& trajectory, Sampli
   return columns;
 }
 
-double largest_range(const std::vector<std::vector<double>>& columns) {
+double largest_range(std::span<const std::vector<double>> columns) {
   double range = 0;
   for (const std::vector<double>& column : columns) {
     const auto [least, most] = std::minmax_element(column.begin(), column.end());
@@ -81,18 +82,20 @@ std::vector<std::vector<double>> continued(const std::vector<std::vector<double>
 MotionSpectrum motion_spectrum(const Problem& problem, const Trajectory& trajectory, Sampling sampling,
                                int lines, double tolerance) {
   std::vector<std::vector<double>> columns = samples_of(trajectory, sampling);
-  const SpectrumGoal goal{lines, tolerance * largest_range(columns)};
+  // In phase space momenta follow.
+  const auto shown = static_cast<std::size_t>(problem.degrees_of_freedom());
+  const SpectrumGoal goal{lines, tolerance * largest_range(std::span(columns).first(shown))};
   const double step = trajectory.duration() / static_cast<double>(columns.front().size() - 1);
-  MotionSpectrum result{{}, std::vector<double>(columns.size(), 0.0)};
+  MotionSpectrum result{{}, std::vector<double>(shown, 0.0)};
   if (!problem.periodic) {
-    for (const std::vector<double>& column : columns)
-      result.coordinates.push_back(line_spectrum(column, step, goal));
+    for (std::size_t a = 0; a < shown; ++a)
+      result.coordinates.push_back(line_spectrum(columns[a], step, goal));
     return result;
   }
   const ClosingMap map = closing_map(problem);
   const std::optional<Return> back = first_return(map);
   columns = continued(columns, map, back ? back->copies : most_copies);
-  for (std::size_t a = 0; a < columns.size(); ++a) {
+  for (std::size_t a = 0; a < shown; ++a) {
     std::vector<double>& column = columns[a];
     if (!back) {
       result.coordinates.push_back(line_spectrum(column, step, goal));

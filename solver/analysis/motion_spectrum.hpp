@@ -11,7 +11,7 @@
 namespace extremal {
 
 struct MotionSpectrum {
-  std::vector<Spectrum> coordinates;  ///< in the order of the problem
+  std::vector<Spectrum> coordinates;  ///< in the order of the problem; not momenta
   /// Mean velocity of each coordinate, taken away before: not zero only on orbits that a map shifts, "a +
   /// 2*pi".
   std::vector<double> drift;

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "analysis/symplectic.hpp"
-#include "linear/chain.hpp"
 #include "linear/dense.hpp"
 
 namespace extremal {
@@ -77,51 +76,6 @@ std::vector<int> OrbitForm::iterates(int most, double threshold) const {
     result.push_back(sum);
   }
   return result;
-}
-
-/// Pieces add up in the nodes where they begin; the last one ends in −R η(0). Folded, the ring of nodes is a
-/// chain: block j has the nodes j and P − 1 − j. The middle node of an odd number stands alone, beside the
-/// identity.
-std::optional<int> antiperiodic_index(const SecondVariation& variation, const MatrixXd& map) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const int pieces = variation.count(), n = static_cast<int>(variation.piece(0).a.rows());
-  const VectorXd unit = symplectic_units(variation), inverse = unit.cwiseInverse();
-  const auto scaled = [&](const auto& matrix) -> MatrixXd {
-    return inverse.asDiagonal() * matrix * inverse.asDiagonal();
-  };
-  Chain chain;
-  chain.resize((pieces + 1) / 2, 2 * n);
-  const auto block_of = [&](int node) { return std::min(node, pieces - 1 - node); };
-  const auto place_in = [&](int node) { return 2 * node < pieces ? 0 : n; };
-  const auto diagonal = [&](int block) { return Eigen::Map<Rows>(chain.diagonal(block), 2 * n, 2 * n); };
-  const auto lower = [&](int block) { return Eigen::Map<Rows>(chain.lower(block), 2 * n, 2 * n); };
-  for (int k = 0; k < chain.blocks(); ++k) {
-    diagonal(k).setZero();
-    if (k + 1 < chain.blocks()) lower(k).setZero();
-  }
-  if (pieces % 2 == 1) diagonal(chain.blocks() - 1).bottomRightCorner(n, n).setIdentity();
-  const auto add = [&](int row, int column, const MatrixXd& entries) {
-    const int r = block_of(row), c = block_of(column);
-    if (r < c) return;  // the mirror image
-    (r == c ? diagonal(r) : lower(c)).block(place_in(row), place_in(column), n, n) += entries;
-  };
-  const MatrixXd closing = map.size() == 0 ? MatrixXd(-MatrixXd::Identity(n, n))
-                                           : -(unit.asDiagonal() * map * inverse.asDiagonal());
-  for (int k = 0; k < pieces; ++k) {
-    const Piece piece = variation.piece(k);
-    const bool last = k + 1 == pieces;
-    const int next = last ? 0 : k + 1;
-    const MatrixXd b = scaled(piece.b), d = scaled(piece.d);
-    const MatrixXd coupled = last ? MatrixXd(closing.transpose() * b) : b;
-    add(k, k, scaled(piece.a));
-    add(next, next, last ? MatrixXd(closing.transpose() * d * closing) : d);
-    add(next, k, coupled);
-    add(k, next, coupled.transpose());
-  }
-  chain.factor();
-  if (chain.inertia().negative + chain.inertia().positive + chain.inertia().zero != chain.order())
-    return std::nullopt;
-  return chain.inertia().negative;
 }
 
 VectorXcd OrbitForm::eigenvector(std::complex<double> lambda) const {

@@ -43,8 +43,4 @@ class OrbitForm {
   int inner_ = 0;              ///< negative squares where both ends rest
 };
 
-/// Negative squares on fields with η(T) = −R η(0), also where the ends of pieces are conjugate to the start.
-/// Nothing if the pieces are not finite.
-std::optional<int> antiperiodic_index(const SecondVariation& variation, const Eigen::MatrixXd& map);
-
 }  // namespace extremal

@@ -288,8 +288,9 @@ Spectrum sorted(std::vector<SpectralLine> lines, double residual) {
 std::size_t limit(SpectrumGoal goal) { return goal.lines > 0 ? goal.lines : most_spectral_lines; }
 
 void check(std::span<const double> samples, double length, const char* what) {
-  if (samples.size() < 16)
-    throw std::invalid_argument(fmt::format("{} samples; a spectrum needs at least 16", samples.size()));
+  if (samples.size() < least_spectral_samples)
+    throw std::invalid_argument(fmt::format("{} samples; a spectrum needs at least {}: take more elements",
+                                            samples.size(), least_spectral_samples));
   if (!(length > 0)) throw std::invalid_argument(fmt::format("{} = {}; must be positive", what, length));
   for (std::size_t j = 0; j < samples.size(); ++j)
     if (!std::isfinite(samples[j]))

@@ -26,6 +26,7 @@ struct SpectrumGoal {
 };
 
 inline constexpr int most_spectral_lines = 32;
+inline constexpr std::size_t least_spectral_samples = 16;
 
 /// Of samples that are `step` apart, the last included. The largest line of what is left is added until the
 /// goal is met; all are then fitted together by least squares in a window that vanishes at both ends with

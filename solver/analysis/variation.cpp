@@ -51,26 +51,45 @@ int degree_for(int n, int trajectory_degree) {
 
 }  // namespace
 
+void SecondVariation::begin(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory) {
+  lagrangian_ = std::move(lagrangian);
+  trajectory_ = &trajectory;
+  pieces_.clear();
+  forms_.clear();
+  switches_.clear();
+  forms_from_ = 0;
+  too_many_ = too_large_ = of_scheme_ = false;
+}
+
+bool SecondVariation::assemble_elements(std::shared_ptr<const Lagrangian> lagrangian,
+                                        const Trajectory& trajectory, const Path& path,
+                                        const ElementTables& tables, const ClosingMap* closed) {
+  begin(std::move(lagrangian), trajectory);
+  of_scheme_ = true;
+  scheme_ = &tables.scheme();
+  action_.reset(*lagrangian_, tables, path.elements(), false, Condense::elements);
+  action_.evaluate(path);
+  if (!action_.finite()) return false;
+  keep_elements(action_);
+  if (lagrangian_->kinks()) find_crossings(closed);
+  forget();
+  return true;
+}
+
 bool SecondVariation::assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
                                const Condensed& condensed, const ClosingMap* closed, Definite definite) {
   const bool bound = lagrangian_ == lagrangian;
-  lagrangian_ = std::move(lagrangian);
-  trajectory_ = &trajectory;
+  begin(std::move(lagrangian), trajectory);
   const int degree = degree_for(trajectory.coordinates, trajectory.degree);
   const SchemeTables& scheme = SchemeTables::of_order(degree, *lagrangian_);
   const bool made = scheme_ == &scheme;
   scheme_ = &scheme;
   if (!made || !bound) tables_.bind(*scheme_, *lagrangian_);
-  pieces_.clear();
-  forms_.clear();
-  forms_from_ = 0;
-  too_many_ = false;
   too_large_ = double(tables_.condensation().fronts.groups()) * simd_lanes() > limits::variation::most_batch;
   if (too_large_) return false;
   definite_ = definite;
   const bool taken = condensed.action && take(condensed), regular = taken || cut();
   if (!regular) pieces_.clear();
-  switches_.clear();
   if (regular && lagrangian_->kinks()) find_crossings(closed);
   evaluated_ = regular && !taken ? pieces_.back().first : -1;
   forget();
@@ -183,12 +202,15 @@ void SecondVariation::evaluate(std::span<const Part> parts) {
 
 /// Elements that were condensed by another, if they are short enough.
 bool SecondVariation::take(const Condensed& condensed) {
-  const int elements = trajectory_->elements();
-  if (!resolved(*condensed.action, elements, condensed.tail)) return false;
-  batch_.clear();
-  for (int k = 0; k < elements; ++k) batch_.push_back({k, 0, 1});
-  keep(*condensed.action, batch_);
+  if (!resolved(*condensed.action, trajectory_->elements(), condensed.tail)) return false;
+  keep_elements(*condensed.action);
   return true;
+}
+
+void SecondVariation::keep_elements(const DiscreteAction& action) {
+  batch_.clear();
+  for (int k = 0; k < trajectory_->elements(); ++k) batch_.push_back({k, 0, 1});
+  keep(action, batch_);
 }
 
 /// Whether pieces are short enough, tried with one Jacobi field that has a share of all.
@@ -307,8 +329,9 @@ Eigen::MatrixXd SecondVariation::end_form(int k, double tau) {
 const Eigen::MatrixXd& SecondVariation::inner_by_ends(int k) {
   Eigen::MatrixXd& fields = inner_by_ends_[k];
   if (fields.size() > 0) return fields;
-  evaluate_group(k);
-  const int inner = tables_.inner(), n = coordinates(), element = k - pieces_[k].first;
+  if (!of_scheme_) evaluate_group(k);
+  const int n = coordinates(), inner = (scheme_->degree - 1) * n,
+            element = of_scheme_ ? k : k - pieces_[k].first;
   if (kept_ + inner * 2 * n > most_kept) forget();
   kept_ += inner * 2 * n;
   fields_.resize(inner, 2 * n);

@@ -48,6 +48,15 @@ class SecondVariation {
   bool assemble(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
                 const Condensed& condensed = {}, const ClosingMap* closed = nullptr,
                 Definite definite = Definite::positive);
+  /// The pieces are the elements of a path, with the forms and the Jacobi fields that the scheme of `tables`
+  /// gives them: polynomials of its degree, which forms of parts of pieces follow from. The product of their
+  /// flows is that of the scheme, and a shift in time is no symmetry of it. The trajectory is that of the
+  /// path; both, and the tables, must outlive it. False where forms are not finite.
+  bool assemble_elements(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
+                         const Path& path, const ElementTables& tables, const ClosingMap* closed);
+  bool of_scheme() const { return of_scheme_; }
+  /// Whether the form of each piece with fixed ends is positive definite.
+  bool definite() const { return action_.nodes.negative == 0; }
   /// Whether assemble() failed because there would be too many pieces, or because they are too large.
   bool too_many() const { return too_many_; }
   bool too_large() const { return too_large_; }
@@ -75,6 +84,8 @@ class SecondVariation {
   /// x_b = I.
   void fields(int k, double tau, Eigen::MatrixXd& from_start, Eigen::MatrixXd& from_end);
 
+  /// Whether start_forms() and end_form() may be asked for.
+  bool has_part_forms() const { return !of_scheme_ && !has_kinks(); }
   /// The form A of the part of piece k from its start to start + tau·length, for each tau in (0, 1].
   std::vector<Eigen::MatrixXd> start_forms(int k, std::span<const double> tau);
   /// The form D of the part from start + tau·length, tau in [0, 1), to its end.
@@ -97,6 +108,8 @@ class SecondVariation {
   double length(const Part& part) const {
     return (part.tau1 - part.tau0) * trajectory_->length(part.element);
   }
+  void begin(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory);
+  void keep_elements(const DiscreteAction& action);
   bool cut();
   void evaluate(std::span<const Part> parts);
   bool resolved(const DiscreteAction& action, int count, double allowed);
@@ -113,7 +126,7 @@ class SecondVariation {
   const SchemeTables* scheme_ = nullptr;
   ElementTables tables_;
 
-  bool too_many_ = false, too_large_ = false;
+  bool too_many_ = false, too_large_ = false, of_scheme_ = false;
   Definite definite_ = Definite::positive;
   std::vector<Kept> pieces_;
   std::vector<double> forms_;  ///< A, B, D of each piece, or of those evaluated last

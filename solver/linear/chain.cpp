@@ -18,6 +18,8 @@ namespace {
 /// Blocks times the cube of their size, for all null directions of one matrix: with more it counts as
 /// singular.
 constexpr double most_work = 1e8;
+/// The same, for one factorisation with chosen pivots that is not needed for a step.
+constexpr double most_pivoted_work = 1e9;
 
 ChainKernels kernels(int size) {
   const ChainKernels own = at_simd_level(EXTREMAL_AT_EACH_LEVEL(small_chain))(size);
@@ -158,6 +160,20 @@ bool Chain::factor(double smallest) {
     deflated_.insert(deflated_.end(), more.begin(), more.end());
   }
   return deflated_.empty();
+}
+
+/// Where elements grow pivots are chosen.
+std::optional<Inertia> Chain::signs() {
+  deflated_.clear();
+  factored_ = false;
+  if (blocks_ == 0) return Inertia{};
+  ChainMonitor m;
+  kernels_.factor(diagonal(0), lower(0), blocks_, size_, factor_.data(), &m);
+  const bool finite = m.positive + m.negative == order() && std::isfinite(m.scale);
+  if (finite && m.wild <= 0) return Inertia{m.positive, m.negative, 0};
+  if (double(blocks_) * size_ * size_ * size_ > most_pivoted_work) return std::nullopt;
+  if (!pivoted_factor_.factor(diagonal(0), lower(0), blocks_, size_, 0)) return std::nullopt;
+  return pivoted_factor_.inertia();
 }
 
 void Chain::solve_factored(double* x, int columns) const {

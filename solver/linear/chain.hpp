@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,12 @@ class Chain {
   /// largest, and that is listed in deflated(): the factorisation is an exact one of a nonsingular matrix
   /// that is known.
   bool factor(double smallest = 0);
+
+  /// The inertia alone, as pivots tell it without a search for null directions: that of a matrix whose
+  /// entries differ from those of A by at most `sign_error`, relative to the largest of a block. Nothing if A
+  /// is not finite. There is no factorisation then.
+  std::optional<Inertia> signs();
+  static constexpr double sign_error = wild_growth * machine_epsilon;
 
   /// X := (A + Σ amount e_row e_rowᵀ over deflated())⁻¹ X; that is A⁻¹ X after factor() has returned true.
   /// X has `columns` columns: entry (block k, row i, column c) at x[(k*size + i)*columns + c]. Refines

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <span>
 
 /// \file Dense factorisations, each instantiated once: Eigen's templates would cost every file that uses one
 /// several seconds to compile, and half a minute under sanitizers.
@@ -11,6 +12,13 @@ extern template class Eigen::ColPivHouseholderQR<Eigen::MatrixXd>;
 extern template class Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
 
 namespace extremal {
+
+inline std::span<double> span_of(Eigen::VectorXd& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+inline std::span<const double> span_of(const Eigen::VectorXd& x) {
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
 
 /// Orthonormal columns that span those of `m`, r × c with c <= r.
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& m);

@@ -11,7 +11,9 @@ namespace extremal {
 
 namespace {
 
-constexpr int most_iterations = 20;
+constexpr int most_iterations = 60;
+/// Of a step that leaves ∂L/∂q' further from p.
+constexpr double least_part = 1e-10;
 /// ∂L/∂q' agrees with p to roundoff.
 constexpr double roundoff = 2e-15;
 /// From below the first of these the next step of Newton ends in roundoff, which is then below the second.
@@ -37,7 +39,9 @@ Flow::Flow(const Lagrangian& lagrangian, int copies)
       point_(lagrangian, copies),
       mass_(n_),
       v_(n_, nearly_at_rest),
-      residual_(n_) {
+      residual_(n_),
+      from_(n_),
+      step_(n_) {
   if (const Lagrangian* hamiltonian = hamiltonian_of(lagrangian))
     hamiltonian_ = std::make_unique<PointEvaluator>(*hamiltonian);
   if (structure_.quadratic && !mass_.factor(point_.constant_vv()))
@@ -72,27 +76,50 @@ bool Flow::solve_linear(std::span<const double> q, std::span<const double> p, do
   return point_.evaluate(q, v_, t, order);
 }
 
-/// ∂H/∂p, where that is known; else Newton from the last velocity: one step where L is quadratic in q'.
+/// ∂H/∂p, where that is known; else Newton from the last velocity, one step where L is quadratic in q'. A
+/// step is shortened until ∂L/∂q' comes nearer to p: velocities may have a bound, at which momenta have none.
 bool Flow::solve_newton(std::span<const double> q, std::span<const double> p, double t) {
-  double before = std::numeric_limits<double>::infinity();
-  double scale = 0;  // of all terms so far: at rest they vanish
   if (hamiltonian_) {
     if (!hamiltonian_->evaluate(q, p, t, Order::gradient)) return false;
     v_ = hamiltonian_->dv();
     return point_.evaluate(q, v_, t, Order::gradient);
   }
-  for (int i = 0; i < most_iterations; ++i) {
-    if (!point_.evaluate(q, v_, t, Order::gradient)) return false;
-    for (int a = 0; a < n_; ++a) residual_[a] = p[a] - point_.dv()[a];
-    const double error = largest(residual_);
-    scale = std::max(scale, largest(p) + mass_.largest() * largest(v_));
-    if (error <= roundoff * scale || (before <= near * scale && error <= acceptable * scale)) return true;
+  double error = momentum_error(q, p, t), before = std::numeric_limits<double>::infinity();
+  if (!std::isfinite(error)) {
+    std::ranges::fill(v_, nearly_at_rest);
+    error = momentum_error(q, p, t);
+  }
+  const double momentum = largest(p);
+  double fastest = 0;  // so far: at rest p and q' vanish
+  const auto agrees = [&](double scale) {
+    return error <= roundoff * scale || (before <= near * scale && error <= acceptable * scale);
+  };
+  for (int i = 0; i < most_iterations && std::isfinite(error); ++i) {
+    if (agrees(momentum)) return true;
     if (!point_.evaluate(q, v_, t, Order::hessian) || !mass_.factor(point_.vv())) return false;
+    fastest = std::max(fastest, largest(v_));
+    const double scale = momentum + mass_.largest() * fastest;
+    if (agrees(scale)) return true;
     before = error;
-    mass_.solve(residual_);
-    for (int a = 0; a < n_; ++a) v_[a] += residual_[a];
+    from_ = v_;
+    step_ = residual_;
+    mass_.solve(step_);
+    const auto closer = [&] { return error < before || error <= acceptable * scale; };
+    for (double part = 1; part > least_part; part /= 4) {
+      for (int a = 0; a < n_; ++a) v_[a] = from_[a] + part * step_[a];
+      error = momentum_error(q, p, t);
+      if (closer()) break;
+    }
+    if (!closer()) return false;
   }
   return false;
+}
+
+/// By how much ∂L/∂q' at v_ is off p; not finite where L is not. Leaves the derivatives of L in point_.
+double Flow::momentum_error(std::span<const double> q, std::span<const double> p, double t) {
+  if (!point_.evaluate(q, v_, t, Order::gradient)) return std::numeric_limits<double>::quiet_NaN();
+  for (int a = 0; a < n_; ++a) residual_[a] = p[a] - point_.dv()[a];
+  return largest(residual_);
 }
 
 bool Flow::velocity(std::span<const double> q, std::span<const double> p, double t, std::span<double> v) {

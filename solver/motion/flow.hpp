@@ -43,13 +43,14 @@ class Flow {
   bool solve_velocity(std::span<const double> q, std::span<const double> p, double t, Order order);
   bool solve_linear(std::span<const double> q, std::span<const double> p, double t, Order order);
   bool solve_newton(std::span<const double> q, std::span<const double> p, double t);
+  double momentum_error(std::span<const double> q, std::span<const double> p, double t);
 
   int n_;
   const Structure& structure_;
   PointEvaluator point_;
   std::unique_ptr<PointEvaluator> hamiltonian_;  ///< where L is made of it: q' = ∂H/∂p
   MassMatrix mass_;
-  std::vector<double> v_, last_v_, residual_;
+  std::vector<double> v_, last_v_, residual_, from_, step_;
 };
 
 }  // namespace extremal

@@ -108,14 +108,6 @@ EndFunction of_mean(const EndFunction& one) {
   };
 }
 
-Guess guess_of_both(const Guess& one, std::size_t n) {
-  Guess both = one;
-  both.q.clear();
-  for (auto q = one.q.begin(); q != one.q.end(); q += static_cast<std::ptrdiff_t>(n))
-    for (int copy = 0; copy < 2; ++copy) both.q.insert(both.q.end(), q, q + static_cast<std::ptrdiff_t>(n));
-  return both;
-}
-
 /// What a generator does to the first copy, G by rows and then c; nothing where it mixes the copies.
 Eigen::VectorXd on_first(const Generator& generator) {
   const std::size_t m = generator.shift.size(), n = m / 2;
@@ -146,6 +138,14 @@ Generator on_copy(const Eigen::VectorXd& part, std::size_t n, std::size_t copy) 
 }
 
 }  // namespace
+
+Guess guess_of_both(const Guess& one, std::size_t n) {
+  Guess both = one;
+  both.q.clear();
+  for (auto q = one.q.begin(); q != one.q.end(); q += static_cast<std::ptrdiff_t>(n))
+    for (int copy = 0; copy < 2; ++copy) both.q.insert(both.q.end(), q, q + static_cast<std::ptrdiff_t>(n));
+  return both;
+}
 
 Problem pair_of(const Problem& problem) {
   Problem pair;

@@ -13,6 +13,9 @@ namespace extremal {
 /// boundary relation is solved; it is not checked, see make_problem().
 Problem pair_of(const Problem& problem);
 
+/// The guess of one copy, of n coordinates, for both.
+Guess guess_of_both(const Guess& one, std::size_t n);
+
 /// Symmetries of a problem of two copies, of one copy at a time. What moves both alike is a null direction of
 /// the linearised equations; a force along it closes these, and that is a direction of the other copy.
 std::vector<Generator> symmetries_of_copies(const std::vector<Generator>& found);

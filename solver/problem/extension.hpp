@@ -27,6 +27,8 @@ struct WaypointCondition {
   double time = 0;                            ///< in (0, T); where it is free, t/T of its guess
   bool free = false;                          ///< S is stationary in the time: the energy is continuous
   std::vector<std::pair<int, double>> fixed;  ///< coordinate, value
+  /// The time, or its guess.
+  double at(double duration) const { return free ? time * duration : time; }
 };
 
 /// Stationary points of

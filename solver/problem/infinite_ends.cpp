@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "problem/limits.hpp"
@@ -116,12 +117,18 @@ void check_hyperbolic(const End& end, bool at_end, const std::vector<std::string
   for (const auto& [at, text, about] :
        {std::tuple(&end, "end", About::end), {&start, "start", About::start}}) {
     if (!at->fixed || (!autonomous && at == &start)) continue;
-    const std::string nearest = std::isfinite(at->rest.distance)
-                                    ? fmt::format("the nearest one is {}", point_text(names, at->rest.q))
-                                    : std::string("no equilibrium is near");
+    // An end that is left out is the one that may be at infinity.
+    const bool other_open = at == &end ? !start.fixed && autonomous : !end.fixed;
+    const std::string nearest =
+        std::isfinite(at->rest.distance)
+            ? fmt::format("the nearest one is {}; give that{}", point_text(names, at->rest.q),
+                          !other_open  ? ""
+                          : at == &end ? " at the start"
+                                       : " at the end")
+            : std::string("no equilibrium is near; give one at an end");
     throw InfiniteEndError(
         about, fmt::format("duration = \"infinite\" needs an end at an equilibrium of L; at the {}, {}, the "
-                           "force ∂L/∂q at rest is {:.3g}, and {}; give that, or a finite duration",
+                           "force ∂L/∂q at rest is {:.3g}, and {}, or a finite duration",
                            text, point_text(names, at->q), at->rest.force, nearest));
   }
   if (!autonomous && start.fixed)
@@ -200,6 +207,19 @@ void meet_momenta(const Problem& problem, const RestPoint& rest, bool at_end, st
   for (std::size_t k = 0; k < free.size(); ++k) q[free[k]] = rest.q[free[k]] + free_away[k];
 }
 
+/// The default guess would be the equilibrium q.
+[[noreturn]] void refuse_rest(const Problem& problem, const InfiniteEnds& infinite,
+                              const std::vector<double>& q) {
+  const std::string_view open = infinite.both() ? "" : infinite.start.empty() ? "start" : "end";
+  const std::string level = q.front() == 0 ? "" : fmt::format("{:.10g} + ", q.front());
+  throw InfiniteEndError(
+      About::both,
+      fmt::format("the default guess is the equilibrium itself, which is an extremal at rest; give {}a guess "
+                  "that leaves it, such as {} = \"{}1/cosh(t - T/2)\" in [guess]",
+                  open.empty() ? "" : fmt::format("the {} a place away from it, or ", open),
+                  problem.names.empty() ? "x" : problem.names.front(), level));
+}
+
 Guess default_guess(const Problem& problem, const InfiniteEnds& infinite) {
   const std::size_t n = problem.coordinates();
   const bool from = !infinite.start.empty(), to = !infinite.end.empty();
@@ -223,10 +243,7 @@ Guess default_guess(const Problem& problem, const InfiniteEnds& infinite) {
   }
   if (way <= same_point * size &&
       ((from && to) || std::ranges::any_of(problem.ends.fixed, [](char f) { return !f; })))
-    throw InfiniteEndError(
-        About::both,
-        "the default guess is the equilibrium itself, which is an extremal at rest; give a "
-        "guess that leaves it, such as x = \"1/cosh(t - T/2)\" in [guess]");
+    refuse_rest(problem, infinite, start);
   const double middle = from && to ? T * b / (a + b) : 0;
   Guess guess;
   for (int k = 0; k <= samples; ++k) {

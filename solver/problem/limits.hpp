@@ -47,17 +47,17 @@ inline constexpr double roundoff = 1e-12;
 
 namespace singular_ends {
 
-/// The exponent of the speed is read at distances of this part of the way, and so many times nearer each
-/// time: next to the level it is a power, farther from it the energy loses fewer digits.
+/// The exponent of the speed is read at distances of this part of the way, and so much nearer each time: next
+/// to the level it is a power, farther from it the energy loses fewer digits.
 inline constexpr double first_distance = 1e-3, nearer = 0.1;
-inline constexpr int distances = 5;
+inline constexpr int distances = 64;
 inline constexpr int bisections = 60;
-/// Of an exponent, between two distances.
+/// Of an exponent, from one distance to the next.
 inline constexpr double exponent_change = 4e-3;
 /// Beyond the largest one the integral of L is infinite; below the least one L is nearly finite.
 inline constexpr double least_exponent = 0.02, largest_exponent = 0.98;
 /// Denominators of fractions; the error of an exponent that is measured, and that of arithmetic.
-inline constexpr int largest_power = 8;
+inline constexpr int largest_power = 16;
 inline constexpr double whole = 3e-4, roundoff = 1e-12;
 inline constexpr int most_coordinates = 16;
 /// Samples of a guess in the new variables; sizes of it, by powers of two of the duration to both sides.

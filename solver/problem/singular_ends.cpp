@@ -74,6 +74,9 @@ class EnergyBeside {
     return energy;
   }
 
+  /// A distance as the coordinate, rounded, has it.
+  double rounded(double distance) const { return side_ * ((end_.q[a_] + side_ * distance) - end_.q[a_]); }
+
   /// The speed at which the energy is the given one, which rises with the speed; 0 if there is none.
   double speed(double distance, double energy, double guess) {
     double low = guess, high = guess;
@@ -96,25 +99,40 @@ class EnergyBeside {
   Scratch scratch_;
 };
 
-/// γ of d' ~ d^−γ; 0 if no motion leaves the level, or not by a power.
+/// What a sequence tends to whose distance from that falls like a power: Aitken's extrapolation.
+double extrapolated(double before, double middle, double last) {
+  const double first = middle - before, change = last - middle;
+  return std::abs(change) < 0.9 * std::abs(first) ? last + change * change / (first - change) : last;
+}
+
+/// γ of d' ~ d^−γ; 0 if no motion leaves the level, or not by a power. The slopes at pairs of distances
+/// differ from γ by a power of the distance, until the energy has lost its digits: of their limits that which
+/// moves least to the next.
 double exponent(const Lagrangian& lagrangian, const End& end, std::size_t a, double side, double way,
                 double duration) {
   EnergyBeside energy(lagrangian, end, a, side);
-  double speed = way / duration;
-  const double level = energy(first_distance * way, speed);
+  double speed = way / duration, distance = energy.rounded(first_distance * way);
+  const double level = energy(distance, speed);
   if (!std::isfinite(level)) return 0;
   std::vector<double> slopes;
-  for (int k = 0; k < distances; ++k) {
-    const double next = energy.speed(way * first_distance * std::pow(nearer, k + 1), level, speed);
-    if (!(next > 0) || !std::isfinite(next)) return 0;
-    slopes.push_back(-std::log(next / speed) / std::log(nearer));
-    speed = next;
+  double found = 0, least = exponent_change, limit = NAN;
+  for (int k = 0; k < distances && least > roundoff; ++k) {
+    const double next = energy.rounded(nearer * distance);
+    if (!(next > roundoff * std::abs(end.q[a]))) break;
+    const double faster = energy.speed(next, level, speed);
+    if (!(faster > 0) || !std::isfinite(faster)) break;
+    slopes.push_back(std::log(faster / speed) / std::log(distance / next));
+    speed = faster;
+    distance = next;
+    const std::size_t known = slopes.size();
+    if (known < 3) continue;
+    const double before = limit;
+    limit = extrapolated(slopes[known - 3], slopes[known - 2], slopes[known - 1]);
+    if (!(std::abs(limit - before) <= least)) continue;
+    least = std::abs(limit - before);
+    found = limit;
   }
-  // They differ from γ by a power of the distance: Aitken's extrapolation.
-  const double last = slopes[distances - 1], change = last - slopes[distances - 2],
-               before = slopes[distances - 2] - slopes[distances - 3];
-  if (!(std::abs(change) <= exponent_change)) return 0;
-  return std::abs(change) < 0.9 * std::abs(before) ? last + change * change / (before - change) : last;
+  return found;
 }
 
 struct Powers {

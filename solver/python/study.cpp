@@ -42,10 +42,7 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
   if (solution.extension) {
     ExtensionValues values = *solution.extension;
     if (!values.lagrangian) {
-      std::vector<double> constants;
-      for (const auto& [name, value] : values.unknowns) constants.push_back(value);
-      constants.insert(constants.end(), values.integral_multipliers.begin(),
-                       values.integral_multipliers.end());
+      const std::vector<double> constants = values.constants();
       values.lagrangian = study->problem.extension->at(constants);
       if (study->problem.extension->manifold_at)
         values.manifold = study->problem.extension->manifold_at(constants);
@@ -57,11 +54,11 @@ std::shared_ptr<Solved> solved_by(std::shared_ptr<const Study> study, Solution s
   }
   if (solution.contacts && study->problem.inequalities) {
     PathContacts contacts = *solution.contacts;
-    const std::vector<double> multipliers =
-        solution.extension ? solution.extension->integral_multipliers : std::vector<double>();
+    const std::vector<double> constants =
+        solution.extension ? solution.extension->constants() : std::vector<double>();
     for (PathContacts::Arc& arc : contacts.arcs)
       if (!arc.held.empty() && !arc.manifold)
-        arc.manifold = study->problem.inequalities->hold(arc.held, multipliers).manifold;
+        arc.manifold = study->problem.inequalities->hold(arc.held, constants).manifold;
     solution.contacts = std::make_shared<const PathContacts>(std::move(contacts));
   }
   return std::make_shared<Solved>(Solved{std::move(study), std::move(solution), std::move(fit)});

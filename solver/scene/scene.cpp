@@ -78,8 +78,6 @@ void check_where_list(const Scene& scene) {
     throw SceneError(
         scene.guess.duration->at,
         "'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or leave the guess out");
-  if (boundary.free && !scene.guess.duration && !scene.guess.file)
-    throw SceneError(boundary.duration.at, "a free duration needs 'duration' in [guess], or a guess file");
 }
 
 /// Ends at infinity exclude what relates both ends, and what is not made for them.
@@ -131,12 +129,6 @@ void check_duration(const Scene& scene) {
                          : "with forces the energy is no constant; close the duration by 'where'");
   if (forced && boundary.periodic && boundary.where)
     throw SceneError(boundary.where->at, "with forces an orbit has a period of its own; leave 'where' out");
-  if (boundary.free && !closing && forced && !boundary.periodic)
-    throw SceneError(boundary.duration.at, "a free duration with forces needs 'where' to close it");
-  if (boundary.free && !closing && !forced)
-    throw SceneError(boundary.duration.at, "a free duration needs 'energy' or 'where' to close it");
-  if (boundary.free && !scene.guess.duration && !scene.guess.file)
-    throw SceneError(boundary.duration.at, "a free duration needs 'duration' in [guess], or a guess file");
 }
 
 void check_guess(const Scene& scene) {

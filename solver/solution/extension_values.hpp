@@ -24,6 +24,13 @@ struct ExtensionValues {
   std::vector<WaypointImpulse> waypoints;
   std::shared_ptr<const Lagrangian> lagrangian;  ///< L + Σ ν g at these values
   std::shared_ptr<const Manifold> manifold{};    ///< of constraints, at these values; null: there are none
+
+  std::vector<double> constants() const {  ///< k, ν
+    std::vector<double> all;
+    for (const auto& [name, value] : unknowns) all.push_back(value);
+    all.insert(all.end(), integral_multipliers.begin(), integral_multipliers.end());
+    return all;
+  }
 };
 
 }  // namespace extremal

@@ -22,3 +22,12 @@ inline constexpr int raise = 4;
 inline constexpr double relation_missed = 1e-7;
 
 }  // namespace extremal::limits::minimal
+
+namespace extremal::limits::broken_node {
+
+/// Roundings of L and of p·q', and of q.
+inline constexpr double roundoff_of_terms = 1e-12, roundoff_of_q = 1e-14;
+/// Of the speed: the cube root of a rounding.
+inline constexpr double least_jump = 6e-6;
+
+}  // namespace extremal::limits::broken_node

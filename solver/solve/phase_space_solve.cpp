@@ -9,11 +9,13 @@
 
 #include "action/scheme.hpp"
 #include "problem/phase_space.hpp"
+#include "problem/point_range.hpp"
 #include "problem/reduction.hpp"
 #include "solution/in_phase_space.hpp"
 #include "solve/guess/hamilton_path.hpp"
 #include "solve/guessed_by.hpp"
 #include "solve/limits.hpp"
+#include "solve/periodic/equilibrium.hpp"
 
 namespace extremal {
 
@@ -69,24 +71,32 @@ class PhaseSpaceSolve {
     return after(motion, std::move(solution));
   }
 
+  /// The range is compared with that of the guess itself: a path near Hamilton's equations that takes its
+  /// place may rest already.
   Solution solved(const Problem& problem, const SolveOptions& options, bool near_guess) {
     Solution solution = solve_(problem, options, near_guess);
     if (!solution.converged()) return solution;
+    if (problem.periodic && shrank(problem, largest_range(solution.trajectory.nodes, problem.coordinates()),
+                                   largest_range(problem_.guess.q, problem.coordinates())))
+      return refused(fmt::format("{}; try a larger guess or another duration", shrank_to_rest), solution);
     const double defect = phase_defect(problem, solution.trajectory, solution.degree);
     const double allowed = std::clamp(defect_tolerances * options.tolerance, least_defect, most_defect);
     if (defect <= allowed) return solution;
-    Solution refused;
-    refused.status = Status::no_solution_near;
-    refused.message = fmt::format(
-        "Hamilton's equations do not hold on the path found: q' and p' differ from them by {:.1e} of the "
-        "range in "
-        "the duration; the conditions at the ends may contradict each other, else try another guess",
-        defect);
-    refused.strategy = solution.strategy;
-    refused.iterations = solution.iterations;
-    refused.seconds_solve = solution.seconds_solve;
-    refused.seconds_analyse = solution.seconds_analyse;
-    return refused;
+    return refused(
+        fmt::format(
+            "Hamilton's equations do not hold on the path found: q' and p' differ from them by {:.1e} "
+            "of the range in the duration; the conditions at the ends may contradict each other, else "
+            "try another guess",
+            defect),
+        solution);
+  }
+
+  static Solution refused(std::string message, const Solution& found) {
+    Solution result;
+    result.status = Status::no_solution_near;
+    result.message = std::move(message);
+    result.strategy = found.strategy;
+    return after(found, std::move(result));
   }
 
   Solution first() {

@@ -15,17 +15,17 @@
 #include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/acceptance.hpp"
-#include "solve/adapt/pinned.hpp"
 #include "solve/bordered/bordered_solve.hpp"
 #include "solve/contact/contact_solve.hpp"
 #include "solve/guessed_by.hpp"
 #include "solve/infinite_solve.hpp"
+#include "solve/leg_solve.hpp"
 #include "solve/march/initial_motion.hpp"
 #include "solve/minimal_solve.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/phase_space_solve.hpp"
 #include "solve/reversed_solve.hpp"
-#include "solve/search/balance.hpp"
+#include "solve/scheme_solve.hpp"
 #include "solve/search/distinct.hpp"
 #include "solve/search/limits.hpp"
 #include "solve/search/search.hpp"
@@ -39,9 +39,6 @@ namespace extremal {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-/// Of the time there is, where what a search finds is then to be solved for with a scheme.
-constexpr double search_share = 0.7;
 
 /// The largest of the values that a problem with an extension gives.
 double given_size(const Problem& problem) {
@@ -109,44 +106,10 @@ std::optional<Solution> solve_by_part(const Problem& problem, const SolveOptions
 
 /// What lies between two rests is held in time by the energy, the square of deviations from rest. A looser
 /// tolerance than this leaves its place open.
-SolveOptions holding(const SolveOptions& options) {
+SolveOptions isolating(const SolveOptions& options) {
   SolveOptions closer = options;
-  closer.tolerance = limits::balance::holding_tolerance;
+  closer.tolerance = Acceptance::isolating_tolerance;
   return closer;
-}
-
-bool loosely_held(const Problem& problem, const SolveOptions& options, const Solution& solution) {
-  return solution.converged() && options.tolerance > limits::balance::holding_tolerance &&
-         problem.ends.free == 0 && problem.lagrangian->structure().autonomous &&
-         count_rests(solution.trajectory) > 1;
-}
-
-Solution solve_once(const Problem& problem, const SolveOptions& options, Workspace& w);
-
-/// From the guess. Where that does not lead to an extremal, from the one that is found without the scheme.
-Solution solve_with_scheme(const Problem& problem, const SolveOptions& options, Workspace& w,
-                           Clock::time_point start) {
-  const auto from_guess = [&](const Problem& given, const SolveOptions& how, bool& astray) {
-    Outcome outcome = PinnedSolve(given, how, w).run();
-    astray = outcome.astray;
-    return judged(given, how, outcome, w, start);
-  };
-  bool astray = false;
-  Solution solution = from_guess(problem, options, astray);
-  if (!astray) return solution;
-  SolveOptions adaptive = options;
-  adaptive.scheme.reset();
-  adaptive.elements = 0;
-  adaptive.free_steps = false;
-  adaptive.deadline = options.deadline.share(search_share);
-  const Solution guide = solve_once(problem, adaptive, w);
-  if (!guide.converged()) return solution;
-  w.levels.bind(problem.lagrangian);
-  Solution found = from_guess(guessed_by(problem, guide), options, astray);
-  if (!found.converged()) return solution;
-  found.strategy = guide.strategy + ", then the scheme from there";
-  found.iterations += solution.iterations + guide.iterations;
-  return found;
 }
 
 /// As the options ask: with a scheme of their own, by the part of a symmetric orbit, or by a search.
@@ -154,7 +117,10 @@ Solution solve_once(const Problem& problem, const SolveOptions& options, Workspa
   if (problem.initial) return solve_initial(problem, options);
   const auto start = Clock::now();
   w.levels.bind(problem.lagrangian);
-  if (options.scheme) return solve_with_scheme(problem, options, w, start);
+  if (options.scheme)
+    return solve_with_scheme(
+        problem, options, w, [&](const SolveOptions& how) { return solve_once(problem, how, w); },
+        [&](const Problem& given, const Outcome& found) { return judged(given, options, found, w, start); });
   int spent = 0;
   if (problem.reduction)
     if (std::optional<Solution> solution = solve_by_part(problem, options, w, start, spent))
@@ -166,8 +132,9 @@ Solution solve_once(const Problem& problem, const SolveOptions& options, Workspa
   Solution solution = acceptance.result(last);
   solution.seconds_solve = seconds;
   solution.iterations += spent;
-  if (!loosely_held(problem, options, solution)) return solution;
-  Solution closer = solve_once(problem, holding(options), w);
+  if (!acceptance.too_loose()) return solution;
+  Solution closer = solve_once(problem, isolating(options), w);
+  if (!closer.converged()) closer.message = std::move(solution.message);
   closer.iterations += solution.iterations;
   closer.seconds_solve += solution.seconds_solve;
   return closer;
@@ -210,6 +177,26 @@ Solution solve_any(const Problem& problem, const SolveOptions& options, Workspac
                         [&w](const Problem& part, const SolveOptions& how, bool near_guess) {
                           return solve_finite(part, how, w, near_guess);
                         });
+}
+
+/// With an extension; where no guess of the whole leads to a solution, from those of its legs.
+Solution solve_extended(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  SolveOptions own = options;  // of a leg
+  own.scheme.reset();
+  own.elements = 0;
+  own.progress = nullptr;
+  Solution solution = solve_bordered(problem, options);
+  if (solution.converged()) return solution;
+  const std::optional<Problem> guessed = guessed_by_legs(problem, [&](const Problem& leg) {
+    return leg.extension ? solve_bordered(leg, own) : solve_any(leg, own, w);
+  });
+  if (!guessed) return solution;
+  Solution found = solve_bordered(*guessed, options);
+  if (!found.converged()) return solution;
+  found.strategy = "legs between waypoints, each from the guess, then newton from there";
+  found.iterations += solution.iterations;
+  found.seconds_solve += solution.seconds_solve;
+  return found;
 }
 
 /// From the guess alone, by the part of a symmetric orbit or the whole.
@@ -327,7 +314,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
     return solve(whole, options);
   }
   Solution solution = problem.inequalities ? solve_with_inequalities(problem, recording, arc_solve(w))
-                      : problem.extension  ? solve_bordered(problem, recording)
+                      : problem.extension  ? solve_extended(problem, recording, w)
                       : problem.phase      ? solve_phase_space(problem, recording, w)
                                            : solve_any(problem, recording, w);
   if (problem.manifold && !problem.inequalities) on_manifold_found(problem, solution);
@@ -353,13 +340,10 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   if (problem.inequalities) return minimisers(problem, options, most, arc_solve(w));
   if (problem.extension) return bordered_all(problem, options, most);
   w.levels.bind(problem.lagrangian);
-  SolveOptions adaptive = options;
-  adaptive.scheme.reset();
-  adaptive.elements = 0;
-  if (options.scheme) adaptive.deadline = options.deadline.share(search_share);
-  std::vector<Solution> found = Several(problem, adaptive, w).run(most);
-  if (std::ranges::any_of(found, [&](const Solution& s) { return loosely_held(problem, adaptive, s); }))
-    found = Several(problem, holding(adaptive), w).run(most);
+  const SolveOptions adaptive = options.scheme ? without_scheme(options) : options;
+  Several several(problem, adaptive, w);
+  std::vector<Solution> found = several.run(most);
+  if (several.too_loose()) found = Several(problem, isolating(adaptive), w).run(most);
   if (problem.manifold && !options.scheme)
     for (Solution& solution : found) move_onto_manifold(problem, solution);
   if (!options.scheme || !found.front().converged()) return found;

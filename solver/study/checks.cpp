@@ -8,6 +8,7 @@
 
 #include "machine/simd.hpp"
 #include "problem/nearby.hpp"
+#include "solve/guess/starting_ends.hpp"
 
 namespace extremal {
 namespace {
@@ -78,17 +79,36 @@ class GuessValues {
 /// The first sample of the guess where L is not finite, or -1.
 int first_not_finite(const Problem& problem) {
   const Guess& guess = problem.guess;
-  if (!guess.given()) return -1;
   const int first = wholly_fixed(problem.ends, false),
             after = static_cast<int>(guess.tau.size()) - wholly_fixed(problem.ends, true);
   return GuessValues(problem).first_not_finite(first, after - first);
 }
 
+/// With the guess as a path begins from it: moved linearly in t onto the ends.
+Problem with_guess_at_ends(const Problem& problem) {
+  Problem moved = problem;
+  const std::size_t n = problem.coordinates();
+  const std::vector<double> ends = starting_ends(problem);
+  std::vector<double> shift(2 * n);
+  problem.guess.at(0, {shift.data(), n});
+  problem.guess.at(1, {shift.data() + n, n});
+  for (std::size_t e = 0; e < 2 * n; ++e) shift[e] = ends[e] - shift[e];
+  Guess& guess = moved.guess;
+  for (std::size_t k = 0; k < guess.tau.size(); ++k)
+    for (std::size_t a = 0; a < n; ++a)
+      guess.q[k * n + a] += (1 - guess.tau[k]) * shift[a] + guess.tau[k] * shift[n + a];
+  return moved;
+}
+
 }  // namespace
 
-bool is_finite_on_guess(const Problem& problem) { return first_not_finite(problem) < 0; }
+bool is_finite_on_guess(const Problem& problem) {
+  return !problem.guess.given() || first_not_finite(with_guess_at_ends(problem)) < 0;
+}
 
-void check_guess_finite(const Problem& problem, const Location& at, bool by_momenta) {
+void check_guess_finite(const Problem& given, const Location& at, bool by_momenta) {
+  if (!given.guess.given()) return;
+  const Problem problem = with_guess_at_ends(given);
   const Guess& guess = problem.guess;
   const int k = first_not_finite(problem);
   if (k < 0) return;

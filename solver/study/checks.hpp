@@ -7,9 +7,9 @@
 
 namespace extremal {
 
-/// Throws SceneError at `at` if the Lagrangian is not finite somewhere on the guess, with the values there;
-/// of a Hamiltonian (`by_momenta`) also with the velocities. An end that the boundary relation fixes wholly
-/// is not the guess's.
+/// Throws SceneError at `at` if the Lagrangian is not finite somewhere on the guess as it is moved onto the
+/// ends, with the values there; of a Hamiltonian (`by_momenta`) also with the velocities. An end that the
+/// boundary relation fixes wholly is not the guess's.
 void check_guess_finite(const Problem& problem, const Location& at, bool by_momenta);
 
 /// Whether it would not.

@@ -42,7 +42,7 @@ class Comparer {
       : study_(study),
         options_(options),
         total_(deadline_of(study)),
-        shifts_(study.problem.periodic && study.problem.motion().structure().autonomous) {
+        invariance_(invariance_of(study.problem)) {
     study_.options.elements = 0;
     study_.options.progress = nullptr;
     result_.title = study.title;
@@ -212,7 +212,7 @@ class Comparer {
 
   /// Never below what the reference can tell; nothing where the motion cannot be followed to its end.
   std::optional<double> error(const Motion& motion) const {
-    const double apart = deviation(motion, motion_of(reference_), study_.problem.coordinates(), shifts_);
+    const double apart = deviation(motion, motion_of(reference_), study_.problem.coordinates(), invariance_);
     if (!std::isfinite(apart)) return std::nullopt;
     return std::max(apart, result_.reference->error_estimate);
   }
@@ -220,7 +220,7 @@ class Comparer {
   Study study_;
   const CompareOptions& options_;
   const Deadline total_;
-  bool shifts_;
+  const Invariance invariance_;
   Trajectory reference_;
   Comparison result_;
 };

@@ -45,9 +45,8 @@ struct CompareOptions {
 /// Solves the scene at each tolerance, with its own scheme if it names one, and by single and multiple
 /// shooting from the same guess; shooting with many coordinates is left out. The budget of the study is
 /// shared by the reference and the methods, and what one of them leaves goes to the next. Errors are the
-/// largest at 401 equal times, and never below the reference's own; where the scene is periodic and a shift
-/// in time changes nothing, after the shift that makes them least. From initial data the march is compared
-/// with DOP853.
+/// largest at 401 equal times, and never below the reference's own; where shifts in time or symmetries change
+/// nothing, after those that make them least. From initial data the march is compared with DOP853.
 Comparison compare(const Study& study, const CompareOptions& options = {});
 
 }  // namespace extremal

@@ -41,18 +41,20 @@ class ConstrainedEnds {
       complete_initial();
       return true;
     }
-    bool suited = problem_.periodic || suits();
+    bool suited = problem_.periodic || (suits() && suits_nearby());
     if (!suited) {
       pin_determined();
       suited = suits();
-    } else if (!problem_.periodic && !suits_nearby()) {
-      refuse_degenerate();
+      if (suited && !suits_nearby()) refuse_degenerate();
     }
     if (suited) project_free();
     return suited;
   }
 
  private:
+  double point_of(const EndPoints& points, int e) const {
+    return e < n_ ? points.start[e] : points.end[e - n_];
+  }
   std::span<double> point(bool at_end) { return at_end ? near_.end : near_.start; }
   double time(bool at_end) const { return at_end ? problem_.duration.value : 0; }
   bool fixed(bool at_end) const {
@@ -244,7 +246,7 @@ class ConstrainedEnds {
 
   /// Moves the ends onto the manifold within their relation, and fixes what no virtual displacement moves,
   /// there and beside it: where z = 1/2 is given on the unit sphere, x is at an extremum at y = 0, but is not
-  /// fixed.
+  /// fixed. So is what comes back from beside: where x = 1, y = 0 is a point that solutions ±y join in.
   void pin_determined() {
     const MatrixXd z = directions();
     put_on_relation(z);
@@ -254,19 +256,26 @@ class ConstrainedEnds {
         refuse_unmet(at_end);
     const EndPoints met = near_;
     MatrixXd beside = here;
+    VectorXd aside = VectorXd::Zero(2 * n_), away = aside;
     if (here.cols() > 0) {
-      VectorXd aside = here.col(0);
+      aside = here.col(0);
       for (Index k = 1; k < here.cols(); ++k) aside += (k % 2 ? -0.9 : 0.8) * here.col(k);
-      move(aside_part * least_size() * aside);
+      aside *= aside_part * least_size();
+      move(aside);
       beside = meet_along(z);
+      for (int e = 0; e < 2 * n_; ++e) away[e] = point(e >= n_)[e % n_] - point_of(met, e);
       near_ = met;
     }
     const auto held = [](const MatrixXd& moving, int e) {
       return moving.cols() == 0 || moving.row(e).norm() <= rank * moving.norm();
     };
+    const auto comes_back = [&](int e) {
+      return !held(here, e) && std::abs(away[e]) <= part_come_back * std::abs(aside[e]);
+    };
     const std::vector<int> home = problem_.ends.home;
     for (const int e : home)
-      if (held(here, e) && held(beside, e)) problem_.boundary.fix(e % n_, e >= n_, point(e >= n_)[e % n_]);
+      if ((held(here, e) && held(beside, e)) || comes_back(e))
+        problem_.boundary.fix(e % n_, e >= n_, point(e >= n_)[e % n_]);
     solve_again();
   }
 

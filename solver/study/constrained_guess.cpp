@@ -24,7 +24,7 @@ class ConstrainedGuess {
 
   void project(const EndPoints& ends) {
     if (problem_.initial) return;
-    if (!problem_.guess.given()) return project_default(ends);
+    if (!problem_.guess.given()) return project_lines(line(ends), {});
     const Guess given = problem_.guess;
     const std::size_t failed = project(problem_.guess);
     if (failed == problem_.guess.tau.size()) return;
@@ -39,7 +39,43 @@ class ConstrainedGuess {
                     t, scene_.system.constraints[worst].value, g[worst]));
   }
 
+  /// Bent where they pass a point that is as near to one side of the manifold as to another.
+  void project_lines(const Guess& lines, const std::vector<double>& waypoints) {
+    std::minstd_rand random{7};
+    std::vector<double> aside(n_), scaled(n_);
+    for (double& x : aside) x = 2.0 * random() / std::minstd_rand::max() - 1;
+    const double size = size_of(lines);
+    for (const double bend : bends) {
+      for (std::size_t a = 0; a < n_; ++a) scaled[a] = bend * (size > 0 ? size : 1) * aside[a];
+      Guess guess = bent(lines, waypoints, scaled);
+      if (project(guess) < guess.tau.size() || jumps(guess)) continue;
+      problem_.guess = std::move(guess);
+      return;
+    }
+    throw SceneError(
+        scene_.boundary.at,
+        waypoints.empty()
+            ? "the line between the ends cannot be moved onto the constraints; give a guess near "
+              "them"
+            : "the lines between ends and waypoints cannot be moved onto the constraints; give a "
+              "guess near them");
+  }
+
  private:
+  /// The largest coordinate or range of one.
+  double size_of(const Guess& guess) const {
+    double size = 0;
+    for (std::size_t a = 0; a < n_; ++a) {
+      double low = guess.q[a], high = low;
+      for (std::size_t k = a; k < guess.q.size(); k += n_) {
+        low = std::min(low, guess.q[k]);
+        high = std::max(high, guess.q[k]);
+      }
+      size = std::max({size, std::abs(low), std::abs(high), high - low});
+    }
+    return size;
+  }
+
   double time(double tau) const { return tau * problem_.duration.value; }
 
   /// Number of the sample that cannot be moved onto the manifold; their count if all can.
@@ -49,37 +85,28 @@ class ConstrainedGuess {
     return guess.tau.size();
   }
 
-  /// The line between the ends, bent where it passes a point that is as near to one side of the manifold as
-  /// to another.
-  void project_default(const EndPoints& ends) {
-    std::minstd_rand random{7};
-    std::vector<double> aside(n_);
-    for (double& x : aside) x = 2.0 * random() / std::minstd_rand::max() - 1;
-    double size = 0;
-    for (std::size_t a = 0; a < n_; ++a)
-      size = std::max(
-          {size, std::abs(ends.start[a]), std::abs(ends.end[a]), std::abs(ends.end[a] - ends.start[a])});
-    for (const double bend : bends) {
-      Guess line = bent(ends, aside, bend * (size > 0 ? size : 1));
-      if (project(line) < line.tau.size() || jumps(line)) continue;
-      problem_.guess = std::move(line);
-      return;
-    }
-    throw SceneError(
-        scene_.boundary.at,
-        "the line between the ends cannot be moved onto the constraints; give a guess near them");
-  }
-
-  Guess bent(const EndPoints& ends, const std::vector<double>& aside, double size) const {
+  Guess line(const EndPoints& ends) const {
     Guess guess;
     for (int k = 0; k <= guess_steps; ++k) {
       const double tau = static_cast<double>(k) / guess_steps;
       guess.tau.push_back(tau);
       for (std::size_t a = 0; a < n_; ++a)
-        guess.q.push_back(ends.start[a] + tau * (ends.end[a] - ends.start[a]) +
-                          4 * tau * (1 - tau) * size * aside[a]);
+        guess.q.push_back(ends.start[a] + tau * (ends.end[a] - ends.start[a]));
     }
     return guess;
+  }
+
+  /// With 4 τ (1 − τ) `aside` added to each line, τ in [0, 1] along it.
+  Guess bent(Guess lines, std::vector<double> waypoints, const std::vector<double>& aside) const {
+    waypoints.insert(waypoints.begin(), 0);
+    waypoints.push_back(1);
+    auto to = waypoints.begin() + 1;
+    for (std::size_t k = 0; k < lines.tau.size(); ++k) {
+      while (to + 1 != waypoints.end() && lines.tau[k] > *to) ++to;
+      const double tau = (lines.tau[k] - *(to - 1)) / (*to - *(to - 1));
+      for (std::size_t a = 0; a < n_; ++a) lines.q[k * n_ + a] += 4 * tau * (1 - tau) * aside[a];
+    }
+    return lines;
   }
 
   bool jumps(const Guess& guess) const {
@@ -103,6 +130,11 @@ class ConstrainedGuess {
 
 void project_guess(const Scene& scene, const EndPoints& ends, Problem& problem) {
   ConstrainedGuess(scene, problem).project(ends);
+}
+
+void project_lines(const Scene& scene, const std::vector<double>& waypoints, Problem& problem) {
+  const Guess lines = problem.guess;
+  ConstrainedGuess(scene, problem).project_lines(lines, waypoints);
 }
 
 }  // namespace extremal

@@ -68,7 +68,11 @@ bool complete_ends(const Scene& scene, EndPoints& near, Problem& problem);
 /// Throws SceneError: an end is fixed in part, and there are no minimal coordinates for it.
 [[noreturn]] void refuse_partly_free(const Scene& scene, const Problem& problem);
 
-/// Moves the guess onto the manifold, also the default one. Throws SceneError where that is impossible.
+/// Moves the guess onto the manifold. The line between the ends, which is the default, is bent aside where
+/// that is impossible or makes it jump; of any other guess a SceneError is thrown.
 void project_guess(const Scene& scene, const EndPoints& ends, Problem& problem);
+
+/// The same of lines through waypoints at these t/T, which are the guess by default.
+void project_lines(const Scene& scene, const std::vector<double>& waypoints, Problem& problem);
 
 }  // namespace extremal

@@ -22,9 +22,17 @@ struct Motion {
 };
 Motion motion_of(const Trajectory& trajectory);
 
-/// Largest difference of q at equal times of the reference. Where `shifts`, of the motion delayed so that it
-/// is least in the mean; times that leave a motion are left out. Before and after its own duration a motion
-/// goes on uniformly otherwise. Infinite for a motion that breaks off.
-double deviation(const Motion& motion, const Motion& reference, int coordinates, bool shifts);
+/// What changes nothing about a solution: a shift in time, and symmetries.
+struct Invariance {
+  bool in_time = false;
+  std::vector<Generator> symmetries = {};
+};
+Invariance invariance_of(const Problem& problem);
+
+/// Largest difference of q at equal times of the reference, of the motion moved by what changes nothing so
+/// that it is least in the mean; with a shift in time, times that leave a motion are left out. Before and
+/// after its own duration a motion goes on uniformly otherwise. Infinite for a motion that breaks off.
+double deviation(const Motion& motion, const Motion& reference, int coordinates,
+                 const Invariance& invariance = {});
 
 }  // namespace extremal

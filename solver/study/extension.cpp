@@ -18,6 +18,20 @@
 #include "study/waypoints.hpp"
 
 namespace extremal {
+
+SystemTable table_at(const Scene& scene, const std::vector<double>& constants) {
+  SystemTable table = scene.system;
+  table.curvature.reset();
+  const std::size_t unknowns = scene.boundary.unknowns.size();
+  for (std::size_t k = 0; k < unknowns; ++k)
+    for (Assignment& p : table.parameters)
+      if (p.name == scene.boundary.unknowns[k].name) p.values.front().value = constants[k];
+  if (constants.size() > unknowns)
+    table.lagrangian =
+        law_at(scene, {constants.begin() + static_cast<std::ptrdiff_t>(unknowns), constants.end()});
+  return table;
+}
+
 namespace {
 
 /// Of the points that stand for the ends where there are constraints.
@@ -71,20 +85,6 @@ SystemTable extended_table(const Scene& scene, const Dependents& dependents) {
 
 SystemTable without_forces(SystemTable table) {
   table.force.clear();
-  return table;
-}
-
-/// The system with L + Σ ν g for values of the unknowns, then of the multipliers.
-SystemTable table_at(const Scene& scene, const std::vector<double>& constants) {
-  SystemTable table = scene.system;
-  table.curvature.reset();
-  const std::size_t unknowns = scene.boundary.unknowns.size();
-  for (std::size_t k = 0; k < unknowns; ++k)
-    for (Assignment& p : table.parameters)
-      if (p.name == scene.boundary.unknowns[k].name) p.values.front().value = constants[k];
-  if (constants.size() > unknowns)
-    table.lagrangian =
-        law_at(scene, {constants.begin() + static_cast<std::ptrdiff_t>(unknowns), constants.end()});
   return table;
 }
 
@@ -321,9 +321,13 @@ void read_extension(const Scene& scene, const ExtendedScene& parts, const System
     };
   }
   if (problem.manifold) complete_waypoints(scene, problem, extension->waypoints);
-  if (!extension->waypoints.empty()) guess_through(extension->waypoints, problem);
+  const bool guessed = problem.guess.given();
+  if (!extension->waypoints.empty()) guess_through(*extension, problem);
   if (problem.manifold) {
-    project_guess(scene, completed.near, problem);
+    if (guessed || extension->waypoints.empty())
+      project_guess(scene, completed.near, problem);
+    else
+      project_lines(scene, guessed_times(extension->waypoints, problem.duration.value), problem);
     put_constrained_laws(scene, problem.manifold, *extension);
     problem.lagrangian = extension->at(first_constants(scene));
     std::vector<std::string> texts;

@@ -29,6 +29,9 @@ void check_extended(const Scene& scene, Purpose purpose);
 /// L + Σ g, with the unknowns at their guesses: what stands for L until the multipliers are known.
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene);
 
+/// The system with L + Σ ν g for values of the unknowns, then of the multipliers.
+SystemTable table_at(const Scene& scene, const std::vector<double>& constants);
+
 /// Whether an unknown changes a constraint.
 bool constraints_vary(const Scene& scene);
 

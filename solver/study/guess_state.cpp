@@ -15,6 +15,7 @@
 #include "study/closing_correction.hpp"
 #include "study/guess.hpp"
 #include "study/limits.hpp"
+#include "study/marched_state.hpp"
 #include "study/memory.hpp"
 #include "study/naming.hpp"
 
@@ -71,7 +72,7 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
 }
 
 /// Cubic interpolation between so many samples of a step keeps about six digits.
-constexpr int samples_a_step = 64;
+constexpr int samples_a_step = limits::guess_mesh::samples_a_step_of_motion;
 /// Roundoff of so many steps is amplified by the encounters that they follow.
 constexpr std::size_t many_steps = 750;
 /// Steps between points that are kept.
@@ -92,6 +93,11 @@ constexpr double tolerance<Extended> = 1e-17;
 
 /// Halves of an orbit meet after at least this part of the first.
 constexpr double earliest_meeting = 0.5;
+
+/// An integration that takes more steps than elements can follow.
+struct TooManySteps : SceneError {
+  using SceneError::SceneError;
+};
 
 /// What bounds the integration of a state, and refuses it.
 struct Bounds {
@@ -121,10 +127,11 @@ struct Bounds {
     const std::string makes = turned > 0 ? fmt::format("makes about {:.2g} oscillations",
                                                        turned * duration / std::abs(reached - from))
                                          : "takes too many steps";
-    throw SceneError(at, fmt::format("the motion from guess.state {} in the duration {:.6g}; {} steps of the "
-                                     "integrator, the most that elements can follow, lead to t = {:.6g}; "
-                                     "shorten the duration",
-                                     makes, duration, steps_taken, reached));
+    throw TooManySteps(at,
+                       fmt::format("the motion from guess.state {} in the duration {:.6g}; {} steps of the "
+                                   "integrator, the most that elements can follow, lead to t = {:.6g}; "
+                                   "shorten the duration",
+                                   makes, duration, steps_taken, reached));
   }
 
  private:
@@ -415,15 +422,21 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
       system.hamiltonian ? make_lagrangian(*system.hamiltonian) : nullptr;
   const Bounds bounds{problem, hamiltonian.get(), deadline, at};
   const double duration = problem.duration.value;
-  if (problem.periodic) {
-    const Halves halves = closed_halves(state, bounds);
-    add_halves(halves.first, halves.second, problem.guess);
-    problem.guess.motion = !halves.hopeless;
-  } else {
-    SampledMotion samples = motion_from(state, 0, duration, bounds);
-    problem.guess.tau = std::move(samples.tau);
-    problem.guess.q = std::move(samples.q);
-    problem.guess.motion = true;
+  try {
+    if (problem.periodic) {
+      const Halves halves = closed_halves(state, bounds);
+      add_halves(halves.first, halves.second, problem.guess);
+      problem.guess.motion = !halves.hopeless;
+    } else {
+      SampledMotion samples = motion_from(state, 0, duration, bounds);
+      problem.guess.tau = std::move(samples.tau);
+      problem.guess.q = std::move(samples.q);
+      problem.guess.motion = true;
+    }
+  } catch (const TooManySteps&) {
+    std::optional<Guess> motion = motion_across_kinks(problem, state.q, state.v, deadline);
+    if (!motion) throw;
+    problem.guess = *std::move(motion);
   }
 }
 

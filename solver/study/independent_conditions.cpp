@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solve/bordered/determinacy.hpp"
+#include "study/path_constraints.hpp"
 
 namespace extremal {
 namespace {
@@ -59,11 +60,13 @@ void check_determined(const Scene& scene, const ExtendedScene& parts, const Prob
       if (!problem.manifold) refuse_condition(parts.conditions[found->last], "leave it out");
       return;
     case Indeterminacy::Kind::where:
+      if (inequalities_vary(scene)) return;  // what contacts determine
       refuse_condition(parts.where[found->last],
                        scene.boundary.unknowns.empty()
                            ? "give the duration, or 'energy' instead of 'where'"
                            : "write one that other values of the unknowns break, or fix an unknown");
     case Indeterminacy::Kind::constant:
+      if (inequalities_vary(scene)) return;
       refuse_unknown(scene, *found);
   }
 }

@@ -16,6 +16,20 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// A point at which the first `count` constraints hold, near q. False where there is none near.
+bool meet_first(const Manifold& manifold, Index count, double t, std::vector<double>& q) {
+  constexpr int most_steps = 50;
+  Eigen::Map<VectorXd> point(q.data(), std::ssize(q));
+  for (int step = 0; step < most_steps; ++step) {
+    const ConstraintValues values = manifold.at(q, t);
+    const VectorXd change = least_norm(values.slopes.topRows(count), -values.g.head(count));
+    if (!change.allFinite()) return false;
+    point += change;
+    if (change.norm() <= end_distance * aside_part * point.norm()) return true;
+  }
+  return false;
+}
+
 /// Which constraints have gradients that are made of those before them, as points are looked at.
 class Dependence {
  public:
@@ -26,6 +40,8 @@ class Dependence {
   void look_near(const std::vector<double>& q, double t) {
     std::vector<double> moved = q;
     look(manifold_.project(moved, t) ? moved : q, t);
+    points_.push_back(std::move(moved));
+    times_.push_back(t);
   }
 
   /// The first that depends on others at all points, or -1.
@@ -33,28 +49,57 @@ class Dependence {
     const auto found = std::ranges::find(found_, 1);
     return found == found_.end() ? -1 : static_cast<int>(found - found_.begin());
   }
-  /// By how much it is missed at the least, in units of q.
+  /// By how much it is missed at the least where those before it hold, to first order, in units of q.
   double missed(int k) const { return missed_[k]; }
 
+  /// By how much it is missed at the most beside the points, where those before it hold, by the distance.
+  double missed_beside(int k) const {
+    double most = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      std::vector<double> q = points_[i];
+      const double size = Eigen::Map<const VectorXd>(q.data(), std::ssize(q)).norm();
+      const double aside = aside_part * (size > 0 ? size : 1);
+      for (std::size_t a = 0; a < q.size(); ++a) q[a] += aside * std::cos(1.0 + static_cast<double>(a));
+      if (!meet_first(manifold_, k, times_[i], q)) continue;
+      const ConstraintValues values = manifold_.at(q, times_[i]);
+      const double slope = values.slopes.row(k).norm();
+      if (slope > 0) most = std::max(most, std::abs(values.g[k]) / (slope * aside));
+    }
+    return most;
+  }
+
  private:
+  /// The elimination that leaves of a gradient what is no part of those before leaves of g what remains
+  /// where those vanish.
   void look(const std::vector<double>& q, double t) {
     const ConstraintValues values = manifold_.at(q, t);
     MatrixXd basis(static_cast<Index>(q.size()), 0);
+    VectorXd of_basis(0);
     for (Index k = 0; k < values.g.size(); ++k) {
       VectorXd row = values.slopes.row(k);
+      double g = values.g[k];
       const double size = row.norm();
-      for (int pass = 0; pass < 2; ++pass) row -= basis * (basis.transpose() * row).eval();
-      missed_[k] = std::min(missed_[k], size > 0 ? std::abs(values.g[k]) / size : INFINITY);
-      if (!(row.norm() > dependence * size)) continue;
+      for (int pass = 0; pass < 2; ++pass) {
+        const VectorXd parts = basis.transpose() * row;
+        row -= basis * parts;
+        g -= of_basis.dot(parts);
+      }
+      missed_[k] = std::min(missed_[k], size > 0 ? std::abs(g) / size : INFINITY);
+      const double left = row.norm();
+      if (!(left > dependence * size)) continue;
       found_[k] = 0;
       basis.conservativeResize(Eigen::NoChange, basis.cols() + 1);
-      basis.rightCols(1) = row.normalized();
+      basis.rightCols(1) = row / left;
+      of_basis.conservativeResize(basis.cols());
+      of_basis[basis.cols() - 1] = g / left;
     }
   }
 
   const Manifold& manifold_;
   std::vector<char> found_;
   std::vector<double> missed_;
+  std::vector<std::vector<double>> points_;
+  std::vector<double> times_;
 };
 
 }  // namespace
@@ -72,14 +117,21 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
   const int k = dependence.first();
   if (k < 0) return;
   const Text& text = scene.system.constraints[k];
+  const double missed = dependence.missed(k);
   throw SceneError(
       position(text, 0),
-      dependence.missed(k) <= end_distance
-          ? fmt::format("the constraint '{}' follows from the ones before it; leave it out", text.value)
-          : fmt::format("the gradient of the constraint '{}' is made of those of the ones before "
-                        "it, or vanishes, but where these hold it is missed by {:.3g}; leave it "
-                        "out, or give a guess where it is regular",
-                        text.value, dependence.missed(k)));
+      missed > end_distance
+          ? fmt::format(
+                "the gradient of the constraint '{}' is made of those of the ones before it, or "
+                "vanishes, but where these hold it is missed by {:.3g}; leave it out, or give a guess "
+                "where it is regular",
+                text.value, missed)
+      : dependence.missed_beside(k) > end_distance
+          ? fmt::format("the constraint '{}' touches the ones before it: its gradient is made of theirs "
+                        "wherever all hold, though it does not follow from them; give the points where all "
+                        "hold by constraints with independent gradients",
+                        text.value)
+          : fmt::format("the constraint '{}' follows from the ones before it; leave it out", text.value));
 }
 
 }  // namespace extremal

@@ -61,6 +61,8 @@ inline constexpr double end_distance = 1e-8;
 inline constexpr double rank = 1e-9;
 /// Of the size of the ends: beside them, where nothing is special.
 inline constexpr double aside_part = 0.01;
+/// A point comes back from there where less than this part of the way remains.
+inline constexpr double part_come_back = 1e-3;
 /// Of what conditions on ends say of points of the manifold, in the units of q: less follows from the others.
 inline constexpr double dependent_condition = 1e-7;
 /// Gradients of unit length that depend on each other leave so much.

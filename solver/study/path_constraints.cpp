@@ -12,9 +12,10 @@
 #include "problem/nearby.hpp"
 #include "solve/external/method.hpp"
 #include "study/constraints.hpp"
-#include "study/integrals.hpp"
+#include "study/extension.hpp"
 #include "study/limits.hpp"
 #include "study/modelling.hpp"
+#include "study/unknown_constants.hpp"
 #include "system/constraints.hpp"
 #include "system/kinks.hpp"
 
@@ -141,7 +142,8 @@ void check_points(const Scene& scene, const Inequalities& inequalities, const Pr
     if (std::ssize(waypoint.fixed) < n) continue;
     std::vector<double> q;
     for (const auto& [a, value] : waypoint.fixed) q.push_back(value);
-    check_point(scene.waypoints[w].at, "waypoint", inequalities, q, waypoint.time, size);
+    check_point(scene.waypoints[w].at, "waypoint", inequalities, q, waypoint.at(problem.duration.value),
+                size);
   }
 }
 
@@ -199,6 +201,13 @@ void check_closed(const Scene& scene, const Inequalities& inequalities, const Pr
 
 }  // namespace
 
+bool inequalities_vary(const Scene& scene) {
+  const Dependents dependents = dependents_of(scene);
+  return scene.inequalities && std::ranges::any_of(scene.inequalities->constraints, [&](const Text& text) {
+           return any_of(names_in(equation_of(text).text.value), dependents);
+         });
+}
+
 void check_inequalities(const Scene& scene, Purpose purpose) {
   if (!scene.inequalities) return;
   const auto refuse = [](const Location& at, const std::string& what) {
@@ -209,17 +218,14 @@ void check_inequalities(const Scene& scene, Purpose purpose) {
     throw SceneError(scene.inequalities->at,
                      "[path] needs Ipopt, which is not part of this build; build with -DEXTREMAL_IPOPT=ON");
   if (scene.system.hamiltonian)
-    refuse(scene.inequalities->at, "the system must have a 'lagrangian', whose action is minimised");
+    refuse(scene.inequalities->at,
+           "the system must have a 'lagrangian', whose action is minimised; write that, or leave [path] out");
   if (!scene.system.force.empty())
     refuse(scene.system.force.front().name_at,
            "there must be an action that can be least, and forces have none; leave them out, or the "
            "inequalities");
   if (boundary.infinite)
     refuse(boundary.duration.at, "the duration must be finite; write a number, or leave [path] out");
-  if (!boundary.unknowns.empty())
-    refuse(boundary.unknowns.front().name_at, "unknowns are not available; leave one or the other out");
-  for (const WaypointTable& waypoint : scene.waypoints)
-    if (waypoint.free) refuse(waypoint.time.at, "the time of a waypoint must be given; write a number");
   if (scene.fit) refuse(scene.fit->at, "a fit is not available; leave one or the other out");
   if (scene.continuation && purpose == Purpose::family)
     refuse(scene.continuation->at,
@@ -228,16 +234,12 @@ void check_inequalities(const Scene& scene, Purpose purpose) {
     refuse(scene.inequalities->at, "shooting is not available to compare with; write 'solve' instead");
   if (scene.solve.scheme)
     refuse(position(*scene.solve.scheme, 0),
-           "elements end where contacts begin and end, and follow the tolerance; leave 'scheme' out");
+           fmt::format("elements end where contacts begin and end, and follow the tolerance; leave {} out",
+                       scene.solve.steps      ? "'scheme', 'elements' and 'steps'"
+                       : scene.solve.elements ? "'scheme' and 'elements'"
+                                              : "'scheme'"));
   if (scene.solve.method && scene.solve.method->value == name(Method::ceres))
     refuse(position(*scene.solve.method, 0), "the method is \"ipopt\"; write that, or leave 'method' out");
-  if (boundary.integrals.empty() && scene.waypoints.empty()) return;
-  const char* const other = scene.waypoints.empty() ? "integrals" : "waypoints";
-  if (boundary.free)
-    refuse(boundary.duration.at, fmt::format("and {} the duration must be given; write a number", other));
-  if (boundary.periodic)
-    refuse(boundary.at,
-           fmt::format("and {} orbits are not available; fix the ends, or leave one of them out", other));
 }
 
 void put_inequalities(const Scene& scene, const System& system, Problem& problem) {
@@ -264,11 +266,17 @@ void put_inequalities(const Scene& scene, const System& system, Problem& problem
   const Eigen::MatrixXd metric = metric_of_motion(system, problem);
   const double rate = growth / problem.duration.value;
   inequalities->all = constrained_values(table.graph(numbers, false), system, metric);
-  inequalities->hold = [table, scene, system, metric, rate](const std::vector<int>& held,
-                                                            const std::vector<double>& nu) -> HeldSystem {
+  if (!scene.boundary.unknowns.empty())
+    inequalities->at = [table, scene, system, metric, numbers](const std::vector<double>& constants) {
+      InequalityTable there = table;
+      there.table = table_at(scene, constants);
+      return constrained_values(there.graph(numbers, false), system, metric);
+    };
+  inequalities->hold = [table, scene, system, metric, rate](
+                           const std::vector<int>& held, const std::vector<double>& constants) -> HeldSystem {
     InequalityTable there = table;
-    if (!nu.empty()) there.table.lagrangian = law_at(scene, nu);
-    const System moved = nu.empty() ? system : make_system(there.table);
+    if (!constants.empty()) there.table = table_at(scene, constants);
+    const System moved = constants.empty() ? system : make_system(there.table);
     ConstrainedSystem found = constrained_system(there.graph(held, true), moved, metric, rate);
     return {std::move(found.lagrangian), std::move(found.manifold)};
   };
@@ -276,7 +284,13 @@ void put_inequalities(const Scene& scene, const System& system, Problem& problem
     throw SceneError(scene.inequalities->at,
                      "inequalities that depend on t change the energy; with 'energy' they must not: write "
                      "'where', or give the duration as a number");
-  check_points(scene, *inequalities, problem);
+  for (const WaypointTable& waypoint : scene.waypoints)
+    if (waypoint.free && !inequalities->all->autonomous())
+      throw SceneError(
+          waypoint.time.at,
+          "inequalities that depend on t change the energy, which at = \"free\" makes continuous; "
+          "give the time of the waypoint as a number");
+  if (!inequalities_vary(scene)) check_points(scene, *inequalities, problem);
   check_closed(scene, *inequalities, problem);
   problem.inequalities = std::move(inequalities);
 }

@@ -18,8 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::span<const double> span_of(const VectorXd& q) { return {q.data(), static_cast<std::size_t>(q.size())}; }
-
 /// Two linear functions of q and what else the constraint depends on.
 struct Plane {
   MatrixXd rows;    ///< 2 × n

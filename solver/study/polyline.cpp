@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/waypoint_times.hpp"
+
 namespace extremal {
 namespace {
 
 /// Samples between two points that the guess has in all.
 constexpr int samples = 1024;
-/// Of T: two waypoints are guessed to lie no nearer.
-constexpr double least_apart = 1e-3;
 
 /// Known values of one coordinate, at ascending times t/T.
 struct Known {
@@ -73,42 +73,26 @@ void time_by_distance(std::vector<WaypointCondition>& waypoints, const Problem& 
   }
 }
 
-/// Where free, the times at which the guess is nearest, in order.
-void time_by_guess(std::vector<WaypointCondition>& waypoints, const Problem& problem) {
-  const std::size_t n = problem.coordinates();
-  std::vector<double> q(n);
-  double from = 0;
-  for (std::size_t k = 0; k < waypoints.size(); ++k) {
-    WaypointCondition& waypoint = waypoints[k];
-    if (!waypoint.free) {
-      from = waypoint.time / problem.duration.value;
-      continue;
-    }
-    double to = 1;
-    for (std::size_t j = k + 1; j < waypoints.size(); ++j)
-      if (!waypoints[j].free) {
-        to = waypoints[j].time / problem.duration.value;
-        break;
-      }
-    double least = INFINITY;
-    for (int i = 1; i < samples; ++i) {
-      const double tau = from + least_apart + (to - from - 2 * least_apart) * i / samples;
-      problem.guess.at(tau, q);
-      double sum = 0;
-      for (const auto& [a, x] : waypoint.fixed) sum += (q[a] - x) * (q[a] - x);
-      if (sum < least) {
-        least = sum;
-        waypoint.time = tau;
-      }
-    }
-    from = waypoint.time;
-  }
+/// Whether any time of a path may be its first: it is closed, and nothing is given at a time.
+bool begins_anywhere(const Extension& extension, const Problem& problem) {
+  return problem.periodic && problem.lagrangian->structure().autonomous && !problem.duration.where &&
+         extension.conditions.empty() && extension.where.empty() &&
+         std::ranges::all_of(extension.waypoints, &WaypointCondition::free);
 }
 
 }  // namespace
 
-void guess_through(std::vector<WaypointCondition>& waypoints, Problem& problem) {
-  if (problem.guess.given()) return time_by_guess(waypoints, problem);
+std::vector<double> guessed_times(const std::vector<WaypointCondition>& waypoints, double duration) {
+  std::vector<double> times;
+  for (const WaypointCondition& w : waypoints) times.push_back(w.free ? w.time : w.time / duration);
+  return times;
+}
+
+void guess_through(Extension& extension, Problem& problem) {
+  std::vector<WaypointCondition>& waypoints = extension.waypoints;
+  if (problem.guess.given())
+    return begins_anywhere(extension, problem) ? begin_between(waypoints, problem)
+                                               : time_by_guess(waypoints, problem);
   time_by_distance(waypoints, problem);
   const std::size_t n = problem.coordinates();
   std::vector<Known> known(n);
@@ -119,13 +103,12 @@ void guess_through(std::vector<WaypointCondition>& waypoints, Problem& problem) 
     }
   };
   add(0, end_values(problem, false));
-  for (const WaypointCondition& w : waypoints)
-    add(w.free ? w.time : w.time / problem.duration.value, w.fixed);
+  const std::vector<double> times = guessed_times(waypoints, problem.duration.value);
+  for (std::size_t w = 0; w < times.size(); ++w) add(times[w], waypoints[w].fixed);
   add(1, end_values(problem, true));
   Guess& guess = problem.guess;
   for (int k = 0; k <= samples; ++k) guess.tau.push_back(static_cast<double>(k) / samples);
-  for (const WaypointCondition& w : waypoints)
-    guess.tau.push_back(w.free ? w.time : w.time / problem.duration.value);
+  guess.tau.insert(guess.tau.end(), times.begin(), times.end());
   std::ranges::sort(guess.tau);
   guess.tau.erase(std::unique(guess.tau.begin(), guess.tau.end()), guess.tau.end());
   for (const double tau : guess.tau)

@@ -61,6 +61,15 @@ class Nearby {
     return {values_.vv.data(), n_, n_};
   }
 
+  /// Whether the mass changes no momentum beyond roundoff, as where L is homogeneous of degree one: what is
+  /// left of it is roundoff of terms as large as p/q'.
+  bool mass_cancels(const MatrixXd& mass) const {
+    const VectorXd change = mass * Map<const VectorXd>(rate_.data(), n_);
+    const Map<const VectorXd> p(values_.dv.data(), n_);
+    return mass.rows() == 1 && p.allFinite() &&
+           std::abs(change[0]) <= limits::regularity::singular * std::abs(p[0]);
+  }
+
   int tried() const { return tried_; }
   const std::vector<double>& rate() const { return rate_; }  ///< at the last point
   const PointValues& values() const { return values_; }      ///< likewise
@@ -96,7 +105,7 @@ int irregular(const Problem& problem) {
     const auto mass = nearby.next_mass();
     if (!mass) break;
     const Rank rank = rank_of(*mass);
-    if (rank.full()) return -1;
+    if (rank.full() && !nearby.mass_cancels(*mass)) return -1;
     weak = rank.weak;
   }
   return weak;

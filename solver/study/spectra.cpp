@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "study/files/json_file.hpp"
 #include "study/guess.hpp"
 #include "study/study.hpp"
 
@@ -16,6 +17,9 @@ using Json = nlohmann::json;
 
 /// Lines that leave more than this of the largest do not describe a motion.
 constexpr double resolved_part = 0.01;
+
+/// Nodes of a scheme are what it computes; samples are at equal steps.
+bool samples_nodes(const SolveOptions& options) { return options.elements > 0 && !options.free_steps; }
 
 std::vector<PointMass> measure_of(const Spectrum& spectrum) {
   std::vector<PointMass> measure;
@@ -40,12 +44,11 @@ double finite(const Json& line, const char* key, const Location& whole) {
 std::vector<std::vector<PointMass>> read_measures(const std::string& path,
                                                   const std::vector<std::string>& names) {
   const Location whole{read_source(path), 0, 0};
-  const Json root = Json::parse(whole.source->text, nullptr, false);
-  if (root.is_discarded()) throw SceneError(whole, "this is not JSON");
+  const std::string mend = "write one with extremal spectrum SCENE --output FILE";
+  const Json root = parse_json(whole.source, mend);
   const auto spectrum = root.is_object() ? root.find("spectrum") : root.end();
   if (!root.is_object() || spectrum == root.end() || !spectrum->is_object())
-    throw SceneError(whole,
-                     "this result has no spectrum; write one with extremal spectrum SCENE --output FILE");
+    throw SceneError(whole, "this result has no spectrum; " + mend);
   std::vector<std::vector<PointMass>> measures;
   for (const std::string& name : names) {
     const auto lines = spectrum->find(name);
@@ -72,8 +75,17 @@ SpectrumRequest read_spectrum(const SpectrumTable& table, const std::string& sce
   return request;
 }
 
+void check_samples(const Study& study, const Location& elements) {
+  const int count = study.options.elements, least = static_cast<int>(least_spectral_samples) - 1;
+  if (samples_nodes(study.options) && !study.problem.periodic && count < least)
+    throw SceneError(elements,
+                     fmt::format("elements = {}; a spectrum of values at nodes needs {} elements; write "
+                                 "that or more, or leave 'scheme' and 'elements' out",
+                                 count, least));
+}
+
 SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request, const Solution& solution) {
-  const Sampling sampling = study.options.elements > 0 ? Sampling::nodes : Sampling::dense;
+  const Sampling sampling = samples_nodes(study.options) ? Sampling::nodes : Sampling::dense;
   SolutionSpectrum result{
       motion_spectrum(study.problem, solution.trajectory, sampling, request.lines, study.options.tolerance),
       {}};

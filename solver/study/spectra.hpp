@@ -29,6 +29,9 @@ struct SolutionSpectrum {
   std::vector<double> flat_norm;  ///< of the difference from `against`; empty without it
 };
 
+/// Throws SceneError at `elements`, as the scene gives them, where they are too few for a spectrum.
+void check_samples(const Study& study, const Location& elements);
+
 /// Of a converged solution. Equal elements of a named scheme have the lines of their discrete trajectory.
 /// Throws std::invalid_argument where the elements of such a scheme are too few.
 SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request, const Solution& solution);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <stdexcept>
 
+#include "problem/inequalities.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
 #include "problem/phase_space.hpp"
@@ -91,6 +93,20 @@ void check_initial_data(const Scene& scene, Purpose purpose) {
                        scene.solve.method->value));
 }
 
+/// What a free duration asks for, between ends that are no initial data.
+void check_free_duration(const Scene& scene) {
+  const BoundaryTable& boundary = scene.boundary;
+  if (!boundary.free) return;
+  const bool closed = boundary.energy || boundary.where || !boundary.where_list.empty(),
+             forced = !scene.system.force.empty();
+  const auto refuse = [&](const char* what) { throw SceneError(boundary.duration.at, what); };
+  if (!closed && forced && !boundary.periodic)
+    refuse("a free duration with forces needs 'where' to close it");
+  if (!closed && !forced) refuse("a free duration needs 'energy' or 'where' to close it");
+  if (!scene.guess.duration && !scene.guess.file)
+    refuse("a free duration needs 'duration' in [guess], or a guess file");
+}
+
 [[noreturn]] void refuse_initial_data(const Scene& scene) {
   throw SceneError(
       scene.boundary.at,
@@ -156,7 +172,10 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
   const ExtendedScene parts = split(scene, system);
   set_relation(parts.linear, system, problem);
-  if (problem.initial) check_initial_data(scene, purpose);
+  if (problem.initial)
+    check_initial_data(scene, purpose);
+  else
+    check_free_duration(scene);
   if (system.hamiltonian) check_phase_space(scene, parts, purpose);
   problem.duration = read_duration(parts.linear, system);
   if (parts.extended) {
@@ -288,8 +307,10 @@ Study make_study(const Scene& scene, Purpose purpose) {
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
   if (scene.units) study.units = read_units(*scene.units);
-  if (scene.spectrum)
+  if (scene.spectrum) {
+    if (scene.solve.elements) check_samples(study, scene.solve.elements->at);
     study.spectrum = read_spectrum(*scene.spectrum, scene.path, coordinate_names(study.problem));
+  }
   if (scene.fit)
     study.fit = read_fit(scene, study, [budget = study.budget](const Scene& other) {
       Study there;
@@ -351,6 +372,10 @@ void use_constants(const Solution& solution, Study& study) {
   if (!solution.extension) return;
   study.problem.lagrangian = solution.extension->lagrangian;
   if (solution.extension->manifold) study.problem.manifold = solution.extension->manifold;
+  if (!study.problem.inequalities || !study.problem.inequalities->at) return;
+  Inequalities inequalities = *study.problem.inequalities;
+  inequalities.all = inequalities.at(solution.extension->constants());
+  study.problem.inequalities = std::make_shared<const Inequalities>(std::move(inequalities));
 }
 
 int natural_conditions(const Problem& problem) {
@@ -378,7 +403,10 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
-Deadline deadline_of(const Study& study) { return Deadline(study.budget).or_earlier(study.options.deadline); }
+Deadline deadline_of(const Study& study) {
+  const double left = std::max(0.0, 1 - study.seconds_read / study.budget);
+  return Deadline(study.budget).share(left).or_earlier(study.options.deadline);
+}
 
 Study load(const std::string& path, const std::vector<std::string>& sets, Purpose purpose) {
   return load_timed(path, sets, purpose);

@@ -41,6 +41,12 @@ Token Lexer::next() {
   const char c = text_[at_];
   if (is_letter(c)) return name();
   if (is_digit(c) || (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]))) return number();
+  if (c == '<' || c == '>')
+    throw FormulaError(
+        fmt::format("unexpected '{}': formulas and equations have no comparisons; inequalities "
+                    "along the path are the 'constraints' of [path]",
+                    c),
+        where_, at_);
   if (symbols.find(c) == std::string_view::npos)
     throw FormulaError(fmt::format("unexpected character '{}'; names are made of the letters a-z and A-Z, "
                                    "digits and _",

@@ -8,6 +8,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "action/real_rule.hpp"
+
 namespace extremal {
 namespace {
 
@@ -33,6 +35,26 @@ void expect_exact_to(const Rule& rule, int degree) {
 TEST(Rule, ExactToItsDegreeAndNoFurther) {
   for (int points = 1; points <= 32; ++points) expect_exact_to(gauss_rule(points), 2 * points - 1);
   for (int points = 2; points <= 32; ++points) expect_exact_to(lobatto_rule(points), 2 * points - 3);
+}
+
+/// Moments Σ_i w_i τ_i^k = 1/(k + 1) of rules with 106 bits.
+TEST(Rule, HasTheDigitsOfTwoDoubles) {
+  const auto expect_moments = [](const RealRule& rule, int degree) {
+    std::vector<Real> terms = rule.weights;
+    for (int k = 0; k <= degree; ++k) {
+      Real sum = 0;
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        sum += terms[i];
+        terms[i] *= rule.nodes[i].left;
+      }
+      EXPECT_LT(std::abs(to_double(sum - Real(1) / (k + 1))), 1e-30)
+          << rule.nodes.size() << " points, power " << k;
+    }
+  };
+  for (int points = 2; points <= 24; ++points) {
+    expect_moments(real_gauss(points), 2 * points - 1);
+    expect_moments(real_lobatto(points), 2 * points - 3);
+  }
 }
 
 TEST(Rule, MirrorSymmetricToTheLastBit) {

@@ -60,7 +60,7 @@ std::vector<Case> cases() {
        "= 1\n",
        "scene.toml:8:10: energy = 0.1, but at the end (x = 1) it is at least 0.5, its value at rest; raise "
        "it, or move this end\n"},
-      {"NotFiniteAtTheGuess", with("cos(q)", "1/q") + "[guess]\nq = 0\n",
+      {"NotFiniteAtTheGuess", with("cos(q)", "1/q") + "[guess]\nq = \"-t*(2 - t)/2\"\n",
        "scene.toml:9:1: L is not finite on the guess at t = "},
       {"Empty", "", "scene.toml: the file is empty\n"},
       {"Binary",

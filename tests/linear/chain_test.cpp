@@ -146,6 +146,23 @@ TEST(Chain, SingularIsCountedAndDeflated) {
     }
 }
 
+/// Also where pivot blocks, or the last one, are nearly singular.
+TEST(Chain, SignsAgreeWithDenseEigenvalues) {
+  dense::Random random(3);
+  Chain a;
+  for (int n : {1, 2, 5, 12})
+    for (int blocks : {1, 2, 7, 15})
+      for (double block : {0.0, 1e-13, 1.0}) {
+        a.resize(blocks, n);
+        random.fill(a, 0);
+        for (int i = 0; i < n * n; ++i) a.diagonal(blocks / 2)[i] *= block;
+        if (blocks == 1 && block == 0) continue;
+        EXPECT_EQ(a.signs(), dense::inertia(dense::matrix(a))) << n << ' ' << blocks << ' ' << block;
+      }
+  a.diagonal(0)[0] = NAN;
+  EXPECT_EQ(a.signs(), std::nullopt);
+}
+
 TEST(Chain, ZeroMatrixIsAllNull) {
   Chain a;
   a.resize(60, 20);

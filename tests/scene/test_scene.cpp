@@ -135,10 +135,6 @@ TEST_F(SceneFiles, Contradictions) {
   EXPECT_EQ(
       message(with("= 2\n", "= \"free\"\nenergy = 1\nwhere = \"q(0) = 1\"\n")),
       "scene.toml:9:1: 'where' and 'energy' exclude each other: exactly one of them closes a free duration");
-  EXPECT_EQ(message(with("= 2", "= \"free\"")),
-            "scene.toml:7:12: a free duration needs 'energy' or 'where' to close it");
-  EXPECT_EQ(message(with("= 2\n", "= \"free\"\nenergy = 1\n")),
-            "scene.toml:7:12: a free duration needs 'duration' in [guess], or a guess file");
   EXPECT_EQ(message(pendulum + "[guess]\nduration = 2.4\n"),
             "scene.toml:9:12: 'duration' in [guess] needs duration = \"free\" in [boundary]; write that, or "
             "leave the guess out");

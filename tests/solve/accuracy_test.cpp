@@ -264,5 +264,15 @@ TEST(AccuracyBesideAPole, OfMomentaByTheirOwnRange) {
   }
 }
 
+/// A path at rest in the origin has neither an extent nor an error.
+TEST(AccuracyAtRest, InTheOrigin) {
+  SolveOptions options = within(1e-4);
+  options.scheme = scheme("rectangle");
+  options.max_iterations = 50;
+  const Solution s = solve(fixed_ends(systems::pendulum(), {0}, {0}, 1), options);
+  EXPECT_EQ(s.error_estimate, 0);
+  EXPECT_EQ(at(s.trajectory, 0.5).q[0], 0);
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -248,6 +248,17 @@ TEST(Forces, FreeDurationClosedByACondition) {
   EXPECT_NEAR(solution.momentum_start[0], 1, 1e-11);
 }
 
+/// Layers of width 1/mu that no smooth guess has, but the motion that it tends to. The period is that between
+/// passages of x = 1, by DOP853 at 1e-12.
+TEST(Forces, VanDerPolsRelaxationOscillation) {
+  const Problem problem = closed_problem({{"x"}, "x'^2/2 - x^2/2", {"50*(1 - x^2)*x'"}}, 83, true,
+                                         [](double tau) { return 2 * std::cos(2 * pi * tau); });
+  const Solution solution = Solver().solve(problem, {.tolerance = 1e-9});
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  EXPECT_EQ(solution.strategy, "newton from the motion that the guess tends to");
+  EXPECT_NEAR(solution.duration(), 82.50833389, 1e-7);
+}
+
 TEST(Forces, VanDerPolsLimitCycle) {
   struct Case {
     double mu, guess, period, tolerance;

@@ -194,5 +194,17 @@ TEST(MorseIndex, OfShortElementsOfLowOrder) {
   EXPECT_EQ(s.nullity, 0);
 }
 
+/// The length of a path, all but independent of the speed along it: mass across is 1, along it 1e-12.
+TEST(MorseIndex, IsNotToldWithoutNullity) {
+  const Study study = study_of(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"sqrt(x'^2 + y'^2 + 1e-12)\"\n[boundary]\n"
+      "conditions = [\"x(0)^2 + y(0)^2 = 1\", \"(x(T) - 3)^2 + (y(T) - 1)^2 = 0.25\"]\nduration = 1.4\n");
+  const Solution s = run(study);
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.action, std::sqrt(10) - 1.5, 1e-9);
+  EXPECT_FALSE(s.morse_index);
+  EXPECT_FALSE(s.nullity);
+}
+
 }  // namespace
 }  // namespace extremal::laws

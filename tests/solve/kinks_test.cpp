@@ -297,5 +297,16 @@ TEST(Kinks, PinnedElementsStay) {
   EXPECT_LT(distance(s.trajectory, truth), 1e-12);
 }
 
+/// Two wells that meet in a cusp, and a path much longer than their windows: no guess leads there. There are
+/// three extremals, by shooting with located crossings.
+TEST(Kinks, MotionsAreBracketedWhereNoGuessLeads) {
+  const auto wells = written({"x"}, "x'^2/2 - min(1.78*x^2, 2.876*(x - 1)^2 + 0.1)/2");
+  const Solution s = solve(fixed_ends(wells, {-0.376}, {-0.153}, 6.74), within(1e-6));
+  ASSERT_TRUE(s.converged()) << s.message;
+  const Values known{-0.73140, 0.59266, 0.87649};
+  EXPECT_TRUE(std::ranges::any_of(known, [&](double v) { return std::abs(s.momentum_start[0] - v) < 1e-5; }))
+      << s.momentum_start[0];
+}
+
 }  // namespace
 }  // namespace extremal::laws

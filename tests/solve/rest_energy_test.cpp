@@ -87,12 +87,32 @@ TEST(RestEnergy, ExtrapolatedFromThreeTails) {
     const Complex weight = (w + linear * a + quadratic * a * a) * std::exp(rate * excess[k]);
     tails.push_back(RestEnergy({{weight, rate}, {std::conj(weight), std::conj(rate)}}));
   }
-  const std::optional<RestEnergy> rest = RestEnergy::extrapolated({&tails[0], &tails[1], &tails[2]}, excess);
+  std::vector<RestEnergy::OfTail> measured;
+  for (std::size_t k = 0; k < tails.size(); ++k) measured.push_back({&tails[k], excess[k]});
+  const std::optional<RestEnergy> rest = RestEnergy::extrapolated(measured, 0);
   ASSERT_TRUE(rest.has_value());
   const RestEnergy::Action action = rest->action(2, 0);
   EXPECT_NEAR(action.energy, 2 * (w * std::exp(-2.0 * rate)).real(), 1e-16);
   EXPECT_NEAR(action.doubt, 2 * 2 * std::abs(quadratic) * 1e-4 * std::exp(-3.0), 1e-12);
   EXPECT_NEAR(action.value, 2 * (w * std::exp(-2.0 * rate) / rate).real(), 1e-16);
+}
+
+/// Six tails tell a polynomial of degree five. Of a function that is none, as the weight of a mode hidden
+/// below a power of another, the doubt is more than the error. Noise is in the doubt as well.
+TEST(RestEnergy, ExtrapolatedByAsManyPowersAsThereAre) {
+  const auto extrapolated = [](const std::function<double(double)>& weight, double roundoff) {
+    std::vector<RestEnergy> tails;
+    for (int k = 0; k < 6; ++k) tails.push_back(RestEnergy({{weight(0.032 / (1 << k)), 1}}));
+    std::vector<RestEnergy::OfTail> measured;
+    for (const RestEnergy& tail : tails) measured.push_back({&tail, 0});
+    return RestEnergy::extrapolated(measured, roundoff)->action(0, 0);
+  };
+  const auto polynomial = [](double a) { return 2 + a * (1 - a * (0.7 + a * (0.3 - a * (0.2 + a)))); };
+  EXPECT_NEAR(extrapolated(polynomial, 0).energy, 2, 1e-13);
+  EXPECT_LT(extrapolated(polynomial, 0).doubt, 1e-11);
+  EXPECT_GT(extrapolated(polynomial, 1e-9).doubt, 2e-9);
+  const RestEnergy::Action none = extrapolated([](double a) { return 2 + std::pow(a, 1.5); }, 0);
+  EXPECT_GT(none.doubt, std::abs(none.energy - 2));
 }
 
 /// b = −∇U + c J ∇U across the saddle at 0 of U = (u² − 1)²/4 + v²/2. Actions by collocation of Hamilton's
@@ -135,7 +155,8 @@ TEST(RestEnergy, MinimisersBetweenRestsThatTheyTurnAbout) {
 
 /// The drift of FitzHugh and Nagumo between two nodes, whose slow rate is r = (4.5 − √4.25)/2, across a
 /// saddle that is left at the fast rate ν = (1.5 + √10.25)/2. All rests become longer by a duration as 1/2r
-/// and 1/ν: so the passage to the saddle is later by 1/2r of 1/r + 1/ν. At T = 25 Newton's method finds it.
+/// and 1/ν: so the passage to the saddle is later by 1/2r of 1/r + 1/ν. At T = 36
+/// either way finds it.
 TEST(RestEnergy, SlowMotionsOfNoEnergyHoldNothing) {
   const auto drift = trace(2, [](auto q, auto v, auto) {
     const auto x = v[0] - 2.0 * (q[0] - q[0] * q[0] * q[0]) - (0.5 * q[0] - q[1]),
@@ -146,8 +167,8 @@ TEST(RestEnergy, SlowMotionsOfNoEnergyHoldNothing) {
   const auto passage = [&](double T) {
     const Solution s = solve(fixed_ends(drift, {-1, -0.5}, {1, 0.5}, T), within(1e-9));
     EXPECT_TRUE(s.converged()) << T << ": " << s.message;
-    EXPECT_NEAR(s.action, 0.481466957407, T < 30 ? 1e-8 : 1e-11) << T;
-    EXPECT_EQ(s.nullity, T < 30 ? 0 : 2) << T;
+    EXPECT_NEAR(s.action, 0.481466957407, 1e-11) << T;
+    if (T >= 40) EXPECT_EQ(s.nullity, 2) << T;
     double before = 0, after = T / 2;
     for (int k = 0; k < 60 && s.converged(); ++k) {
       const double t = 0.5 * (before + after);
@@ -156,7 +177,7 @@ TEST(RestEnergy, SlowMotionsOfNoEnergyHoldNothing) {
     return before;
   };
   const double share = 1 / (2 * r) / (1 / r + 1 / nu), at40 = passage(40);
-  EXPECT_NEAR(at40 - passage(25), 15 * share, 1e-3);
+  EXPECT_NEAR(at40 - passage(36), 4 * share, 3e-5);
   EXPECT_NEAR(passage(60) - at40, 20 * share, 1e-5);
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <string>
 #include <vector>
 
 #include "machine/folder.hpp"
 #include "scene/source.hpp"
+#include "solve/external/method.hpp"
 #include "study/study.hpp"
 
 /// \file Scenes in a folder of their own for each test.
@@ -24,6 +28,28 @@ class Scenes : public InFolder {
     } catch (const SceneError& e) {
       return without_folder(e.what());
     }
+  }
+};
+
+/// A free particle in the plane, among inequalities; the rest of [boundary] is to follow.
+inline std::string free_particle(const std::string& constraints, const std::string& boundary) {
+  return fmt::format(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n[path]\nconstraints = [{}]\n"
+      "[boundary]\n{}",
+      constraints, boundary);
+}
+
+/// Scenes with inequalities along the path, which need Ipopt.
+class UnderInequalities : public Scenes {
+ protected:
+  void SetUp() override {
+    if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
+    Scenes::SetUp();
+  }
+  Solution found(const std::string& scene) {
+    Solution solution = run(study(scene));
+    EXPECT_TRUE(solution.converged()) << solution.message;
+    return solution;
   }
 };
 

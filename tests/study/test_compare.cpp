@@ -29,20 +29,42 @@ const std::string oscillator =
 }  // namespace
 
 TEST(Deviation, IsTheLargestDifference) {
-  EXPECT_NEAR(deviation(wave(4, 0, 1.25), wave(4, 0), 1, false), 0.25, 1e-5);
+  EXPECT_NEAR(deviation(wave(4, 0, 1.25), wave(4, 0), 1), 0.25, 1e-5);
   // A motion that ends earlier goes on uniformly: by δ²/2 at most off.
-  EXPECT_NEAR(deviation(wave(1.5, 0), wave(1.51, 0), 1, false), 1e-4 / 2, 1e-6);
+  EXPECT_NEAR(deviation(wave(1.5, 0), wave(1.51, 0), 1), 1e-4 / 2, 1e-6);
 }
 
 TEST(Deviation, OfPhases) {
-  EXPECT_NEAR(deviation(wave(6, 0.3), wave(6, 0), 1, false), 2 * std::sin(0.15), 1e-4);
-  EXPECT_LT(deviation(wave(6, 0.3), wave(6, 0), 1, true), 1e-8);
-  EXPECT_NEAR(deviation(wave(6, 0.3, 1.001), wave(6, 0), 1, true), 0.001, 1e-5);
+  EXPECT_NEAR(deviation(wave(6, 0.3), wave(6, 0), 1), 2 * std::sin(0.15), 1e-4);
+  EXPECT_LT(deviation(wave(6, 0.3), wave(6, 0), 1, {.in_time = true}), 1e-8);
+  EXPECT_NEAR(deviation(wave(6, 0.3, 1.001), wave(6, 0), 1, {.in_time = true}), 0.001, 1e-5);
+}
+
+/// Of an ellipse that is turned by 0.4 and 0.3 later on its way: with the rotation of the plane nothing is
+/// left.
+TEST(Deviation, OfTurnedOrbits) {
+  const auto ellipse = [](double phase, double angle) {
+    return Motion{6, [=](const std::vector<double>& times) {
+                    MotionSamples samples;
+                    const auto add = [&](std::vector<double>& to, double x, double y) {
+                      to.push_back(std::cos(angle) * x - std::sin(angle) * y);
+                      to.push_back(std::sin(angle) * x + std::cos(angle) * y);
+                    };
+                    for (const double t : times) {
+                      add(samples.q, 2 * std::cos(t + phase), std::sin(t + phase));
+                      add(samples.v, -2 * std::sin(t + phase), std::cos(t + phase));
+                    }
+                    return samples;
+                  }};
+  };
+  const Generator turn{{0, -1, 1, 0}, {0, 0}};
+  EXPECT_GT(deviation(ellipse(0.3, 0.4), ellipse(0, 0), 2, {.in_time = true}), 0.1);
+  EXPECT_LT(deviation(ellipse(0.3, 0.4), ellipse(0, 0), 2, {.in_time = true, .symmetries = {turn}}), 1e-8);
 }
 
 TEST(Deviation, OfWhatBreaksOff) {
   const Motion broken{4, [](const std::vector<double>&) { return MotionSamples{}; }};
-  EXPECT_EQ(deviation(broken, wave(4, 0), 1, false), INFINITY);
+  EXPECT_EQ(deviation(broken, wave(4, 0), 1), INFINITY);
 }
 
 using Comparing = Scenes;

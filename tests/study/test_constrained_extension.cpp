@@ -237,3 +237,22 @@ TEST_F(Scenes, ConditionsAndIntegralsThatFollowFromOthersAreRefusedByName) {
                             "\"x(T)*y(T) = 1\"]\n"),
             "");
 }
+
+/// The line from (1, 0) to (−1, 0) passes the centre. The rod moves as its angle does.
+TEST_F(Scenes, LinesThroughWaypointsAreBentOntoConstraints) {
+  const Study rod =
+      study(circle("",
+                   "[boundary]\nstart = { x = 1, y = 0 }\nend = { x = 0, y = 1 }\nduration = 2\n"
+                   "[[waypoints]]\nat = \"free\"\nx = -1\ny = 0\n"));
+  const Solution constrained = run(rod);
+  ASSERT_TRUE(constrained.converged()) << constrained.message;
+  std::vector<double> q(2), v(2);
+  constrained.trajectory.at(constrained.extension->waypoints[0].time / 2, q, v);
+  const bool by_top = q[1] > 0;
+  const Solution angle = run(study(circle_by_angle(
+      "", std::string("[boundary]\nstart = { a = \"pi/2\" }\nend = { a = \"") + (by_top ? "pi" : "-pi") +
+              "\" }\nduration = 2\n[[waypoints]]\nat = \"free\"\na = \"" + (by_top ? "3*pi/2" : "-pi/2") +
+              "\"\n")));
+  ASSERT_TRUE(angle.converged()) << angle.message;
+  EXPECT_NEAR(constrained.action, angle.action, 1e-12);
+}

@@ -8,7 +8,6 @@
 #include "problem/inequalities.hpp"
 #include "scenes.hpp"
 #include "solution/path_contacts.hpp"
-#include "solve/external/method.hpp"
 
 using namespace extremal;
 using namespace extremal::test;
@@ -29,13 +28,8 @@ std::string chain(int n, const std::string& stiffness, const std::string& load, 
 
 }  // namespace
 
-/// Needs Ipopt.
-class ContactOrder : public Scenes {
+class ContactOrder : public UnderInequalities {
  protected:
-  void SetUp() override {
-    if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
-    Scenes::SetUp();
-  }
   /// The action of the minimiser, by a quadratic programme on equal elements: beyond it by their error.
   static void expect_minimum(const Solution& found, double programme, double error) {
     ASSERT_TRUE(found.converged()) << found.message;

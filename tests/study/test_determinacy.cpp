@@ -139,3 +139,44 @@ TEST_F(Scenes, ConditionsWithADoubleRoot) {
   EXPECT_EQ(told("conditions = [\"x(0) = 0\", \"x(T) = 1\"]\n"), "");
   EXPECT_EQ(told("conditions = [\"x(0) = 0\", \"x(T)^2 - 2*x(T) + 0.999 = 0\"]\n"), "");
 }
+
+/// Where L + ν g is not convex in x', discrete equations have solutions with corners at nodes. Momentum and
+/// energy are constant along an extremal of these, and so is x': its length is √2.
+TEST_F(Scenes, IntegralsThatOnlyBrokenPathsHave) {
+  const auto refused = [&](const std::string& length, const std::string& more = "") {
+    const Solution solution =
+        run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[boundary]\nstart = { x = 0 }\n"
+                  "end = { x = 1 }\nduration = 1\nintegrals = [\"sqrt(1 + x'^2) = " +
+                  length + "\"]\n" + more));
+    EXPECT_FALSE(solution.converged()) << length;
+    EXPECT_TRUE(solution.trajectory.times.empty());
+    return solution.message;
+  };
+  for (const char* length : {"1.42", "1.6", "3"}) expect_start(refused(length), "the velocity jumps by ");
+  expect_start(refused("1.6", "[solve]\nscheme = \"midpoint\"\nelements = 12\n"), "the velocity jumps by ");
+}
+
+/// The same of L itself, whatever finds the path: p = q'³ − q' has one value at three velocities.
+TEST_F(Scenes, BrokenPathsOfAllKindsAreRefused) {
+  const auto refused = [&](const std::string& more, const std::string& boundary, const std::string& guess) {
+    const Solution solution =
+        run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"(x'^2 - 1)^2/4 + x*sin(2*t)/5\"\n" + more +
+                  "[boundary]\n" + boundary + guess));
+    EXPECT_FALSE(solution.converged());
+    expect_start(solution.message, "the velocity jumps by ");
+  };
+  const std::string zigzag = "[guess]\nx = \"max(0, t - 1)\"\n",
+                    ends = "start = { x = 0 }\nend = { x = 1 }\nduration = 2\n";
+  refused("", ends, zigzag);
+  refused("", ends, zigzag + "[solve]\nscheme = \"lobatto(3)\"\nelements = 8\n");
+  refused("force = { x = \"-0.1*x'\" }\n", ends, "[guess]\nx = \"min(1.2*t, 1.4 - 0.2*t)\"\n");
+}
+
+/// Motions end where p reaches its extremum; with so large elements Newton's method finds another branch.
+TEST_F(Scenes, AMarchDoesNotLeapToAnotherBranchOfMomenta) {
+  const Solution solution = run(
+      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"(x'^2 - 1)^2/4 + x*0.3\"\n[boundary]\n"
+            "start = { x = 0.1, p_x = 0.1 }\nduration = 3\n[solve]\nscheme = \"midpoint\"\nelements = 16\n"));
+  EXPECT_FALSE(solution.converged());
+  expect_start(solution.message, "the velocity jumps by ");
+}

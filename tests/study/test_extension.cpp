@@ -154,6 +154,22 @@ TEST_F(Scenes, WaypointsAtGivenTimes) {
   EXPECT_EQ(s.windows.size(), 3u);
 }
 
+/// A waypoint that fixes every coordinate parts the legs, each of which is then solved by itself. The
+/// velocity after it is that which shooting finds.
+TEST_F(Scenes, LegsOfWhichOneHasNoEasyGuess) {
+  const Solution s =
+      run(study("[system]\ncoordinates = [\"q[3]\"]\n"
+                "lagrangian = \"sum(i, 1, 3, q[i]'^2/2) - sum(i, 1, 2, (q[i+1] - q[i])^4/4)\"\n"
+                "[boundary]\nstart = { q = [0, 1, 2] }\nend = { q = \"i^2/3\" }\nduration = 2\n"
+                "[[waypoints]]\nat = 1\n\"q[2]\" = 2.0\n[[waypoints]]\nat = 1.5\nq = \"0.5*i\"\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  std::vector<double> q(3), v(3);
+  s.trajectory.at(1.5, q, v);
+  EXPECT_NEAR(v[0], -0.40723, 5e-6);
+  EXPECT_NEAR(v[1], 0.45745, 5e-6);
+  EXPECT_NEAR(v[2], 3.28311, 5e-6);
+}
+
 /// From a line, on which the length is stationary, Newton's method leads nowhere; no chain is shorter than
 /// it.
 TEST_F(Scenes, ChainsThatAreTooShort) {

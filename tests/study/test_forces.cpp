@@ -163,6 +163,18 @@ TEST_F(Scenes, PeriodsThatAreNotIsolated) {
   EXPECT_TRUE(s.floquet->stable());
 }
 
+/// Half an orbit of van der Pol's equation with layers, closed by x -> -x: half the period that DOP853 at
+/// 1e-12 has between passages of x = 1.
+TEST_F(Scenes, TheMotionThatAGuessTendsToMayBeClosedByASymmetry) {
+  const Solution half =
+      run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\nforce = { x = \"50*(1 - "
+                "x^2)*x'\" }\n"
+                "[boundary]\nperiodic = true\nduration = \"free\"\nmap = { x = \"-x\" }\n"
+                "[guess]\nx = \"2*cos(pi*t/T)\"\nduration = 42\n"));
+  ASSERT_TRUE(half.converged()) << half.message;
+  EXPECT_NEAR(half.duration(), 82.50833389 / 2, 1e-7);
+}
+
 /// The Legendre transform has the copies; where there is none the scene is refused.
 TEST_F(Scenes, ForcesOfAHamiltonian) {
   const auto scene = [](const std::string& law, const std::string& rest) {

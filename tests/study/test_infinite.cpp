@@ -181,7 +181,11 @@ TEST_F(InfiniteEndsOf, AreRefusedWhereTheyCannotBe) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
   refused(scene_of(one, "x'^2/2 - x^2/2", "start = { x = 0 }\nend = { x = 0.5 }\n"), "±1i");
-  refused(scene_of(one, well, "end = { x = 0.9 }\n"), "the nearest one is x = 1");
+  refused(scene_of(one, well, "end = { x = 0.9 }\n"), "the nearest one is x = 1; give that at the start, or");
+  refused(scene_of(one, well, "start = { x = 0.9 }\n"), "the nearest one is x = 1; give that at the end, or");
+  refused(scene_of(one, well, "start = { x = 0.5 }\nend = { x = 0.9 }\n"),
+          "the nearest one is x = 1; give that, or");
+  refused(scene_of(one, well, "start = { x = 1 }\n"), "give the end a place away from it, or a guess");
   refused(scene_of(one, well, "start = { x = -1 }\nend = { x = -1 }\n"),
           "the default guess is the equilibrium");
   refused(scene_of(one, "x'^2/2 + x^4/4 - 4*x^3/9 + x^2/6", "start = { x = 0 }\nend = { x = 1 }\n"),

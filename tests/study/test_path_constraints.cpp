@@ -7,7 +7,6 @@
 #include "problem/inequalities.hpp"
 #include "scenes.hpp"
 #include "solution/path_contacts.hpp"
-#include "solve/external/method.hpp"
 
 using namespace extremal;
 using namespace extremal::test;
@@ -63,14 +62,7 @@ const char* const disc = "\"x^2 + y^2 >= 1\"";
 
 }  // namespace
 
-/// Needs Ipopt.
-class PathConstraints : public Scenes {
- protected:
-  void SetUp() override {
-    if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
-    Scenes::SetUp();
-  }
-};
+using PathConstraints = UnderInequalities;
 
 TEST_F(PathConstraints, TheShortestWayRoundADisc) {
   const Study s = study(particle(disc, "x = -2.0, y = 0.0", "x = 2.0, y = 0.0"));
@@ -175,6 +167,17 @@ TEST_F(PathConstraints, OfAContinuumOneIsFound) {
   ASSERT_TRUE(found[0].converged()) << found[0].message;
   const double length = length_round_disc(2, 2, half_turn);
   EXPECT_NEAR(found[0].action, length * length / 2, 1e-8);
+}
+
+/// Of a search for more minimisers than there are, for a second: errors as large as the tolerance do not make
+/// two of one.
+TEST_F(PathConstraints, MinimisersAreToldApartByTheirErrors) {
+  const Study s = study(particle("\"x^2 + y^2 >= 0.64\", \"(x - 1.8)^2 + (y + 0.2)^2 >= 0.25\"",
+                                 "x = -2.0, y = 0.0", "x = 3.0, y = 0.3") +
+                        "[search]\nsolutions = 5\n[solve]\ntolerance = 0.01\nbudget = 1.0\n");
+  const std::vector<Solution> found = run_all(s);
+  ASSERT_TRUE(found.front().converged()) << found.front().message;
+  for (std::size_t k = 1; k < found.size(); ++k) EXPECT_GT(found[k].action, found[k - 1].action + 0.1);
 }
 
 TEST_F(PathConstraints, TwoDiscsArePassedOnEachSide) {
@@ -299,6 +302,8 @@ TEST_F(PathConstraints, RefusesWhatItCannotSolve) {
   refused(particle("\"0 <= y <= 1\"", start, end), "one inequality has one sign");
   refused(particle("\"abs(y) <= 1\"", start, end), "must be smooth");
   refused(particle(disc, start, end) + "[solve]\nscheme = \"midpoint\"\n", "leave 'scheme' out");
+  refused(particle(disc, start, end) + "[solve]\nscheme = \"midpoint\"\nelements = 6\nsteps = \"free\"\n",
+          "leave 'scheme', 'elements' and 'steps' out");
   refused(particle(disc, start, end) + "[continuation]\nparameter = \"duration\"\nto = 2.0\n",
           "families are not continued");
   refused(

@@ -7,7 +7,6 @@
 #include "problem/inequalities.hpp"
 #include "scenes.hpp"
 #include "solution/path_contacts.hpp"
-#include "solve/external/method.hpp"
 
 /// Inequalities along the path with free durations, closed paths, constraints, and ends that are not points.
 
@@ -17,14 +16,6 @@ using namespace extremal::test;
 namespace {
 
 const double straight_angle = std::numbers::pi;
-
-/// A free particle in the plane.
-std::string plane_particle(const std::string& constraints, const std::string& boundary) {
-  return fmt::format(
-      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n[path]\nconstraints = [{}]\n"
-      "[boundary]\n{}",
-      constraints, boundary);
-}
 
 const char* const unit_disc = "\"x^2 + y^2 >= 1\"";
 const char* const two_discs = "\"(x - 2)^2 + y^2 >= 1\", \"(x + 2)^2 + y^2 >= 1\"";
@@ -62,23 +53,11 @@ double force_at(const Solution& solution, double t) {
 
 }  // namespace
 
-/// Needs Ipopt.
-class PathEnds : public Scenes {
- protected:
-  void SetUp() override {
-    if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
-    Scenes::SetUp();
-  }
-  Solution found(const std::string& scene) {
-    Solution solution = run(study(scene));
-    EXPECT_TRUE(solution.converged()) << solution.message;
-    return solution;
-  }
-};
+using PathEnds = UnderInequalities;
 
 TEST_F(PathEnds, TheEnergyDeterminesTheDuration) {
   for (const double guess : {2.0, 50.0}) {
-    const Solution solution = found(plane_particle(
+    const Solution solution = found(free_particle(
         unit_disc,
         fmt::format("{}duration = \"free\"\nenergy = 2.0\n[guess]\nduration = {}\n", opposite_ends, guess)));
     ASSERT_TRUE(solution.converged());
@@ -90,7 +69,7 @@ TEST_F(PathEnds, TheEnergyDeterminesTheDuration) {
 
 TEST_F(PathEnds, AConditionDeterminesTheDuration) {
   // Straight on at speed 1 from the top of the disc.
-  const Solution solution = found(plane_particle(
+  const Solution solution = found(free_particle(
       unit_disc,
       "start = { x = -2.0, y = 0.1 }\nend = { p_x = 1.0 }\nwhere = \"x(T) = 2\"\nduration = \"free\"\n"
       "[guess]\nduration = 3.0\n"));
@@ -117,7 +96,7 @@ TEST_F(PathEnds, AnEnergyThatNoMinimiserHasIsTold) {
 
 TEST_F(PathEnds, ABandRoundTwoDiscs) {
   const Solution solution =
-      found(plane_particle(two_discs, fmt::format("periodic = true\nduration = 1.0\n{}", wide_loop)));
+      found(free_particle(two_discs, fmt::format("periodic = true\nduration = 1.0\n{}", wide_loop)));
   ASSERT_TRUE(solution.converged());
   EXPECT_NEAR(solution.action, round_both * round_both / 2, 1e-7);
   EXPECT_TRUE(solution.minimizing);
@@ -127,7 +106,7 @@ TEST_F(PathEnds, ABandRoundTwoDiscs) {
 }
 
 TEST_F(PathEnds, TheEnergyDeterminesThePeriodOfABand) {
-  const Solution solution = found(plane_particle(
+  const Solution solution = found(free_particle(
       two_discs,
       fmt::format("periodic = true\nduration = \"free\"\nenergy = 0.5\n{}duration = 10.0\n", wide_loop)));
   ASSERT_TRUE(solution.converged());
@@ -137,7 +116,7 @@ TEST_F(PathEnds, TheEnergyDeterminesThePeriodOfABand) {
 
 TEST_F(PathEnds, AClosedPathMayBeHeldThroughout) {
   const Solution solution =
-      found(plane_particle(unit_disc, fmt::format("periodic = true\nduration = 2.0\n{}", wide_loop)));
+      found(free_particle(unit_disc, fmt::format("periodic = true\nduration = 2.0\n{}", wide_loop)));
   ASSERT_TRUE(solution.converged());
   EXPECT_NEAR(solution.action, straight_angle * straight_angle, 1e-9);
   ASSERT_EQ(solution.contacts->contacts.size(), 1u);
@@ -193,7 +172,7 @@ TEST_F(PathEnds, AFreeEndIsPressedAgainstAWall) {
 }
 
 TEST_F(PathEnds, AnEndOnACurve) {
-  const Solution solution = found(plane_particle(
+  const Solution solution = found(free_particle(
       unit_disc,
       "conditions = [\"x(0) = -2\", \"y(0) = 0.1\", \"(x(T) - 3)^2 + y(T)^2 = 0.25\"]\nduration = 1.0\n"));
   ASSERT_TRUE(solution.converged());
@@ -230,10 +209,10 @@ TEST_F(PathEnds, RefusesWhatDoesNotRecur) {
     const std::string text = message(scene);
     EXPECT_NE(text.find(what), std::string::npos) << text;
   };
-  refused(plane_particle("\"(x - 0.3*t)^2 + y^2 >= 1\"",
-                         fmt::format("periodic = true\nduration = 1.0\n{}", wide_loop)),
+  refused(free_particle("\"(x - 0.3*t)^2 + y^2 >= 1\"",
+                        fmt::format("periodic = true\nduration = 1.0\n{}", wide_loop)),
           "a closed path recurs only if the inequalities do");
-  refused(plane_particle(
+  refused(free_particle(
               "\"(x - 0.3*t)^2 + y^2 >= 1\"",
               fmt::format("{}duration = \"free\"\nenergy = 1.0\n[guess]\nduration = 2.0\n", opposite_ends)),
           "inequalities that depend on t change the energy");

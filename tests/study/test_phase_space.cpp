@@ -322,6 +322,27 @@ TEST_F(PhaseSpaceScenes, FamilyInACirculation) {
   }
 }
 
+/// Orbits of H = cos x cos p about (0, 0) last 4 K(√(1 − H²)), and so at least 2π; those about a point that
+/// is not the origin likewise.
+TEST_F(PhaseSpaceScenes, RestsAreNoOrbits) {
+  const auto scene = [](double duration) {
+    return fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nhamiltonian = \"cos(x - 0.3)*cos(p_x - 0.2)\"\n"
+        "[boundary]\nperiodic = true\nduration = {}\n[guess]\nx = \"0.3 + 0.5*sin(2*pi*t/T)\"\n"
+        "p_x = \"0.2 - 0.5*cos(2*pi*t/T)\"\n[continuation]\nparameter = \"duration\"\nto = {}\n",
+        duration, duration - 0.1);
+  };
+  const Solution none = run(study(scene(5)));
+  EXPECT_EQ(none.status, Status::no_solution_near);
+  EXPECT_NE(none.message.find("equilibrium"), std::string::npos) << none.message;
+  const FollowedBranch branch = follow(study(scene(5)));
+  EXPECT_TRUE(branch.points.empty());
+  const Solution orbit = run(study(scene(7)));
+  ASSERT_TRUE(orbit.converged()) << orbit.message;
+  const double energy = orbit.energy.value();
+  EXPECT_NEAR(4 * std::comp_ellint_1(std::sqrt(1 - energy * energy)), 7, 1e-7);
+}
+
 TEST_F(PhaseSpaceScenes, RefusedWithTheirPlace) {
   const std::string ends = "[boundary]\nstart = { x = 0.1 }\nend = { p_x = 2 }\nduration = 5\n";
   const auto refused = [&](const std::string& rest, const std::string& part) {

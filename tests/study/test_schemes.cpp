@@ -125,3 +125,14 @@ TEST_F(SchemesOf, TheEndIsNoConjugateTime) {
     EXPECT_NEAR(found.conjugate_times.front(), 1.1, 1e-3) << scheme;
   }
 }
+
+/// A force that begins inside an element leaves errors of its length: more elements than there may be are
+/// told from those before, and not tried.
+TEST_F(SchemesOf, StepsInsideElementsTakeTheOrder) {
+  const Solution found =
+      run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - step(t - 0.8)*x/2\"\n"
+                "[boundary]\nstart = { x = 0.2 }\nend = { x = 1 }\nduration = 1.5\n" +
+                solve_table("gauss(3)", "")));
+  EXPECT_FALSE(found.converged());
+  EXPECT_NE(found.message.find("needs more than 1048576 elements"), std::string::npos) << found.message;
+}

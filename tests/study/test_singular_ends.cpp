@@ -94,6 +94,20 @@ TEST_F(SingularEnds, MediaOfOtherPowers) {
   }
 }
 
+/// From rest at infinity, x' = √(2c) x^(−a/2): x ~ t^(1/(1 + a/2)), and the action is ∫ x' dx.
+TEST_F(SingularEnds, WeakPowers) {
+  for (const double a : {0.1, 0.2, 0.25, 0.4}) {
+    const double c = 0.3, duration = 1 / (std::sqrt(2 * c) * (1 + a / 2)),
+                 action = std::sqrt(2 * c) / (1 - a / 2);
+    const Solution found = solved(
+        singular_scene(fmt::format("y'^2/2 + {}/y^{}", c, a),
+                       fmt::format("start = {{ y = 0 }}\nend = {{ y = 1 }}\nduration = {:.17g}", duration)));
+    ASSERT_TRUE(found.converged()) << a << ": " << found.message;
+    EXPECT_NEAR(found.action, action, 1e-10) << a;
+    EXPECT_NEAR(found.momentum_end.at(0), std::sqrt(2 * c), 1e-8) << a;
+  }
+}
+
 TEST_F(SingularEnds, InSeveralCoordinatesAndFromGuesses) {
   // Along the diagonal the way is √(10² + 3²) long.
   const Solution slanted = solved(

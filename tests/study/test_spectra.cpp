@@ -168,3 +168,18 @@ TEST_F(Spectra, Refusals) {
   EXPECT_EQ(message(oscillator_by(10, "midpoint", 20), {"spectrum.lines=0"}),
             "--set spectrum.lines: lines = 0; need 1 to 1000");
 }
+
+/// H = p_x y − p_y x turns the plane: x = cos t, y = −sin t. Lines are those of the coordinates, not of
+/// momenta.
+TEST_F(Spectra, OfAHamiltonianLinearInMomenta) {
+  const MotionSpectrum found = lines_of(study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nhamiltonian = \"p_x*y - p_y*x\"\n"
+      "[boundary]\nstart = { x = 1, y = 0, p_x = 0.3, p_y = 0.7 }\nduration = 70\n[spectrum]\nlines = 1\n"));
+  ASSERT_EQ(found.coordinates.size(), 2u);
+  ASSERT_EQ(found.drift.size(), 2u);
+  for (std::size_t a = 0; a < 2; ++a) {
+    EXPECT_NEAR(found.coordinates[a].lines.at(0).frequency, 1, 1e-9);
+    EXPECT_NEAR(found.coordinates[a].lines.at(0).amplitude, 1, 1e-8);
+    EXPECT_NEAR(found.coordinates[a].lines.at(0).phase, a == 0 ? 0 : pi / 2, 1e-7);
+  }
+}

@@ -61,3 +61,63 @@ TEST_F(StartScanScenes, FixedEndsAndMomentaInTurn) {
                                   }),
             25);
 }
+
+/// Velocities are less than 1, momenta are not. A scan of p(0) between -40 and 40 by RK4, each change of sign
+/// halved until it is known, finds these.
+TEST_F(StartScanScenes, MomentaOfBoundedVelocities) {
+  const std::vector<Solution> found = run_all(
+      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"-sqrt(1 - x'^2) + 2*cos(x)\"\n[boundary]\n"
+            "start = { x = 0.3 }\nend = { x = 1 }\nduration = 8\n[search]\nsolutions = 40\n"));
+  std::vector<double> momenta;
+  for (const Solution& s : found) momenta.push_back(s.momentum_start[0]);
+  std::ranges::sort(momenta);
+  const std::vector<double> expected{-4.5415874, -3.0630596, 1.7119598, 2.1976913, 4.7989574};
+  ASSERT_EQ(momenta.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(momenta[k], expected[k], 1e-6);
+}
+
+/// x(6) of x'' = -2 sign(x) from 0.3: parabolas between zeros of x.
+double end_between_kinks(double p) {
+  double x = 0.3, left = 6, side = 1;
+  for (;; side = -side) {
+    const double until_zero = (side * p + std::sqrt(p * p + 4 * std::abs(x))) / 2;
+    if (until_zero >= left) return x + p * left - side * left * left;
+    left -= until_zero;
+    p -= 2 * side * until_zero;
+    x = 0;
+  }
+}
+
+TEST_F(StartScanScenes, MotionsAcrossKinks) {
+  const std::vector<Solution> found =
+      run_all(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - 2*abs(x)\"\n[boundary]\n"
+                    "start = { x = 0.3 }\nend = { x = -0.2 }\nduration = 6\n[search]\nsolutions = 40\n"));
+  int expected = 0;
+  for (int k = -20000; k < 20000; ++k)
+    expected += (end_between_kinks(k * 1e-3) < -0.2) != (end_between_kinks((k + 1) * 1e-3) < -0.2);
+  EXPECT_EQ(expected, 11);
+  EXPECT_EQ(static_cast<int>(found.size()), expected);
+  for (const Solution& s : found) EXPECT_NEAR(end_between_kinks(s.momentum_start[0]), -0.2, 1e-6);
+}
+
+/// A wave drives the pendulum: a scan of p(0) by RK4 has seven, two of them next to each other.
+TEST_F(StartScanScenes, MotionsInAWave) {
+  const std::vector<Solution> found = run_all(study(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + cos(x) + 0.5*cos(x - 1.5*t)\"\n[boundary]\n"
+      "start = { x = 0.3 }\nend = { x = 2 }\nduration = 10\n[search]\nsolutions = 40\n"));
+  EXPECT_EQ(found.size(), 7);
+}
+
+/// Orbits of a driven pendulum, of which Newton's method from starts on a lattice knows these within a
+/// half turn: two of them are images of each other under the reversal of time.
+TEST_F(StartScanScenes, DrivenPeriodicOrbits) {
+  const std::vector<Solution> found = run_all(
+      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + cos(x) + 0.4*x*cos(2*pi*t/14)\"\n"
+            "[boundary]\nperiodic = true\nduration = 14\n[guess]\nx = \"0.1*cos(2*pi*t/14)\"\n"
+            "[search]\nsolutions = 4\n"));
+  std::vector<double> actions;
+  for (const Solution& s : found) actions.push_back(s.action);
+  const std::vector<double> expected{14.5381, 14.5381, 14.5419, 14.7160};
+  ASSERT_EQ(actions.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(actions[k], expected[k], 1e-4);
+}

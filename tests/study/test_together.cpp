@@ -5,7 +5,6 @@
 #include "scenes.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/path_contacts.hpp"
-#include "solve/external/method.hpp"
 #include "study/fitting.hpp"
 
 /// \file Waypoints, conditions, unknowns and integrals together with closed paths, forces and inequalities.
@@ -16,14 +15,6 @@ using namespace extremal::test;
 namespace {
 
 using Together = Scenes;
-
-class UnderInequalities : public Scenes {
- protected:
-  void SetUp() override {
-    if (!available(Method::ipopt)) GTEST_SKIP() << "built without Ipopt";
-    Scenes::SetUp();
-  }
-};
 
 class FitsTogether : public Scenes {
  protected:

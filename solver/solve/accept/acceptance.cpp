@@ -12,6 +12,7 @@
 #include "solution/on_manifold.hpp"
 #include "solve/accept/conditions.hpp"
 #include "solve/accept/conjugate_ends.hpp"
+#include "solve/accept/isolation.hpp"
 #include "solve/accept/limits.hpp"
 #include "solve/accept/minimality.hpp"
 #include "solve/accept/quadrature_check.hpp"
@@ -19,6 +20,7 @@
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/periodic/moving_symmetries.hpp"
+#include "solve/periodic/orbit_index.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
 #include "solve/periodic/stability.hpp"
 
@@ -40,8 +42,8 @@ int held_directions(const Problem& problem) {
 }
 
 /// Momenta, residual, index and nullity from one evaluation at the path, on the iteration's elements.
-void read_equations(const Problem& problem, const Path& path, const Outcome& outcome, NewtonIteration& newton,
-                    Solution& solution) {
+void read_equations(const Problem& problem, const SolveOptions& options, const Path& path,
+                    const Outcome& outcome, NewtonIteration& newton, Solution& solution) {
   const bool factored = newton.factor(path);
   const DiscreteAction& action = newton.action();
   solution.action = action.action();
@@ -59,20 +61,22 @@ void read_equations(const Problem& problem, const Path& path, const Outcome& out
     return;
   }
   const double size = scales(path, *outcome.tables).q;
-  const Inertia inertia = newton.model().inertia(zero_eigenvalue_along(size, outcome.error, path.elements()));
+  // Of pinned elements the equations themselves are known, to roundoff.
+  const double error = options.elements > 0 ? 0 : outcome.error;
+  const Inertia inertia = newton.model().inertia(zero_eigenvalue_along(size, error, path.elements()));
   solution.morse_index = inertia.negative;
   solution.nullity = inertia.zero;
   solution.minimizing =
       inertia.negative == 0 && (problem.periodic || inertia.zero == held_directions(problem));
 }
 
-void read_path(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
-               Solution& solution) {
+void read_path(const Problem& problem, const SolveOptions& options, const Path& path, const Outcome& outcome,
+               Workspace& w, Solution& solution) {
   w.iteration.reset(problem, *outcome.tables, path.elements());
   w.iteration.hold_shifts(outcome.shifts_held);
   const bool raised = outcome.recovered && recover(problem, path, w, w.raised);
   solution.trajectory = trajectory_of(raised ? w.raised : path);
-  read_equations(problem, path, outcome, w.iteration, solution);
+  read_equations(problem, options, path, outcome, w.iteration, solution);
 }
 
 /// What a path was found to be, beside its solution: its survey where L does not depend on t.
@@ -107,7 +111,7 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   solution.degree = path.degree();
   const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
-  read_path(problem, path, outcome, w, solution);
+  read_path(problem, options, path, outcome, w, solution);
   if (outcome.family > 0) {
     solution.nullity = outcome.family;
     solution.morse_index = outcome.index_across;
@@ -118,6 +122,11 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   if (problem.paired)
     if (auto fails = copies_differ(solution.trajectory, scales(path, *outcome.tables).q))
       return refused(*std::move(fails), solution);
+  // Velocities that momenta give are the same on both sides of a node.
+  if (auto fails =
+          has_broken_node(problem, *problem.lagrangian,
+                          outcome.recovered ? trajectory_of(path) : solution.trajectory, 0, path.elements()))
+    return refused(*std::move(fails), solution);
   Examined result{observe_energy(*problem.lagrangian, solution)};
   if (result.survey && !problem.paired) explain_drift(*result.survey, solution);  // two copies have none
   if (auto fails =
@@ -147,12 +156,12 @@ Part examine_part(const SolveOptions& options, const Outcome& outcome, Workspace
   const Problem& problem = outcome.reduction->part;
   Solution solution;
   Part result;
-  read_path(problem, outcome.part, outcome, w, solution);
+  read_path(problem, options, outcome.part, outcome, w, solution);
   result.check = check_quadrature(problem, outcome.part, outcome, solution, w);
   const std::optional<Path> better = polished(options, outcome, outcome.part, result.check, w);
   const Path& path = better ? *better : outcome.part;
   if (better) {
-    read_path(problem, path, outcome, w, solution);
+    read_path(problem, options, path, outcome, w, solution);
     result.check = check_quadrature(problem, path, outcome, solution, w);
     reconstruct_orbit(*outcome.reduction, path, *outcome.tables, result.whole.emplace());
   }
@@ -206,8 +215,8 @@ void explain_nullity(const Problem& problem, Solution& solution) {
 void tell_soft_shift(const Outcome& found, Solution& solution) {
   solution.minimizing = solution.morse_index == 0;
   solution.message +=
-      "; a shift in time between the rests of this path changes the action by less than roundoff: of the "
-      "paths that differ by it this is the one whose energies at both ends agree";
+      "; a shift in time between the rests of this path changes the action by hardly more than roundoff: of "
+      "the paths that differ by it this is the one whose energies at both ends agree";
   if (found.shift_error > found.tolerance)
     solution.message +=
         fmt::format("; what is not known of the shift changes q by {:.1e}", found.shift_error);
@@ -234,9 +243,10 @@ void leave_out_times_at_end(const Problem& problem, double size, Solution& solut
   std::erase_if(solution.conjugate_times, [&](double t) { return t >= solution.duration() - within; });
 }
 
-/// An infinite end is conjugate by each null direction. On a part of the time axis the error of the path may
-/// move that to a time in the tail, where fields are roundoff: times beyond the index.
-void leave_out_infinity(Solution& solution) {
+/// An end that is conjugate by each null direction: at T, as of a path that rests or whose interfaces hardly
+/// hold each other in time, or at infinity. The error of the path may move that to a time in the tail, where
+/// fields are roundoff: times beyond the index.
+void leave_out_later_times(Solution& solution) {
   const std::size_t index = solution.morse_index.value_or(0);
   if (solution.nullity.value_or(0) == 0 || solution.conjugate_times.size() <= index) return;
   solution.conjugate_times.resize(index);
@@ -244,6 +254,36 @@ void leave_out_infinity(Solution& solution) {
   if (windows.size() <= index + 1) return;
   windows.resize(index + 1);
   windows.back()[1] = solution.duration();
+}
+
+/// A path that rests where no force acts is an extremal, whatever times are conjugate. Pinned elements have
+/// conjugate times of their own.
+bool rests_without_force(const Problem& problem, const SolveOptions& options, const Scales& size,
+                         const Solution& solution) {
+  return options.elements == 0 && problem.ends.free == 0 && !problem.duration.free &&
+         (size.range < size.q || size.q == 0) && solution.residual <= momentum_roundoff;
+}
+
+/// A conjugate time at T itself is a null direction, and not between the ends.
+void read_index_at_rest(const Problem& problem, SecondVariation& variation, Solution& solution) {
+  if (solution.windows.empty()) return;
+  read_index(problem, variation, 0, solution);
+  leave_out_later_times(solution);
+}
+
+/// The second variation whose multipliers are told: of pinned elements their own. What is indefinite has none
+/// of its windows yet. It refers to `of_elements`.
+void assemble_for_multipliers(const Problem& problem, const SolveOptions& options, const Outcome& found,
+                              const Path& path, const Solution& solution, const Trajectory& of_elements,
+                              Workspace& w) {
+  if (!problem.periodic || problem.coordinates() > most_coordinates_for_multipliers) return;
+  const ClosingMap closed = closing_map(problem);
+  if (options.elements > 0) {
+    w.variation.assemble_elements(problem.lagrangian, of_elements, path, *found.tables, &closed);
+  } else if (problem.paired || problem.phase) {
+    w.variation.assemble(problem.lagrangian, solution.trajectory, {}, &closed,
+                         problem.paired ? Definite::paired : Definite::none);
+  }
 }
 
 /// A solution that is refused has no path.
@@ -254,9 +294,14 @@ Solution without_path(const Solution& solution) {
   return refused;
 }
 
-/// Sets the solution; returns whether another guess would not help where there is none.
-bool judge_path(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w,
-                Solution& solution) {
+struct Judged {
+  bool hopeless;      ///< no solution, and another guess would not help
+  bool not_isolated;  ///< to the error that the tolerance leaves
+};
+
+/// Sets the solution.
+Judged judge_path(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w,
+                  Solution& solution) {
   const auto start = Clock::now();
   QuadratureCheck check;
   std::optional<Path> better;
@@ -264,25 +309,40 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
   const Path& path = better ? *better : found.path;
   if (solution.converged()) {
     const bool indefinite = problem.paired || problem.phase;  // nothing is minimal
-    const double distance = indefinite ? INFINITY : read_minimality(problem, options, w.variation, solution);
-    if (indefinite && problem.periodic && problem.coordinates() <= most_coordinates_for_multipliers) {
-      const ClosingMap closed = closing_map(problem);
-      w.variation.assemble(problem.lagrangian, solution.trajectory, {}, &closed,
-                           problem.paired ? Definite::paired : Definite::none);
-    }
-    read_stability(problem, w.variation, scales(path, *found.tables).q, solution);
+    const Trajectory of_elements = options.elements > 0 ? trajectory_of(path) : Trajectory{};
+    const OwnElements own{path, *found.tables, of_elements};
+    const OwnElements* const named = options.elements > 0 ? &own : nullptr;
+    const double distance =
+        indefinite ? INFINITY : read_minimality(problem, options, w.variation, solution, named);
+    if (!indefinite && w.variation.too_many() && !named) confirm_index(problem, path, found, w, solution);
+    const Scales sizes = scales(path, *found.tables);
+    const double size = sizes.q;
+    // Pieces that minimise have windows. The index of pinned elements is their own.
+    if (problem.periodic && options.elements == 0 && !solution.windows.empty())
+      read_index(problem, w.variation, size > 0 ? solution.error_estimate / size : 0, solution);
+    assemble_for_multipliers(problem, options, found, path, solution, of_elements, w);
+    read_stability(problem, w.variation, size, solution);
     if (found.family == 0) explain_nullity(problem, solution);
     if (found.family == 0) tell_continuum(problem, solution);
     if (found.shifts_held)
       tell_soft_shift(found, solution);
+    else if (found.family == 0 && rests_without_force(problem, options, sizes, solution))
+      read_index_at_rest(problem, w.variation, solution);
     else if (found.family == 0)
       judge_conjugate_ends(problem, options, path, *found.tables, distance, w, solution);
     else
       leave_out_end(solution);
-    leave_out_times_at_end(problem, scales(path, *found.tables).q, solution);
-    if (problem.infinite) leave_out_infinity(solution);
+    leave_out_times_at_end(problem, size, solution);
+    const bool counted = problem.ends.free == 0 && !problem.periodic && options.elements == 0;
+    if (problem.infinite || counted) leave_out_later_times(solution);
   }
   if (solution.converged()) judge_quadrature(check, options, found, solution);
+  bool not_isolated = false;
+  if (solution.converged() && check.softest && !options.scheme &&
+      soft(problem, found, path, *check.softest, solution.error_estimate)) {
+    judge_isolation(problem, path, found, *check.softest, w, solution);
+    not_isolated = !solution.converged();
+  }
   if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned && solution.converged() && !problem.paired) {
@@ -299,7 +359,7 @@ bool judge_path(const Problem& problem, const SolveOptions& options, const Outco
   solution.iterations = found.iterations;
   w.iteration.forget();
   solution.seconds_analyse = seconds_since(start);
-  return examined.hopeless || conjugate;
+  return {examined.hopeless || conjugate, not_isolated};
 }
 
 }  // namespace
@@ -317,10 +377,12 @@ Acceptance::Verdict Acceptance::judge(const Outcome& found) {
   const bool first = !solution_;
   std::optional<Solution> later;
   Solution& solution = (first ? solution_ : later).emplace();
-  const bool hopeless = judge_path(problem_, options_, found, w_, solution);
+  const Judged judged = judge_path(problem_, options_, found, w_, solution);
   seconds_ += solution.seconds_analyse;
   const bool accepted = solution.converged();
   if (accepted && !first) solution_ = std::move(later);
+  too_loose_ = !accepted && (too_loose_ || (judged.not_isolated && options_.tolerance > isolating_tolerance));
+  const bool hopeless = judged.hopeless || too_loose_;
   return accepted ? Verdict::accepted : hopeless ? Verdict::hopeless : Verdict::refused;
 }
 

@@ -36,6 +36,10 @@ class Acceptance {
   Solution result(const Outcome& last);
   /// Of the solution that was accepted; 0 if it has none.
   int nullity() const { return solution_ ? solution_->nullity.value_or(0) : 0; }
+  /// Whether the last path is refused for the error that the tolerance leaves, see judge_isolation().
+  bool too_loose() const { return too_loose_; }
+  /// Tighter tolerances leave less than roundoff of the action.
+  static constexpr double isolating_tolerance = 1e-9;
   double seconds() const { return seconds_; }  ///< spent so far
 
  private:
@@ -43,6 +47,7 @@ class Acceptance {
   const SolveOptions& options_;
   Workspace& w_;
   std::optional<Solution> solution_;
+  bool too_loose_ = false;
   double seconds_ = 0;
 };
 

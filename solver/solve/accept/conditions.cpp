@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "action/energies.hpp"
+#include "problem/closing.hpp"
+#include "solution/broken_node.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/limits.hpp"
+#include "solve/adapt/others_to_try.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/resolution.hpp"
 #include "solve/mesh/roundoff.hpp"
@@ -84,7 +87,8 @@ std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions
         "determines the duration; try another guess"};
   if (shrank(problem, scales(path, tables).range, outcome.first_range))
     return Refusal{Status::no_solution_near,
-                   fmt::format("{}; try a larger guess or another duration", shrank_to_rest)};
+                   fmt::format("{}; try {}", shrank_to_rest,
+                               others_to_try(problem, "a larger guess", "another duration"))};
   return std::nullopt;
 }
 
@@ -102,11 +106,7 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
   const bool conserved =
       !found || options.scheme || conserves_energy(*found, solution.trajectory, options.tolerance);
   if (!conserved || (raised && options.elements == 0 && solution.error_estimate > outcome.tolerance))
-    return Refusal{Status::not_converged,
-                   fmt::format("the energy drifts by {:.1e}, more than the tolerance {:.1e} allows: L has a "
-                               "singularity or a kink on the path that the elements do not resolve; try "
-                               "another tolerance",
-                               *solution.energy_drift, options.tolerance)};
+    return energy_drifts(*solution.energy_drift, options.tolerance);
   if (found && problem.ends.free > 0 && !options.scheme &&
       !within_momenta(problem, *found, options.tolerance, nullity, path, action))
     return Refusal{
@@ -125,6 +125,25 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
         "conjugate, or forces vanish along the path; move an end, change the duration, or try a better "
         "guess"};
   return std::nullopt;
+}
+
+Refusal energy_drifts(double drift, double tolerance) {
+  return {Status::not_converged,
+          fmt::format("the energy drifts by {:.1e}, more than the tolerance {:.1e} allows: L has a "
+                      "singularity or a kink on the path that the elements do not resolve; try "
+                      "another tolerance",
+                      drift, tolerance)};
+}
+
+std::optional<Refusal> has_broken_node(const Problem& problem, const Lagrangian& lagrangian,
+                                       const Trajectory& trajectory, int first, int last) {
+  if (lagrangian.structure().velocity_free) return std::nullopt;  // p is linear in q'
+  std::optional<ClosingMap> closing;
+  if (problem.periodic && last == trajectory.elements()) closing = closing_map(problem);
+  const std::optional<BrokenNode> broken =
+      find_broken_node(lagrangian, trajectory, problem.paired, first, last, closing ? &*closing : nullptr);
+  if (!broken) return std::nullopt;
+  return Refusal{Status::not_converged, describe(*broken)};
 }
 
 std::optional<Refusal> copies_differ(const Trajectory& pair, double size) {

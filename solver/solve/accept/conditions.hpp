@@ -33,6 +33,14 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
                                      const std::optional<Survey>& found, const DiscreteAction& action,
                                      Solution& solution);
 
+/// Of the nodes between the elements first, …, last − 1, and T of a closed path: none is broken
+/// (solution/broken_node.hpp).
+std::optional<Refusal> has_broken_node(const Problem& problem, const Lagrangian& lagrangian,
+                                       const Trajectory& trajectory, int first, int last);
+
+/// For the energy of a path that drifts by more than its error explains.
+Refusal energy_drifts(double drift, double tolerance);
+
 /// Two copies of the coordinates that differ are no motion with forces. `size`: of the path.
 std::optional<Refusal> copies_differ(const Trajectory& pair, double size);
 

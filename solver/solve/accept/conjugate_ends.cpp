@@ -7,6 +7,7 @@
 
 #include "analysis/windows.hpp"
 #include "solve/accept/limits.hpp"
+#include "solve/adapt/finer_elements.hpp"
 #include "solve/newton/converge.hpp"
 
 namespace extremal {
@@ -18,15 +19,13 @@ namespace {
 bool fixed(const Problem& problem) { return problem.ends.free == 0 && !problem.duration.free; }
 
 /// By how much the nodes move when elements get a higher degree; infinite if Newton's method then fails.
-double moved_by_finer_elements(const Problem& problem, const Path& path, Workspace& w, double goal) {
-  const int degree = std::min(path.degree() + finer, max_degree);
-  const ElementTables& tables = w.levels.at(degree);
-  w.other.interpolate_from(path, tables, w.levels.raise(path.degree(), degree));
-  w.iteration.reset(problem, tables, w.other.elements());
-  if (!converge(w.iteration, w.other, tables, {goal, steps}, {}).reached) return INFINITY;
+double moved_by_finer_elements(const Problem& problem, const Path& path, const ElementTables& tables,
+                               Workspace& w, double goal) {
+  Path& other = on_finer_elements(problem, path, tables, finer, w);
+  if (!converge(w.iteration, other, w.levels.at(other.degree()), {goal, steps}, {}).reached) return INFINITY;
   double moved = 0;
   for (std::size_t k = 0; k < path.nodes().size(); ++k)
-    moved = std::max(moved, std::abs(w.other.nodes()[k] - path.nodes()[k]));
+    moved = std::max(moved, std::abs(other.nodes()[k] - path.nodes()[k]));
   return moved;
 }
 
@@ -50,8 +49,9 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, c
                     "from T = {:.10g}; there is no extremal or a family of them; move an end or change the "
                     "duration",
                     distance, T));
-  const double moved =
-      size > 0 && !options.scheme ? moved_by_finer_elements(problem, path, w, 0.1 * options.tolerance) : 0;
+  const double moved = size > 0 && !options.scheme
+                           ? moved_by_finer_elements(problem, path, tables, w, 0.1 * options.tolerance)
+                           : 0;
   const double amplified = moved + roundoff * T / distance * size;
   solution.error_estimate += amplified;
   const double allowed = options.elements > 0 ? INFINITY : options.tolerance * size;

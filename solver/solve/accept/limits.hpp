@@ -76,6 +76,28 @@ inline constexpr std::size_t most_named = 6;
 
 }  // namespace failure
 
+namespace isolation {
+
+/// Errors are estimates: they may be larger by so much.
+inline constexpr double honest = 10;
+/// Newton's method converges where the second variation changes by less than this part along a step; the next
+/// step is then shorter by as much (Kantorovich). With 106 bits it takes so many steps at most.
+inline constexpr double most_change = 0.25;
+inline constexpr int most_steps = 12;
+/// Of the degree of elements that decide.
+inline constexpr int raised = 2;
+/// An eigenvalue, by the diagonal, that may be of roundings; and a step, by the path, that is none of them.
+inline constexpr double roundoff = 64 * unit_roundoff, last_step = unit_roundoff / 64;
+
+}  // namespace isolation
+
+namespace minimality {
+
+/// Of the degree of elements that confirm an index.
+inline constexpr int confirming = 2;
+
+}  // namespace minimality
+
 namespace quadrature_check {
 
 /// Largest ratio of an error to its estimate.

@@ -8,6 +8,9 @@
 
 #include "analysis/bounds.hpp"
 #include "problem/closing.hpp"
+#include "solve/accept/limits.hpp"
+#include "solve/adapt/finer_elements.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
 
@@ -59,12 +62,13 @@ LegendreCondition legendre_condition(const Lagrangian& lagrangian, const Traject
 }
 
 /// Without pieces that minimise. If L_vv is not positive definite there are none, and the negative
-/// eigenvalues are as many as the mesh has room for.
+/// eigenvalues are as many as the mesh has room for. Where it is not resolved, null ones are as little known.
 double without_pieces(LegendreCondition legendre, Solution& solution) {
   solution.message += legendre == LegendreCondition::holds
                           ? "; no index and no windows are told: its second variation is not resolved"
                           : "; ∂²L/∂q'∂q' is not positive definite along it, so no part of it is a minimum";
   solution.morse_index.reset();
+  if (legendre == LegendreCondition::holds) solution.nullity.reset();
   solution.minimizing = false;
   return INFINITY;
 }
@@ -78,14 +82,22 @@ void count_conjugate_times(const Problem& problem, const SolveOptions& options, 
   solution.minimizing = solution.morse_index == 0;
 }
 
+bool assemble_own(const Problem& problem, const OwnElements* own, const ClosingMap* closed,
+                  SecondVariation& memory) {
+  return own && own->tables.unknowns() <= most_dense_unknowns &&
+         memory.assemble_elements(problem.lagrangian, own->trajectory, own->path, own->tables, closed) &&
+         memory.definite();
+}
+
 }  // namespace
 
 double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
-                       Solution& solution) {
+                       Solution& solution, const OwnElements* own) {
   std::optional<ClosingMap> closed;
   if (problem.periodic) closed = closing_map(problem);
   const ClosingMap* map = closed ? &*closed : nullptr;
-  const bool assembled = memory.assemble(problem.lagrangian, solution.trajectory, {}, map);
+  const bool of_own = assemble_own(problem, own, map, memory);
+  const bool assembled = of_own || memory.assemble(problem.lagrangian, solution.trajectory, {}, map);
   if (memory.too_large()) {
     solution.message += "; windows are not found: the forms of its elements need too much memory";
     return INFINITY;
@@ -121,7 +133,26 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
     solution.message += "; conjugate times are not found: they would take too long";
   }
   solution.certificate = bounded && !refuted ? Certificate::global : Certificate::sampled;
+  // Elements do not hide that the ends of the extremal they stand for are conjugate.
+  if (of_own && problem.ends.free == 0)
+    return memory.assemble(problem.lagrangian, solution.trajectory) ? minimality(memory).distance : INFINITY;
   return found.distance;
+}
+
+void confirm_index(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
+                   Solution& solution) {
+  if (!solution.morse_index) return;
+  const ElementTables& tables = *outcome.tables;
+  const Path& finer = on_finer_elements(problem, path, tables, limits::minimality::confirming, w);
+  w.iteration.hold_shifts(outcome.shifts_held);
+  if (finer.degree() > path.degree() && w.iteration.factor(finer)) {
+    const double zero = zero_eigenvalue_along(scales(path, tables).q, outcome.error, path.elements());
+    if (w.iteration.model().inertia(zero).negative == *solution.morse_index) return;
+  }
+  solution.message += ", which do not tell its index";
+  solution.morse_index.reset();
+  solution.nullity.reset();
+  solution.minimizing = false;
 }
 
 }  // namespace extremal

@@ -10,6 +10,7 @@
 #include "solve/accept/symmetries.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
+#include "solve/newton/least_eigenvalue.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 #include "system/open_ends.hpp"
 
@@ -75,6 +76,7 @@ QuadratureCheck check_quadrature(const Problem& problem, const Path& path, const
   }
   check.turned = size.v > 0 ? w.iteration.steepness(path) / size.v : 0;
   check.kicked = kick(w.iteration.action(), *problem.lagrangian, solution);
+  check.softest = least_eigenvalue(w.iteration, path);
   return check;
 }
 

@@ -17,6 +17,7 @@ struct QuadratureCheck {
   double kicked = 0;     ///< momenta at its ends
   bool unlike = false;   ///< the residual of the whole orbit exceeds that of its part
   bool isolated = true;  ///< no null direction is left without a symmetry
+  std::optional<double> softest = {};  ///< least_eigenvalue(), with the same factors
 
   /// Whether a path of the elements that the tolerance asked for is moved by more than that allows.
   bool missed(const SolveOptions& options, const Outcome& outcome) const;

@@ -10,8 +10,12 @@ namespace extremal::limits {
 
 namespace pinned {
 
-inline constexpr int most_points = 20;     ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
-inline constexpr unsigned most_bends = 8;  ///< to move the default guess to where L is finite
+inline constexpr int most_points = 20;  ///< of the quadrature that counts as exact (DESIGN: S_h to 1e-15)
+/// To move the default guess to where L is finite: bends, each by this part of the extent more.
+inline constexpr unsigned most_bends = 8;
+inline constexpr double bend_size = 0.1;
+/// Of an element, by which a node is moved.
+inline constexpr double node_noise = 0.3;
 inline constexpr int most_elements = 1 << 20;
 /// An error below amplified_roundoff, relative to the range, or below the second, relative to the values, is
 /// roundoff if more elements reduce it by less than the first.
@@ -21,6 +25,8 @@ inline constexpr double stagnation = 0.9, at_roundoff = 1e-14;
 inline constexpr int futile_growth = 8;
 inline constexpr double resolved = 1e-3;
 inline constexpr int steps = 100;
+/// Starting paths of homotopies to the equations of a scheme, from each that there is.
+inline constexpr unsigned most_seeds = 24;
 /// From an extremal to its companion, which is near or none.
 inline constexpr int companion_steps = 25;
 /// Of the times, in t/T, at which the companion crosses kinks.
@@ -39,17 +45,52 @@ inline constexpr double stationary_residual = 1e-10;
 
 }  // namespace pinned
 
-namespace free_times {
+namespace stationary_phase {
 
-/// Equations hold to this, relative to the largest momentum, and to that times the largest velocity.
-inline constexpr double roundoff = 1e-12;
-/// Of Newton's method for one μ; what may be left after one of them; and the least way to the next μ.
-inline constexpr int most_steps = 12;
-inline constexpr double worst_imbalance = 1, least_way = 1e-4;
+/// Of an element, that a path is shifted at a time, and how often in each sense.
+inline constexpr double shift_part = 0.125;
+inline constexpr int most_shifts = 4;
+/// Steps to a zero of the force; a residual that needs none, relative to the largest momentum.
+inline constexpr int most_zero_steps = 40;
+inline constexpr double unforced = 1e-14;
+
+}  // namespace stationary_phase
+
+namespace scheme_equations {
+
 /// An element becomes at most so many times shorter or longer in one step.
 inline constexpr double most_stretch = 3;
 
-}  // namespace free_times
+}  // namespace scheme_equations
+
+namespace residual_homotopy {
+
+/// Equations hold to this, relative to the largest momentum, and of times to that times the largest velocity.
+inline constexpr double solved = 1e-12;
+/// Of Newton's method, and what may be left after one of its steps.
+inline constexpr int most_newton_steps = 12;
+inline constexpr double worst_residual = 1;
+/// To the next μ.
+inline constexpr double least_way = 1e-2;
+/// Lengths are relative: root mean square of values by the extent and of times by that of an element, and μ.
+inline constexpr double first_length = 0.02, longest_length = 0.2, least_length = 1e-4;
+/// The first correction is shorter than this part of the step, others by this factor than the one before,
+/// unless they are shorter than the second part; the last is shorter than the third, or is roundoff and
+/// shorter than the fourth. The curve turns by less than the angle with this cosine.
+inline constexpr double longest_correction = 0.5, contraction = 0.5, close_to_curve = 0.02, corrected = 1e-5,
+                        nearly = 1e-3, sharpest_turn = 0.9;
+inline constexpr int most_corrections = 8;
+/// Newton's method for μ = 0 is tried where μ has become so much smaller.
+inline constexpr double leap = 0.7;
+/// A step that took no more is followed by a longer one.
+inline constexpr int few_linearisations = 5;
+/// Linearisations of one curve, and these times its unknowns.
+inline constexpr int least_linearisations = 50, most_linearisations = 400;
+inline constexpr double most_work = 3e6;
+/// A curve has run away where the path is so much larger than its extent at first, or μ so large.
+inline constexpr double runaway = 100, farthest = 1e3;
+
+}  // namespace residual_homotopy
 
 namespace refinement {
 

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "machine/simd.hpp"
-#include "solve/adapt/free_times.hpp"
+#include "solve/adapt/element_count.hpp"
 #include "solve/adapt/limits.hpp"
+#include "solve/adapt/residual_homotopy.hpp"
+#include "solve/adapt/stationary_phase.hpp"
 #include "solve/external/external_solver.hpp"
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
@@ -17,8 +20,9 @@ namespace extremal {
 
 using namespace limits::pinned;
 
-PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace)
-    : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme) {}
+PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace,
+                         const SchemeStart& start)
+    : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme), start_(start) {}
 
 void PinnedSolve::bind(int points) {
   w_.pinned_scheme = std::make_unique<SchemeTables>(scheme_, points);
@@ -40,79 +44,113 @@ NewtonReport PinnedSolve::run_newton(const ElementTables& tables, Path& path, do
   return report;
 }
 
-/// Each phase of a periodic path is nearly as good as the others. Of those that are stationary the next is
-/// found, perhaps not to many digits.
+/// Newton's method with the phase held, as long as that is regular; then the phase is found. Of few elements
+/// the phase is a coordinate like others.
 NewtonReport PinnedSolve::converge_to_roundoff() {
-  const auto run = [&] {
-    return run_newton(w_.pinned, path_, least_correction, std::min(steps, options_.max_iterations));
+  const auto run = [&](Path& path) {
+    return run_newton(w_.pinned, path, least_correction, std::min(steps, options_.max_iterations));
   };
-  if (!problem_.periodic) return run();
-  const auto stationary = [&] {
+  if (!problem_.shifts_in_time()) return run(path_);
+  const auto residual_below = [&](double part) {
     const double residual = w_.iteration.residual_at(path_);
-    return residual <= stationary_residual * w_.iteration.action().momentum_scale();
+    return residual <= part * w_.iteration.action().momentum_scale();
   };
   saved_ = path_;
-  NewtonReport report = run();
-  if (report.reached && stationary()) return report;
+  NewtonReport report = run(path_);
+  if (report.reached && residual_below(limits::stationary_phase::unforced)) return report;
+  StationaryPhase phase(problem_, w_.iteration, w_.pinned, [&](Path& path) { return run(path).reached; });
+  if (report.reached && phase.find(path_, stationary_residual)) return report;
+  if (report.reached && residual_below(stationary_residual)) return report;
   for (const bool from_orbit : {true, false}) {
     if (from_orbit && !report.reached) continue;
     if (!from_orbit) {
-      path_.copy_values(saved_);
+      path_ = saved_;
       path_.load_ends();
     }
     w_.iteration.free_phase(true);
-    report = run();
-    if (report.reached || stationary()) break;
+    report = run(path_);
+    if (report.reached || residual_below(stationary_residual)) break;
   }
-  report.reached = report.reached || stationary();
+  report.reached = report.reached || residual_below(stationary_residual);
   return report;
 }
 
-/// Newton from the guess, or from the path there is, to roundoff.
-bool PinnedSolve::solve_discrete(int elements) {
+bool PinnedSolve::has_homotopy(const Problem& problem, const SolveOptions& options) {
+  return problem.has_ends() && !problem.paired && !problem.lagrangian->kinks() &&
+         (options.free_steps || !problem.duration.free);
+}
+
+/// The guess, bent by the noise of the seed; the default guess is bent further until L is finite on it. If
+/// times are free, the seed moves the nodes.
+void PinnedSolve::start_path_on(const std::vector<double>& mesh) {
   const std::vector<double> ends = starting_ends(problem_);
+  const unsigned first = options_.free_steps ? 0 : start_.seed;
+  for (unsigned seed = first; seed <= first + most_bends; ++seed) {
+    path_.reset(w_.pinned, mesh, problem_.duration.value);
+    start_path(problem_, ends, w_.pinned, path_);
+    bend_path(problem_, {seed * bend_size, seed}, w_.pinned, path_);
+    w_.iteration.action().evaluate_plain(path_);
+    if (w_.iteration.action().finite() || problem_.guess.given()) break;
+  }
+  if (!options_.free_steps || start_.seed == 0) return;
+  Noise noise(start_.seed);
+  std::vector<double> moved(mesh.size());
+  for (std::size_t k = 1; k + 1 < mesh.size(); ++k) moved[k] = node_noise * noise() * (mesh[k + 1] - mesh[k]);
+  path_.slide(moved, 1 / (1 - 2 * node_noise));
+}
+
+/// From the path there is, to roundoff.
+bool PinnedSolve::solve_equations() {
+  if (start_.homotopy && options_.free_steps) return trace_residual(true);
+  const Path start = path_;
+  NewtonReport report = converge_to_roundoff();
+  outcome_.message = report.failure;
+  if (!report.reached && start_.homotopy) {
+    path_ = start;
+    if (trace_residual(false)) {
+      report = converge_to_roundoff();
+      outcome_.message = report.failure;
+    }
+  }
+  if (!report.reached) return false;
+  ResidualTest test;
+  w_.iteration.residual_at(path_);
+  if (!test.passed(problem_, w_.iteration, path_)) {
+    outcome_.message = test.message();
+    return false;
+  }
+  return !options_.free_steps || trace_residual(true);
+}
+
+/// With more points for the quadrature, as long as it is not exact, from the path there is.
+bool PinnedSolve::solve_discrete(int elements) {
   std::vector<double> mesh(elements + 1);
   for (int k = 0; k <= elements; ++k) mesh[k] = static_cast<double>(k) / elements;
   bool again = false;
   for (int points = scheme_.points;; points = std::min(points < 8 ? points + 2 : points + 4, most_points)) {
     bind(points);
     w_.iteration.reset(problem_, w_.pinned, elements);
-    for (unsigned seed = 0; !again && seed <= most_bends; ++seed) {
-      path_.reset(w_.pinned, mesh, problem_.duration.value);
-      start_path(problem_, ends, w_.pinned, path_);
-      bend_path(problem_, {seed * 0.1, seed}, w_.pinned, path_);
-      w_.iteration.action().evaluate_plain(path_);
-      if (w_.iteration.action().finite() || problem_.guess.given()) break;
-    }
-    if (!again) {
+    if (!std::exchange(again, true)) {
+      start_path_on(mesh);
       const Scales first = scales(path_, w_.pinned);
       magnitude_ = first.magnitude;
       if (problem_.periodic) outcome_.first_range = first.range;
       run_external_solver(options_.method, problem_, w_.pinned, path_, options_.deadline,
                           [this] { return ++outcome_.iterations < options_.max_iterations; });
     }
-    ResidualTest test;
-    const NewtonReport report = converge_to_roundoff();
-    outcome_.message = report.failure;
-    if (!report.reached) return false;
-    w_.iteration.residual_at(path_);
-    if (!test.passed(problem_, w_.iteration, path_)) {
-      outcome_.message = test.message();
-      return false;
-    }
-    again = true;
-    if (options_.free_steps && !free_times()) return false;
+    if (!solve_equations()) return false;
     const bool more = scheme_.quadrature == Quadrature::exact && points < most_points;
     if (!more || quadrature_is_exact()) return true;
   }
 }
 
-/// From equal steps to those that leave all elements the same energy.
-bool PinnedSolve::free_times() {
-  FreeTimes times(problem_, w_.pinned, path_.elements());
-  const FreeTimes::Report report = times.find(path_, [this] {
+/// From equal steps to those that leave all elements the same energy; or, with times held, from a path near
+/// which Newton's method finds no extremal to one.
+bool PinnedSolve::trace_residual(bool free_times) {
+  ResidualHomotopy homotopy(problem_, w_.pinned, path_.elements(), free_times, [this] {
     return ++outcome_.iterations < options_.max_iterations && !options_.deadline.passed();
   });
+  const ResidualHomotopy::Report report = homotopy.find(path_);
   outcome_.message = report.failure;
   return report.reached;
 }
@@ -234,10 +272,6 @@ double PinnedSolve::velocity_excess() {
   return allowed > 0 ? difference / allowed : 0;
 }
 
-/// How many times more elements are needed, as the error falls by its order; `excess` is by how much it is
-/// larger than the tolerance.
-double PinnedSolve::wanted_growth(double excess) const { return std::pow(2 * excess, 1.0 / order()); }
-
 /// Elements.
 int PinnedSolve::most_affordable() {
   bind(scheme_.points);
@@ -264,19 +298,17 @@ void PinnedSolve::accept(const Scales& size) {
 
 Outcome PinnedSolve::run() {
   outcome_.message = "the action is not finite along the guess";
-  int elements = options_.elements > 0 ? options_.elements : 16;
-  const int most = most_affordable();
-  double before = INFINITY, latest = INFINITY, expected = 0;  // errors: the two last, and the expected one
-  double least = INFINITY;
-  int of_least = elements;
-  for (;; before = latest) {
+  const bool adaptive = options_.elements == 0;
+  ElementCount count(scheme_, options_.tolerance, adaptive ? 16 : options_.elements, most_affordable());
+  for (;;) {
     if (options_.deadline.passed()) {
-      spend_budget(elements);
+      spend_budget(count.now());
       break;
     }
-    if (!solve_discrete(elements)) {
-      if (options_.elements > 0 || elements >= 256 || cost_ > most_cost) break;
-      elements *= 4;
+    if (!solve_discrete(count.now())) {
+      if (options_.deadline.passed()) continue;
+      if (!adaptive || count.now() >= 256 || cost_ > most_cost) break;
+      count.multiply(4);
       continue;
     }
     const Scales size = scales(path_, w_.pinned);
@@ -284,53 +316,30 @@ Outcome PinnedSolve::run() {
     outcome_.tolerance = options_.tolerance * size.q;
     outcome_.tables = &w_.pinned;
     if (!std::isfinite(outcome_.error)) {
-      if (options_.elements == 0 && elements < most && cost_ < most_cost) {
-        elements *= 2;
+      if (adaptive && count.now() < count.most() && cost_ < most_cost) {
+        count.multiply(2);
         continue;
       }
-      if (options_.elements == 0) {
-        outcome_.message = fmt::format(
-            "elements of higher degree give no extremal that conserves its energy near that of {} elements; "
-            "try another tolerance or guess, or leave the scheme out",
-            elements);
+      if (adaptive) {
+        outcome_.message = no_companion(count.now());
         break;
       }
       // No better extremal is near: the discrete one may be an artefact of the mesh.
       outcome_.error = size.q;
     }
-    double excess = outcome_.error / outcome_.tolerance;
-    if (options_.elements == 0 && excess <= 1) excess = std::max(excess, velocity_excess());
-    if (options_.elements > 0 || excess <= 1) {
+    // A path at rest in the origin has no extent, and no error.
+    double excess = outcome_.error > 0 ? outcome_.error / outcome_.tolerance : 0;
+    if (adaptive && excess <= 1) excess = std::max(excess, velocity_excess());
+    if (!adaptive || excess <= 1) {
       accept(size);
       break;
     }
-    const double error = latest = excess * outcome_.tolerance;
-    const double noise = std::max(amplified_roundoff * size.q, at_roundoff * size.magnitude);
-    if (error < stagnation * least) {
-      least = error;
-      of_least = elements;
-    }
-    const bool futile = cost_ > most_cost && elements > futile_growth * of_least && least < resolved * size.q;
-    if (futile || (error > stagnation * before && error < noise)) {
-      outcome_.message =
-          fmt::format("the tolerance {:.1e} is below roundoff with {} elements or more; loosen it",
-                      options_.tolerance, elements);
+    if (!count.grow(excess, size, {cost_ > most_cost, kinked_elements() > 0})) {
+      outcome_.message = count.failure();
       break;
     }
-    // An error that falls as expected gives the number of elements needed; else the next number.
-    const bool regular = error > regular_fall * expected && error < expected / regular_fall;
-    const double growth = wanted_growth(excess);
-    if (elements * (regular ? growth : std::min(growth, most_growth)) > most) {
-      outcome_.message =
-          fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
-                      scheme_.name, most, options_.tolerance);
-      break;
-    }
-    const double factor = std::clamp(growth, 1.1, most_growth);
-    expected = error * std::pow(factor, -order());
-    elements = std::max(elements + 1, static_cast<int>(std::ceil(elements * factor)));
   }
-  outcome_.astray = outcome_.status == Status::not_converged && least == INFINITY;
+  outcome_.astray = outcome_.status == Status::not_converged && !count.any();
   return std::move(outcome_);
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "solve/adapt/outcome.hpp"
 #include "solve/adapt/workspace.hpp"
 #include "solve/newton/converge.hpp"
@@ -11,37 +9,48 @@
 
 namespace extremal {
 
+/// Where the equations are solved from. With `homotopy` a path near which Newton's method finds no solution
+/// is taken to one by ResidualHomotopy; seeds other than 0 bend it first, or move the times of its nodes
+/// where these are free.
+struct SchemeStart {
+  bool homotopy = false;
+  unsigned seed = 0;
+};
+
 /// Solves the discrete equations of `options.scheme` to roundoff and estimates the error against elements
 /// of higher degree on the same mesh. With options.elements = 0 the number of elements grows until
 /// the estimate meets the tolerance.
 class PinnedSolve {
  public:
-  PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace);
+  PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace,
+              const SchemeStart& start);
+  /// Whether there is a homotopy to its equations.
+  static bool has_homotopy(const Problem& problem, const SolveOptions& options);
   Outcome run();
 
  private:
   NewtonReport run_newton(const ElementTables& tables, Path& path, double goal, int most_steps);
   NewtonReport converge_to_roundoff();
+  void start_path_on(const std::vector<double>& mesh);
+  bool solve_equations();
   bool solve_discrete(int elements);
   bool quadrature_is_exact();
-  bool free_times();
+  bool trace_residual(bool free_times);
   bool holds_energy(const Resolution::Error& left_out);
   NewtonReport converge_with_kinks(const ElementTables& tables, NewtonReport report);
   int kinked_elements() const;
   double distance_to_companion();
   double velocity_excess();
-  double wanted_growth(double excess) const;
   int most_affordable();
   void spend_budget(int elements);
   void accept(const Scales& size);
-  /// Of the error of q throughout, not of the nodes alone.
-  int order() const { return std::min(scheme_.order, scheme_.degree + 1); }
   void bind(int points);
 
   const Problem& problem_;
   const SolveOptions& options_;
   Workspace& w_;
   Scheme scheme_;
+  const SchemeStart start_;
   Outcome outcome_;
   Path& path_ = outcome_.path;
   Path saved_;

@@ -243,10 +243,20 @@ int Refinement::steps_left(int wanted) const {
   return std::max(0, std::min({wanted, steps_left(), static_cast<int>(more)}));
 }
 
+/// From a path that is known, on the elements that it asks for. Where equations are as good as linear along
+/// the whole path, the effort for paths that may lead nowhere does not bound its steps, unless one costs as
+/// much.
 NewtonReport Refinement::converge_to(double error, bool reuse) {
-  const NewtonGoal goal{std::clamp(0.5 * error, least_correction, loosest_newton), steps_left(fine_steps),
-                        reuse, std::max(options_.tolerance, error)};
-  const NewtonReport report = converge(w_.iteration, path_, *tables_, goal, [this] { return count_step(); });
+  const double spent = cost_;
+  const bool linear = w_.iteration.expected(1) < options_.tolerance && step_cost() < affordable();
+  const int steps = linear ? std::clamp(steps_left(), 0, fine_steps) : steps_left(fine_steps);
+  const NewtonGoal goal{std::clamp(0.5 * error, least_correction, loosest_newton), steps, reuse,
+                        std::max(options_.tolerance, error)};
+  const NewtonReport report = converge(w_.iteration, path_, *tables_, goal, [&] {
+    record();
+    return linear ? steps_left() > 0 && !options_.deadline.passed() : !exhausted();
+  });
+  if (linear && report.reached) cost_ = spent;
   measure();
   return report;
 }

@@ -34,5 +34,8 @@ struct Workspace {
 /// Makes polynomials of higher degree (recovery.hpp) from a path on whose elements the workspace's iteration
 /// is; false where there are none.
 bool recover(const Problem& problem, const Path& path, Workspace& workspace, Path& recovered);
+/// The same of the elements of any discrete action; `levels` are of as many coordinates.
+bool recover(const Lagrangian& lagrangian, DiscreteAction& action, const Path& path, Recovery& recovery,
+             Levels& levels, Path& recovered);
 
 }  // namespace extremal

@@ -103,8 +103,11 @@ bool BorderedEquations::evaluate(const BorderedState& state, bool matrix) {
   if (matrix) {
     entries_.clear();
     symmetric_.clear();
+    mass_ = 0;
   }
   add_elements(state, matrix);
+  const PathSize size = path_size(state, n_);
+  momentum_of_rest_ = size.rests ? mass_ * size.value / state.times.back() : 0;
   if (!action_.finite()) return false;
   const Extension& e = extension();
   target_sizes_.clear();
@@ -143,6 +146,12 @@ std::vector<double> BorderedEquations::targets() const {
   return values;
 }
 
+/// Whether two local unknowns are coordinates at the two ends of an element: these couple by −∂²L/∂q'²/h.
+bool BorderedEquations::couples_ends(int row, int column) const {
+  const int at = std::min(row, column) - inner_, beside = std::max(row, column) - inner_ - all_;
+  return at >= 0 && at < n_ && beside >= 0 && beside < n_;
+}
+
 void BorderedEquations::add_elements(const BorderedState& state, bool matrix) {
   const int lanes = simd_lanes();
   action_.visit(state.path, matrix, [&](int batch, const BatchValues& values) {
@@ -176,6 +185,8 @@ void BorderedEquations::add_element(int k, int lane, const BatchValues& values, 
   const ElementTables::Entries& places = tables_->entries();
   for (std::size_t e = 0; e < places.row.size(); ++e) {
     const double value = values.entries[e * lanes + lane];
+    if (couples_ends(places.row[e], places.column[e]))
+      mass_ = std::max(mass_, std::abs(value) * state.path.h(k / lanes)[lane]);
     for (const Share& r : shares(k, places.row[e]))
       for (const Share& c : shares(k, places.column[e])) {
         add(r.unknown, c.unknown, r.factor * c.factor * value);
@@ -358,7 +369,7 @@ Eigen::VectorXd BorderedEquations::node_times(const BorderedState& state) const 
 }
 
 double BorderedEquations::residual() const {
-  return values_.head(of_path_).lpNorm<Eigen::Infinity>() / (momentum_ > 0 ? momentum_ : 1);
+  return values_.head(of_path_).lpNorm<Eigen::Infinity>() / (momentum() > 0 ? momentum() : 1);
 }
 
 std::vector<double> BorderedEquations::units_of_times() const {

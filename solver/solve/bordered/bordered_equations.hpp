@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -68,7 +69,9 @@ class BorderedEquations {
   const DiscreteAction& action() const { return action_; }
   /// ∂S_h/∂q of coordinate a at node k between two elements: the momentum before less that after.
   double node_gradient(int k, int a) const { return node_gradient_[static_cast<std::size_t>(k) * n_ + a]; }
-  double momentum() const { return momentum_; }  ///< the largest at an end of an element
+  /// The largest at an end of an element. Of a path that rests at least the one that would take it as far as
+  /// its size in its duration.
+  double momentum() const { return std::max(momentum_, momentum_of_rest_); }
   /// The largest of the equations of the path, by the largest momentum.
   double residual() const;
   /// Of the integrals, the conditions r and w, by the sizes of their terms.
@@ -104,6 +107,7 @@ class BorderedEquations {
   int leg_of(int element) const;
   void add(int row, int column, double value);
   void add_both(int row, int column, double value);
+  bool couples_ends(int row, int column) const;
   void add_elements(const BorderedState& state, bool matrix);
   void add_element(int k, int lane, const BatchValues& values, const BorderedState& state, bool matrix);
   void add_conditions(const BorderedState& state, bool matrix);
@@ -130,7 +134,7 @@ class BorderedEquations {
   std::vector<Eigen::Triplet<double>> entries_, symmetric_;
   std::vector<double> offsets_;
   std::vector<double> node_gradient_, gradient_, hessian_;
-  double momentum_ = 0;
+  double momentum_ = 0, momentum_of_rest_ = 0, mass_ = 0;
   bool times_held_ = false;
   std::vector<double> target_sizes_;  ///< of the terms of each integral, r and w
   Path own_path_;

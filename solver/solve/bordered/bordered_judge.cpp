@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problem/closing.hpp"
 #include "problem/symmetry.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/observe.hpp"
@@ -16,6 +17,7 @@
 #include "solve/bordered/bordered_newton.hpp"
 #include "solve/bordered/dependence.hpp"
 #include "solve/bordered/limits.hpp"
+#include "solve/mesh/conservation.hpp"
 #include "solve/periodic/moving_symmetries.hpp"
 #include "solve/periodic/stability.hpp"
 
@@ -74,17 +76,23 @@ std::string missed_condition(const Problem& problem, const BorderedState& state)
   return {};
 }
 
-/// The elements of one leg as a trajectory of its own, from time 0.
-Trajectory leg_of(const Trajectory& whole, int first, int last) {
-  Trajectory leg;
-  leg.coordinates = whole.coordinates;
-  leg.degree = whole.degree;
-  for (int k = first; k <= last; ++k) leg.times.push_back(whole.times[k] - whole.times[first]);
-  const auto size = static_cast<std::ptrdiff_t>(whole.degree + 1) * whole.coordinates;
-  leg.nodes.assign(whole.nodes.begin() + first * size, whole.nodes.begin() + last * size);
-  leg.slopes.assign(whole.slopes.begin() + first * size, whole.slopes.begin() + last * size);
-  leg.lengths.assign(whole.lengths.begin() + first, whole.lengths.begin() + last);
-  return leg;
+/// Between waypoints the momenta of L + Σ ν g are continuous along the elements, and its energy is.
+std::optional<Refusal> legs_fail(const Problem& problem, const SolveOptions& options,
+                                 const BorderedState& state, const Trajectory& path,
+                                 const Solution& solution) {
+  const Lagrangian& lagrangian = *solution.extension->lagrangian;
+  const bool rests = path_size(state, problem.coordinates()).rests,  // energies there are roundoff
+      conserved = lagrangian.structure().autonomous && !problem.paired && !options.scheme && !rests;
+  for (int l = 0; l < state.mesh.legs(); ++l) {
+    const int first = state.mesh.first[l], last = state.mesh.first[l + 1];
+    if (auto fails = has_broken_node(problem, lagrangian, path, first, last)) return fails;
+    if (!conserved) continue;
+    const Trajectory leg = leg_of(path, state.mesh, l);
+    const Survey found = survey(lagrangian, leg);
+    if (found.finite && !conserves_energy(found, leg, options.tolerance))
+      return energy_drifts(found.energy_drift, options.tolerance);
+  }
+  return std::nullopt;
 }
 
 /// Windows of each leg, and times conjugate to its start. None where L depends on t: legs begin at other
@@ -101,7 +109,7 @@ void read_legs(const Problem& held, const SolveOptions& options, const BorderedS
   for (int l = 0; l < state.mesh.legs(); ++l) {
     const double start = l > 0 ? state.times[l - 1] : 0;
     Solution leg = solution;
-    leg.trajectory = leg_of(solution.trajectory, state.mesh.first[l], state.mesh.first[l + 1]);
+    leg.trajectory = leg_of(solution.trajectory, state.mesh, l);
     read_minimality(held, options, variation, leg);
     if (leg.windows.empty()) {
       solution.message = leg.message;
@@ -169,21 +177,41 @@ std::vector<Generator> symmetries_of(const Problem& held, const BorderedState& s
   return symmetries_that_keep(values, all);
 }
 
+/// The path without constants, and the scheme of its elements if they are pinned.
+struct ElementsOfPath {
+  const Path& path;
+  double size;
+  const SchemeTables* pinned;
+};
+
+/// Multipliers, by a second variation that is assembled; of pinned elements by their own.
+void read_multipliers(const Problem& held, const ElementsOfPath& elements, SecondVariation& variation,
+                      Solution& solution) {
+  ElementTables tables;
+  if (held.periodic && elements.pinned) {
+    tables.bind(*elements.pinned, *held.lagrangian);
+    const ClosingMap closed = closing_map(held);
+    variation.assemble_elements(held.lagrangian, solution.trajectory, elements.path, tables, &closed);
+  }
+  read_stability(held, variation, elements.size, solution);
+}
+
 /// With forces there is no second variation, but the orbit has multipliers.
-void read_forced_stability(const Problem& held, const BorderedState& state, double size, Solution& solution) {
+void read_forced_stability(const Problem& held, const BorderedState& state, const ElementsOfPath& elements,
+                           Solution& solution) {
   if (!held.periodic || state.mesh.legs() > 1) return;
   SecondVariation variation;
   variation.assemble(held.lagrangian, solution.trajectory, {}, nullptr, Definite::paired);
-  read_stability(held, variation, size, solution);
+  read_multipliers(held, elements, variation, solution);
 }
 
 /// Windows, conjugate times and multipliers of L + Σ ν g with all constants held; with waypoints leg by leg.
 void read_variation(const Problem& problem, const SolveOptions& options, const BorderedState& state,
-                    double size, Solution& solution) {
+                    const ElementsOfPath& elements, Solution& solution) {
   Problem held = problem;
   held.lagrangian = solution.extension->lagrangian;
   held.duration.value = state.times.back();
-  if (problem.paired) return read_forced_stability(held, state, size, solution);
+  if (problem.paired) return read_forced_stability(held, state, elements, solution);
   if (state.mesh.legs() > 1) {
     held.periodic = false;  // legs are not closed
     return read_legs(held, options, state, solution);
@@ -197,7 +225,7 @@ void read_variation(const Problem& problem, const SolveOptions& options, const B
     solution.morse_index = index;
     solution.minimizing = minimizing;
   }
-  read_stability(held, variation, size, solution);
+  read_multipliers(held, elements, variation, solution);
 }
 
 /// The largest difference at a node.
@@ -261,11 +289,12 @@ std::string residual_remains(double residual) {
 }
 
 Solution judge(const Problem& problem, const SolveOptions& options, BorderedEquations& equations,
-               const BorderedState& state, const ElementTables& own, double error, double first) {
-  const double size = path_size(state.path, problem.coordinates());
+               const Found& found, const Measured& measured) {
+  const BorderedState& state = found.state;
+  const double size = path_size(state, problem.coordinates()).value;
   if (!equations.evaluate(state, true)) return refused("the action is not finite along the path found");
   const double stretched = state.times.back() / problem.duration.value;
-  if (!(size < most_growth * first) || !(stretched < most_growth))
+  if (!(size < most_growth * state.size_of_start) || !(stretched < most_growth))
     return refused("the path ran away from the guess; try another guess");
   // In no time all momenta are large, and what conditions leave is small beside them.
   if (!(stretched > 1 / most_growth))
@@ -289,9 +318,9 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.status = Status::converged;
   solution.message = "converged";
   solution.extension = read_extension_values(problem, equations, state);
-  Path path;
-  without_constants(state.path, own, path);
-  solution.trajectory = trajectory_of(path);
+  const Path path = found.own_path();
+  const Trajectory elements = trajectory_of(path);
+  solution.trajectory = measured.recovered ? trajectory_of(*measured.recovered) : elements;
   if (problem.paired)
     if (const std::optional<Refusal> fails = copies_differ(solution.trajectory, size))
       return refused(fails->message);
@@ -305,7 +334,7 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
     solution.momentum_end.push_back(action.end_gradient()[a]);
   }
   solution.residual = equations.residual();
-  solution.error_estimate = error;
+  solution.error_estimate = measured.error;
   solution.degree = path.degree();
   solution.unknowns = equations.first_held();
   const Inertia inertia = equations.inertia();
@@ -313,6 +342,8 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.nullity = inertia.zero;
   solution.minimizing = inertia.negative == 0 && (inertia.zero == 0 || problem.periodic);
   observe_energy(*solution.extension->lagrangian, solution);
+  if (const auto fails = legs_fail(problem, options, state, elements, solution))
+    return refused(fails->message);
   if (inertia.negative == 0 && inertia.zero > 0 && !problem.periodic && !problem.paired &&
       problem.boundary.momenta.empty() && extension.end_terms.empty()) {
     Problem held = problem;
@@ -324,12 +355,14 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
       solution.message += family_of_symmetries;
     }
   }
-  read_variation(problem, options, state, size, solution);
+  const SchemeTables& scheme = found.own->scheme();
+  const SchemeTables* pinned = options.elements > 0 ? &scheme : nullptr;
+  read_variation(problem, options, state, {path, size, pinned}, solution);
   tell_continuum(problem, options, equations, state, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned)
-    solution.element_energies = element_energies(*solution.extension->lagrangian, own.scheme().node,
-                                                 own.scheme().weight, solution.trajectory);
+    solution.element_energies =
+        element_energies(*solution.extension->lagrangian, scheme.node, scheme.weight, elements);
   return solution;
 }
 

@@ -16,21 +16,6 @@ namespace extremal {
 
 using namespace limits::bordered;
 
-double path_size(const Path& path, int coordinates) {
-  double range = 0, magnitude = 0;
-  for (int a = 0; a < coordinates; ++a) {
-    double low = path.node(0)[a], high = low;
-    for (int k = 0; k <= path.elements(); ++k) {
-      low = std::min(low, path.node(k)[a]);
-      high = std::max(high, path.node(k)[a]);
-    }
-    range = std::max(range, high - low);
-    magnitude = std::max({magnitude, std::abs(low), std::abs(high)});
-  }
-  const double size = range > 1e-12 * magnitude ? range : magnitude;
-  return size > 0 ? size : 1;
-}
-
 namespace {
 
 class BorderedNewton {
@@ -76,9 +61,11 @@ class BorderedNewton {
   Freedom freedom() {
     if (!equations_.evaluate(state_, true)) return {};
     const BorderedEquations::Matrix matrix = equations_.matrix();
+    lu_.compute(matrix);
     set_units(matrix);
+    const BorderedEquations::Matrix in_units = scaled(matrix);
     NullDirections found;
-    if (!found.find(scaled(matrix), null_direction)) return {};
+    if (is_regular() || !found.find(in_units, null_direction)) return {};
     Freedom freedom{units_.asDiagonal() * found.directions(), {}};
     for (Eigen::Index j = 0; j < freedom.directions.cols(); ++j)
       freedom.directions.col(j) /= found.directions().col(j).lpNorm<Eigen::Infinity>();
@@ -101,7 +88,7 @@ class BorderedNewton {
  private:
   /// What each unknown is compared with. A multiplier counts by the momentum that it makes.
   void set_units(const BorderedEquations::Matrix& matrix) {
-    units_.setConstant(equations_.unknowns(), path_size(state_.path, coordinates()));
+    units_.setConstant(equations_.unknowns(), path_size(state_, coordinates()).value);
     const double momentum = std::max(equations_.momentum(), 1e-300);
     const auto column = [&](int c) {
       double largest = 0;
@@ -130,8 +117,15 @@ class BorderedNewton {
     for (double& unit : row_units_) unit = unit > 0 ? 1 / unit : 1;
     return row_units_.asDiagonal() * matrix * units_.asDiagonal();
   }
-  /// A singular matrix belongs to a family of solutions: of all steps the shortest is taken. It shows in a
-  /// solution that is much larger than its right-hand side.
+  /// Whether a solution with the factors, in units, is not much larger than its right-hand side: bordered
+  /// factors cost far more.
+  bool is_regular() const {
+    if (lu_.info() != Eigen::Success) return false;
+    const Eigen::VectorXd probe = NullDirections::probe(row_units_.size(), 0);
+    const Eigen::VectorXd answer = lu_.solve(probe.cwiseQuotient(row_units_)).cwiseQuotient(units_);
+    return answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_below_;
+  }
+  /// A singular matrix belongs to a family of solutions: of all steps the shortest is taken.
   void find_null_directions(const BorderedEquations::Matrix& matrix) {
     least_norm_.reset();
     across_.reset();
@@ -139,11 +133,7 @@ class BorderedNewton {
     const bool dense = size <= most_dense;
     if (!dense && null_below_ > null_direction) return;
     const BorderedEquations::Matrix in_units = scaled(matrix);
-    const Eigen::VectorXd probe = NullDirections::probe(size, 0);
-    if (lu_.info() == Eigen::Success) {
-      const Eigen::VectorXd answer = lu_.solve(probe.cwiseQuotient(row_units_)).cwiseQuotient(units_);
-      if (answer.allFinite() && answer.lpNorm<Eigen::Infinity>() < 1 / null_below_) return;
-    }
+    if (is_regular()) return;
     if (dense) {
       least_norm_.emplace(size, size);
       least_norm_->setThreshold(null_below_).compute(Eigen::MatrixXd(in_units));

@@ -36,7 +36,4 @@ Freedom freedom_of(BorderedEquations& equations, BorderedState& state);
 /// ν and η that balance the equations of the path best, in the sense of least squares.
 void estimate_multipliers(BorderedEquations& equations, BorderedState& state, const Problem& problem);
 
-/// Largest range of a coordinate, or its magnitude where that is negligible.
-double path_size(const Path& path, int coordinates);
-
 }  // namespace extremal

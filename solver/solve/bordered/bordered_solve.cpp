@@ -9,13 +9,18 @@
 #include <optional>
 #include <utility>
 
+#include "solve/adapt/element_count.hpp"
+#include "solve/adapt/limits.hpp"
 #include "solve/bordered/bordered_judge.hpp"
 #include "solve/bordered/bordered_newton.hpp"
+#include "solve/bordered/found.hpp"
 #include "solve/bordered/limits.hpp"
 #include "solve/bordered/minimise.hpp"
 #include "solve/bordered/starting_states.hpp"
 #include "solve/mesh/levels.hpp"
+#include "solve/mesh/plan.hpp"
 #include "solve/mesh/resolution.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 
@@ -25,17 +30,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A state, and where it came from.
-struct Found {
-  BorderedState state;
-  const ElementTables *tables = nullptr, *own = nullptr;
-  double correction = 0;
-};
-
 /// Why an attempt found nothing.
 struct Failure {
   std::string message;
   Status status = Status::not_converged;
+  bool refused = false;  ///< of a path that was found
 };
 
 class BorderedSolve {
@@ -65,35 +64,44 @@ class BorderedSolve {
     if (may_be_minimised(problem_)) starts.push_back({.downhill = true});
     const std::size_t unbent = starts.size();
     std::vector<Solution> found;
-    std::optional<Failure> first_failure;
+    std::optional<Failure> why;
     std::size_t tried = 0;
     for (; tried < starts.size() && !(tried > 0 && spent()); ++tried) {
       if (static_cast<int>(found.size()) >= most) break;
       const Start& from = starts[tried];
       downhill_ = from.downhill;
+      refused_ = false;
       equations_.set_offsets({});
       Solution solution = options_.scheme ? solve_with_scheme(from) : solve_adapted(from);
       if (solution.converged()) {
         solution.strategy = from.strategy();
         const auto known = [&](const Solution& other) { return same(other, solution); };
         if (std::ranges::none_of(found, known)) found.push_back(timed(std::move(solution), start));
-      } else if (!first_failure) {
-        first_failure = {solution.message, solution.status};
+      } else if (!why || tells_more(*why)) {
+        why = Failure{solution.message, solution.status, refused_};
       }
       const bool wanted = static_cast<int>(found.size()) < most;
       if (tried + 1 == unbent && wanted) add_bent(starts);
     }
-    if (found.empty()) return {timed(failure(*first_failure), start)};
+    if (found.empty()) return {timed(failure(*why), start)};
     std::ranges::stable_sort(found, {}, &Solution::action);
     if (static_cast<int>(found.size()) < most)
       found.front().message +=
           fmt::format("; {} of {} extremals wanted were found from {} guesses{}; more may exist",
-                      found.size(), most, tried, spent() ? ", until the budget was spent" : "");
+                      found.size(), most, tried, told_spent());
     return found;
   }
 
  private:
   bool spent() const { return options_.deadline.passed() || iterations_ >= options_.max_iterations; }
+
+  /// What is spent, at the end of a message; empty: nothing.
+  std::string told_spent() const {
+    if (options_.deadline.passed())
+      return fmt::format("; {} (solve.budget) is spent", options_.deadline.budget_text());
+    if (spent()) return fmt::format("; {} steps of Newton's method are spent", iterations_);
+    return {};
+  }
 
   static double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -103,12 +111,17 @@ class BorderedSolve {
     return extension_.multipliers() > 0 || !extension_.conditions.empty() || !extension_.where.empty();
   }
 
+  /// Why a path is no extremal says more than that none was reached.
+  bool tells_more(const Failure& known) const {
+    return refused_ && !known.refused && known.status == Status::not_converged;
+  }
+
   Solution failure(const Failure& first) const {
     Solution solution;
     solution.status =
         spent() && first.status == Status::not_converged ? Status::iteration_limit : first.status;
     solution.message =
-        first.message + (spent() ? "; the budget is spent" : "") +
+        first.message + told_spent() +
         "; no guess with waves added led to a solution; another guess of the path, of the unknowns or of the "
         "duration may";
     return solution;
@@ -152,6 +165,7 @@ class BorderedSolve {
     equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
     const auto told = [&](double step, double damping) {
       ++iterations_;
+      cost_ += found.state.path.batches() * batch_cost(*found.tables, found.state.path.degree());
       if (options_.progress)
         options_.progress(
             {found.state.mesh.elements(), found.state.path.degree(), equations_.residual(), step, damping});
@@ -190,23 +204,26 @@ class BorderedSolve {
   }
 
   Resolution::Error errors(const Found& found) {
-    Path path;
-    without_constants(found.state.path, *found.own, path);
-    resolution_.measure(path, *found.own);
+    resolution_.measure(found.own_path(), *found.own);
     return resolution_.at(found.state.path.degree());
   }
 
   Scales sizes(const Found& found) const {
-    Path path;
-    without_constants(found.state.path, *found.own, path);
-    return scales(path, *found.own);
+    Scales result = scales(found.own_path(), *found.own);
+    if (const PathSize size = path_size(found.state, n_); size.rests) {
+      result.q = std::max(result.q, size.value);
+      result.v = std::max(result.v, size.value / found.state.times.back());
+    }
+    return result;
   }
 
   /// The state on other elements.
   Found moved(const Found& found, const LegMesh& mesh, const Elements& elements) const {
-    Found to{{{}, mesh, found.state.times, found.state.multipliers}, elements.tables, elements.own};
-    Path old, path;
-    without_constants(found.state.path, *found.own, old);
+    Found to{{{}, mesh, found.state.times, found.state.multipliers, found.state.size_of_start},
+             elements.tables,
+             elements.own};
+    const Path old = found.own_path();
+    Path path;
     const std::vector<double> lengths = element_lengths(mesh, found.state.times);
     path.reset(*elements.own, mesh_nodes(lengths), found.state.times.back(), lengths);
     path.resample_from(old, *elements.own, mesh_nodes(lengths));
@@ -221,34 +238,6 @@ class BorderedSolve {
     const std::vector<double> times = state.times;
     state.times.clear();
     move_to(state, tables, times);
-  }
-
-  /// Elements cut where their coefficients are larger than a part of the tolerance.
-  LegMesh cut(const Found& found, double aim_q, double aim_v) const {
-    const int degree = found.state.path.degree();
-    LegMesh mesh;
-    mesh.first.push_back(0);
-    for (int l = 0; l < found.state.mesh.legs(); ++l) {
-      for (int k = found.state.mesh.first[l]; k < found.state.mesh.first[l + 1]; ++k) {
-        const Resolution::Tail& tail = resolution_.tails()[k];
-        const double left = tail.size * tail.fall / (1 - std::min(tail.fall, 0.9));
-        const double of_v = left * (degree + 1) * (degree + 2) / tail.h;
-        const double excess = std::max(left / aim_q, of_v / aim_v);
-        const int count =
-            std::clamp(static_cast<int>(std::ceil(std::pow(std::max(excess, 0.0), 1.0 / (degree + 1)))), 1,
-                       strongest_cut);
-        for (int i = 0; i < count; ++i) mesh.parts.push_back(found.state.mesh.parts[k] / count);
-      }
-      mesh.first.push_back(static_cast<int>(mesh.parts.size()));
-    }
-    return mesh;
-  }
-
-  static LegMesh halved(const LegMesh& mesh) {
-    LegMesh result;
-    for (const int first : mesh.first) result.first.push_back(2 * first);
-    for (const double part : mesh.parts) result.parts.insert(result.parts.end(), 2, part / 2);
-    return result;
   }
 
   /// Elements that resolve the starting path.
@@ -295,7 +284,7 @@ class BorderedSolve {
         part = next;
         step *= 2;
         if (errors(found).q > way_error * sizes(found).q && !options_.scheme) {
-          const LegMesh finer = cut(found, way_error * sizes(found).q / 2, INFINITY);
+          const LegMesh finer = cut(found, resolution_, way_error * sizes(found).q / 2, INFINITY);
           if (finer.elements() > most_elements) return false;
           found = moved(found, finer, {found.tables, found.own});
         }
@@ -313,7 +302,7 @@ class BorderedSolve {
     Found found{starts_.at(mesh, elements, start), elements.tables, elements.own};
     equations_.reset(problem_, *elements.tables, *elements.own, mesh);
     estimate_multipliers(equations_, found.state, problem_);
-    first_size_ = path_size(found.state.path, n_);
+    found.state.size_of_start = path_size(found.state, n_).value;
     return found;
   }
 
@@ -334,7 +323,7 @@ class BorderedSolve {
         if (found.state.mesh.elements() * 2 > most_elements) break;
         found = moved(found, halved(found.state.mesh), lobatto(degree));
       } else {
-        const LegMesh next = cut(found, aim * tolerance, aim * of_v);
+        const LegMesh next = cut(found, resolution_, aim * tolerance, aim * of_v);
         if (next.elements() > most_elements) break;
         const bool same = next.elements() == found.state.mesh.elements();
         // From the first degree to the next, elements are not cut yet.
@@ -352,68 +341,88 @@ class BorderedSolve {
     Found finer = moved(found, found.state.mesh, lobatto(compared_with));
     Failure failure;
     if (!newton(finer, failure)) return std::nullopt;
-    const auto [q, v] = differences(found, finer);
-    const double size = path_size(found.state.path, n_);
+    const auto [q, v] = differences(trajectory_of(found.own_path()), trajectory_of(finer.own_path()));
+    const double size = path_size(found.state, n_).value;
     const double error = std::max({q, truncation, (found.correction + finer.correction) * size});
     if (!(error <= tolerance && v <= of_v)) return std::nullopt;
-    return judged(found, error);
+    return judged(found, {error});
   }
 
-  Solution judged(const Found& found, double error) {
+  Solution judged(const Found& found, const Measured& measured) {
     const auto start = Clock::now();
     equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
-    Solution solution = judge(problem_, options_, equations_, found.state, *found.own, error, first_size_);
+    Solution solution = judge(problem_, options_, equations_, found, measured);
     seconds_analyse_ += std::chrono::duration<double>(Clock::now() - start).count();
+    refused_ = !solution.converged();
     return solution;
   }
 
-  /// The largest differences of q and q' of two paths at the same parts of their legs.
-  std::pair<double, double> differences(const Found& a, const Found& b) const {
-    Path first, second;
-    without_constants(a.state.path, *a.own, first);
-    without_constants(b.state.path, *b.own, second);
-    const Trajectory one = trajectory_of(first), two = trajectory_of(second);
-    std::vector<double> q(n_), v(n_), other_q(n_), other_v(n_);
-    double most_q = 0, most_v = 0;
-    const int ratio = b.state.mesh.elements() / a.state.mesh.elements();
-    const std::vector<double>& nodes = a.own->scheme().lobatto;
-    for (int k = 0; k < one.elements(); ++k)
-      for (const double tau : nodes) {
-        one.in_element(k, tau, q, v);
-        const int part = std::min(ratio - 1, static_cast<int>(tau * ratio));
-        two.in_element(ratio * k + part, tau * ratio - part, other_q, other_v);
-        for (int i = 0; i < n_; ++i) {
-          most_q = std::max(most_q, std::abs(q[i] - other_q[i]));
-          most_v = std::max(most_v, std::abs(v[i] - other_v[i]));
-        }
-      }
-    return {most_q, most_v};
+  /// L + Σ ν g with the constants of a state.
+  std::shared_ptr<const Lagrangian> held(const Found& found) const {
+    return extension_.at(found.state.constants(n_));
   }
 
-  /// Equal elements of the scheme that is asked for: so many, or doubled until the tolerance is met.
+  /// Elements of higher degree on the same mesh, or halved ones where there is no higher degree, at the
+  /// extremal near a path.
+  struct Companion {
+    Trajectory path;
+    Scales size;
+    double error = 0;  ///< its distance from the path, and what it leaves out itself
+  };
+
+  std::optional<Companion> companion_of(const Found& found) {
+    const int degree = options_.scheme->degree;
+    const bool halves = degree + 3 > max_degree;
+    Found finer = halves ? moved(found, halved(found.state.mesh), lobatto(degree))
+                         : moved(found, found.state.mesh, lobatto(std::max(degree + 3, first_degree)));
+    Failure failure;
+    if (!newton(finer, failure)) return std::nullopt;
+    Companion companion{trajectory_of(finer.own_path()), sizes(finer)};
+    const Resolution::Error left_out = errors(finer);
+    if (!problem_.paired && !holds_energy(*held(finer), finer.state.mesh, companion.path, left_out))
+      return std::nullopt;
+    const double own = left_out.q + (found.correction + finer.correction) * companion.size.q;
+    companion.error = std::max(own, unit_roundoff * companion.size.magnitude) +
+                      differences(trajectory_of(found.own_path()), companion.path).first;
+    return companion;
+  }
+
+  /// Equal elements of the scheme that is asked for: so many, or as many as the tolerance needs.
   Solution solve_with_scheme(const Start& start) {
     const Elements elements{&scheme_, &own_scheme_};
-    const int legs = starts_.legs();
-    const bool pinned = options_.elements > 0;
-    const LegMesh mesh = starts_.equal_elements(pinned ? options_.elements : std::max(8, 2 * legs));
-    Found found = begin(mesh, elements, start);
+    const bool adaptive = options_.elements == 0;
+    ElementCount count(*options_.scheme, options_.tolerance,
+                       adaptive ? std::max(first_elements, 2 * starts_.legs()) : options_.elements,
+                       most_scheme_elements);
+    Found found = begin(starts_.equal_elements(count.now()), elements, start);
     Failure failure;
     if (!reach(found, start, failure)) return failed(failure);
-    const double gain = std::pow(2.0, options_.scheme->order) - 1;
     for (;;) {
-      Found finer = moved(found, halved(found.state.mesh), elements);
-      if (finer.state.mesh.elements() > most_scheme_elements)
-        return failed(
-            {fmt::format("{} elements of the scheme do not reach the tolerance; try a larger one, or a "
-                         "scheme of higher order",
-                         found.state.mesh.elements())});
-      if (!newton(finer, failure)) return failed(failure);
-      const double difference = differences(found, finer).first;
-      if (pinned) return judged(found, difference * (1 + 1 / gain));
-      if (difference * (1 + 1 / gain) <= options_.tolerance * sizes(found).q)
-        return judged(found, difference * (1 + 1 / gain));
+      const Scales size = sizes(found);
+      const std::optional<Companion> companion = companion_of(found);
+      // Without a better extremal near, the discrete one may be an artefact of the mesh.
+      if (!adaptive) return judged(found, {companion ? companion->error : size.q});
       if (spent()) return failed({"the limit of work for one solve is reached"});
-      found = std::move(finer);
+      if (companion) {
+        const double allowed = options_.tolerance * size.q;
+        double excess = companion->error / allowed;
+        const std::optional<Path> raised =
+            excess <= 1 ? recovered(found, *held(found), own_levels_) : std::nullopt;
+        if (excess <= 1) {
+          const Trajectory output = trajectory_of(raised ? *raised : found.own_path());
+          const double of_v = velocity_tolerances * options_.tolerance * companion->size.v;
+          if (of_v > 0) excess = std::max(excess, differences(output, companion->path).second / of_v);
+        }
+        if (excess <= 1) return judged(found, {companion->error, raised ? &*raised : nullptr});
+        if (!count.grow(excess, size, {.dear = cost_ > limits::pinned::most_cost}))
+          return failed({count.failure()});
+      } else if (count.now() < count.most()) {
+        count.multiply(2);
+      } else {
+        return failed({no_companion(count.now())});
+      }
+      found = moved(found, equal_elements(found.state.times, count.now()), elements);
+      if (!newton(found, failure)) return failed(failure);
     }
   }
 
@@ -428,8 +437,10 @@ class BorderedSolve {
   BorderedEquations equations_;
   Resolution resolution_;
   int iterations_ = 0;
+  double cost_ = 0;        ///< nanoseconds of the steps, by batch_cost()
   bool downhill_ = false;  ///< of the start that is tried
-  double seconds_analyse_ = 0, first_size_ = 1;
+  bool refused_ = false;   ///< the path that it led to was judged to be no solution
+  double seconds_analyse_ = 0;
 };
 
 }  // namespace

@@ -54,23 +54,24 @@ double missed_by(const BorderedEquations& equations, int first, int count) {
 
 /// Whether roundoff moves the root of a condition as far as to where its derivative vanishes: r = r'' d²/2
 /// beside it, of terms as large as over the path.
-bool has_double_root(const EndCondition& condition, const Path& path, int coordinates) {
+bool has_double_root(const EndCondition& condition, const BorderedState& state, int coordinates) {
+  const Path& path = state.path;
   const std::size_t all = path.coordinates();
   const std::span<const double> start{path.node(0), all}, end{path.node(path.elements()), all};
   Eigen::VectorXd slope(2 * all);
   Eigen::MatrixXd second(2 * all, 2 * all);
   condition.function(start, end, {slope.data(), 2 * all}, {second.data(), 4 * all * all});
-  double size = path_size(path, coordinates);
+  double size = path_size(state, coordinates).value;
   for (const std::span<const double> point : {start, end})
     for (const double x : point) size = std::max(size, std::abs(x));
   return slope.norm() <= std::sqrt(met) * second.norm() * size;
 }
 
 /// What is wrong with a condition that has one; empty: nothing.
-std::string double_root(const Extension& extension, const Path& path, int coordinates) {
+std::string double_root(const Extension& extension, const BorderedState& state, int coordinates) {
   const auto among = [&](const std::vector<EndCondition>& conditions, const char* name) -> std::string {
     for (std::size_t i = 0; i < conditions.size(); ++i)
-      if (has_double_root(conditions[i], path, coordinates))
+      if (has_double_root(conditions[i], state, coordinates))
         return fmt::format(
             "the derivative of {} {} vanishes where it holds, as of a square, so that its root is "
             "known to half of the digits; write it without the square: \"x(T) = 1\", not \"x(T)^2 - 2*x(T) + "
@@ -86,7 +87,7 @@ std::string double_root(const Extension& extension, const Path& path, int coordi
 
 std::string dependence(BorderedEquations& equations, const BorderedState& state, double accuracy) {
   const Extension& extension = equations.extension();
-  if (std::string fault = double_root(extension, state.path, equations.coordinates()); !fault.empty())
+  if (std::string fault = double_root(extension, state, equations.coordinates()); !fault.empty())
     return fault;
   const int integrals = extension.multipliers(), count = integrals + equations.conditions();
   if (count == 0) return {};

@@ -150,7 +150,7 @@ class NearbyStates {
     BorderedState state{{}, mesh_, times_, std::vector<double>(extension_.conditions.size())};
     with_constants(path, all, constants, state.path);
     equations.reset(problem_, all, own, mesh_);
-    const double size = path_size(path, problem_.coordinates());
+    const double size = path_size(state, problem_.coordinates()).value;
     if (!equations.evaluate(state, false)) return std::nullopt;
     put_multipliers(equations, size, noise, state.multipliers);
     if (!equations.evaluate(state, true)) return std::nullopt;

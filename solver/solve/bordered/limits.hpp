@@ -26,6 +26,9 @@ inline constexpr int most_dense = 400;
 /// the step: of a family that is its curvature.
 inline constexpr double family_step = 0.01, most_pull_back = 0.1;
 
+/// A path of less range than this, beside its magnitude and the path that it started from, rests.
+inline constexpr double resting = 1e-12;
+
 /// Of the damped iteration.
 inline constexpr int most_steps = 60;
 inline constexpr double least_damping = 1e-3;

@@ -43,7 +43,7 @@ class Minimisation {
   Result step() {
     if (!factor()) return Result::failed;
     Eigen::VectorXd step = cholesky_.solve(-gradient_);
-    const double path = path_size(state_.path, equations_.coordinates());
+    const double path = path_size(state_, equations_.coordinates()).value;
     size_ = step.lpNorm<Eigen::Infinity>() / path;
     if (!std::isfinite(size_)) return Result::failed;
     damping_ = std::min(1.0, longest_descent / size_);
@@ -122,12 +122,12 @@ bool minimise(BorderedEquations& equations, BorderedState& state, const Spent& s
   equations.hold_times(true);
   Minimisation minimisation(equations, state);
   using Result = Minimisation::Result;
-  const double first = path_size(state.path, equations.coordinates());
+  const double first = path_size(state, equations.coordinates()).value;
   Result result = Result::moved;
   for (int steps = 0; result == Result::moved && steps < most_descents && !spent(); ++steps) {
     result = minimisation.evaluate() ? minimisation.step() : Result::failed;
     on_step(minimisation.size(), minimisation.damping());
-    if (!(path_size(state.path, equations.coordinates()) < most_growth * first)) result = Result::failed;
+    if (!(path_size(state, equations.coordinates()).value < most_growth * first)) result = Result::failed;
   }
   equations.hold_times(false);
   return result == Result::minimal;

@@ -18,22 +18,6 @@ StartingStates::StartingStates(const Problem& problem)
   times_.push_back(problem.duration.value);
 }
 
-LegMesh StartingStates::equal_elements(int elements) const {
-  LegMesh mesh;
-  mesh.first.push_back(0);
-  const int legs = static_cast<int>(times_.size());
-  for (int l = 0; l < legs; ++l) {
-    const double share = (times_[l] - (l > 0 ? times_[l - 1] : 0)) / times_.back();
-    const int left = elements - mesh.first.back() - (legs - l - 1);
-    const int count = l + 1 == legs
-                          ? std::max(1, left)
-                          : std::clamp(static_cast<int>(std::lround(share * elements)), 1, std::max(1, left));
-    for (int k = 0; k < count; ++k) mesh.parts.push_back(1.0 / count);
-    mesh.first.push_back(mesh.first.back() + count);
-  }
-  return mesh;
-}
-
 void StartingStates::set_waypoints(BorderedState& state) const {
   for (std::size_t w = 0; w < extension_.waypoints.size(); ++w)
     for (const auto& [a, value] : extension_.waypoints[w].fixed)

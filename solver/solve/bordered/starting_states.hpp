@@ -43,8 +43,7 @@ class StartingStates {
   explicit StartingStates(const Problem& problem);
 
   int legs() const { return static_cast<int>(times_.size()); }
-  /// Elements of each leg, in proportion to its duration.
-  LegMesh equal_elements(int elements) const;
+  LegMesh equal_elements(int elements) const { return extremal::equal_elements(times_, elements); }
   /// On these elements, constants at their guesses and multipliers zero.
   BorderedState at(const LegMesh& mesh, const Elements& elements, const Start& start) const;
   /// The values at waypoints that are given.

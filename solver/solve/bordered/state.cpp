@@ -1,6 +1,9 @@
 #include "solve/bordered/state.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "solve/bordered/limits.hpp"
 
 namespace extremal {
 
@@ -12,6 +15,52 @@ void BorderedState::set_constants(int n, const std::vector<double>& values) {
   for (int k = 0; k <= path.elements(); ++k)
     for (std::size_t j = 0; j < values.size(); ++j) path.set_node(k, n + static_cast<int>(j), values[j]);
   path.load_ends();
+}
+
+LegMesh equal_elements(const std::vector<double>& times, int elements) {
+  LegMesh mesh;
+  mesh.first.push_back(0);
+  const int legs = static_cast<int>(times.size());
+  for (int l = 0; l < legs; ++l) {
+    const double share = (times[l] - (l > 0 ? times[l - 1] : 0)) / times.back();
+    const int left = elements - mesh.first.back() - (legs - l - 1);
+    const int count = l + 1 == legs
+                          ? std::max(1, left)
+                          : std::clamp(static_cast<int>(std::lround(share * elements)), 1, std::max(1, left));
+    for (int k = 0; k < count; ++k) mesh.parts.push_back(1.0 / count);
+    mesh.first.push_back(mesh.first.back() + count);
+  }
+  return mesh;
+}
+
+LegMesh halved(const LegMesh& mesh) {
+  LegMesh result;
+  for (const int first : mesh.first) result.first.push_back(2 * first);
+  for (const double part : mesh.parts) result.parts.insert(result.parts.end(), 2, part / 2);
+  return result;
+}
+
+PathSize path_size(const BorderedState& state, int n) {
+  const Path& path = state.path;
+  const int all = path.coordinates();
+  std::vector<double> q(static_cast<std::size_t>(path.degree() + 1) * all);
+  std::vector<double> low(path.node(0), path.node(0) + n), high = low;
+  for (int k = 0; k < path.elements(); ++k) {
+    path.element(k, q.data());
+    for (int j = 0; j <= path.degree(); ++j)
+      for (int a = 0; a < n; ++a) {
+        const double x = q[static_cast<std::size_t>(j) * all + a];
+        low[a] = std::min(low[a], x);
+        high[a] = std::max(high[a], x);
+      }
+  }
+  double range = 0, magnitude = state.size_of_start;
+  for (int a = 0; a < n; ++a) {
+    range = std::max(range, high[a] - low[a]);
+    magnitude = std::max({magnitude, std::abs(low[a]), std::abs(high[a])});
+  }
+  if (range > limits::bordered::resting * magnitude) return {range, false};
+  return {magnitude > 0 ? magnitude : 1, true};
 }
 
 std::vector<double> element_lengths(const LegMesh& mesh, const std::vector<double>& times) {

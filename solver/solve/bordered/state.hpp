@@ -19,6 +19,11 @@ struct LegMesh {
   int elements() const { return first.back(); }
 };
 
+/// So many elements in all, those of a leg equal, in proportion to its duration.
+LegMesh equal_elements(const std::vector<double>& times, int elements);
+/// Each element cut into two.
+LegMesh halved(const LegMesh& mesh);
+
 /// A path of the n + u + m coordinates q, k, ν, of which k and ν are the same at all nodes; the multipliers
 /// η; the times of the waypoints, then T.
 struct BorderedState {
@@ -26,6 +31,7 @@ struct BorderedState {
   LegMesh mesh;
   std::vector<double> times;
   std::vector<double> multipliers;
+  double size_of_start = 0;  ///< of the path that it started from
 
   double leg(int l) const { return times[l] - (l > 0 ? times[l - 1] : 0); }
   /// k and ν.
@@ -37,6 +43,14 @@ struct BorderedState {
 std::vector<double> element_lengths(const LegMesh& mesh, const std::vector<double>& times);
 /// The nodes t/T, from those lengths.
 std::vector<double> mesh_nodes(const std::vector<double>& lengths);
+
+/// The largest range of one of the n coordinates. Where that is negligible beside magnitudes, or beside the
+/// path that the state started from, the path rests, and its size is the largest of those.
+struct PathSize {
+  double value;
+  bool rests;
+};
+PathSize path_size(const BorderedState& state, int n);
 
 /// The elements move to other times, with the values that they have.
 void move_to(BorderedState& state, const ElementTables& tables, const std::vector<double>& times);

@@ -1,5 +1,6 @@
 #include "solve/branch/branch.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -109,6 +110,8 @@ bool Branch::linearise(Factors factors) {
     inertia_.reset();
     with_duration_.reset();
     measure_phases(problem_, path_, tables_->scheme(), true, phases_);
+    if (!problem_.paired) phases_ = independent(phases_);  // along a circle a rotation is a shift of time
+    for (const Move& direction : family_directions_) hold_along(direction);
     for (const Move& direction : held_) hold_along(direction);
     w_.iteration.model().set_phases(phases_.count > 0 ? &phases_ : nullptr);
   }
@@ -138,6 +141,17 @@ void Branch::negate_second(std::vector<double>& nodes) const {
   const std::size_t n = path_.coordinates();
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (i % n >= n / 2) nodes[i] = -nodes[i];
+}
+
+/// In the mean over τ, as phases_ hold it.
+void Branch::take_across_phases(Move& move) const {
+  const Eigen::Index count = phases_.count, size = std::ssize(move.step.nodes), n = path_.coordinates();
+  if (count == 0) return;
+  const Eigen::Map<const Eigen::MatrixXd> weighted(phases_.directions.data(), size, count);
+  Eigen::MatrixXd directions = weighted;
+  for (Eigen::Index i = 0; i < size; ++i) directions.row(i) /= weight(static_cast<int>(i / n));
+  Eigen::Map<Eigen::VectorXd> nodes(move.step.nodes.data(), size);
+  nodes -= directions * (weighted.transpose() * directions).ldlt().solve(weighted.transpose() * nodes).eval();
 }
 
 bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {

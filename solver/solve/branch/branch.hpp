@@ -59,6 +59,8 @@ class Branch : public ExtremalCurve {
   int open() const { return w_.iteration.model().left_out(); }
   /// How many directions symmetries, or what is held, keep moves across.
   int phases() const { return phases_.count; }
+  /// Leaves nothing of a move along these.
+  void take_across_phases(Move& move) const;
   void set_regular() { folds_ = true; }
   /// It is to be seen where the equations are linearised next.
   void ask_regular() { folds_.reset(); }
@@ -78,6 +80,10 @@ class Branch : public ExtremalCurve {
   /// Corrections have nothing along these directions from the next linearisation on: where the equations are
   /// singular along them, the others stay regular. On the elements of the path; empty for none.
   void hold(std::vector<Move> directions) { held_ = std::move(directions); }
+  /// The same along directions in which the extremals of each value are a family: the branch goes across
+  /// them.
+  void hold_family(std::vector<Move> directions) { family_directions_ = std::move(directions); }
+  const std::vector<Move>& held_family() const { return family_directions_; }
 
   /// Of the path that was linearised.
   double action() const { return action_; }
@@ -159,7 +165,7 @@ class Branch : public ExtremalCurve {
   mutable std::optional<Inertia> inertia_, with_duration_;  ///< of the last linearisation, once asked for
   Path at_;
   PhaseConditions phases_;  ///< of the path that was linearised: moves have nothing along them
-  std::vector<Move> held_;
+  std::vector<Move> held_, family_directions_;
   std::vector<double> momenta_;
   std::vector<double> forces_;  ///< (N + 1) × n
   std::vector<double> ends_;    ///< nonlinear part of the last apply(), 2n

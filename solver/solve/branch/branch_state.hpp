@@ -25,18 +25,20 @@ struct BranchState {
   Path path;
   Branch::Units units;  ///< lengths are measured in
   double coordinate = 0, varied = 0, action = 0;
-  Move tangent;             ///< of length one
-  Move bend, twist;         ///< of the branch off it, by σ² and σ³; empty if not known
-  Move turning;             ///< of the tangent since the state before, by the way back to it; may be empty
-  double back = 0;          ///< that way
-  std::vector<double> row;  ///< see Branch::closing_row
-  double rate = 0;          ///< ∂varied/∂s along the tangent
-  double varied_error = 0;  ///< of the number that varies, by the error of the path
-  double action_rate = 0;   ///< ∂S/∂s as its derivatives give it
-  double energy_time = 0;   ///< |E T|
+  Move tangent;              ///< of length one
+  Move bend, twist;          ///< of the branch off it, by σ² and σ³; empty if not known
+  Move turning;              ///< of the tangent since the state before, by the way back to it; may be empty
+  double back = 0;           ///< that way
+  std::vector<double> row;   ///< see Branch::closing_row
+  std::vector<Move> family;  ///< see Branch::hold_family
+  double rate = 0;           ///< ∂varied/∂s along the tangent
+  double varied_error = 0;   ///< of the number that varies, by the error of the path
+  double action_rate = 0;    ///< ∂S/∂s as its derivatives give it
+  double energy_time = 0;    ///< |E T|
   int orientation = 1, index = 0, nullity = 0;
-  int open = 0;         ///< directions that the equations leave open
-  double crossing = 0;  ///< zero where branches cross; of the sign of the orientation
+  bool index_resolved = false;  ///< pieces tell the index of its point, which `index` may differ from
+  int open = 0;                 ///< directions that the equations leave open
+  double crossing = 0;          ///< zero where branches cross; of the sign of the orientation
   DoublingTests doubling;
   std::vector<EarlierTests> earlier;  ///< of the states before, the nearest first, in the units of this one
 

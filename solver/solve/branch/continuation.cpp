@@ -192,7 +192,8 @@ bool Continuation::begin_from_solve() {
   const std::optional<Problem> first = by_parameter ? family_.at(coordinate) : std::nullopt;
   const bool alone = first && first->symmetries.size() < family_.problem.symmetries.size();
   const auto begin = [&] { return !alone && tracker_.begin(search.path(), coordinate, at_rest); };
-  const bool begins = begin() && (!by_parameter || tracker_.branch().regular());
+  const bool begins =
+      begin() && (begin_across_family(at_rest) || !by_parameter || tracker_.branch().regular());
   if (!begins) {
     const bool beside = begin_beside(search.path(), at_rest) && (alone || tracker_.branch().regular());
     if (!beside && !begin()) return end_at_first();
@@ -227,6 +228,23 @@ bool Continuation::begin_beside(const Path& path, double at_rest) {
   return beside(beside_first / 2).has_value();
 }
 
+/// Whether the extremals with one value are a family, which the branch goes across. Then they are one beside
+/// the first as well, and the equations hold along its directions.
+bool Continuation::begin_across_family(double at_rest) {
+  tracker_.measure_anew();
+  const BranchState alone = tracker_.state;
+  if (tracker_.hold_family()) {
+    const BranchState first = tracker_.state;
+    const auto goes_on = [&](double length) {
+      return tracker_.reach(first, length) && tracker_.balanced() && tracker_.hold_family() &&
+             tracker_.state.family.size() == first.family.size();
+    };
+    if (goes_on(first_length) || goes_on(-first_length)) return tracker_.begin(first, at_rest);
+  }
+  tracker_.let_family_go(alone, at_rest);
+  return false;
+}
+
 bool Continuation::end_at_first() {
   singular_at_first_ = !first_point_;
   if (singular_at_first_)
@@ -253,11 +271,12 @@ bool Continuation::step() {
   std::swap(state, from_);
   for (;; length_ *= shortening) {
     if (length_ < least_length || options_.solve.deadline.passed()) return give_up(from_);
-    if (tracker_.reach_smoothly(from_, length_)) break;
+    if (tracker_.reach_smoothly(from_, length_) && tracker_.turns_one_way(from_)) break;
   }
-  if (state.open > from_.open) end_beside_crossing();
+  if (ends_on_crossing()) end_beside_crossing();
   const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
   tracker_.measure_anew();
+  if (!from_.family.empty()) tracker_.hold_family_anew();
   tracker_.predict(from_, length);
   length_ = std::min(length_, tracker_.predictable_length());
   BranchPoint next = read_point(tracker_, PointKind::regular);
@@ -269,7 +288,8 @@ bool Continuation::step() {
       locate_events(tracker_, {family_, first_, options_.other_branches}, {from_, to_, length});
   if (!events.missed) count_index(events, next);
   std::swap(state, to_);
-  if (events.missed) return retry(length);
+  // An eigenvalue that seems to pass zero where no branch crosses: a leap onto another branch.
+  if (events.missed || (!events.index_known && length > shortest_leap)) return retry(length);
   end_at_half_period(events);
   for (FoundPoint& found : events.points) add(std::move(found));
   if (events.end != BranchEnd::none)
@@ -281,11 +301,16 @@ bool Continuation::step() {
   return !found_.empty();
 }
 
-/// A step that ends where branches cross tells neither side: a shorter one, unless that also leaves more
-/// directions open than the branch did.
+/// Whether the last step did: roundoff decides the sign of the crossing, or more directions are open.
+bool Continuation::ends_on_crossing() const {
+  const BranchState& state = tracker_.state;
+  return state.open > from_.open || std::abs(state.crossing) < on_crossing * std::abs(from_.crossing);
+}
+
+/// A step that ends where branches cross tells neither side: a shorter one, unless that does, too.
 void Continuation::end_beside_crossing() {
   const double shorter = shortening * length_;
-  if (tracker_.reach_smoothly(from_, shorter) && tracker_.state.open <= from_.open)
+  if (tracker_.reach_smoothly(from_, shorter) && !ends_on_crossing())
     length_ = shorter;
   else
     tracker_.reach_smoothly(from_, length_);
@@ -319,7 +344,8 @@ void Continuation::end_at_half_period(StepEvents& events) {
 }
 
 /// Along a step the index changes by the eigenvalues that pass zero, which are counted on one mesh. Where the
-/// number at its end differs from their sum, elements are too long for the fields that decide it.
+/// number at its end differs from their sum, elements are too long for the fields that decide it, and it is
+/// known where it was counted on shorter pieces.
 void Continuation::count_index(StepEvents& events, BranchPoint& next) {
   const auto forget = [](BranchPoint& point) {
     point.solution.morse_index = point.solution.nullity = std::nullopt;
@@ -328,7 +354,7 @@ void Continuation::count_index(StepEvents& events, BranchPoint& next) {
   if (events.index_known) index_ += events.index_change;
   for (FoundPoint& found : events.points)
     if (!known) forget(found.point);
-  if (events.index_known && to_.index == index_) return;
+  if (to_.index_resolved || (events.index_known && to_.index == index_)) return;
   forget(next);
   ++unknown_indices_;
 }

@@ -63,9 +63,11 @@ class Continuation {
   bool begin();
   bool begin_from_solve();
   bool begin_beside(const Path& path, double at_rest);
+  bool begin_across_family(double at_rest);
   bool end_at_first();
   bool begin_from_state();
   bool step();
+  bool ends_on_crossing() const;
   void end_beside_crossing();
   bool retry(double length);
   void check_action();

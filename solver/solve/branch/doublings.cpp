@@ -8,6 +8,7 @@
 #include "problem/closing.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/root.hpp"
+#include "solve/periodic/orbit_index.hpp"
 #include "solve/periodic/stability.hpp"
 
 /// \file Points of a step where orbits of twice the period begin.

@@ -81,14 +81,15 @@ bool Tracker::move_to(const std::vector<double>& mesh, bool across) {
   return correct(1, across ? nullptr : &value) && update_tangent();
 }
 
-/// The path and the tangent on other elements.
+/// The path, the tangent and what is held on other elements.
 void Tracker::change_elements(int degree, const std::vector<double>& mesh) {
-  const std::vector<double> before(path_.mesh().begin(), path_.mesh().end());
-  w_.other.resample_from(path_, w_.levels.at(degree), mesh);
-  if (!tangent_.step.nodes.empty())
-    tangent_.step.nodes = interpolated(tangent_.step.nodes, path_.coordinates(), before, mesh);
-  std::swap(path_, w_.other);
+  const Path before = path_;
+  path_.resample_from(before, w_.levels.at(degree), mesh);
   branch_.bind();
+  tangent_ = transferred(tangent_, before);
+  std::vector<Move> family = branch_.held_family();
+  for (Move& direction : family) direction = transferred(direction, before);
+  branch_.hold_family(std::move(family));
 }
 
 std::optional<BranchState> Tracker::resolved_for(const BranchState& from, const Move& response) {

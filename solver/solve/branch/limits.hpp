@@ -100,6 +100,8 @@ inline constexpr double unresolved = 1e-2;
 /// distance wanted where as many points are allowed.
 inline constexpr double first_length = 0.02, least_length = 1e-6, least_longest = 0.1, most_longest = 0.4;
 inline constexpr double coverage = 4;
+/// Steps over a change of the index that nothing explains are taken again until they are as short as this.
+inline constexpr double shortest_leap = 2e-3;
 /// The next try after a step that failed is so much of it.
 inline constexpr double shortening = 0.4;
 /// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, else it
@@ -108,6 +110,8 @@ inline constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.95, gr
                         growth_else = 0.8;
 inline constexpr int many_factorisations = 4;
 inline constexpr double growth_if_many = 0.7;
+/// A crossing test so small, relative to that of the state before, is roundoff.
+inline constexpr double on_crossing = 1e-6;
 /// On a branch the extremal half as far from the first one as another is no farther away than this part of
 /// its distance.
 inline constexpr double half_as_far = 0.75;
@@ -166,6 +170,19 @@ inline constexpr double predicted_turn = 0.4;
 
 }  // namespace predictor
 
+namespace held_family {
+
+/// Responses of null directions are so many times those of others: at least, and where the path has no error.
+/// An error of the path changes eigenvalues by up to so many times as much, relative.
+inline constexpr double least_apart = 1e4, most_apart = 1e8, change = 100;
+/// Each costs a factorisation.
+inline constexpr int most_suspected = 32;
+/// Of the extent and of the duration: a path so far off is singular no longer to the last digit, and null
+/// directions still stand apart; one farther off has the same null directions to many digits.
+inline constexpr double hardly = 1e-11, safely = 1e-9;
+
+}  // namespace held_family
+
 namespace tracker {
 
 /// Corrections are carried on to this share of the tolerance, and no further than this.
@@ -174,6 +191,8 @@ inline constexpr int most_resolutions = 4;
 /// A path that another quadrature moves by more than this share of what it did before elements were halved is
 /// moved by roundoff.
 inline constexpr double halving_helps = 0.5;
+/// How far the tangent may turn back and forth along a step.
+inline constexpr double waviness = 0.005;
 /// The unit of lengths is no smaller than this share of the largest path so far.
 inline constexpr double least_extent = 0.3;
 

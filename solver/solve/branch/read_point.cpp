@@ -8,6 +8,7 @@
 #include "solution/observe.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/periodic/orbit_index.hpp"
 #include "solve/periodic/stability.hpp"
 
 /// \file All that is known of a state on a branch.
@@ -55,8 +56,24 @@ std::optional<double> energy_of_momenta(const Lagrangian& lagrangian, const Solu
   return std::isfinite(energy) ? std::optional(energy) : std::nullopt;
 }
 
+/// Sets index and nullity to those that the pieces tell, if they do: the elements of the branch may be too
+/// long for the fields that decide them. At events an eigenvalue is zero to the accuracy of their place
+/// alone.
+void count_squares(Tracker& tracker, SecondVariation& variation, BranchPoint& point) {
+  const double size = tracker.sizes().q;
+  Solution& solution = point.solution;
+  const std::optional<OrbitIndex> found =
+      orbit_index(tracker.branch().problem(), variation, solution.trajectory,
+                  size > 0 ? solution.error_estimate / size : 0);
+  tracker.state.index_resolved = found.has_value();
+  if (!found) return;
+  solution.morse_index = found->negative;
+  solution.nullity = found->null;
+}
+
 BranchPoint read_state(Tracker& tracker, PointKind kind) {
   BranchState& state = tracker.state;
+  state.index_resolved = false;
   const Branch& branch = tracker.branch();
   const Problem& problem = branch.problem();
   BranchPoint point;
@@ -91,7 +108,9 @@ BranchPoint read_state(Tracker& tracker, PointKind kind) {
       return variation.assemble(problem.lagrangian, solution.trajectory, tracker.condensed(), &closed,
                                 definite);
     };
-    if (!assemble(problem.paired ? Definite::paired : Definite::positive) && !variation.too_many()) {
+    const bool assembled = assemble(problem.paired ? Definite::paired : Definite::positive);
+    if (assembled && !problem.paired && kind == PointKind::regular) count_squares(tracker, variation, point);
+    if (!assembled && !variation.too_many()) {
       solution.morse_index.reset();  // no part is minimising
       assemble(Definite::none);
     }
@@ -128,6 +147,7 @@ BranchPoint read_point(Tracker& tracker, PointKind kind) {
   BranchPoint point = read_state(tracker, kind);
   point.resolved = point.resolved && moved;
   before.doubling = tracker.state.doubling;
+  before.index_resolved = tracker.state.index_resolved;
   tracker.state = std::move(before);
   return point;
 }

@@ -67,6 +67,7 @@ bool Tracker::return_to(const BranchState& from) {
   path_ = from.path;
   tangent_ = from.tangent;
   branch_.set_units(from.units);
+  branch_.hold_family(from.family);
   if (!branch_.set_coordinate(from.coordinate)) return false;
   branch_.bind();
   branch_.close_by(from.row);
@@ -122,6 +123,27 @@ bool Tracker::reach_smoothly(const BranchState& from, double length, bool same_e
   return reach(from, length, same_elements) && turn_is_small();
 }
 
+/// The chord is the mean of the tangents in between. Unless these turn back and forth, none differs from the
+/// mean of the first and the last by more than half of their difference. A chord that does leads from one
+/// branch onto another: beyond a fold the tangent may be nearly the same. Predictions move paths along what
+/// is held, too, which no correction takes back.
+bool Tracker::turns_one_way(const BranchState& from) {
+  const auto unit = [&](Move move) {
+    move.scale(1 / std::sqrt(branch_.dot(move, move)));
+    return move;
+  };
+  Move chord = difference_to(from);
+  chord.scale(-1);
+  const Move first = unit(tangent_), last = unit(state.tangent);
+  Move turn = last, off = unit(std::move(chord));
+  turn.add(first, -1);
+  off.add(first, -0.5);
+  off.add(last, -0.5);
+  branch_.take_across_phases(off);
+  const double between = std::sqrt(branch_.dot(off, off)), ends = std::sqrt(branch_.dot(turn, turn));
+  return between <= 0.5 * ends + waviness;
+}
+
 bool Tracker::land(double value) { return correct(1, &value) && update_tangent(); }
 
 /// Newton's method across the tangent; or to where the number that varies has the value `landing`.
@@ -154,6 +176,7 @@ bool Tracker::update_tangent(bool first) {
   state.tangent = branch_.direction;
   state.tangent.scale(onward);
   state.row = branch_.closing_row(state.tangent);
+  state.family = branch_.held_family();
   state.rate = onward * branch_.change(true);
   state.turning = state.bend = state.twist = {};
   state.action_rate = onward * branch_.action_slope();

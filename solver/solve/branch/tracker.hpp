@@ -50,6 +50,9 @@ class Tracker {
   bool reach(const BranchState& from, const Move& by);
   /// Along the tangent, and onto no other branch that is near.
   bool reach_smoothly(const BranchState& from, double length, bool same_elements = false);
+  /// Whether the branch may lead on from a state to this one, which was reached from it: if its tangent turns
+  /// one way, the chord is between those of both.
+  bool turns_one_way(const BranchState& from);
   /// From the path to where the number that varies has a value near its own.
   bool land(double value);
   /// The state, measured anew in lengths of its own path, or in a share of the largest before: a path that
@@ -78,6 +81,13 @@ class Tracker {
   /// Corrections have nothing along these directions, which belong to the elements of the path, until the
   /// next call: branch points are reached so. Empty for none.
   void hold(const std::vector<Move>& directions) { branch_.hold(directions); }
+  /// Holds the directions in which the extremals with the state's value are a family, and takes the tangent
+  /// across them. False if there are none.
+  bool hold_family();
+  /// As many, as they are at the state.
+  bool hold_family_anew();
+  /// Begins at a state without.
+  void let_family_go(const BranchState& at, double rest);
   /// From the path to that of another state, on the elements of the path.
   Move difference_to(const BranchState& to);
   /// The response of the equations at the path, with what is held; see Branch::respond. False where they
@@ -120,6 +130,9 @@ class Tracker {
   void change_elements(int degree, const std::vector<double>& mesh);
   Move transferred(const Move& move, const Path& from);
   bool return_to(const BranchState& from);
+  bool move_aside(double by);
+  std::vector<Move> responses(int count, std::vector<double>& sizes);
+  bool hold_at(BranchState at, std::vector<Move> directions);
   bool displace(const BranchState& from, const Move& by, double length, const double* landing);
 
   const ProblemFamily& family_;

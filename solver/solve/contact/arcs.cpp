@@ -79,25 +79,41 @@ Guess guess_of(const Trajectory& trajectory) {
   return guess;
 }
 
+void put_guess(const SolvedArc& solved, PathArc& arc) {
+  arc.guess = guess_of(solved.trajectory);
+  for (std::size_t w = 0; w < arc.waypoints.size(); ++w)
+    if (arc.waypoints[w].free)
+      arc.waypoints[w].time = (solved.waypoints[w].time - arc.from) / (arc.to - arc.from);
+}
+
 Arcs::Arcs(const Problem& problem, const SolveOptions& options, const ArcSolve& solve)
     : problem_(problem), options_(options), solve_(solve) {}
 
-HeldSystem Arcs::build(const std::vector<int>& held, const std::vector<double>& multipliers) const {
-  if (!held.empty()) return problem_.inequalities->hold(held, multipliers);
-  if (multipliers.empty()) return {problem_.lagrangian, problem_.manifold};
+HeldSystem Arcs::build(const std::vector<int>& held, const std::vector<double>& constants) const {
+  if (!held.empty()) return problem_.inequalities->hold(held, constants);
+  if (constants.empty()) return {problem_.lagrangian, problem_.manifold};
   const Extension& extension = *problem_.extension;
-  return {extension.at(multipliers), problem_.manifold ? extension.manifold_at(multipliers) : nullptr};
+  return {extension.at(constants), problem_.manifold ? extension.manifold_at(constants) : nullptr};
 }
 
-const HeldSystem& Arcs::system(const std::vector<int>& held, const std::vector<double>& multipliers) {
+const HeldSystem& Arcs::system(const std::vector<int>& held, const std::vector<double>& constants) {
   const auto found = systems_.find(held);
-  if (found != systems_.end() && found->second.multipliers == multipliers) return found->second.system;
-  return (systems_[held] = {multipliers, build(held, multipliers)}).system;
+  if (found != systems_.end() && found->second.constants == constants) return found->second.system;
+  return (systems_[held] = {constants, build(held, constants)}).system;
 }
 
-bool Arcs::project(const std::vector<int>& held, const std::vector<double>& multipliers, double t,
+std::shared_ptr<const Manifold> Arcs::inequalities(const std::vector<double>& constants) {
+  if (!problem_.inequalities->at) return problem_.inequalities->all;
+  if (!inequalities_ || constants != constants_) {
+    constants_ = constants;
+    inequalities_ = problem_.inequalities->at(constants);
+  }
+  return inequalities_;
+}
+
+bool Arcs::project(const std::vector<int>& held, const std::vector<double>& constants, double t,
                    VectorXd& q) {
-  const std::shared_ptr<const Manifold> onto = manifold(held, multipliers);
+  const std::shared_ptr<const Manifold> onto = manifold(held, constants);
   return !onto || onto->project({q.data(), static_cast<std::size_t>(q.size())}, t);
 }
 
@@ -106,27 +122,26 @@ bool Arcs::determined(const std::vector<int>& held) const {
   return static_cast<int>(held.size()) + constraints() == problem_.coordinates();
 }
 
-/// Those at times between the ends of an arc, at its own times.
-std::vector<WaypointCondition> Arcs::waypoints_in(const PathArc& arc) const {
-  std::vector<WaypointCondition> found;
-  if (!problem_.extension) return found;
-  for (WaypointCondition waypoint : problem_.extension->waypoints) {
-    if (!(waypoint.time > arc.from && waypoint.time < arc.to)) continue;
-    waypoint.time -= arc.from;
-    found.push_back(std::move(waypoint));
-  }
-  return found;
-}
-
 SolvedArc Arcs::solve(const PathArc& arc) {
   SolvedArc none;
   if (!(arc.to > arc.from)) {
     none.message = "an arc has no length";
     return none;
   }
-  if (!arc.held.empty() && !waypoints_in(arc).empty()) {
-    none.message = "a waypoint lies within a contact";
-    return none;
+  for (const WaypointCondition& waypoint : arc.waypoints) {
+    // Of a point that is fixed in part, impulses across the surface would act on the coordinates left free.
+    if (determined(arc.held)) {
+      none.message = "a waypoint lies within a contact that determines the path; leave the waypoint out";
+      return none;
+    }
+    if (!arc.held.empty() && std::ssize(waypoint.fixed) < arc.start.size()) {
+      none.message = "a waypoint that leaves coordinates free lies within a contact";
+      return none;
+    }
+    if (!waypoint.free && !(waypoint.time > arc.from && waypoint.time < arc.to)) {
+      none.message = "a contact begins or ends at a waypoint";
+      return none;
+    }
   }
   if (determined(arc.held)) return solve_determined(arc);
   const double least = attainable(fitted(arc), arc.start.size());
@@ -142,7 +157,7 @@ SolvedArc Arcs::solve(const PathArc& arc) {
 }
 
 SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
-  const HeldSystem& system = this->system(arc.held, arc.multipliers);
+  const HeldSystem& system = this->system(arc.held, arc.constants);
   const int n = problem_.coordinates();
   Problem problem;
   problem.lagrangian = shift_time(system.lagrangian, arc.from);
@@ -153,11 +168,14 @@ SolvedArc Arcs::solve_extremal(const PathArc& arc, double tolerance) {
   for (int a = 0; a < n; ++a) problem.boundary.fix(a, true, arc.end[a]);
   problem.duration.value = arc.to - arc.from;
   problem.guess = fitted(arc);
-  if (std::vector<WaypointCondition> waypoints = waypoints_in(arc); !waypoints.empty()) {
+  if (!arc.waypoints.empty()) {
     auto extension = std::make_shared<Extension>();
     extension->lagrangian = problem.lagrangian;
-    extension->waypoints = std::move(waypoints);
+    extension->waypoints = arc.waypoints;
+    for (WaypointCondition& waypoint : extension->waypoints)
+      if (!waypoint.free) waypoint.time -= arc.from;
     extension->at = [l = problem.lagrangian](const std::vector<double>&) { return l; };
+    extension->manifold_at = [m = problem.manifold](const std::vector<double>&) { return m; };
     problem.extension = std::move(extension);
   }
   return solve_problem(arc, std::move(problem), tolerance);
@@ -170,7 +188,7 @@ SolvedArc Arcs::solve_closed(const PathArc& arc) {
     none.message = "a path that is held throughout has no duration of its own";
     return none;
   }
-  const HeldSystem& system = this->system(arc.held, arc.multipliers);
+  const HeldSystem& system = this->system(arc.held, arc.constants);
   Problem problem = problem_;
   problem.inequalities = nullptr;
   problem.lagrangian = system.lagrangian;
@@ -219,20 +237,21 @@ SolvedArc Arcs::solve_problem(const PathArc& arc, Problem problem, double tolera
   Scratch scratch;
   result.energy_end =
       result.p_end.dot(result.v_end) -
-      evaluate_at(motion(arc.multipliers), q, values_of(result.v_end), later, Order::value, scratch).value;
+      evaluate_at(motion(arc.constants), q, values_of(result.v_end), later, Order::value, scratch).value;
   integrate(arc, result);
   return result;
 }
 
 /// The derivatives of L + Σ ν g by ν.
 void Arcs::integrate(const PathArc& arc, SolvedArc& solved) const {
-  solved.integrals.assign(arc.multipliers.size(), 0);
-  if (arc.multipliers.empty()) return;
+  if (!problem_.extension) return;
   const Extension& extension = *problem_.extension;
-  const std::size_t n = problem_.coordinates(), m = arc.multipliers.size();
+  const std::size_t n = problem_.coordinates(), m = extension.multipliers(), first = n + extension.unknowns();
   const Rule rule = gauss_rule(std::min(solved.trajectory.degree + 2, max_points));
-  std::vector<double> q(n + m), v(n + m, 0);
-  std::ranges::copy(arc.multipliers, q.begin() + static_cast<std::ptrdiff_t>(n));
+  solved.integrals.assign(m, 0);
+  if (m == 0) return;
+  std::vector<double> q(first + m), v(first + m, 0);
+  std::ranges::copy(arc.constants, q.begin() + static_cast<std::ptrdiff_t>(n));
   Scratch scratch;
   for (int k = 0; k < solved.trajectory.elements(); ++k)
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -240,7 +259,7 @@ void Arcs::integrate(const PathArc& arc, SolvedArc& solved) const {
       solved.trajectory.in_element(k, rule.nodes[i], std::span(q).first(n), std::span(v).first(n));
       const double t = arc.from + solved.trajectory.times[k] + rule.nodes[i] * h;
       const PointValues l = evaluate_at(*extension.lagrangian, q, v, t, Order::gradient, scratch);
-      for (std::size_t j = 0; j < m; ++j) solved.integrals[j] += rule.weights[i] * h * l.dq[n + j];
+      for (std::size_t j = 0; j < m; ++j) solved.integrals[j] += rule.weights[i] * h * l.dq[first + j];
     }
 }
 
@@ -254,7 +273,7 @@ void Arcs::measure(const PathArc& arc, SolvedArc& solved) {
     const double t = arc.from + (at_end ? solved.trajectory.duration() : 0);
     solved.trajectory.at(at_end ? solved.trajectory.duration() : 0, q, v);
     if (onto) onto->make_tangent(q, t, v);
-    const PointValues l = evaluate_at(motion(arc.multipliers), q, v, t, Order::gradient, scratch);
+    const PointValues l = evaluate_at(motion(arc.constants), q, v, t, Order::gradient, scratch);
     (at_end ? solved.v_end : solved.v_start) = vector_of(v);
     (at_end ? solved.p_end : solved.p_start) = vector_of(l.dv);
     if (at_end) solved.energy_end = solved.p_end.dot(solved.v_end) - l.value;
@@ -303,9 +322,8 @@ SolvedArc Arcs::solve_determined(const PathArc& arc) {
         path.in_element(k, rule.nodes[i], between, slope);
         for (std::size_t a = 0; a < n; ++a)
           error = std::max({error, std::abs(q[a] - between[a]), 0.1 * duration * std::abs(v[a] - slope[a])});
-        result.action +=
-            rule.weights[i] * path.length(k) *
-            evaluate_at(motion(arc.multipliers), q, v, arc.from + t, Order::value, scratch).value;
+        result.action += rule.weights[i] * path.length(k) *
+                         evaluate_at(motion(arc.constants), q, v, arc.from + t, Order::value, scratch).value;
       }
     result.error = error;
     result.trajectory = std::move(path);

@@ -26,8 +26,10 @@ struct PathArc {
   std::vector<int> held;    ///< ascending; empty: free
   double from = 0, to = 0;  ///< times
   Eigen::VectorXd start, end;
-  Guess guess;                      ///< by t − from over to − from
-  std::vector<double> multipliers;  ///< ν of integrals: the arc is an extremal of L + Σ ν g
+  Guess guess;                    ///< by t − from over to − from
+  std::vector<double> constants;  ///< unknowns k and multipliers ν: the arc is an extremal of L + Σ ν g
+  /// In order. Times are those of the whole path; free ones are parts of the length of the arc.
+  std::vector<WaypointCondition> waypoints = {};
 };
 
 /// An arc that has been solved for.
@@ -56,19 +58,21 @@ class Arcs {
   /// The manifold of the constraints and of inequalities as equations, in this order, with the forces of
   /// L + Σ ν g; null of none.
   std::shared_ptr<const Manifold> manifold(const std::vector<int>& held,
-                                           const std::vector<double>& multipliers) {
-    return system(held, multipliers).manifold;
+                                           const std::vector<double>& constants) {
+    return system(held, constants).manifold;
   }
-  std::shared_ptr<const Manifold> manifold(const PathArc& arc) { return manifold(arc.held, arc.multipliers); }
+  std::shared_ptr<const Manifold> manifold(const PathArc& arc) { return manifold(arc.held, arc.constants); }
+  /// All inequalities as equations, for these constants.
+  std::shared_ptr<const Manifold> inequalities(const std::vector<double>& constants);
   /// Moves a point to where these inequalities are equalities. False if the iteration does not converge.
-  bool project(const std::vector<int>& held, const std::vector<double>& multipliers, double t,
+  bool project(const std::vector<int>& held, const std::vector<double>& constants, double t,
                Eigen::VectorXd& q);
   int iterations() const { return iterations_; }
   const Problem& problem() const { return problem_; }
   const SolveOptions& options() const { return options_; }
   /// L + Σ ν g as it is written.
-  const Lagrangian& motion(const std::vector<double>& multipliers) {
-    const HeldSystem& free = system({}, multipliers);
+  const Lagrangian& motion(const std::vector<double>& constants) {
+    const HeldSystem& free = system({}, constants);
     return free.manifold ? free.manifold->lagrangian() : *free.lagrangian;
   }
   /// Constraints that hold along the whole path.
@@ -76,13 +80,12 @@ class Arcs {
 
  private:
   struct Built {
-    std::vector<double> multipliers;
+    std::vector<double> constants;
     HeldSystem system;
   };
-  const HeldSystem& system(const std::vector<int>& held, const std::vector<double>& multipliers);
-  HeldSystem build(const std::vector<int>& held, const std::vector<double>& multipliers) const;
+  const HeldSystem& system(const std::vector<int>& held, const std::vector<double>& constants);
+  HeldSystem build(const std::vector<int>& held, const std::vector<double>& constants) const;
   bool determined(const std::vector<int>& held) const;
-  std::vector<WaypointCondition> waypoints_in(const PathArc& arc) const;
   SolvedArc solve_extremal(const PathArc& arc, double tolerance);
   SolvedArc solve_problem(const PathArc& arc, Problem problem, double tolerance);
   SolvedArc solve_determined(const PathArc& arc);
@@ -92,11 +95,15 @@ class Arcs {
   const Problem& problem_;
   const SolveOptions& options_;
   const ArcSolve& solve_;
-  std::map<std::vector<int>, Built> systems_;  ///< for the multipliers that were asked for last
+  std::map<std::vector<int>, Built> systems_;     ///< for the constants that were asked for last
+  std::shared_ptr<const Manifold> inequalities_;  ///< for `constants_`
+  std::vector<double> constants_;
   int iterations_ = 0;
 };
 
 /// The path of an arc as a guess for the same with other ends.
 Guess guess_of(const Trajectory& trajectory);
+/// An arc becomes the guess for the same with other ends.
+void put_guess(const SolvedArc& solved, PathArc& arc);
 
 }  // namespace extremal

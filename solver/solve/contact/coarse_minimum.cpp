@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "problem/inequalities.hpp"
-#include "problem/point_range.hpp"
-#include "solve/contact/coarse_action.hpp"
+#include "problem/extension.hpp"
+#include "solve/contact/coarse_minima.hpp"
+#include "solve/contact/end_equations.hpp"
+#include "solve/contact/found_values.hpp"
 #include "solve/contact/limits.hpp"
 
 namespace extremal {
@@ -17,100 +19,25 @@ namespace extremal {
 namespace {
 
 using namespace limits::contact;
-
-/// What units and steps are taken from; of a path that is a point, how far it is from zero.
-double unit_of(const std::vector<double>& z, std::size_t n) {
-  constexpr double roundoff = 1e-9;
-  const double size = largest_range(z, n);
-  double largest = 0;
-  for (const double x : z) largest = std::max(largest, std::abs(x));
-  if (size > roundoff * largest) return size;
-  return largest > 0 ? largest : 1;
-}
-
-/// Whether nodes that move straight from one path to another pass through what is excluded: the other path
-/// may pass an obstacle on its other side.
-bool crosses(const Problem& problem, const CoarseAction& action, const std::vector<double>& from,
-             const std::vector<double>& to, double size) {
-  const std::size_t n = problem.coordinates(), m = problem.inequalities->count();
-  const double deep = crossing_depth * size;
-  std::vector<double> q(n);
-  for (std::size_t place = 0; place < action.places().size(); place += m) {
-    const int node = action.places()[place].node;
-    double moved = 0;
-    for (std::size_t a = 0; a < n; ++a)
-      moved = std::max(moved, std::abs(to[node * n + a] - from[node * n + a]));
-    const int points = static_cast<int>(std::min(moved / deep, crossing_points));
-    for (int k = 1; k < points; ++k) {
-      const double part = static_cast<double>(k) / points;
-      for (std::size_t a = 0; a < n; ++a) q[a] = (1 - part) * from[node * n + a] + part * to[node * n + a];
-      const ConstraintValues values = problem.inequalities->all->at(q, action.time(node));
-      for (Eigen::Index c = 0; c < values.g.size(); ++c)
-        if (values.g[c] < -deep * values.slopes.row(c).norm()) return true;
-    }
-  }
-  return false;
-}
-
-/// The minimum that short steps lead to: each minimises the action within a box about the path before.
-MinimumReport confined_minimum(const CoarseAction& action, std::vector<double>& z, double size,
-                               const Deadline& deadline) {
-  const double reach = confined_step * size;
-  InequalityMinimum minimum = action.minimum(z, size);
-  MinimumReport report;
-  for (int k = 0; k < most_confined && !deadline.passed(); ++k) {
-    const std::vector<double> before = z;
-    minimum.lower = minimum.upper = before;
-    for (double& x : minimum.lower) x -= reach;
-    for (double& x : minimum.upper) x += reach;
-    report = minimise(minimum, z, deadline);
-    if (!report.converged) return report;
-    double moved = 0;
-    for (std::size_t i = 0; i < z.size(); ++i) moved = std::max(moved, std::abs(z[i] - before[i]));
-    if (moved < confined_end * reach) return report;
-  }
-  report.converged = false;
-  return report;
-}
-
-/// The minimum near a path: on the same side of obstacles where there is one.
-MinimumReport near_minimum(const Problem& problem, const CoarseAction& action, std::vector<double>& z,
-                           const Deadline& deadline) {
-  const std::size_t n = problem.coordinates();
-  std::vector<double> direct = z;
-  MinimumReport report = minimise(action.minimum(z, unit_of(z, n)), direct, deadline);
-  const double size = std::max(unit_of(z, n), largest_range(direct, n));
-  if (report.converged && crosses(problem, action, z, direct, size)) {
-    std::vector<double> confined = z;
-    MinimumReport other = confined_minimum(action, confined, size, deadline);
-    if (other.converged) {
-      z = std::move(confined);
-      return other;
-    }
-  }
-  z = std::move(direct);
-  return report;
-}
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 /// A zero of the closing condition of coarse minima, as a function of the duration.
 class DurationSearch {
  public:
-  DurationSearch(Problem& problem, int elements, std::vector<double>& z, const Deadline& deadline)
-      : problem_(problem), elements_(elements), z_(z), deadline_(deadline) {}
+  /// Keeps a reference to the minima, of which the last is one already.
+  explicit DurationSearch(CoarseMinima& minima) : minima_(minima) {}
 
-  CoarseMinimum run() {
-    const double guess = problem_.duration.value;
-    std::optional<Point> old = at(guess);
-    // Shorter paths are minimisers where longer ones are not.
-    for (int k = 0; !old && k < most_halvings && !deadline_.passed(); ++k)
-      old = at(guess * std::pow(0.5, k + 1));
-    if (!old) return {std::move(report_), {}};
+  bool run() {
+    std::optional<Point> old = point();
     std::optional<Point> now = at(old->duration * first_ratio);
     if (!now) now = at(old->duration / first_ratio);
     int vain = 0;
-    for (int k = 0; k < most_durations && now && vain < most_vain_durations && !deadline_.passed(); ++k) {
+    for (int k = 0; k < most_durations && now && vain < most_vain_durations && !minima_.deadline().passed();
+         ++k) {
       if (std::abs(now->duration - old->duration) <= near_duration * now->duration || now->value == 0)
-        return {std::move(report_), {}};
+        return true;
       if ((now->value < 0) != (old->value < 0)) other_side_ = old;
       double next = secant(*old, *now);
       std::optional<Point> found = at(next);
@@ -124,44 +51,31 @@ class DurationSearch {
       if (now && std::abs(now->value) < before) nearest_ = *now;
       vain = other_side_ || std::abs(nearest_.value) < useful_share * before ? 0 : vain + 1;
     }
-    report_.converged = false;
-    return {std::move(report_), reason()};
+    return false;
+  }
+
+  /// Why it was not found, where that is known.
+  std::string reason() const {
+    if (!std::isfinite(nearest_.value) || other_side_) return {};
+    if (closed_by_condition(problem()))
+      return fmt::format(
+          "minimisers do not satisfy 'where': they come nearest to it, by {:.3g}, at a duration of {:.6g}",
+          nearest_.value, nearest_.duration);
+    return fmt::format(
+        "no minimiser near the guess has this energy: the nearest is {:.6g}, at a duration of {:.6g}",
+        nearest_.value + *problem().duration.energy, nearest_.duration);
   }
 
  private:
   struct Point {
     double duration, value;
   };
-
-  std::string reason() const {
-    if (!std::isfinite(nearest_.value) || other_side_) return {};
-    if (closed_by_condition(problem_))
-      return fmt::format(
-          "minimisers do not satisfy 'where': they come nearest to it, by {:.3g}, at a duration of {:.6g}",
-          nearest_.value, nearest_.duration);
-    return fmt::format(
-        "no minimiser near the guess has this energy: the nearest is {:.6g}, at a duration of {:.6g}",
-        nearest_.value + *problem_.duration.energy, nearest_.duration);
-  }
-
-  /// The path there becomes the next guess; nothing where there is no minimum, or only one on another side of
-  /// an obstacle than the last.
+  const Problem& problem() const { return minima_.last().problem; }
+  Point point() const { return {problem().duration.value, minima_.last().closing}; }
+  /// The minimum there becomes the last one.
   std::optional<Point> at(double duration) {
-    problem_.duration.value = duration;
-    const CoarseAction action(problem_, elements_);
-    const std::size_t n = problem_.coordinates();
-    std::vector<double> z = z_;
-    MinimumReport report = continued_ ? minimise(action.minimum(z, unit_of(z, n)), z, deadline_)
-                                      : near_minimum(problem_, action, z, deadline_);
-    const bool found = report.converged && !(continued_ && crosses(problem_, action, z_, z, unit_of(z, n)));
-    if (!found && !continued_) report_ = std::move(report);
-    if (!found) return std::nullopt;
-    report_ = std::move(report);
-    continued_ = true;
-    z_ = std::move(z);
-    const double value = action.closing(z_);
-    if (!std::isfinite(value)) return std::nullopt;
-    return Point{duration, value};
+    if (!minima_.find(duration, {})) return std::nullopt;
+    return point();
   }
 
   /// Between values of different signs the zero stays enclosed.
@@ -175,23 +89,141 @@ class DurationSearch {
     return std::clamp(next, now.duration / most_ratio, now.duration * most_ratio);
   }
 
-  Problem& problem_;
-  int elements_;
-  std::vector<double>& z_;
-  const Deadline& deadline_;
-  MinimumReport report_;
+  CoarseMinima& minima_;
   std::optional<Point> other_side_;
-  bool continued_ = false;      ///< `z_` is a minimum
   Point nearest_{0, INFINITY};  ///< the least value so far
 };
 
+/// Unknown constants, and a free duration with them, for which the conditions hold at coarse minima: Newton's
+/// method with differences as derivatives, and Broyden's updates.
+class ConstantSearch {
+ public:
+  /// Keeps a reference to the minima, of which the last is one already.
+  explicit ConstantSearch(CoarseMinima& minima)
+      : minima_(minima),
+        free_(minima.last().problem.duration.free),
+        units_(values(minima.last()).cwiseAbs()),
+        first_(all_missed_by(minima.last()).cwiseAbs()) {
+    for (VectorXd* units : {&units_, &first_})
+      for (double& unit : *units)
+        if (unit == 0) unit = 1;
+  }
+
+  bool run() {
+    bool exact = false;
+    int vain = 0;
+    double nearest = missed_by(minima_.last()).norm();
+    for (int k = 0; k < most_durations && vain < most_vain_durations && !minima_.deadline().passed(); ++k) {
+      if (slopes_.size() == 0) {
+        if (!differentiate()) return false;
+        exact = true;
+      }
+      const Eigen::ColPivHouseholderQR<MatrixXd> factors(slopes_);
+      if (!slopes_.allFinite() || !factors.isInvertible()) return false;
+      const VectorXd missed = missed_by(minima_.last()), step = -factors.solve(missed);
+      if (step.lpNorm<Eigen::Infinity>() <= near_duration) return true;
+      double factor = 1 / std::max(1.0, step.lpNorm<Eigen::Infinity>() * most_ratio);
+      std::optional<CoarseMinima::Minimum> found;
+      for (int halved = 0; !found && halved < most_halvings; ++halved) {
+        found = at(factor * step);
+        // The next step, by the same derivatives, is shorter.
+        if (found && !(factors.solve(missed_by(*found)).norm() < step.norm())) found.reset();
+        if (!found) factor /= 2;
+      }
+      if (!found && exact) return false;
+      if (!found) {
+        slopes_.resize(0, 0);
+        continue;
+      }
+      const VectorXd taken = factor * step, change = missed_by(*found) - missed;
+      slopes_ += (change - slopes_ * taken) * taken.transpose() / taken.squaredNorm();
+      exact = false;
+      minima_.take(*std::move(found));
+      const double now = missed_by(minima_.last()).norm();
+      vain = now < useful_share * nearest ? 0 : vain + 1;
+      nearest = std::min(nearest, now);
+    }
+    return false;
+  }
+
+ private:
+  VectorXd values(const CoarseMinima::Minimum& minimum) const {
+    std::vector<double> all = unknowns_of(minimum.problem);
+    if (free_) all.push_back(minimum.problem.duration.value);
+    return Eigen::Map<const VectorXd>(all.data(), static_cast<Index>(all.size()));
+  }
+  /// In parts of what the first minimum missed.
+  VectorXd missed_by(const CoarseMinima::Minimum& minimum) const {
+    return all_missed_by(minimum).cwiseQuotient(first_);
+  }
+  VectorXd all_missed_by(const CoarseMinima::Minimum& minimum) const {
+    std::vector<double> all = minimum.where;
+    if (free_) all.push_back(minimum.closing);
+    return Eigen::Map<const VectorXd>(all.data(), static_cast<Index>(all.size()));
+  }
+  /// A step from the last minimum, in parts of the first values.
+  std::optional<CoarseMinima::Minimum> at(const VectorXd& step) {
+    const VectorXd next = values(minima_.last()) + units_.cwiseProduct(step);
+    const double duration = free_ ? next[next.size() - 1] : minima_.last().problem.duration.value;
+    return minima_.at(duration, {next.begin(), next.end() - (free_ ? 1 : 0)});
+  }
+  bool differentiate() {
+    const VectorXd missed = missed_by(minima_.last());
+    const Index size = units_.size();
+    slopes_.resize(size, size);
+    for (Index i = 0; i < size; ++i) {
+      double by = first_ratio - 1;
+      std::optional<CoarseMinima::Minimum> beside = at(by * VectorXd::Unit(size, i));
+      if (!beside) {
+        by = -by;
+        beside = at(by * VectorXd::Unit(size, i));
+      }
+      if (!beside) return false;
+      slopes_.col(i) = (missed_by(*beside) - missed) / by;
+    }
+    return true;
+  }
+
+  CoarseMinima& minima_;
+  bool free_;
+  VectorXd units_, first_;
+  MatrixXd slopes_;
+};
+
+/// A first minimum; of a free duration, shorter paths are minimisers where longer ones are not.
+bool find_first(CoarseMinima& minima) {
+  const double guess = minima.last().problem.duration.value;
+  const bool free = minima.last().problem.duration.free;
+  bool found = minima.find(guess, {});
+  for (int k = 0; free && !found && k < most_halvings && !minima.deadline().passed(); ++k)
+    found = minima.find(guess * std::pow(0.5, k + 1), {});
+  return found;
+}
+
 }  // namespace
 
-CoarseMinimum coarse_minimum(Problem& problem, int elements, std::vector<double>& z,
+CoarseMinimum coarse_minimum(Problem& problem, int elements, const std::vector<double>& z,
                              const Deadline& deadline) {
-  if (problem.duration.free) return DurationSearch(problem, elements, z, deadline).run();
-  const CoarseAction action(problem, elements);
-  return {near_minimum(problem, action, z, deadline), {}};
+  CoarseMinima minima(problem, elements, z, deadline);
+  if (!find_first(minima)) return {minima.failure()};
+  CoarseMinimum found;
+  bool closed = true;
+  if (!unknowns_of(problem).empty()) {
+    closed = ConstantSearch(minima).run();
+    if (!closed)
+      found.reason = "no unknowns were found for which a minimiser near the guess satisfies 'where'";
+  } else if (problem.duration.free) {
+    DurationSearch search(minima);
+    closed = search.run();
+    if (!closed) found.reason = search.reason();
+  }
+  const CoarseMinima::Minimum& last = minima.last();
+  found.report = last.report;
+  found.report.converged = closed;
+  found.z = last.path.z;
+  found.times = last.path.times;
+  problem = last.problem;
+  return found;
 }
 
 }  // namespace extremal

@@ -13,14 +13,15 @@ namespace extremal {
 
 struct CoarseMinimum {
   MinimumReport report;
-  std::string reason;  ///< why no duration was found, where that is known
+  std::string reason = {};                 ///< why no duration or unknowns were found, where that is known
+  std::vector<double> z = {}, times = {};  ///< nodes
 };
 
-/// Takes the nodes z of a path of so many elements to a minimum of the coarse action at the problem's
-/// duration. A free duration becomes one at which the minimum has the energy given, or satisfies the
-/// condition that closes it: the minimum is continued in the duration from that of the problem, by the secant
-/// rule.
-CoarseMinimum coarse_minimum(Problem& problem, int elements, std::vector<double>& z,
+/// A minimum of the coarse action from the nodes z of a path at coarse_times(). A free duration becomes one
+/// at which the minimum has the energy given, or satisfies the condition that closes it: the minimum is
+/// continued in the duration from that of the problem, by the secant rule. Unknown constants become those
+/// with which the minimum satisfies their conditions. The problem gets all of these values.
+CoarseMinimum coarse_minimum(Problem& problem, int elements, const std::vector<double>& z,
                              const Deadline& deadline);
 
 }  // namespace extremal

@@ -92,6 +92,8 @@ bool CoarseAction::positive(std::span<const double> z, const CoarseContacts& con
   free[elements_] = ends.bottomRows(n_);
   first[0] = first[elements_] = columns;
   columns += ends.cols();
+  const Index times = columns;
+  columns += static_cast<Index>(free_times_.size());
   if (columns == 0) return true;
   std::vector<Eigen::Triplet<double>> entries;
   const auto put = [&](Index row, Index column, const MatrixXd& block) {
@@ -105,7 +107,8 @@ bool CoarseAction::positive(std::span<const double> z, const CoarseContacts& con
     if (a != b) put(first[b], first[a], reduced.transpose());
   };
   for (int k = 0; k < elements_; ++k) {
-    const ElementHessian element = this->element(z, k, contacts.multipliers, limits::contact::shift);
+    const PointValues l = weighted(z, k, Order::hessian, 1, contacts.multipliers);
+    const ElementHessian element = element_hessian(l, length(k), n_, limits::contact::shift);
     add(k, k, element.aa);
     add(k + 1, k + 1, element.bb);
     add(k + 1, k, element.ba);
@@ -115,10 +118,15 @@ bool CoarseAction::positive(std::span<const double> z, const CoarseContacts& con
       add(k, k, (cell_end(k) - cell_begin(k)) * contact_curvature(z, k, contacts.forces[k]));
   if (contacts.ends.slopes.rows() > 0)
     put(first[0], first[0], ends.transpose() * contacts.ends.curvature * ends);
+  const MatrixXd mixed = mixed_with_times(z, 1, contacts.multipliers);
+  for (int k = 0; k <= elements_ && mixed.rows() > 0; ++k)
+    put(times, first[k], mixed.middleCols(k * n_, n_) * free[k]);
+  put(times, times, between_times(z, 1, contacts.multipliers));
   // Rows of integrals come last: each takes one direction, and makes one pivot negative.
   const MatrixXd integrals = integral_slopes(z);
   for (int k = 0; k <= elements_ && integrals.rows() > 0; ++k)
     put(columns, first[k], integrals.middleCols(k * n_, n_) * free[k]);
+  put(columns, times, integral_rates(z));
   const Index all = columns + integrals.rows();
   Eigen::SparseMatrix<double> matrix(all, all);
   matrix.setFromTriplets(entries.begin(), entries.end());

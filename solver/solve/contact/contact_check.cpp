@@ -203,7 +203,8 @@ bool is_positive(Arcs& arcs, const Junctions& path, int elements) {
   }
   const std::vector<EndContact>& ends = path.end_contacts();
   contacts.ends = path.end_curvature();
-  contacts.multipliers = path.multipliers();
+  const std::vector<double>& constants = path.constants();
+  contacts.multipliers = {constants.end() - action.integrals(), constants.end()};
   for (std::size_t c = 0; c < ends.size(); ++c)
     if (!ends[c].holonomic) {
       std::vector<int>& held = ends[c].at_end ? contacts.held.back() : contacts.held.front();

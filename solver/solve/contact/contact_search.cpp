@@ -7,13 +7,17 @@
 #include <memory>
 #include <utility>
 
+#include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
+#include "problem/point_range.hpp"
 #include "solution/path_contacts.hpp"
 #include "solve/contact/coarse_action.hpp"
 #include "solve/contact/coarse_minimum.hpp"
+#include "solve/contact/found_values.hpp"
 #include "solve/contact/intervals.hpp"
 #include "solve/contact/joined_path.hpp"
 #include "solve/contact/limits.hpp"
+#include "solve/contact/shifted_minimum.hpp"
 
 namespace extremal {
 
@@ -22,19 +26,11 @@ namespace {
 using namespace limits::contact;
 
 /// Nodes of a path as points at their times.
-Guess guess_of_nodes(int elements, const std::vector<double>& z) {
+Guess guess_of_nodes(const std::vector<double>& times, const std::vector<double>& z) {
   Guess guess;
-  for (int k = 0; k <= elements; ++k) guess.tau.push_back(static_cast<double>(k) / elements);
+  for (const double t : times) guess.tau.push_back(t / times.back());
   guess.q = z;
   return guess;
-}
-
-/// Nodes of a path between those of a coarser one.
-std::vector<double> finer(const Guess& guess, int n, int elements) {
-  std::vector<double> z((elements + 1) * n);
-  for (int k = 0; k <= elements; ++k)
-    guess.at(static_cast<double>(k) / elements, {z.data() + k * n, static_cast<std::size_t>(n)});
-  return z;
 }
 
 /// q(t) of a path of arcs.
@@ -53,34 +49,81 @@ int pulled_touch(const Junctions& path) {
   return -1;
 }
 
-/// Whether each waypoint lies within an arc.
-bool meets_waypoints(const Problem& problem, const Junctions& path) {
-  std::size_t met = 0;
-  for (const SolvedArc& arc : path.solved()) met += arc.waypoints.size();
-  return !problem.extension || met == problem.extension->waypoints.size();
+/// Free times of waypoints become those of a path.
+void put_waypoint_times(const Junctions& path, Problem& problem) {
+  if (!problem.extension || problem.extension->waypoints.empty()) return;
+  Extension extension = *problem.extension;
+  auto next = extension.waypoints.begin();
+  for (const SolvedArc& arc : path.solved())
+    for (const WaypointImpulse& found : arc.waypoints) {
+      if (next->free) next->time = found.time / path.duration();
+      ++next;
+    }
+  problem.extension = std::make_shared<const Extension>(std::move(extension));
 }
 
-/// Whether q(T) = q(0), and any time may be the first one.
-bool may_be_shifted(const Problem& problem) {
-  if (!problem.periodic || problem.duration.where || problem.extension) return false;
-  if (!problem.lagrangian->structure().autonomous || !problem.inequalities->all->autonomous()) return false;
-  const int n = problem.coordinates();
-  for (const Triplet& z : problem.ends.z)
-    if (z.row >= n && (z.value != 1 || problem.ends.home[z.column] != z.row - n)) return false;
-  return std::all_of(problem.ends.offset.begin(), problem.ends.offset.end(), [](double c) { return c == 0; });
+/// Which end that is fixed does not keep an inequality, as unknowns make it, by more than a coarse path may
+/// be wrong; empty: none.
+std::string broken_end(const Problem& problem, double size) {
+  constexpr double part = 1e-3;
+  if (unknowns_of(problem).empty()) return {};
+  const std::size_t n = problem.coordinates();
+  const auto ends = problem.ends.fixed.begin();
+  for (const bool at_end : {false, true}) {
+    const auto first = static_cast<std::ptrdiff_t>(at_end ? n : 0);
+    const auto last = first + static_cast<std::ptrdiff_t>(n);
+    if (!std::all_of(ends + first, ends + last, [](char f) { return f; })) continue;
+    const ConstraintValues values = problem.inequalities->all->at({problem.ends.offset.data() + first, n},
+                                                                  at_end ? problem.duration.value : 0);
+    for (Eigen::Index k = 0; k < values.g.size(); ++k)
+      if (values.g[k] < -part * size * values.slopes.row(k).norm())
+        return fmt::format(
+            "the {0} does not keep the inequality '{1}' with the unknowns that satisfy 'where': it is missed "
+            "by {2:.3g} there; give another {0}, or other conditions",
+            at_end ? "end" : "start", problem.inequalities->texts[static_cast<std::size_t>(k)], -values.g[k]);
+  }
+  return {};
 }
 
-/// The middle of the longest interval.
-double middle_of_longest(const std::vector<Interval>& intervals) {
-  const auto longest =
-      std::ranges::max_element(intervals, {}, [](const Interval& i) { return i.to - i.from; });
-  return (longest->from + longest->to) / 2;
+/// Which of these a point that is given lies on; −1: none.
+int touched_by(const Problem& problem, const WaypointCondition& waypoint, const std::vector<int>& constraints,
+               double t, double size) {
+  std::vector<double> q;
+  for (const auto& [a, x] : waypoint.fixed) q.push_back(x);
+  const ConstraintValues values = problem.inequalities->all->at(q, t);
+  const auto found = std::ranges::find_if(constraints, [&](int c) { return on_surface(values, c, size); });
+  return found != constraints.end() ? *found : -1;
 }
 
-/// Nodes, or what belongs to them, of a closed path that begins `by` nodes later; `size` values each.
-void rotate_nodes(std::vector<double>& values, int by, int elements, std::size_t size) {
-  values.resize(elements * size);  // the last node is the first one
-  std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(by * size), values.end());
+/// A waypoint on a surface at which arcs cannot pass it; empty: there is none. Coordinates that it leaves
+/// free would be pushed off the surface by its impulse. Where a contact begins, the arc beside a free time
+/// vanishes.
+std::string blocked_waypoint(const Problem& problem, const std::vector<Interval>& intervals, double element,
+                             double size) {
+  if (!problem.extension) return {};
+  for (const WaypointCondition& waypoint : problem.extension->waypoints) {
+    const double t = waypoint.at(problem.duration.value);
+    const bool whole = std::ssize(waypoint.fixed) == problem.coordinates();
+    for (const Interval& interval : intervals) {
+      if (interval.held.empty() || t < interval.from - element || t > interval.to + element) continue;
+      const bool within = t > interval.from && t < interval.to;
+      const auto text = [&](int constraint) -> const std::string& {
+        return problem.inequalities->texts[static_cast<std::size_t>(constraint)];
+      };
+      if (within && !whole)
+        return fmt::format(
+            "the waypoint at t = {:.6g} lies within a contact with '{}' and leaves coordinates "
+            "free; fix all of them there",
+            t, text(interval.held.front()));
+      if (within || !whole || !waypoint.free) continue;
+      if (const int constraint = touched_by(problem, waypoint, interval.held, t, size); constraint >= 0)
+        return fmt::format(
+            "a contact with '{}' begins or ends at the waypoint at t = {:.6g}, whose time is "
+            "free; give its time as a number",
+            text(constraint), t);
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -94,12 +137,13 @@ ContactSearch::ContactSearch(const Problem& problem, const SolveOptions& options
       several_(several) {}
 
 Solution ContactSearch::run(std::vector<double> z) {
-  guess_ = guess_of_nodes(coarse_elements[0], z);
+  guess_ = guess_of_nodes(coarse_times(problem_, coarse_elements[0]), z);
   for (const int elements : coarse_elements) {
     if (options_.deadline.passed()) break;
     if (elements * problem_.coordinates() > most_unknowns && elements != coarse_elements[0]) break;
-    z = finer(guess_, problem_.coordinates(), elements);
-    auto [report, reason] = coarse_minimum(problem_, elements, z, options_.deadline);
+    CoarseMinimum minimum = coarse_minimum(problem_, elements, first_nodes(elements), options_.deadline);
+    const MinimumReport& report = minimum.report;
+    const std::string& reason = minimum.reason;
     if (!report.converged) {
       refuse(
           report.unbounded || !reason.empty() ? Status::no_solution_near : Status::not_converged,
@@ -117,10 +161,19 @@ Solution ContactSearch::run(std::vector<double> z) {
       if (report.unbounded) break;
       continue;
     }
-    guess_ = guess_of_nodes(elements, z);
-    multipliers_ = CoarseAction(problem_, elements).integral_multipliers(report);
-    if (std::optional<Solution> found = join(coarse_intervals(elements, z, std::move(report.multipliers))))
-      return *std::move(found);
+    guess_ = guess_of_nodes(minimum.times, minimum.z);
+    const double size = largest_range(minimum.z, problem_.coordinates());
+    if (const std::string broken = broken_end(problem_, size); !broken.empty()) {
+      refuse(Status::no_solution_near, broken);
+      break;
+    }
+    const double element = minimum.times.back() / elements;
+    std::vector<Interval> intervals = coarse_intervals(std::move(minimum));
+    if (const std::string blocked = blocked_waypoint(problem_, intervals, element, size); !blocked.empty()) {
+      refuse(Status::not_converged, blocked);
+      break;
+    }
+    if (std::optional<Solution> found = join(std::move(intervals))) return *std::move(found);
     if (saddle_) break;
   }
   if (options_.deadline.passed()) {
@@ -131,24 +184,26 @@ Solution ContactSearch::run(std::vector<double> z) {
   return std::move(failure_);
 }
 
-/// What a coarse minimum holds, and when. A closed path on which a contact begins or ends next to t = 0 is
-/// shifted in time.
-std::vector<Interval> ContactSearch::coarse_intervals(int elements, std::vector<double> z,
-                                                      std::vector<double> multipliers) {
-  const CoarseAction action(problem_, elements);
-  std::vector<Interval> intervals = intervals_of(problem_, action, z, multipliers);
-  if (intervals.size() == 1 || !may_be_shifted(problem_)) return intervals;
-  const double duration = problem_.duration.value, near = clear_elements * duration / elements;
-  if (intervals.front().held == intervals.back().held && intervals.front().to > near &&
-      intervals.back().from < duration - near)
-    return intervals;
-  const int by = static_cast<int>(std::lround(middle_of_longest(intervals) / duration * elements));
-  const auto n = static_cast<std::size_t>(problem_.coordinates());
-  rotate_nodes(z, by, elements, n);
-  z.insert(z.end(), z.begin(), z.begin() + static_cast<std::ptrdiff_t>(n));
-  rotate_nodes(multipliers, by, elements, problem_.inequalities->count());
-  guess_ = guess_of_nodes(elements, z);
-  return intervals_of(problem_, action, z, multipliers);
+/// Nodes between those of the path found last.
+std::vector<double> ContactSearch::first_nodes(int elements) const {
+  const std::vector<double> times = coarse_times(problem_, elements);
+  const std::size_t n = problem_.coordinates();
+  std::vector<double> z(times.size() * n);
+  for (std::size_t k = 0; k < times.size(); ++k) guess_.at(times[k] / times.back(), {z.data() + k * n, n});
+  return z;
+}
+
+/// What a coarse minimum holds, and when.
+std::vector<Interval> ContactSearch::coarse_intervals(CoarseMinimum minimum) {
+  const auto held = [&](const CoarseAction& action) {
+    return intervals_of(problem_, action, minimum.z, minimum.report.multipliers);
+  };
+  const CoarseAction action(problem_, minimum.times);
+  constants_ = action.constants(action.integral_multipliers(minimum.report));
+  const std::vector<Interval> intervals = held(action);
+  if (!shift_in_time(problem_, intervals, minimum)) return intervals;
+  guess_ = guess_of_nodes(minimum.times, minimum.z);
+  return held(CoarseAction(problem_, minimum.times));
 }
 
 /// Arcs of these intervals, which change until the law holds. Nothing where it does not.
@@ -157,7 +212,7 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
   std::optional<Junctions> junctions, before;
   for (int k = 0; k < most_changes && !options_.deadline.passed(); ++k) {
     tidy(intervals, problem_.duration.value);
-    junctions.emplace(arcs_, intervals, path, multipliers_);
+    junctions.emplace(arcs_, intervals, path, constants_);
     const Junctions::Result result = junctions->run();
     if (result == Junctions::Result::failed) {
       refuse(Status::not_converged, "no local minimiser was found near the guess: " + junctions->message() +
@@ -176,19 +231,18 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
     }
     if (take_away_touch(*junctions, intervals)) continue;
     if (problem_.duration.free) problem_.duration.value = junctions->duration();
+    put_waypoint_times(*junctions, problem_);
+    const std::vector<double>& constants = junctions->constants();
+    put_unknowns({constants.begin(), constants.begin() + std::ssize(unknowns_of(problem_))}, problem_);
     const std::optional<Violation> violation = worst_violation(arcs_, *junctions);
-    if (!violation && meets_waypoints(problem_, *junctions)) return accept(*junctions);
-    if (!violation) {
-      refuse(Status::not_converged, "a contact begins or ends at a waypoint; give another guess, or move it");
-      return std::nullopt;
-    }
+    if (!violation) return accept(*junctions);
     refuse(Status::not_converged, describe(*violation));
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       intervals[i].from = junctions->arcs()[i].from;
       intervals[i].to = junctions->arcs()[i].to;
     }
     before.emplace(*std::move(junctions));
-    multipliers_ = before->multipliers();
+    constants_ = before->constants();
     path = [&before](double t, std::span<double> q) { point_of(*before, t, q); };
     const double middle = (violation->from + violation->to) / 2;
     const double half = (violation->to - violation->from) / 2 * (violation->forbidden ? 1 : freed_stretch);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solve/contact/arcs.hpp"
+#include "solve/contact/coarse_minimum.hpp"
 #include "solve/contact/contact_check.hpp"
 #include "solve/contact/junctions.hpp"
 
@@ -34,17 +35,17 @@ class ContactSearch {
   std::string describe(const Violation& violation) const;
   std::optional<Solution> accept(Junctions& path);
   std::optional<Solution> accept_free(const Junctions& path);
-  std::vector<Interval> coarse_intervals(int elements, std::vector<double> z,
-                                         std::vector<double> multipliers);
+  std::vector<double> first_nodes(int elements) const;
+  std::vector<Interval> coarse_intervals(CoarseMinimum minimum);
   void refuse(Status status, std::string message);
 
-  Problem problem_;  ///< a free duration is that of the path found last
+  Problem problem_;  ///< a free duration, free times and unknowns are those of the path found last
   const SolveOptions& options_;
   const ArcSolve& solve_;
   Arcs arcs_;
   bool several_;
   Guess guess_;
-  std::vector<double> multipliers_;  ///< ν of integrals on the path found last
+  std::vector<double> constants_;  ///< k and ν of the path found last
   Solution failure_;
   bool singular_ = false, saddle_ = false, no_duration_ = false;
 };

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "problem/inequalities.hpp"
 #include "solve/contact/contact_search.hpp"
 #include "solve/contact/first_paths.hpp"
 #include "solve/contact/limits.hpp"
@@ -19,27 +19,6 @@ namespace {
 
 using namespace limits::contact;
 using Clock = std::chrono::steady_clock;
-
-/// Whether two paths are nearly the same, or belong to one continuum.
-bool same(const Solution& a, bool singular_a, const Solution& b, bool singular_b, int n) {
-  constexpr int points = 64;
-  constexpr double apart = 1e-6;
-  const double size = std::max(std::abs(a.action), std::abs(b.action));
-  if (std::abs(a.action - b.action) > apart * size) return false;
-  if (singular_a && singular_b) return true;
-  std::vector<double> p(n), q(n), v(n);
-  double distance = 0, extent = 0;
-  for (int k = 0; k <= points; ++k) {
-    const double t = k == points ? a.duration() : a.duration() * k / points;
-    a.trajectory.at(t, p, v);
-    b.trajectory.at(t, q, v);
-    for (int i = 0; i < n; ++i) {
-      distance = std::max(distance, std::abs(p[i] - q[i]));
-      extent = std::max({extent, std::abs(p[i]), std::abs(q[i])});
-    }
-  }
-  return distance <= apart * extent;
-}
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -75,6 +54,10 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
   std::vector<char> singular;
   Solution failure;
   int vain = 0, tried = 0;
+  const bool shifts = problem.shifts_in_time() && problem.inequalities->all->autonomous();
+  const auto same = [&](const Solution& a, const Solution& b, bool continua) {
+    return shifts || continua ? same_orbit(a, b, options.tolerance) : same_path(a, b, options.tolerance, 0);
+  };
   const auto enough = [&] { return static_cast<int>(found.size()) >= most || options.deadline.passed(); };
   const auto pursue = [&](const std::vector<double>& z) {
     ++tried;
@@ -86,7 +69,7 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
       return;
     }
     for (std::size_t i = 0; i < found.size(); ++i)
-      if (same(found[i], singular[i] != 0, solution, search.singular(), problem.coordinates())) return;
+      if (same(found[i], solution, singular[i] != 0 && search.singular())) return;
     vain = 0;
     solution.seconds_solve = seconds_since(start);
     found.push_back(std::move(solution));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct EndContact {
 struct EndState {
   Eigen::VectorXd p_start, p_end;
   double energy = 0;
+};
+
+/// What holds at the ends, for values of the constants k and ν.
+struct EndLaws {
+  std::vector<double> constants;
+  std::shared_ptr<const Manifold> inequalities, constraints;
 };
 
 /// Nonlinear conditions and their multipliers.
@@ -59,9 +66,11 @@ class EndEquations {
   void set_units(double size, double momentum, double time);
   /// A step in relative units, of those unknowns.
   Eigen::VectorXd scaled(const Eigen::VectorXd& step) const;
-  Eigen::VectorXd residual(const Eigen::VectorXd& x, const EndState& state) const;
+  Eigen::VectorXd residual(const Eigen::VectorXd& x, const EndState& state, const EndLaws& laws) const;
+  /// What the conditions miss that determine the unknown constants.
+  Eigen::VectorXd where_residual(const Eigen::VectorXd& x, const EndLaws& laws) const;
   /// Of the nonlinear conditions alone.
-  EndCurvature curvature(const Eigen::VectorXd& x) const;
+  EndCurvature curvature(const Eigen::VectorXd& x, const EndLaws& laws) const;
 
  private:
   struct Condition {
@@ -69,9 +78,11 @@ class EndEquations {
     Eigen::VectorXd slope;  ///< 2n
   };
   /// Each divided by the length of its slope.
-  std::vector<Condition> conditions(const Eigen::VectorXd& x) const;
-  Condition contact(const EndContact& contact, const Eigen::VectorXd& ends, double duration) const;
-  double closing(const Eigen::VectorXd& ends, const EndState& state) const;
+  std::vector<Condition> conditions(const Eigen::VectorXd& x, const EndLaws& laws) const;
+  Condition contact(const EndContact& contact, const Eigen::VectorXd& ends, double duration,
+                    const EndLaws& laws) const;
+  double closing(const Eigen::VectorXd& ends, const EndState& state, const EndLaws& laws) const;
+  double missed(double value, const Eigen::VectorXd& gradient) const;
 
   const Problem& problem_;
   int n_, free_;
@@ -80,15 +91,19 @@ class EndEquations {
   double size_ = 1, momentum_ = 1, time_ = 1;
 };
 
-/// A condition of an extension, of which no constant is part, at ends (2n): its value, its gradient (2n) and,
+/// A condition of an extension at ends (2n), for values of its constants: its value, its gradient (2n) and,
 /// unless `hessian` is empty, its second derivatives (2n × 2n).
-double condition_at(const Problem& problem, const EndCondition& condition, std::span<const double> ends,
-                    std::span<double> gradient, std::span<double> hessian);
+double condition_at(const EndCondition& condition, std::span<const double> constants,
+                    std::span<const double> ends, std::span<double> gradient, std::span<double> hessian);
 
 /// The condition that closes a free duration in place of the energy: value and gradient (2n); for a problem
 /// that has one.
-double closing_condition(const Problem& problem, std::span<const double> ends, std::span<double> gradient);
+double closing_condition(const Problem& problem, std::span<const double> constants,
+                         std::span<const double> ends, std::span<double> gradient);
 /// Whether there is one.
 bool closed_by_condition(const Problem& problem);
+/// The first of the conditions `where` that determine unknown constants; before it is what closes the
+/// duration.
+std::size_t first_where(const Problem& problem);
 
 }  // namespace extremal

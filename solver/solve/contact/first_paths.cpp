@@ -26,7 +26,7 @@ Nodes unbent(const Problem& problem, const CoarseAction& action) {
   const std::vector<double> ends = starting_ends(problem);
   Nodes z((action.elements() + 1) * n);
   for (int k = 0; k <= action.elements(); ++k) {
-    const double tau = static_cast<double>(k) / action.elements();
+    const double tau = action.time(k) / problem.duration.value;
     if (problem.guess.given() && k > 0 && k < action.elements()) {
       problem.guess.at(tau, {z.data() + k * n, n});
       continue;

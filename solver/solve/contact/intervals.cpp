@@ -78,6 +78,22 @@ void pass_corners(std::vector<Interval>& intervals, double longest) {
   intervals = std::move(passed);
 }
 
+/// A point in between that is given belongs to a contact that lasts before and after it.
+void hold_given_points(const Inequalities& inequalities, const CoarseAction& action,
+                       std::span<const double> z, double size, std::vector<std::vector<int>>& held) {
+  const auto n = static_cast<std::size_t>(action.coordinates());
+  std::vector<char> compared(held.size());
+  for (const NodeInequality& place : action.places()) compared[place.node] = 1;
+  for (std::size_t node = 1; node + 1 < held.size(); ++node) {
+    if (compared[node]) continue;
+    const ConstraintValues values =
+        inequalities.all->at(z.subspan(node * n, n), action.time(static_cast<int>(node)));
+    for (const int c : held[node - 1])
+      if (std::ranges::binary_search(held[node + 1], c) && on_surface(values, c, size))
+        held[node].push_back(c);
+  }
+}
+
 }  // namespace
 
 std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& action,
@@ -85,7 +101,6 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
   const Inequalities& inequalities = *problem.inequalities;
   const std::size_t n = problem.coordinates(), m = inequalities.count();
   const int elements = action.elements();
-  const double duration = problem.duration.value, h = duration / elements;
   const double force = action.force(z);
   double size = 0;
   for (std::size_t a = 0; a < n; ++a)
@@ -96,9 +111,10 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
     const int node = action.places()[place].node;
     const ConstraintValues values = inequalities.all->at(z.subspan(node * n, n), action.time(node));
     std::vector<Pressed> pressed;
+    const double cell = action.cell_end(node) - action.cell_begin(node);
     for (std::size_t c = 0; c < m; ++c) {
       // The product of both is the small barrier parameter; in contact the force is the larger one.
-      const double slope = values.slopes.row(c).norm(), pressure = multipliers[place + c] * slope / h;
+      const double slope = values.slopes.row(c).norm(), pressure = multipliers[place + c] * slope / cell;
       if (pressure * slope * size > std::abs(values.g[c]) * force)
         pressed.push_back({static_cast<int>(c), pressure,
                            node > 0 && std::ranges::binary_search(held[node - 1], static_cast<int>(c))});
@@ -108,6 +124,7 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
       basis = orthonormal(problem.manifold->at(z.subspan(node * n, n), action.time(node)).slopes.transpose());
     held[node] = independent(std::move(pressed), values, std::move(basis));
   }
+  hold_given_points(inequalities, action, z, size, held);
   // An end that is given belongs to a contact that lasts until there; what a free end holds alone is touched.
   std::vector<int> at_start, at_end;
   for (const int node : {0, elements}) {
@@ -123,11 +140,11 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
     if (compared || problem.periodic) continue;
     const ConstraintValues values = inequalities.all->at(z.subspan(node * n, n), action.time(node));
     for (const int c : held[next])
-      if (std::abs(values.g[c]) <= 1e-7 * values.slopes.row(c).norm() * size) held[node].push_back(c);
+      if (on_surface(values, c, size)) held[node].push_back(c);
   }
   std::vector<Interval> intervals;
   for (int k = 0; k <= elements; ++k) {
-    const double from = k == 0 ? 0 : (k - 0.5) * h, to = k == elements ? duration : (k + 0.5) * h;
+    const double from = action.cell_begin(k), to = action.cell_end(k);
     if (!intervals.empty() && intervals.back().held == held[k]) {
       intervals.back().to = to;
       continue;
@@ -137,14 +154,15 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
         !includes(held[k], intervals.back().held)) {
       std::vector<int> both;
       std::ranges::set_intersection(intervals.back().held, held[k], std::back_inserter(both));
-      intervals.back().to = from - 0.25 * h;
-      intervals.push_back({std::move(both), from - 0.25 * h, from + 0.25 * h});
-      intervals.push_back({held[k], from + 0.25 * h, to});
+      const double quarter = 0.25 * std::min(from - intervals.back().from, to - from);
+      intervals.back().to = from - quarter;
+      intervals.push_back({std::move(both), from - quarter, from + quarter});
+      intervals.push_back({held[k], from + quarter, to});
       continue;
     }
     intervals.push_back({held[k], from, to});
   }
-  pass_corners(intervals, corner_elements * h);
+  pass_corners(intervals, corner_elements * problem.duration.value / elements);
   intervals.front().at_start = std::move(at_start);
   intervals.back().at_end = std::move(at_end);
   return intervals;
@@ -218,6 +236,10 @@ void change(std::vector<Interval>& intervals, int constraint, bool held, double 
   changed.back().at_end = intervals.back().at_end;
   intervals = std::move(changed);
   tidy(intervals, duration);
+}
+
+bool on_surface(const ConstraintValues& values, int constraint, double size) {
+  return std::abs(values.g[constraint]) <= on_it * size * values.slopes.row(constraint).norm();
 }
 
 }  // namespace extremal

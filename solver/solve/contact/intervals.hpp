@@ -14,6 +14,10 @@ namespace extremal {
 std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& action,
                                    std::span<const double> z, std::span<const double> multipliers);
 
+/// Whether a point at which an inequality has these values lies on its surface, to the roundoff of a path of
+/// this size.
+bool on_surface(const ConstraintValues& values, int constraint, double size);
+
 /// Leaves out intervals without length, and joins neighbours that hold the same.
 void tidy(std::vector<Interval>& intervals, double duration);
 

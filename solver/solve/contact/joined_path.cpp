@@ -62,16 +62,19 @@ std::shared_ptr<const PathContacts> contacts_of(Arcs& arcs, const Junctions& pat
   return found;
 }
 
-/// Multipliers of integrals and impulses at waypoints; nothing where there are none.
+/// Unknowns, multipliers of integrals and impulses at waypoints; nothing where there are none.
 std::shared_ptr<const ExtensionValues> extension_values(const Problem& problem, const Junctions& path) {
   auto values = std::make_shared<ExtensionValues>();
   for (const SolvedArc& arc : path.solved())
     values->waypoints.insert(values->waypoints.end(), arc.waypoints.begin(), arc.waypoints.end());
-  values->integral_multipliers = path.multipliers();
-  if (values->waypoints.empty() && values->integral_multipliers.empty()) return nullptr;
-  values->lagrangian = problem.extension->at(path.multipliers());
-  if (problem.manifold && problem.extension->manifold_at)
-    values->manifold = problem.extension->manifold_at(path.multipliers());
+  const std::vector<double>& constants = path.constants();
+  if (values->waypoints.empty() && constants.empty()) return nullptr;
+  const Extension& extension = *problem.extension;
+  for (int i = 0; i < extension.unknowns(); ++i)
+    values->unknowns.emplace_back(extension.names[i], constants[i]);
+  values->integral_multipliers = {constants.begin() + extension.unknowns(), constants.end()};
+  values->lagrangian = extension.at(constants);
+  if (problem.manifold && extension.manifold_at) values->manifold = extension.manifold_at(constants);
   return values;
 }
 
@@ -97,8 +100,10 @@ Solution joined_path(Arcs& arcs, const Junctions& path) {
     solution.residual = std::max(solution.residual, solved.residual);
     solution.unknowns += (solved.degree * solved.trajectory.elements() - 1) * problem.coordinates();
   }
-  for (std::size_t j = 0; j < path.multipliers().size(); ++j)
-    solution.action -= path.multipliers()[j] * problem.extension->integrals[j];
+  solution.extension = extension_values(problem, path);
+  if (solution.extension)
+    for (std::size_t j = 0; j < solution.extension->integral_multipliers.size(); ++j)
+      solution.action -= solution.extension->integral_multipliers[j] * problem.extension->integrals[j];
   solution.error_estimate = solution.error_estimate * (1 + path.amplification()) + path.movement();
   for (std::size_t j = 0; j < path.touched().size(); ++j)  // in place of arcs that are shorter
     solution.error_estimate += (path.solved()[j].v_end - path.solved()[j + 1].v_start).norm() *
@@ -106,9 +111,8 @@ Solution joined_path(Arcs& arcs, const Junctions& path) {
   solution.momentum_start = {path.solved().front().p_start.begin(), path.solved().front().p_start.end()};
   solution.momentum_end = {path.solved().back().p_end.begin(), path.solved().back().p_end.end()};
   solution.contacts = contacts_of(arcs, path);
-  solution.extension = extension_values(problem, path);
   solution.iterations = arcs.iterations();
-  if (problem.inequalities->all->autonomous()) observe_energy(arcs.motion(path.multipliers()), solution);
+  if (problem.inequalities->all->autonomous()) observe_energy(arcs.motion(path.constants()), solution);
   solution.minimizing = true;
   solution.status = Status::converged;
   const std::size_t count = solution.contacts->contacts.size();

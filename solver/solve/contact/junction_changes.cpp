@@ -41,11 +41,11 @@ std::vector<Junctions::Change> Junctions::changes_at(int junction) const {
   const double length = solved.trajectory.duration(), part = difference * length;
   const double reach = most_apart * std::min(before.to - before.from, after.to - after.from);
   std::vector<std::pair<double, int>> times;
+  const std::shared_ptr<const Manifold> all = arcs_.inequalities(constants());
   for (const int k : at_end ? begun : ended) {
-    const Manifold& all = *problem_.inequalities->all;
     const double t = at_end ? length : 0, beside = at_end ? length - part : part;
-    const double rate = rate_of(all, solved, free.from, t, k);
-    const double slope = (rate - rate_of(all, solved, free.from, beside, k)) / (t - beside);
+    const double rate = rate_of(*all, solved, free.from, t, k);
+    const double slope = (rate - rate_of(*all, solved, free.from, beside, k)) / (t - beside);
     const double late = slope > 0 ? std::clamp(rate / slope, -reach, reach) : std::copysign(reach, rate);
     times.emplace_back(state_.t[junction] - late, k);
   }

@@ -26,12 +26,12 @@ bool Junctions::singular() {
   return svd.values[svd.values.size() - 1] < singular_rank * svd.values[0];
 }
 
-/// A step of the ends, the multipliers, then of the point and the time of each junction: in units of size and
+/// A step of the ends, the constants, then of the point and the time of each junction: in units of size and
 /// duration. A point moves along the path with its time.
 Junctions::State Junctions::moved(const VectorXd& step) const {
   State state = state_;
   state.ends += ends_.scaled(step.head(ends_.unknowns()));
-  state.multipliers += multiplier_units_.cwiseProduct(step.segment(ends_.unknowns(), integrals()));
+  state.constants += constant_units_.cwiseProduct(step.segment(ends_.unknowns(), constant_count()));
   Index at = first_of_junctions();
   for (int j = 0; j < count(); ++j) {
     const MatrixXd directions = basis(j);
@@ -77,7 +77,7 @@ bool Junctions::differentiate() {
   if (ends_.free_duration() && !take(false, true, -1)) return false;
   for (int i = 0; i < ends_.multipliers(); ++i)
     if (!take(false, false, -1)) return false;
-  for (int i = 0; i < integrals(); ++i)
+  for (int i = 0; i < constant_count(); ++i)
     if (!take(true, true, -1, true)) return false;
   for (int j = 0; j < count(); ++j)
     for (Index c = 0; c < directions(j) + (timed(j) ? 1 : 0); ++c)
@@ -121,8 +121,8 @@ double Junctions::movement_of(const VectorXd& step) const {
   const int free = ends_.coordinates();
   if (free > 0) most = step.head(free).lpNorm<Eigen::Infinity>();
   if (ends_.free_duration()) most = std::max(most, std::abs(step[free]) * duration_ * speed_ / size_);
-  if (integrals() > 0)
-    most = std::max(most, step.segment(ends_.unknowns(), integrals()).lpNorm<Eigen::Infinity>());
+  if (constant_count() > 0)
+    most = std::max(most, step.segment(ends_.unknowns(), constant_count()).lpNorm<Eigen::Infinity>());
   Index at = first_of_junctions();
   for (int j = 0; j < count(); ++j) {
     const Index columns = directions(j);
@@ -171,6 +171,17 @@ bool Junctions::solve_closed() {
   return true;
 }
 
+/// Whether the equations of the ends and of the constants hold, and a step solves them; false where nothing
+/// that is unknown changes one of them.
+bool Junctions::conditions_hold(const VectorXd& step) {
+  const Index rows = first_of_junctions();
+  const double missed = (residual_ + slopes_ * step).head(rows).norm(), now = residual_.head(rows).norm();
+  const double allowed = arcs_.options().tolerance * momentum_;
+  if (now <= allowed && (missed <= disagreeing * now || missed <= enough_share * allowed)) return true;
+  message_ = "the conditions at the ends, or for the unknowns, do not hold there";
+  return false;
+}
+
 /// Whether a part of a step brings the momenta nearer to each other.
 bool Junctions::take_step(const VectorXd& step, double factor, Trial& trial) {
   trial = {moved(factor * step), parts_, solved_, {}};
@@ -182,7 +193,7 @@ bool Junctions::take_step(const VectorXd& step, double factor, Trial& trial) {
 Junctions::Result Junctions::run() {
   /// An arc that steps make shorter than this part of the duration will have no length.
   constexpr double vanishing_arc = 0.02;
-  const bool closed = problem_.periodic && parts_.size() == 1;
+  const bool closed = problem_.periodic && parts_.size() == 1 && !problem_.extension;
   if (!(closed ? solve_closed() : start())) return Result::failed;
   movement_ = mismatch_ = 0;
   if (closed || unknowns() == 0) return Result::matched;
@@ -203,7 +214,8 @@ Junctions::Result Junctions::run() {
     movement_ = movement_of(step);
     // Times as well: they change the path in second order only.
     const double change_left = step.lpNorm<Eigen::Infinity>();
-    if (mismatch_ <= matched || change_left <= wanted) return Result::matched;
+    if (mismatch_ <= matched) return Result::matched;
+    if (change_left <= wanted) return conditions_hold(step) ? Result::matched : Result::failed;
     Trial trial;
     double factor = longest_step(step);
     bool nearer = false;
@@ -212,7 +224,7 @@ Junctions::Result Junctions::run() {
       if (!nearer) factor /= 2;
     }
     if (!nearer) {
-      if (change_left <= enough) return Result::matched;
+      if (change_left <= enough) return conditions_hold(step) ? Result::matched : Result::failed;
       if (!exact) {
         useful = false;
         continue;

@@ -34,10 +34,23 @@ std::vector<EndContact> end_contacts(const Problem& problem, const std::vector<I
   return contacts;
 }
 
+/// Those of an arc between two times; free times as its parts.
+std::vector<WaypointCondition> waypoints_in(const Problem& problem, double from, double to) {
+  std::vector<WaypointCondition> found;
+  if (!problem.extension) return found;
+  for (WaypointCondition waypoint : problem.extension->waypoints) {
+    const double t = waypoint.at(problem.duration.value);
+    if (!(t >= from && t < to)) continue;
+    if (waypoint.free) waypoint.time = (t - from) / (to - from);
+    found.push_back(std::move(waypoint));
+  }
+  return found;
+}
+
 }  // namespace
 
 Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const PathPoints& path,
-                     const std::vector<double>& multipliers)
+                     const std::vector<double>& constants)
     : arcs_(arcs),
       problem_(arcs.problem()),
       n_(problem_.coordinates()),
@@ -52,7 +65,8 @@ Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const P
   };
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const Interval& interval = intervals[i];
-    PathArc arc{interval.held, interval.from, interval.to, {}, {}, {}, multipliers};
+    PathArc arc{interval.held, interval.from, interval.to, {}, {}, {}, constants};
+    arc.waypoints = waypoints_in(problem_, interval.from, interval.to);
     for (int k = 0; k <= guess_points; ++k) {
       const double tau = static_cast<double>(k) / guess_points;
       const VectorXd q = point(interval.from + tau * (interval.to - interval.from));
@@ -71,7 +85,7 @@ Junctions::Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const P
   path(0, {ends.data(), static_cast<std::size_t>(n_)});
   path(duration_, {ends.data() + n_, static_cast<std::size_t>(n_)});
   state_.ends = ends_.at(ends, duration_);
-  state_.multipliers = Eigen::Map<const VectorXd>(multipliers.data(), static_cast<Index>(multipliers.size()));
+  state_.constants = Eigen::Map<const VectorXd>(constants.data(), static_cast<Index>(constants.size()));
 }
 
 Index Junctions::directions(int junction) const {
@@ -90,15 +104,15 @@ bool Junctions::place(State& state, std::vector<PathArc>& parts) const {
   const double duration = ends_.duration(state.ends);
   parts.front().from = 0;
   parts.back().to = duration;
-  const std::vector<double> nu(state.multipliers.begin(), state.multipliers.end());
-  for (PathArc& part : parts) part.multipliers = nu;
+  const std::vector<double> constants(state.constants.begin(), state.constants.end());
+  for (PathArc& part : parts) part.constants = constants;
   if (!(duration > parts.back().from) && parts.size() == 1) return false;
   parts.front().start = ends.head(n_);
   parts.back().end = ends.tail(n_);
-  if (!arcs_.project(parts.front().held, nu, 0, parts.front().start)) return false;
-  if (!arcs_.project(parts.back().held, nu, duration, parts.back().end)) return false;
+  if (!arcs_.project(parts.front().held, constants, 0, parts.front().start)) return false;
+  if (!arcs_.project(parts.back().held, constants, duration, parts.back().end)) return false;
   for (std::size_t j = 0; j < state.t.size(); ++j) {
-    if (!arcs_.project(held_[j], nu, state.t[j], state.q[j])) return false;
+    if (!arcs_.project(held_[j], constants, state.t[j], state.q[j])) return false;
     parts[j].to = parts[j + 1].from = state.t[j];
     parts[j].end = parts[j + 1].start = state.q[j];
   }
@@ -114,7 +128,7 @@ bool Junctions::solve(Trial& trial, int first, int last) {
                              trial.parts[i].to, trial.solved[i].message);
       return false;
     }
-    trial.parts[i].guess = guess_of(trial.solved[i].trajectory);
+    put_guess(trial.solved[i], trial.parts[i]);
   }
   return true;
 }
@@ -134,14 +148,16 @@ VectorXd Junctions::integral_residual(const Trial& trial) const {
   return missed;
 }
 
-/// Equations of the ends, integrals, then jumps of the momentum.
+/// Equations of the ends and of the constants, then jumps of the momentum.
 VectorXd Junctions::residual(const Trial& trial) const {
   const std::vector<SolvedArc>& solved = trial.solved;
   const int ends = ends_.unknowns(), first = first_of_junctions();
   VectorXd r(first + count() * n_);
-  r.segment(ends, integrals()) = integral_residual(trial);
-  r.head(ends) = ends_.residual(trial.state.ends,
-                                {solved.front().p_start, solved.back().p_end, solved.back().energy_end});
+  const EndLaws laws = this->laws(trial.parts.front().constants);
+  r.head(ends) = ends_.residual(
+      trial.state.ends, {solved.front().p_start, solved.back().p_end, solved.back().energy_end}, laws);
+  r.segment(ends, unknown_constants()) = ends_.where_residual(trial.state.ends, laws);
+  r.segment(ends + unknown_constants(), integrals()) = integral_residual(trial);
   for (int j = 0; j < count(); ++j) r.segment(first + j * n_, n_) = jump(trial, j);
   return r;
 }
@@ -153,9 +169,9 @@ VectorXd Junctions::jump(const Trial& trial, int junction) const {
   VectorXd jump = before.p_end - after.p_start;
   if (touched_[junction] < 0) return jump;
   const VectorXd& q = trial.parts[junction].end;
-  const Manifold& all = *problem_.inequalities->all;
-  const ConstraintValues values = all.at({q.data(), static_cast<std::size_t>(n_)}, trial.parts[junction].to);
-  const VectorXd slope = values.slopes.row(touched_[junction]), across = all.metric() * slope;
+  const std::shared_ptr<const Manifold> all = arcs_.inequalities(trial.parts[junction].constants);
+  const ConstraintValues values = all->at({q.data(), static_cast<std::size_t>(n_)}, trial.parts[junction].to);
+  const VectorXd slope = values.slopes.row(touched_[junction]), across = all->metric() * slope;
   const double square = slope.dot(across);
   const double rate = 0.5 * slope.dot(before.v_end + after.v_start) + values.rates[touched_[junction]];
   return jump + (rate - across.dot(jump)) / square * slope;
@@ -163,10 +179,10 @@ VectorXd Junctions::jump(const Trial& trial, int junction) const {
 
 double Junctions::impulse(int junction) const {
   const VectorXd& q = parts_[junction].end;
-  const Manifold& all = *problem_.inequalities->all;
+  const std::shared_ptr<const Manifold> all = arcs_.inequalities(constants());
   const VectorXd slope =
-      all.at({q.data(), static_cast<std::size_t>(n_)}, parts_[junction].to).slopes.row(touched_[junction]);
-  const VectorXd across = all.metric() * slope;
+      all->at({q.data(), static_cast<std::size_t>(n_)}, parts_[junction].to).slopes.row(touched_[junction]);
+  const VectorXd across = all->metric() * slope;
   return across.dot(solved_[junction].p_end - solved_[junction + 1].p_start) / slope.dot(across);
 }
 
@@ -176,7 +192,7 @@ MatrixXd Junctions::basis(int junction) const {
   if (columns == n_) return MatrixXd::Identity(n_, n_);
   if (columns <= 0) return MatrixXd(n_, 0);
   const VectorXd& q = state_.q[junction];
-  return complement(arcs_.manifold(held_[junction], parts_[junction].multipliers)
+  return complement(arcs_.manifold(held_[junction], parts_[junction].constants)
                         ->at({q.data(), static_cast<std::size_t>(n_)}, state_.t[junction])
                         .slopes.transpose());
 }
@@ -200,13 +216,15 @@ void Junctions::measure() {
   if (!(momentum_ > 0)) momentum_ = size_ / duration_;
   ends_.set_units(size_, momentum_, duration_);
   // A multiplier counts by the action that it makes.
-  multiplier_units_ = state_.multipliers.cwiseAbs();
+  constant_units_ = state_.constants.cwiseAbs();
   for (int j = 0; j < integrals(); ++j) {
     double size = std::abs(problem_.extension->integrals[j]);
     for (const SolvedArc& solved : solved_) size += std::abs(solved.integrals[j]);
-    if (size > 0) multiplier_units_[j] = std::max(multiplier_units_[j], momentum_ * size_ / size);
-    if (multiplier_units_[j] == 0) multiplier_units_[j] = 1;
+    double& unit = constant_units_[unknown_constants() + j];
+    if (size > 0) unit = std::max(unit, momentum_ * size_ / size);
   }
+  for (double& unit : constant_units_)
+    if (unit == 0) unit = 1;
 }
 
 }  // namespace extremal

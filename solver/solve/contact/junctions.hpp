@@ -27,19 +27,20 @@ struct Interval {
 /// q(t) of a path in [0, T].
 using PathPoints = std::function<void(double t, std::span<double> q)>;
 
-/// Newton's method for the ends, the duration, the multipliers of integrals, and the points and times at
-/// which arcs meet. Where arcs meet, the inequalities of both are equalities. Minimisers have no kinks: the
-/// momentum is the same on both sides. That is as many equations as there are unknowns, since a contact
-/// begins and ends tangentially. ∂S/∂t of a junction is of second order in the jump and determines nothing. A
-/// contact that is too short for an arc is a touch: the momentum may jump across the surface, a little, and
-/// the mean velocity is tangent to it. Where two contacts begin at once, there are more equations, which
-/// agree. A closed path of an autonomous system may be shifted in time; its first junction keeps its time.
+/// Newton's method for the ends, the duration, the constants k and ν of an extension, and the points and
+/// times at which arcs meet. Where arcs meet, the inequalities of both are equalities. Minimisers have no
+/// kinks: the momentum is the same on both sides. That is as many equations as there are unknowns, since a
+/// contact begins and ends tangentially. ∂S/∂t of a junction is of second order in the jump and determines
+/// nothing. A contact that is too short for an arc is a touch: the momentum may jump across the surface, a
+/// little, and the mean velocity is tangent to it. Where two contacts begin at once, there are more
+/// equations, which agree. A closed path of an autonomous system may be shifted in time; its first junction
+/// keeps its time.
 class Junctions {
  public:
-  /// The intervals abut, from 0 to T; `path` is where points and arcs begin, and `multipliers` what those of
-  /// integrals are there. `arcs` is kept by reference.
+  /// The intervals abut, from 0 to T; `path` is where points and arcs begin, and `constants` what k and ν are
+  /// there. `arcs` is kept by reference.
   Junctions(Arcs& arcs, const std::vector<Interval>& intervals, const PathPoints& path,
-            const std::vector<double>& multipliers);
+            const std::vector<double>& constants);
 
   /// `simultaneous`: contacts that were taken to change at one junction do so at times of their own.
   enum class Result { matched, collapsed, simultaneous, failed };
@@ -48,7 +49,7 @@ class Junctions {
   const std::vector<PathArc>& arcs() const { return parts_; }
   const std::vector<SolvedArc>& solved() const { return solved_; }
   double duration() const { return parts_.back().to; }
-  const std::vector<double>& multipliers() const { return parts_.front().multipliers; }  ///< ν of integrals
+  const std::vector<double>& constants() const { return parts_.front().constants; }  ///< k and ν
   int collapsed() const { return collapsed_; }  ///< the number of an arc that has shrunk to nothing
   /// The intervals of this path, with each change of what is held at its own time.
   std::vector<Interval> separated(const std::vector<Interval>& intervals) const;
@@ -70,12 +71,12 @@ class Junctions {
   double end_impulse(std::size_t contact) const { return -ends_.multiplier(state_.ends, contact); }
   /// The momentum that is zero for `end_impulse`.
   double momentum() const { return momentum_; }
-  EndCurvature end_curvature() const { return ends_.curvature(state_.ends); }
+  EndCurvature end_curvature() const { return ends_.curvature(state_.ends, laws(constants())); }
 
  private:
-  /// Unknowns of the ends; ν of integrals; points and times of junctions.
+  /// Unknowns of the ends; k and ν; points and times of junctions.
   struct State {
-    Eigen::VectorXd ends, multipliers;
+    Eigen::VectorXd ends, constants;
     std::vector<Eigen::VectorXd> q;
     std::vector<double> t;
   };
@@ -91,8 +92,13 @@ class Junctions {
     double time = 0;
   };
   int count() const { return static_cast<int>(state_.t.size()); }
-  int integrals() const { return static_cast<int>(state_.multipliers.size()); }
-  int first_of_junctions() const { return ends_.unknowns() + integrals(); }
+  int constant_count() const { return static_cast<int>(state_.constants.size()); }
+  int unknown_constants() const { return problem_.extension ? problem_.extension->unknowns() : 0; }
+  int integrals() const { return constant_count() - unknown_constants(); }
+  int first_of_junctions() const { return ends_.unknowns() + constant_count(); }
+  EndLaws laws(const std::vector<double>& constants) const {
+    return {constants, arcs_.inequalities(constants), arcs_.manifold({}, constants)};
+  }
   Eigen::VectorXd integral_residual(const Trial& trial) const;
   std::vector<Change> changes_at(int junction) const;
   bool find_changes();
@@ -107,6 +113,7 @@ class Junctions {
   State moved(const Eigen::VectorXd& step) const;
   bool start();
   bool solve_closed();
+  bool conditions_hold(const Eigen::VectorXd& step);
   bool take_step(const Eigen::VectorXd& step, double factor, Trial& trial);
   double difference_at(int junction) const;
   bool differentiate();
@@ -132,7 +139,7 @@ class Junctions {
   std::vector<SolvedArc> solved_;
   Eigen::VectorXd residual_;
   Eigen::MatrixXd slopes_, range_;  ///< derivatives of the residual; an orthonormal basis of their columns
-  Eigen::VectorXd multiplier_units_;
+  Eigen::VectorXd constant_units_;
   double size_ = 1, momentum_ = 1, speed_ = 0, mismatch_ = INFINITY, movement_ = INFINITY;
   double amplification_ = 0;
   int collapsed_ = -1;

@@ -11,8 +11,9 @@ namespace extremal::limits::contact {
 inline constexpr int coarse_elements[] = {96, 384, 1152};
 /// Elements on which a path that passes a corner holds both sides of it, at most.
 inline constexpr double corner_elements = 2.5;
-/// A free duration of a coarse path: ratio of the first two, largest ratio of two in succession, halvings on
-/// the way to one where there is a minimum, steps; it is found where a step is smaller than this part of it.
+/// A free duration, or an unknown constant, of a coarse path: ratio of the first two, largest ratio of two
+/// in succession, halvings on the way to one where there is a minimum, steps; it is found where a step is
+/// smaller than this part of it.
 inline constexpr double first_ratio = 1.05, most_ratio = 2, near_duration = 1e-5;
 inline constexpr int most_halvings = 6, most_durations = 40;
 /// Where the values come nearer to zero by less than this part in so many steps, none of them being zero,
@@ -41,6 +42,8 @@ inline constexpr double arc_roundoff = 1e-14, most_arc_tolerance = 1e-3;
 inline constexpr double difference = 1e-5, difference_share = 0.2;
 /// Momenta agree at a junction within this part of the largest.
 inline constexpr double matched = 1e-12;
+/// Of a distance from a surface, by the size of the path: roundoff of a point that is given on it.
+inline constexpr double on_it = 1e-7;
 /// Parts of the tolerance for the next step, by which Newton's method ends: what it aims at, and what is
 /// enough where it goes no further.
 inline constexpr double converged_share = 0.02, enough_share = 0.3;

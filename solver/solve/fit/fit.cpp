@@ -10,6 +10,7 @@
 #include "solve/fit/fitted_path.hpp"
 #include "solve/fit/limits.hpp"
 #include "solve/fit/solved_path.hpp"
+#include "solve/fit/whole_path.hpp"
 
 namespace extremal {
 
@@ -46,15 +47,11 @@ class Fit {
   }
 
   FitResult run() {
-    result_.solution = solve(task_.guess, task_.duration);
-    if (!result_.solution.converged()) {
-      result_.solution.message = "no trajectory to begin the fit with: " + result_.solution.message;
-      return std::move(result_);
-    }
+    if (!begin()) return std::move(result_);
     const int before = result_.solution.iterations;
     for (int round = 0; round < most_rounds; ++round) {
       if (!minimise_on_elements() || !determined()) return std::move(result_);
-      const Trajectory fitted = observed_part();
+      const Trajectory fitted = first_copy(trajectory_of(path_->path()), task_.coordinates);
       result_.solution = solve(guess_of_elements(fitted), fitted.duration());
       if (!result_.solution.converged()) return std::move(result_);
       if (agrees(fitted)) return covers_data() ? finished(before) : std::move(result_);
@@ -65,6 +62,32 @@ class Fit {
   }
 
  private:
+  /// An extremal that is found together with values of the unknowns; else one for their first values.
+  bool begin() {
+    const std::vector<double> start = result_.values;
+    int before = 0;
+    if (std::optional<FirstFit> first = fit_whole_path(task_, options_)) {
+      result_.values = std::move(first->values);
+      result_.solution = solve(first->guess, first->duration);
+      before = first->iterations;
+    }
+    if (!result_.solution.converged()) {
+      result_.values = start;
+      result_.solution = solve(task_.guess, task_.duration);
+    }
+    result_.solution.iterations += before;
+    if (result_.solution.converged()) return true;
+    const std::string spent =
+        options_.deadline.passed()
+            ? fmt::format("{} (solve.budget) is spent; raise it, or ", options_.deadline.budget_text())
+            : "";
+    result_.solution.message = fmt::format(
+        "no trajectory to begin the fit with was found, neither for {} nor together with values that fit the "
+        "data; {}give better values in [system] parameters or [guess]",
+        values_text(), spent);
+    return false;
+  }
+
   Solution solve(const Guess& guess, double duration) {
     const std::optional<Problem> problem = task_.problem(result_.values, guess, duration);
     if (problem) return task_.solve(*problem, options_);
@@ -208,21 +231,6 @@ class Fit {
                       "observed changes; give one of them, or observe what depends on it alone",
                       fmt::join(names, "', '")));
     return false;
-  }
-
-  /// The trajectory of the fit; with forces that of one copy.
-  Trajectory observed_part() const {
-    Trajectory trajectory = trajectory_of(path_->path());
-    const std::size_t n = task_.coordinates, width = trajectory.coordinates;
-    if (n == width) return trajectory;
-    for (std::vector<double>* rows : {&trajectory.nodes, &trajectory.slopes}) {
-      std::vector<double> kept;
-      for (std::size_t i = 0; i < rows->size(); i += width)
-        kept.insert(kept.end(), rows->begin() + i, rows->begin() + i + n);
-      *rows = std::move(kept);
-    }
-    trajectory.coordinates = task_.coordinates;
-    return trajectory;
   }
 
   /// Whether the trajectory of the fit is the solution to the tolerance, at its nodes and between. A scheme

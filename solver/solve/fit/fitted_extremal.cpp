@@ -25,4 +25,17 @@ void put_trajectory(const Trajectory& trajectory, const ElementTables& tables, P
   path.load_ends();
 }
 
+Trajectory first_copy(Trajectory trajectory, int coordinates) {
+  const std::size_t n = coordinates, width = trajectory.coordinates;
+  if (n == width) return trajectory;
+  for (std::vector<double>* rows : {&trajectory.nodes, &trajectory.slopes}) {
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < rows->size(); i += width)
+      kept.insert(kept.end(), rows->begin() + i, rows->begin() + i + n);
+    *rows = std::move(kept);
+  }
+  trajectory.coordinates = coordinates;
+  return trajectory;
+}
+
 }  // namespace extremal

@@ -40,4 +40,7 @@ Scheme scheme_of(const Trajectory& trajectory, const SolveOptions& options);
 /// A trajectory on its mesh as a path of so many coordinates: those of two copies are alike.
 void put_trajectory(const Trajectory& trajectory, const ElementTables& tables, Path& path);
 
+/// Of copies of so many coordinates the first.
+Trajectory first_copy(Trajectory trajectory, int coordinates);
+
 }  // namespace extremal

@@ -12,17 +12,6 @@ namespace extremal {
 
 using namespace limits::fit;
 
-namespace {
-
-/// Adds a multiple of one step to another.
-void add(Step& to, const Step& step, double factor) {
-  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes[i] += factor * step.nodes[i];
-  for (std::size_t i = 0; i < to.inner.size(); ++i) to.inner[i] += factor * step.inner[i];
-  to.duration += factor * step.duration;
-}
-
-}  // namespace
-
 FittedPath::FittedPath(const FitTask& task, const SolveOptions& options)
     : task_(task), options_(options), observer_(task.data, task.coordinates) {}
 

@@ -6,6 +6,13 @@ namespace extremal::limits::fit {
 
 /// Elements are chosen anew at most so often.
 inline constexpr int most_rounds = 5;
+/// Of the path that is found together with the unknowns: the degrees of its elements in turn, how many there
+/// are at least and at most, and their length in units of 1/ω, ω the local frequency along the guess.
+inline constexpr int whole_path_degrees[] = {4, 12}, sketch_elements = 16, most_elements = 1 << 11;
+inline constexpr double longest_element = 2.0;
+/// It is known well enough when a step is shorter than this, relative to the path. Steps are damped to this
+/// part at most.
+inline constexpr double short_step = 1e-7, strongest_damping = 1e-3;
 /// Of Newton's method from the extremal before, predicted by its derivatives.
 inline constexpr int most_newton_steps = 12;
 /// Trust regions to begin with: the second makes the first step a tenth of that of Gauss and Newton.

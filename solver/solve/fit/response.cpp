@@ -16,6 +16,12 @@ bool active(std::span<const ProblemChange> changes, std::size_t parameter) {
 
 }  // namespace
 
+void add(Step& to, const Step& step, double factor) {
+  for (std::size_t i = 0; i < to.nodes.size(); ++i) to.nodes[i] += factor * step.nodes[i];
+  for (std::size_t i = 0; i < to.inner.size(); ++i) to.inner[i] += factor * step.inner[i];
+  to.duration += factor * step.duration;
+}
+
 bool ExtremalResponse::factor(NewtonIteration& newton, const Problem& problem, const Path& path,
                               const ElementTables& tables, std::span<const ProblemChange> changes) {
   newton_ = &newton;

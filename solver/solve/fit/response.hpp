@@ -21,6 +21,9 @@ struct ProblemChange {
   std::function<double(std::span<const double> start, std::span<const double> end)> where = {};
 };
 
+/// Adds a multiple of one step to another.
+void add(Step& to, const Step& step, double factor);
+
 /// Changes of an extremal from the factors of its second variation K. With z the unknowns and θ what changes,
 /// δS(z, θ) = 0 gives K ∂z/∂θ = −∂²S/∂z∂θ; ends that move are part of z, and their column of K is a load.
 class ExtremalResponse {

@@ -8,7 +8,9 @@
 
 #include "action/rule.hpp"
 #include "problem/phase_space.hpp"
+#include "problem/point_range.hpp"
 #include "solve/guess/limits.hpp"
+#include "solve/periodic/equilibrium.hpp"
 
 namespace extremal {
 
@@ -234,7 +236,10 @@ std::optional<Problem> near_hamilton_path(const Problem& problem, const Deadline
     if (stalls && residual.norm() <= solved_within * equations.extent(x)) break;
   }
   if (!(residual.norm() <= solved_within * equations.extent(x))) return std::nullopt;
-  return equations.guessed(x);
+  Problem near = equations.guessed(x);
+  const auto range = [](const Problem& of) { return largest_range(of.guess.q, of.coordinates()); };
+  if (problem.periodic && shrank(problem, range(near), range(problem))) return std::nullopt;
+  return near;
 }
 
 }  // namespace extremal

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "solution/broken_node.hpp"
 #include "solution/observe.hpp"
 #include "solve/march/deviation.hpp"
 #include "solve/march/kink_watch.hpp"
@@ -232,6 +233,11 @@ class InitialMotion {
 
   void accept(Marched found, const MotionDeviation& apart) {
     March& march = found.march;
+    if (const auto broken = find_broken_node(lagrangian_, march.trajectory, problem_.paired)) {
+      solution_.trajectory = {};
+      solution_.message = describe(*broken);
+      return;
+    }
     solution_.status = Status::converged;
     solution_.message = "converged";
     if (const int kinked = options_.scheme ? kinked_elements(lagrangian_, march.trajectory) : 0; kinked > 0)

@@ -56,6 +56,8 @@ class NewtonIteration {
   /// if they were, or where the Hessian is a large sparse matrix.
   bool extend();
   bool extended() const { return extended_; }
+  /// Whether factors have 106 bits.
+  bool in_twice_the_precision() const { return doubled_ && model_ == doubled_.get(); }
   /// Roundoff of a step, where one stalled at it: no path is nearer to an extremal than this. 0 elsewhere.
   double noise() const { return noise_; }
   /// Roundoff of a step from `path`, with the factors there are: no step measures a smaller
@@ -139,7 +141,6 @@ class NewtonIteration {
   void use_sparse(int elements);
   void use_dense();
   bool dense() const { return model_ == condensed_.get() || in_twice_the_precision(); }
-  bool in_twice_the_precision() const { return doubled_ && model_ == doubled_.get(); }
   bool moves_nodes() const { return nodes_move_ || in_twice_the_precision(); }
   bool doubles_digits() const;
   bool lost_digits() const;

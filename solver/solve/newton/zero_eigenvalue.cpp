@@ -1,6 +1,7 @@
 #include "solve/newton/zero_eigenvalue.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/limits.hpp"
@@ -23,5 +24,7 @@ double largest_null_eigenvalue(double magnitude, double error, const Path& path)
   const double roundoff = roundings_an_element * unit_roundoff * path.elements();
   return std::clamp(magnitude > 0 ? change * error / magnitude : 0, roundoff, zero_eigenvalue);
 }
+
+double doubt_of_eigenvalue(double size, double error) { return size > 0 ? change * error / size : INFINITY; }
 
 }  // namespace extremal

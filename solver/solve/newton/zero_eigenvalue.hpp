@@ -26,4 +26,7 @@ double null_eigenvalue_of_branch(double size, double error, const Path& path);
 /// soft, not null.
 double largest_null_eigenvalue(double magnitude, double error, const Path& path);
 
+/// By how much the error of a path changes an eigenvalue, relative to the diagonal, at most.
+double doubt_of_eigenvalue(double size, double error);
+
 }  // namespace extremal

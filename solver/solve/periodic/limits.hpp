@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 /// \file The numbers by which orbits are compared.
 
@@ -32,6 +33,24 @@ namespace equilibrium {
 inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
 
 }  // namespace equilibrium
+
+namespace orbit_index {
+
+/// Forces of a path that errs by ε of its extent change by some ε times this, relative: 3 for 1/r², more
+/// where bodies are near.
+inline constexpr double change_of_forces = 10;
+/// However much a path errs, an eigenvalue that is not small is not zero.
+inline constexpr double largest_change = 1e-3;
+/// Squares of null fields differ: an eigenvalue may be so many times larger than those known and be zero.
+inline constexpr double most_squares = 10;
+/// Of an eigenvalue that is zero, relative to the sizes of pieces.
+inline constexpr double roundoff = 32 * std::numeric_limits<double>::epsilon();
+/// Eigenvalues that are zero, though nothing explains it, are so many times smaller than others.
+inline constexpr double apart = 30;
+/// A symmetry that moves a path by less than this, relative to the terms that it is the sum of, does not.
+inline constexpr double least_move = 1e-8;
+
+}  // namespace orbit_index
 
 namespace soft_shifts {
 

@@ -32,21 +32,22 @@ Eigen::MatrixXd map_of(const Problem& problem) {
   return map.r.isIdentity(0) ? Eigen::MatrixXd{} : map.r;
 }
 
+/// Of the flow of a scheme: its own, exact as its equations are, with the symmetries that it shares with L. A
+/// shift in time is none.
+ClosedOrbit orbit_of_scheme(const Problem& problem, const Trajectory& trajectory) {
+  return {.map = map_of(problem), .symmetries = moving_symmetries(problem.symmetries, trajectory, false)};
+}
+
 /// Whether orbits beside one with forces, which are no images of it, close as well: more multipliers are 1
 /// than the shift in time and symmetries explain.
-bool one_of_a_family(const ClosedOrbit& orbit, const Floquet& floquet) {
+bool one_of_a_family(const Problem& problem, const ClosedOrbit& orbit, const Floquet& floquet) {
   constexpr double told_apart = 1e-6;
   const auto ones = std::ranges::count_if(floquet.multipliers,
                                           [](const auto& x) { return std::abs(x - 1.0) < told_apart; });
-  return ones > orbit.autonomous + orbit.symmetries;
+  return ones > problem.lagrangian->structure().autonomous + orbit.symmetries;
 }
 
 }  // namespace
-
-std::optional<int> doubling_index(const Problem& problem, const SecondVariation& variation) {
-  if (problem.paired || problem.phase || variation.count() == 0) return std::nullopt;
-  return antiperiodic_index(variation, map_of(problem));
-}
 
 double distinct_distance(const Solution& solution, double size) {
   constexpr double distinct = 1e-6;
@@ -82,13 +83,14 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     solution.message += "; multipliers are not found";
   } else {
     const double error = size > 0 ? solution.error_estimate / size : 0;
-    const ClosedOrbit orbit = closed_orbit(problem, solution.trajectory, error);
+    const ClosedOrbit orbit = variation.of_scheme() ? orbit_of_scheme(problem, solution.trajectory)
+                                                    : closed_orbit(problem, solution.trajectory, error);
     solution.floquet = multipliers_of(problem, variation, orbit);
     if (!solution.floquet)
       solution.message +=
           "; multipliers are not known: they are too large, or the orbit passes too near to a point of rest";
     if (solution.floquet && problem.paired && problem.duration.free &&
-        one_of_a_family(orbit, *solution.floquet))
+        one_of_a_family(problem, orbit, *solution.floquet))
       solution.message +=
           "; a multiplier beside that of the shift in time is 1: the orbit is one of a family, near the "
           "guess, "

@@ -19,10 +19,6 @@ ClosedOrbit closed_orbit(const Problem& problem, const Trajectory& trajectory, d
 std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariation& variation,
                                       const ClosedOrbit& orbit);
 
-/// Negative squares of a second variation, whose pieces are minimising, on fields that turn their sign after
-/// a period: it changes where a pair of multipliers passes −1. Nothing where it cannot be told.
-std::optional<int> doubling_index(const Problem& problem, const SecondVariation& variation);
-
 /// Distances along a solution of `size` above this are not zero.
 double distinct_distance(const Solution& solution, double size);
 

@@ -5,19 +5,18 @@
 #include <numbers>
 #include <utility>
 
+#include "linear/dense.hpp"
 #include "motion/dop853.hpp"
-#include "motion/point.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
 
 using namespace limits::arrivals;
+using namespace limits::scanned_motions;
 
 namespace {
 
 using Vector = Arrivals::Vector;
-
-std::span<double> span_of(Vector& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
 
 /// Of length one, where the slope does nothing.
 Vector null_direction(const Eigen::MatrixXd& slope) {
@@ -27,20 +26,26 @@ Vector null_direction(const Eigen::MatrixXd& slope) {
 
 }  // namespace
 
-Arrivals::Arrivals(const Lagrangian& lagrangian, Vector start, Vector end, Eigen::MatrixXd root, double speed,
-                   double time)
-    : lagrangian_(lagrangian),
-      flow_(lagrangian),
+Arrivals::Arrivals(const Lagrangian& lagrangian, Vector start, Vector rest, Vector end, Eigen::MatrixXd root,
+                   double speed, double time)
+    : flow_(lagrangian),
       n_(static_cast<int>(start.size())),
       cost_(lagrangian.structure().quadratic ? 1 : implicit_cost),
       start_(std::move(start)),
+      rest_(std::move(rest)),
       end_(std::move(end)),
       root_(std::move(root)),
-      inverse_root_(root_.inverse()),
       speed_(speed),
       time_(time),
       extent_(std::max((root_ * (end_ - start_)).norm(), (root_ * end_).norm())) {
   if (!(extent_ > 0)) extent_ = speed_ * time_;
+}
+
+/// (q, p) at t = 0.
+Vector Arrivals::state(const Vector& w) const {
+  Vector y(2 * n_);
+  y << start_, rest_ + root_ * w;
+  return y;
 }
 
 /// w by the unit of speed, and the logarithm of the time by its unit.
@@ -58,15 +63,9 @@ Arrivals::Arrival Arrivals::arrival(const Vector& u) const {
 /// The motion with its variations by w.
 bool Arrivals::fly(const Vector& u, Miss& miss) {
   const Arrival goal = arrival(u);
-  Vector v = inverse_root_ * goal.w, q = start_;
-  Vector y = Vector::Zero(2 * n_ * (1 + n_));
-  Scratch scratch;
-  const PointValues at = evaluate_at(lagrangian_, span_of(q), span_of(v), 0, Order::hessian, scratch);
-  const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n_, n_);
-  y.head(n_) = start_;
-  if (!flow_.momentum(span_of(q), span_of(v), 0, span_of(y).subspan(n_, n_))) return false;
-  const Eigen::MatrixXd momenta = speed_ * mass * inverse_root_;
-  for (int k = 0; k < n_; ++k) y.segment(2 * n_ * (k + 1) + n_, n_) = momenta.col(k);
+  Vector y = Vector::Zero(2 * n_ * (1 + n_)), v(n_);
+  y.head(2 * n_) = state(goal.w);
+  for (int k = 0; k < n_; ++k) y.segment(2 * n_ * (k + 1) + n_, n_) = speed_ * root_.col(k);
   if (!y.allFinite()) return false;
   DormandPrince<double> method(
       [this](double t, std::span<const double> x, std::span<double> slope) {
@@ -108,6 +107,7 @@ bool Arrivals::meet(Vector& u, const Vector& normal, Eigen::MatrixXd& slope, int
       return false;
     before = size;
     u += step;
+    if (size <= quadratic) return true;
   }
   return false;
 }
@@ -201,9 +201,7 @@ bool Arrivals::followed(const Arrival& arrival) const {
 
 /// Where the motion passes q1: with one coordinate the side is 0.
 std::vector<Arrivals::Passage> Arrivals::passages(const Vector& w, double until) {
-  Vector y(2 * n_), v = inverse_root_ * w;
-  y.head(n_) = start_;
-  if (!flow_.momentum(span_of(y).first(n_), span_of(v), 0, span_of(y).subspan(n_, n_))) return {};
+  Vector y = state(w);
   DormandPrince<double> method([this](double t, std::span<const double> x,
                                       std::span<double> slope) { return flow_.slope(t, x, slope); },
                                2 * n_);
@@ -249,11 +247,7 @@ std::vector<Arrivals::Passage> Arrivals::passages(const Vector& w, double until)
 }
 
 Arrivals::Flight Arrivals::flight(Vector w, double until, const Scale& scale) {
-  if (scale) {
-    Vector v = inverse_root_ * w;
-    if (!scale(v)) return {};
-    w = root_ * v;
-  }
+  if (scale && !scale(w)) return {};
   return {w, passages(w, until)};
 }
 

@@ -11,7 +11,8 @@
 
 namespace extremal {
 
-/// Motions leave q0 at t = 0 with velocities root⁻¹ w. One that comes by q1 at a time T meets
+/// Motions leave q0 at t = 0 with momenta p0 + root w, p0 that of rest: momenta have no bound where
+/// velocities may have one. One that comes by q1 at a time T meets
 ///   root (q(T; w) − q1) = 0,
 /// as many equations as coordinates for one unknown more. So arrivals form curves, and the motions that
 /// arrive at a given time are where curves cross it. Curves are met on motions of given |w|: with one
@@ -23,13 +24,12 @@ class Arrivals {
     Vector w;
     double time;
   };
-  /// Gives a velocity another size; false if none suits.
-  using Scale = std::function<bool(Vector& velocity)>;
+  /// Gives w another size; false if none suits.
+  using Scale = std::function<bool(Vector& w)>;
 
-  /// `root` is symmetric and positive, of the norm of velocities; `speed` and `time` are the units of w and
-  /// of times.
-  Arrivals(const Lagrangian& lagrangian, Vector start, Vector end, Eigen::MatrixXd root, double speed,
-           double time);
+  /// `root` is symmetric and positive, that of masses; `speed` and `time` are the units of w and of times.
+  Arrivals(const Lagrangian& lagrangian, Vector start, Vector rest, Vector end, Eigen::MatrixXd root,
+           double speed, double time);
   /// To be called with the steps of each integration; false if there may be no more.
   void count_by(std::function<bool(int steps)> counted) { counted_ = std::move(counted); }
 
@@ -57,6 +57,7 @@ class Arrivals {
     std::vector<Passage> passages;
   };
 
+  Vector state(const Vector& w) const;
   Vector unknowns(const Arrival& arrival) const;
   Arrival arrival(const Vector& u) const;
   bool fly(const Vector& u, Miss& miss);
@@ -70,11 +71,10 @@ class Arrivals {
                std::vector<Arrival>& found);
   std::vector<Passage> passages(const Vector& w, double until);
 
-  const Lagrangian& lagrangian_;
   Flow flow_;
   int n_, cost_;
-  Vector start_, end_;
-  Eigen::MatrixXd root_, inverse_root_;
+  Vector start_, rest_, end_;
+  Eigen::MatrixXd root_;
   double speed_, time_, extent_;
   std::function<bool(int)> counted_;
   std::vector<std::vector<Point>> curves_;

@@ -153,7 +153,9 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   if (!found) return std::nullopt;
   Rest rest{.tails = *found, .slow = {}, .cost = equilibrium.cost()};
   if (accuracy == Accuracy::extrapolated)
-    rest.tails.energy = extrapolate(equilibrium, speeds, slowest, 4 * tail, least, *found);
+    rest.tails.energy =
+        extrapolate(equilibrium, speeds, slowest, std::min(fastest_tail * tail, moving * speeds.fastest),
+                    least, *found);
   rest.tails.energy = rest.tails.energy.known();
   if (!std::isfinite(rest.value().log)) return std::nullopt;
   std::size_t before = slowest, after = slowest;
@@ -163,25 +165,26 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   return rest;
 }
 
-/// What the equations of a tail of speed a are not linear in changes each weight by c₁ a + c₂ a² + …; tails
-/// of a, 2a and 4a tell c₁ and c₂. The slower the tails, the less is left of that, and the more of the errors
-/// of the path: the speed is taken at which c₂ changes the energy least.
+/// A tail of speed a has weights w + c₁ a + c₂ a² + …, since its equations are not linear; tails of a, 2a,
+/// 4a, … determine the cᵢ. The result with the least doubt is taken: slow tails have more of the errors of
+/// the path.
 RestEnergy Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
-                                double fastest_tail, double least, const Tails& measured) {
+                                double fastest, double least, const Tails& measured) {
   const double length = measured.span.length(), exponent = -measured.energy.log_size(length);
   RestEnergy best = measured.energy;
   std::vector<Tails> all;
-  for (double speed = fastest_tail; speed >= least && all.size() < most_tails; speed /= 2) {
+  all.reserve(most_tails);
+  std::vector<RestEnergy::OfTail> tails_of_all;
+  for (double speed = fastest; speed >= least && all.size() < most_tails; speed /= 2) {
     std::optional<Tails> found = tails(equilibrium, speeds, slowest, speed);
     if (!found) return best;
     all.push_back(*std::move(found));
+    tails_of_all.push_back({&all.back().energy, all.back().span.length() - length});
     if (all.size() < 3) continue;
-    const Tails* const last = &all.back();
-    const std::optional<RestEnergy> extrapolated = RestEnergy::extrapolated(
-        {&last[-2].energy, &last[-1].energy, &last->energy},
-        {last[-2].span.length() - length, last[-1].span.length() - length, last->span.length() - length},
-        path_roundoff * speeds.fastest / speed);
-    if (!extrapolated) return best;
+    const std::optional<RestEnergy> extrapolated =
+        RestEnergy::extrapolated(std::span(tails_of_all).last(std::min(most_extrapolated, all.size())),
+                                 path_roundoff * speeds.fastest / speed);
+    if (!extrapolated) continue;
     if (extrapolated->action(length, exponent).doubt < best.action(length, exponent).doubt)
       best = *extrapolated;
   }
@@ -282,6 +285,12 @@ void Balance::balance() {
   error_ = fastest_ * hessian(held).llt().solve(doubts).cwiseAbs().rowwise().sum().maxCoeff();
 }
 
+double Balance::displacement() const {
+  double largest = 0;
+  for (const double shift : shifts_) largest = std::max(largest, std::abs(shift));
+  return fastest_ * largest;
+}
+
 bool Balance::apply(Path& path) const {
   return exists_ && stretch(stretched_, shifts_, shortest_element, path);
 }
@@ -328,23 +337,6 @@ bool Balance::fall(Path& path) const {
     shifts.push_back(shift += j == gone ? -shorter : shorter * spans[j].length() / others);
   shifts.back() = 0;
   return stretch(spans, shifts, 0, path);
-}
-
-int count_rests(const Trajectory& path) {
-  const std::size_t n = path.coordinates, stride = (path.degree + 1) * n;
-  std::vector<double> speeds;
-  for (int k = 0; k < path.elements(); ++k) {
-    const double* first = path.nodes.data() + k * stride;
-    const double* last = first + path.degree * n;
-    double square = 0;
-    for (std::size_t a = 0; a < n; ++a) square += (last[a] - first[a]) * (last[a] - first[a]);
-    speeds.push_back(std::sqrt(square) / path.length(k));
-  }
-  const double slow = speeds.empty() ? 0 : resting * *std::ranges::max_element(speeds);
-  int rests = 0;
-  for (std::size_t k = 0; k < speeds.size(); ++k)
-    rests += speeds[k] < slow && !(k > 0 && speeds[k - 1] < slow);
-  return rests;
 }
 
 }  // namespace extremal

@@ -31,6 +31,8 @@ class Balance {
   double energy() const { return energy_; }
   /// The largest change of the length of a rest, times its fastest rate.
   double largest_shift() const { return largest_shift_; }
+  /// Of q, absolute: the largest speed by the shifts.
+  double displacement() const;
   /// Of q, absolute: the largest speed by what doubts of energies change of the shifts.
   double error() const { return error_; }
   /// Shifts the parts of `path`, by stretching and compressing the elements of the rests. False, and nothing
@@ -67,7 +69,7 @@ class Balance {
   static std::optional<Rest> measure(const Lagrangian& lagrangian, Speeds& speeds, std::size_t slowest,
                                      Accuracy accuracy);
   static RestEnergy extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
-                                double fastest_tail, double least, const Tails& measured);
+                                double fastest, double least, const Tails& measured);
   /// The values of RestEnergy::Action in all rests; the sum of the actions, and of their sizes.
   struct Actions {
     double value = std::numeric_limits<double>::infinity(), size = 0;
@@ -89,8 +91,5 @@ class Balance {
   double energy_ = 0, largest_shift_ = 0, kinetic_ = 0, fastest_ = 0, error_ = 0;
   bool exists_ = false;
 };
-
-/// Stretches of elements along which the path, on average, is slower than a rest may be.
-int count_rests(const Trajectory& path);
 
 }  // namespace extremal

@@ -70,9 +70,9 @@ std::vector<double> halves_of(const std::vector<double>& mesh) {
 FamilySearch reach_nearest(ExtremalFamily& family, Path& path, double unit) {
   if (!reach_member(family, path, unit, false)) return FamilySearch::not_reached;
   for (int k = 0; k < most_nearer; ++k) {
-    if (!(family.force(path) <= no_force)) return FamilySearch::none;
+    if (!(family.force(path) <= largest_no_force)) return FamilySearch::none;
     std::optional<Path> closer;
-    if (!family.extends(path, closer)) return FamilySearch::not_reached;
+    if (!family.extends(path, family.no_force(path), closer)) return FamilySearch::not_reached;
     if (!closer) return FamilySearch::found;
     path = *std::move(closer);
     if (!reach_member(family, path, unit, true)) return FamilySearch::not_reached;

@@ -177,7 +177,7 @@ std::vector<FamilyDirection> ExtremalFamily::tangents() const {
 
 int ExtremalFamily::dimension() const { return static_cast<int>(tangents().size()); }
 
-bool ExtremalFamily::extends(const Path& path, std::optional<Path>& closer) {
+bool ExtremalFamily::extends(const Path& path, double no_force, std::optional<Path>& closer) {
   const double unit = unit_of(path, *tables_), here = distance(path);
   double least = here - nearer * unit * unit * path.duration();
   closer.reset();
@@ -194,6 +194,29 @@ bool ExtremalFamily::extends(const Path& path, std::optional<Path>& closer) {
       }
     }
   return true;
+}
+
+double ExtremalFamily::no_force(const Path& path) const {
+  if (problem_.infinite || problem_.periodic) return largest_no_force;
+  const std::vector<double>& nodes = tables_->scheme().lobatto;
+  const Eigen::Index points = std::ssize(nodes), last = guess_.size() / n_ - 1;
+  const auto slope = [&](const FamilyDirection& null, Eigen::Index point) {
+    const Eigen::Index node = point % points;
+    const double dt = path.lengths()[point / points] * (nodes[node + 1] - nodes[node]);
+    return (null.values.segment((point + 1) * n_, n_) - null.values.segment(point * n_, n_)).norm() / dt;
+  };
+  double least = largest_no_force;
+  for (const FamilyDirection& null : null_) {
+    double steepest = 0;
+    for (Eigen::Index point = 0; point < last; ++point)
+      if ((point + 1) % points != 0) steepest = std::max(steepest, slope(null, point));
+    const double turned = std::max(slope(null, 0), slope(null, last - 1)) / steepest,
+                 moved = std::max(null.values.head(n_).norm(), null.values.tail(n_).norm()) /
+                         null.values.cwiseAbs().maxCoeff(),
+                 at_ends = std::max(turned, moved);
+    least = std::min(least, part_of_force * at_ends * at_ends);
+  }
+  return least > roundoff_of_force ? least : 0;
 }
 
 int ExtremalFamily::index(const Path& path) {

@@ -53,7 +53,11 @@ class ExtremalFamily {
   double force(const Path& path);
   /// Whether members of the family are on both sides. `closer` becomes the one of these that is nearest to
   /// the guess, if it is nearer than the path.
-  bool extends(const Path& path, std::optional<Path>& closer);
+  bool extends(const Path& path, double no_force, std::optional<Path>& closer);
+  /// A force that counts as none at members of a family. What a null direction moves and turns at the ends
+  /// makes forces as large as its square: what lies between two rests is shifted in time by hardly more, and
+  /// is no family. Zero if that is roundoff.
+  double no_force(const Path& path) const;
   /// Of the second variation across the family.
   int index(const Path& path);
 

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
+#include "solve/adapt/finer_elements.hpp"
+#include "solve/newton/converge.hpp"
 #include "solve/search/balance.hpp"
 #include "solve/search/gradient_flow.hpp"
 #include "solve/search/limits.hpp"
@@ -95,6 +98,17 @@ bool Search::flow_from(double away, double side) {
   return descend(flow_limits::most_steps, flow_limits::finished) && found(strategy);
 }
 
+/// Of q, absolute: what elements of a higher degree change of the shifts for which energies agree.
+double Search::displaced_by_finer_elements() {
+  Path& finer = on_finer_elements(problem_, path_, refinement_.tables(), rest_limits::finer_by, w_);
+  w_.iteration.hold_shifts(true);
+  const NewtonReport report = converge(w_.iteration, finer, w_.levels.at(finer.degree()),
+                                       {.steps = rest_limits::finer_steps}, [this] { return count_step(); });
+  if (!report.reached) return INFINITY;
+  const Balance balance(problem_, finer, Balance::Accuracy::extrapolated);
+  return balance.exists() ? balance.displacement() : INFINITY;
+}
+
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
 /// shifted to where the action of all rests is least, and tried without or, where roundoff hides their
 /// energy, with its shifts held.
@@ -108,6 +122,8 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
     if (!held) refinement_.move_nodes();
     return found(strategy);
   };
+  // Linear elements hold a path where their errors exceed the energies of rests.
+  if (const Balance rough(problem_, path_); rough.exists() && !rough.falls()) rough.apply(path_);
   bool balance_found = false;
   double energy = INFINITY, shift = INFINITY;
   for (int pass = 0; pass < rest_limits::most_balances; ++pass) {
@@ -134,8 +150,12 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
     refinement_.move_nodes();
     refinement_.keep_mesh();
     refinement_.set_digits(Refinement::Digits::doubled_where_lost);
-    return found(strategy);
+    if (found(strategy)) return true;
+    // What holds it beyond roundoff may still be too weak for the tolerance.
+    path_ = balanced_path;
+    refinement_.take(tables);
   }
+  outcome_.shift_error += displaced_by_finer_elements();
   // Beside the largest energy of a rest, as those have that paths turn about, its length holds nothing.
   const double range = scales(path_, refinement_.tables()).range;
   const bool known =

@@ -7,6 +7,7 @@
 #include "solve/search/limits.hpp"
 #include "solve/search/motion_scan.hpp"
 #include "solve/search/search.hpp"
+#include "solve/search/settled_motion.hpp"
 
 /// \file Motions from the start, continued to the end that they miss.
 
@@ -56,6 +57,38 @@ bool Search::refine_motion(const Guess& motion, double duration, const char* str
   return result;
 }
 
+/// With one coordinate the way by which motions miss the end is a function of one number. Where its sign
+/// changes there is an extremal, or a velocity from which the end is not continuous; no derivative is needed,
+/// so that kinks of L do no harm.
+bool Search::from_bracketed_motions(double mean, double fastest) {
+  if (problem_.coordinates() != 1 || problem_.duration.free) return false;
+  const double duration = problem_.duration.value;
+  const auto more = [this] { return !options_.deadline.passed(); };
+  const auto motion = [&](double v) {
+    return motion_from(*problem_.lagrangian, {ends_.data(), 1}, {&v, 1}, duration, more);
+  };
+  const auto miss = [&](double v) {
+    const Guess there = motion(v);
+    return there.given() ? there.q.back() - ends_[1] : NAN;
+  };
+  double low = mean - fastest, low_miss = miss(low);
+  for (int k = 1; k <= velocities && more(); ++k) {
+    const double high = mean + fastest * (2.0 * k / velocities - 1), high_miss = miss(high);
+    if (low_miss * high_miss <= 0) {
+      double a = low, b = high;
+      for (int i = 0; i < most_bisections; ++i) {
+        const double middle = 0.5 * (a + b);
+        (miss(middle) * low_miss > 0 ? a : b) = middle;
+      }
+      const Guess arriving = motion(a);
+      if (arriving.given() && refine_motion(arriving, duration, from_arrival)) return true;
+    }
+    low = high;
+    low_miss = high_miss;
+  }
+  return false;
+}
+
 /// A motion satisfies all but the end. The longer a path, the fewer lines come near one; and each extremal is
 /// tied to motions by the ends between. As much effort as all before: it finds extremals that they miss.
 bool Search::from_motions() {
@@ -66,8 +99,11 @@ bool Search::from_motions() {
   const std::size_t n = problem_.coordinates();
   const double frequency = std::max(1.0, w_.frequency.phase()) / given.value;
   const std::vector<double> extent = extents(path_, negligible_extent[0]);
-  const std::span<const double> from = std::span(ends_).first(n);
+  const std::vector<double> from(ends_.begin(), ends_.begin() + static_cast<std::ptrdiff_t>(n));
   const auto count = [this] { return refinement_.count_step(); };
+  if (from_bracketed_motions((ends_[n] - ends_[0]) / given.value,
+                             *std::ranges::max_element(speeds) * frequency * extent[0]))
+    return true;
   for (unsigned seed = 0; seed < most_motions && !refinement_.exhausted(); ++seed) {
     Noise noise(seed);
     const double duration = given.value * (given.free ? durations[seed % std::size(durations)] : 1);
@@ -80,6 +116,17 @@ bool Search::from_motions() {
     if (motion.given() && connect(motion, duration) && found(from_motion)) return true;
   }
   return false;
+}
+
+/// What forces make of the guess in the course of time.
+bool Search::from_settled_motion() {
+  if (!SettledMotion::suits(problem_) || refinement_.exhausted()) return false;
+  int steps = 0;
+  SettledMotion settled(problem_, [&] {
+    return ++steps < limits::settled_motion::most_settling_steps && !options_.deadline.passed();
+  });
+  return settled.run() &&
+         refine_motion(settled.orbit(), settled.duration(), "newton from the motion that the guess tends to");
 }
 
 }  // namespace extremal

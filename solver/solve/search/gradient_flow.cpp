@@ -88,16 +88,18 @@ void GradientFlow::measure_mass() {
 }
 
 /// Of ∫ φ_k L_qq at the nodes, which a constant displacement leaves of the second variation, by Gershgorin.
+/// A rest of a low rate counts as much in the harmonic mean as it lasts, however steep others are.
 void GradientFlow::measure_curvature() {
   const std::size_t n = path_.coordinates();
   const Chain& chain = action_.nodes.chain;
   const std::span<const double> mesh = path_.mesh();
   const int blocks = chain.blocks();
-  double least = 0, most = 0;
+  double least = 0, most = 0, reciprocals = 0;
   for (int k = 0; k < blocks; ++k) {
     const double h = 0.5 * (mesh[k + 2] - mesh[k]) * path_.duration();
     const double* const before = k > 0 ? chain.lower(k - 1) : action_.nodes.first_lower.data();
     const double* const after = k + 1 < blocks ? chain.lower(k) : action_.nodes.last_lower.data();
+    double largest = 1 / (path_.duration() * path_.duration());
     for (std::size_t a = 0; a < n; ++a) {
       double diagonal = 0, rest = 0;
       for (std::size_t b = 0; b < n; ++b) {
@@ -107,11 +109,14 @@ void GradientFlow::measure_curvature() {
         (a == b ? diagonal : rest) += a == b ? entry : std::abs(entry);
       }
       least = std::min(least, diagonal - rest);
-      most = std::max(most, std::abs(diagonal) + rest);
+      largest = std::max(largest, std::abs(diagonal) + rest);
     }
+    most = std::max(most, largest);
+    reciprocals += h / largest;
   }
   curvature_ = -least;
   stiffness_ = most;
+  softness_ = path_.duration() / reciprocals;
 }
 
 /// The equations of the nodes become those of a step with τ = 1/reciprocal.
@@ -182,8 +187,8 @@ GradientFlow::Result GradientFlow::step() {
   const double descent = slope();
   size_ = size;
   // Stationary, or nearly so along the directions that a shift leaves.
-  if (size * std::max(wanted_, final_shift * stiffness_) <= close * range_ * final_shift * stiffness_)
-    return Result::minimal;
+  const double final = final_shift * softness_;
+  if (size * std::max(wanted_, final) <= close * range_ * final) return Result::minimal;
   const double factor = std::min(1.0, range_ > 0 ? longest_step * range_ / size : 1.0);
   saved_.copy_values(path_);
   apply(factor);
@@ -209,7 +214,7 @@ bool GradientFlow::run(double away) {
   wanted_ = faithful * curvature_;
   const double first = scales(path_, tables_).magnitude;
   const int affordable = affordable_steps(path_.coordinates(), path_.elements());
-  double range_before = INFINITY;
+  double range_before = INFINITY, relaxed = 1;
   for (int steps = 1, left = 0; steps <= affordable; ++steps) {
     const Result result = step();
     if (result == Result::failed) return false;
@@ -218,16 +223,20 @@ bool GradientFlow::run(double away) {
       left = steps;
       continue;
     }
+    relaxed *= wanted_ / (wanted_ + softness_);
     if (scales(path_, tables_).magnitude > runaway * std::max(first, range_)) return false;
     if ((steps - left) % patient_steps == 0) {
       // The action may have no minimum.
       if (curvature_ > 0 && range_ > growing * range_before && size_ > short_step * range_) return false;
       range_before = range_;
-      shorten_rest();
+      // Rests are measured where the flow has had the time to straighten them.
+      if (relaxed < close) shorten_rest();
+      relaxed = 1;
     }
     if (steps % steps_a_mesh == 0 && !redistribute()) return false;
   }
-  return false;
+  // An interface that creeps through the elements; what holds it is found on better ones.
+  return size_ <= short_step * range_;
 }
 
 /// Gives the time of a rest to others, if the action falls then: by less than the flow sees between long

@@ -71,6 +71,7 @@ class GradientFlow {
   double wanted_ = 0;            ///< 1/τ of the next step
   double curvature_ = 0;         ///< bound of the negative curvature of L in q, by the mass
   double stiffness_ = 0;         ///< of the curvature in q, by the mass: the largest
+  double softness_ = 0;          ///< the harmonic mean in time of the largest curvature at each node
   double range_ = 0, size_ = 0;  ///< of the path and of the last step
   double side_ = 1;
   int rests_shortened_ = 0;

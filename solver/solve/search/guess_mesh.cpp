@@ -71,10 +71,30 @@ bool Search::mesh_of_motion() {
   const bool many = wanted >= least_kept && wanted <= most_kept;
   const bool collides = w_.frequency.grading(guess_floor) > collision;
   if (!many && !(collides && elements < static_cast<std::size_t>(path_.elements()))) return false;
+  put_on_motion(elements);
+  if (many) refinement_.keep_mesh();
+  return true;
+}
+
+/// On elements of equally many samples each: they are as long as the steps of the integrator.
+void Search::put_on_motion(std::size_t elements) {
+  const std::vector<double>& tau = guess_->guess.tau;
+  const std::size_t samples = tau.size() - 1;
   mesh_.resize(elements + 1);
   for (std::size_t k = 0; k <= elements; ++k) mesh_[k] = tau[k * samples / elements];
   start(mesh_, bend_, kept_degree);
-  if (many) refinement_.keep_mesh();
+}
+
+/// A motion that passes a singularity closely is resolved there by the steps of its integrator; coarser
+/// elements follow it only relative to its whole range. They are kept, whatever the tolerance. False where
+/// they are already, or for other guesses.
+bool Search::search_on_steps_of_motion() {
+  if (!guess_->guess.motion || refinement_.mesh_kept()) return false;
+  const std::size_t wanted = (guess_->guess.tau.size() - 1) / samples_a_step_of_motion;
+  const std::size_t elements = (wanted / most_lanes + 1) * most_lanes;
+  if (elements <= static_cast<std::size_t>(path_.elements()) || elements > most_kept) return false;
+  put_on_motion(elements);
+  refinement_.keep_mesh();
   return true;
 }
 

@@ -8,14 +8,19 @@
 
 namespace extremal::limits {
 
+namespace scanned_motions {
+
+/// An integrator's; what one with variations costs, by that of a motion alone; and one where velocities
+/// follow from momenta by Newton's method.
+inline constexpr int most_integrator_steps = 2000, variations_cost = 2, implicit_cost = 6;
+
+}  // namespace scanned_motions
+
 namespace arrivals {
 
 /// Of an integrator's step, relative: of motions that are led to the end, and of those that are looked along.
 inline constexpr double fine_step = 1e-8, coarse_step = 1e-6;
-inline constexpr int most_integrator_steps = 2000, samples_a_step = 4;
-/// A step with variations by that of a motion alone; and one where velocities follow from momenta by Newton's
-/// method.
-inline constexpr int variations_cost = 2, implicit_cost = 3;
+inline constexpr int samples_a_step = 4;
 /// Directions of two coordinates, and how often they are halved where passages are further apart than this
 /// part of the extent, or one that is not too far has no partner.
 inline constexpr int sectors = 48, most_halvings = 5;
@@ -24,8 +29,9 @@ inline constexpr double near_passage = 0.3, far_passage = 0.5;
 /// misses the end by this part of the extent.
 inline constexpr double least_miss = 1e-6;
 inline constexpr int most_newton_steps = 6;
-/// Steps of Newton's method shrink by this, from at most the second.
-inline constexpr double contraction = 0.7, longest_correction = 0.3;
+/// Steps of Newton's method shrink by this, from at most the second; one as short as the last leaves about
+/// its square.
+inline constexpr double contraction = 0.7, longest_correction = 0.3, quadratic = 3e-4;
 /// Along a curve, and where it turns.
 inline constexpr double first_length = 0.02, longest_length = 0.2, least_length = 1e-5;
 inline constexpr double sharpest_turn = 0.9, mild_turn = 0.98;
@@ -41,8 +47,12 @@ inline constexpr int speed_samples = 4, halvings = 60;
 /// Speeds by the largest: of a rest, at most; and where its tails are measured, which is small for the linear
 /// equations, large against errors, and so many times the least that one exponential function is left.
 inline constexpr double resting = 1e-2, tail_speed = 1e-4, tail_growth = 10;
-/// Tails of speeds that are halved: at most so many.
-inline constexpr std::size_t most_tails = 10;
+/// Tails of speeds that are halved: from so much faster on, at most so many, and so many together.
+inline constexpr double fastest_tail = 32;
+inline constexpr std::size_t most_tails = 13, most_extrapolated = 6;
+/// A further power of a polynomial changes less than the one before, about by the speed; of what is none, as
+/// of a power that is not whole, it changes hardly less.
+inline constexpr double least_fall = 0.1;
 /// Faster than this, by the largest, a part is no tail of a rest.
 inline constexpr double moving = 0.1;
 /// Of speeds at an end, by the largest of the path: an end so near to an equilibrium is at it.
@@ -68,13 +78,12 @@ inline constexpr double least_bound = 1e-12, action_roundoff = 1e-15, converged 
 /// Of a rest between its tails, what must remain if only that is to be compressed.
 inline constexpr double still_long = 0.3;
 /// An element of a rest becomes no shorter than this part of itself.
-inline constexpr double shortest_element = 0.02;
-/// A path that rests twice is solved for to this tolerance at least: energies of 1e-13 are told by
-/// truncation.
-inline constexpr double holding_tolerance = 1e-9;
+inline constexpr double shortest_element = 1e-5;
 /// A shift by the rate, after which the tails need not be measured again; and passes at most.
 inline constexpr double balanced = 1e-5;
-inline constexpr int most_balances = 4;
+inline constexpr int most_balances = 8;
+/// Of Newton's method on elements of a degree that is higher by so much, from a path that is an extremal.
+inline constexpr int finer_steps = 12, finer_by = 2;
 /// Of what is not known of shifts, by the range of the path; and of the last shift, as above.
 inline constexpr double most_error = 1e-3;
 /// A smaller energy in rests, by that of the motion, holds what lies between them in time by roundoff.
@@ -143,6 +152,8 @@ inline constexpr double speeds[] = {0.3, 1, 0.1, 2};
 /// Durations that are free, in turn: of the guess.
 inline constexpr double durations[] = {1, 0.7, 1.5};
 inline constexpr unsigned most_motions = 1000;
+/// With one coordinate: velocities between which the end is passed, and halvings of such an interval.
+inline constexpr int velocities = 64, most_bisections = 40;
 /// A scan of more coordinates would have to be too dense; of so many the ball is filled evenly, of more the
 /// distance from its centre is as of these.
 inline constexpr int most_scanned = 24, most_dimensions = 4;
@@ -150,7 +161,7 @@ inline constexpr int most_scanned = 24, most_dimensions = 4;
 /// how many times more with one coordinate.
 inline constexpr int first_levels = 8, further_levels = 5, denser_in_one = 3;
 /// Times, by the duration, until which curves are looked for and followed; and velocities, by the reach.
-inline constexpr double seed_until = 1.5, follow_until = 2, follow_beyond = 100;
+inline constexpr double seed_until = 1.5, follow_until = 1.5, follow_beyond = 100;
 /// Directions in which the least velocity is looked for.
 inline constexpr int directions_tried = 24;
 /// Newton steps for a velocity of given energy, and how near they come, relative.
@@ -158,6 +169,25 @@ inline constexpr int most_energy_steps = 30;
 inline constexpr double energy_error = 1e-9;
 
 }  // namespace from_motions
+
+namespace settled_motion {
+
+/// Of an integrator's step, relative, and samples in it.
+inline constexpr double settling_error = 1e-10;
+inline constexpr int settling_samples = 16;
+/// Steps of the integrator in all.
+inline constexpr int most_settling_steps = 1 << 19;
+/// The velocity of a guess is taken over this part of its duration.
+inline constexpr double step_of_guess = 1e-4;
+/// Returns lie between these parts of the duration that is expected, and are located by so many bisections.
+inline constexpr double earliest_return = 0.3, latest_return = 3;
+inline constexpr int bisections = 40;
+/// An orbit returns to this, relative, after so many returns at most; at rest its range is this part of its
+/// size.
+inline constexpr double closed_nearly = 1e-6, least_range = 1e-4;
+inline constexpr int most_returns = 200;
+
+}  // namespace settled_motion
 
 namespace gradient_flow {
 
@@ -167,7 +197,7 @@ inline constexpr int elements = 384, most_nodal_values = 3072, least_elements = 
 /// Steps, and those between two meshes. Operations of all, elements times the cube of the coordinates each:
 /// with fewer steps than the last the flow is not tried.
 inline constexpr int most_steps = 250, steps_a_mesh = 4, least_steps = 100;
-inline constexpr double most_work = 1.5e9;
+inline constexpr double most_work = 1e10;
 /// Of the effort of one solve, where that is spent already.
 inline constexpr double share = 0.5;
 /// The action has no minimum, it seems, where the path grows by this factor in so many steps, and on. Where
@@ -232,8 +262,10 @@ inline constexpr double near_extremal = 1e-3;
 /// Steps of roundoff, relative to the range; and steps so small that they may be, if they no longer fall.
 inline constexpr double arrived = 1e-14, nearly = 1e-10;
 /// Other members of the family are looked for at this part of the range to both sides. There, the force along
-/// the null directions, relative to the largest momentum, is at most this: roundoff.
-inline constexpr double aside = 0.05, no_force = 1e-10;
+/// the null directions, relative to the largest momentum, is at most this: roundoff; and at most that part of
+/// what the ends make of it, unless that is less than roundoff of a gradient.
+inline constexpr double aside = 0.05, largest_no_force = 1e-10, part_of_force = 1e-4;
+inline constexpr double roundoff_of_force = 1e-15;
 /// Members at that distance are nearer to the guess if the square of their distance is less by this part of
 /// the square of the range: more than roundoff. Steps along the family to the nearest, and how often it is
 /// looked for.
@@ -259,6 +291,8 @@ inline constexpr double longest_element = 2.0;
 inline constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
 inline constexpr double guess_floor = 0.25;
 inline constexpr int most_passes = 10, highest_guess_degree = 12;
+/// Samples of a motion that its integrator takes in a step.
+inline constexpr std::size_t samples_a_step_of_motion = 64;
 /// Samples of a motion, elements that follow it, and their degree.
 inline constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
 inline constexpr int kept_degree = 7;
@@ -344,18 +378,19 @@ inline constexpr unsigned spare_loops = 1;
 
 namespace start_scan {
 
-inline constexpr int most_coordinates = 2;
-/// Of an integrator's step, relative: near zeros, and of samples in two coordinates. A step with variations
-/// by that of a motion alone; and one where velocities follow from momenta by Newton's method.
+inline constexpr int most_unknowns = 2;
+/// Of an integrator's step, relative: near zeros, and of samples by two unknowns.
 inline constexpr double fine_step = 1e-8, coarse_step = 1e-5;
-inline constexpr int most_integrator_steps = 2000, variations_cost = 2, implicit_cost = 6;
 /// Cells of a box along a coordinate, and how often they are halved where values are off what the corners
-/// tell by more than this part of the largest; and how often besides where Newton's method fails from them.
+/// tell by more than this part of their range; and how often besides where Newton's method fails from them.
 inline constexpr int cells_in_one = 192, cells_in_two = 16;
-inline constexpr int halvings_in_one = 6, halvings_in_two = 4, further_halvings = 6;
+inline constexpr int halvings_in_one = 20, halvings_in_two = 4, further_halvings = 6;
 inline constexpr double nearly_linear = 0.1;
-/// A value that keeps its sign by so many times its curvature has no zero in the cell.
-inline constexpr double sure = 2;
+/// Of a velocity at which L is not finite, halved until it is: the unit of momenta.
+inline constexpr double least_part = 1e-9;
+/// A value that keeps its sign by so many times its curvature has no zero in the cell. Beside a separatrix
+/// all of the curvature may be in a part of the cell; of two unknowns finer cells cost too much.
+inline constexpr double sure_in_one = 8, sure_in_two = 2;
 /// Zeros are known to this part of a cell, or of the values at its corners; where the integrator fails, at
 /// least to the second, and those nearer to each other are one.
 inline constexpr double met = 1e-7, nearly_met = 1e-3;

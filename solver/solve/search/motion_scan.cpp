@@ -62,6 +62,9 @@ MotionScan::MotionScan(const Problem& problem, Search& search) : problem_(proble
                                      {v.data(), std::size_t(n)}, 0, Order::hessian, scratch);
   const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
   root_ = inverse_root_ = Eigen::MatrixXd::Identity(n, n);
+  flow_.emplace(*problem.lagrangian);
+  rest_ = momentum(Eigen::VectorXd::Zero(n));
+  if (!rest_.allFinite()) rest_.setZero();
   if (!mass.allFinite()) return;
   const SymmetricEigen eigen = symmetric_eigen(mass);
   if (!(eigen.values.minCoeff() > 0)) return;
@@ -70,11 +73,30 @@ MotionScan::MotionScan(const Problem& problem, Search& search) : problem_(proble
   inverse_root_ = eigen.vectors * roots.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
 }
 
-double MotionScan::reach_of(const Solution& solution) const {
+/// p at the start; not finite where L is not.
+Eigen::VectorXd MotionScan::momentum(const Eigen::VectorXd& v) {
+  Eigen::VectorXd p(v.size());
+  if (!flow_->momentum(span_of(start_), span_of(v), 0, span_of(p))) p.setConstant(NAN);
+  return p;
+}
+
+Eigen::VectorXd MotionScan::unknown(const Eigen::VectorXd& v) {
+  return inverse_root_ * (momentum(v) - rest_);
+}
+
+/// q' at the start; not finite where none belongs to w.
+Eigen::VectorXd MotionScan::velocity(const Eigen::VectorXd& w) {
+  const Eigen::VectorXd p = rest_ + root_ * w;
+  Eigen::VectorXd v(w.size());
+  if (!flow_->velocity(span_of(start_), span_of(p), 0, span_of(v))) v.setConstant(NAN);
+  return v;
+}
+
+double MotionScan::reach_of(const Solution& solution) {
   if (problem_.duration.free) return solution.duration();
-  std::vector<double> q(start_.size()), v(start_.size());
-  solution.trajectory.at(0, q, v);
-  return (root_ * Eigen::Map<const Eigen::VectorXd>(v.data(), start_.size())).norm();
+  Eigen::VectorXd q(start_.size()), v(start_.size());
+  solution.trajectory.at(0, {q.data(), std::size_t(q.size())}, span_of(v));
+  return unknown(v).norm();
 }
 
 double MotionScan::least_reach(double extent) const {
@@ -93,12 +115,15 @@ Eigen::VectorXd MotionScan::direction() {
   return u.normalized();
 }
 
-/// Motions of L̃ keep to the manifold only if they begin on it: their velocities have fewer coordinates.
+/// Motions of L̃ keep to the manifold only if they begin on it: their velocities have fewer coordinates. At a
+/// kink of L a curve has no tangent. With one coordinate the end alone is a condition on the start.
 bool MotionScan::has_curves() const {
-  return usable_ && start_.size() <= most_followed && !problem_.manifold;
+  const auto n = start_.size();
+  return usable_ && !problem_.lagrangian->kinks() && (n == 2 || (n == 1 && problem_.duration.free)) &&
+         !problem_.manifold;
 }
 
-double MotionScan::slowest() const {
+double MotionScan::slowest() {
   const auto n = static_cast<std::size_t>(start_.size());
   const Lagrangian& lagrangian = *problem_.lagrangian;
   if (problem_.duration.free || !lagrangian.structure().autonomous) return 0;
@@ -116,7 +141,7 @@ double MotionScan::slowest() const {
     if (n == 2) direction = Eigen::Vector2d(std::cos(angle), std::sin(angle));
     Eigen::VectorXd v = inverse_root_ * direction * std::sqrt(2 * (needed - at_rest));
     if (!scale_to_energy(lagrangian, from, needed, {v.data(), n})) return 0;
-    least = std::min(least, (root_ * v).norm());
+    least = std::min(least, unknown(v).norm());
   }
   return least;
 }
@@ -126,23 +151,26 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
   const auto n = static_cast<std::size_t>(start_.size());
   const Lagrangian& lagrangian = *problem_.lagrangian;
   const Duration& given = problem_.duration;
-  const auto scale = [&](Eigen::VectorXd& v) {
-    return scale_to_energy(lagrangian, {start_.data(), n}, *given.energy, {v.data(), n});
+  const auto scale = [&](Eigen::VectorXd& w) {
+    Eigen::VectorXd v = velocity(w);
+    if (!scale_to_energy(lagrangian, span_of(start_), *given.energy, {v.data(), n})) return false;
+    w = unknown(v);
+    return w.allFinite();
   };
   const bool first = !arrivals_;
   if (first) {
     const Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(search_.ends().data() + n, start_.size());
     double speed = farthest;
     if (given.free) {
-      Eigen::VectorXd v = inverse_root_ * Eigen::VectorXd::Unit(start_.size(), 0);
-      if (!scale(v)) return false;
-      speed = (root_ * v).norm();
+      Eigen::VectorXd w = Eigen::VectorXd::Unit(start_.size(), 0);
+      if (!scale(w)) return false;
+      speed = w.norm();
     }
-    arrivals_ = std::make_unique<Arrivals>(lagrangian, start_, end, root_, speed, given.value);
+    arrivals_ = std::make_unique<Arrivals>(lagrangian, start_, rest_, end, root_, speed, given.value);
   }
   arrivals_->count_by(more);
   const auto take = [&](const Arrivals::Arrival& arrival) {
-    const Eigen::VectorXd v = inverse_root_ * arrival.w;
+    const Eigen::VectorXd v = velocity(arrival.w);
     const Guess motion =
         motion_from(lagrangian, {start_.data(), n}, {v.data(), n}, arrival.time, [] { return true; });
     if (motion.given()) visit(motion, arrival.time);
@@ -169,7 +197,7 @@ bool MotionScan::next(double reach) {
   const auto n = static_cast<std::size_t>(start_.size());
   const Duration& given = problem_.duration;
   const double part = given.free ? unit() : std::pow(unit(), 1.0 / std::min<double>(n, most_dimensions));
-  Eigen::VectorXd v = inverse_root_ * direction() * (given.free ? 1 : part * reach);
+  Eigen::VectorXd v = given.free ? inverse_root_ * direction() : velocity(part * reach * direction());
   const std::span<const double> from(start_.data(), n);
   if (given.free && !scale_to_energy(*problem_.lagrangian, from, *given.energy, {v.data(), n})) return false;
   const double duration = given.free ? part * reach : given.value;

@@ -3,9 +3,11 @@
 #include <Eigen/Dense>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <random>
 #include <span>
 
+#include "motion/flow.hpp"
 #include "solve/search/arrivals.hpp"
 #include "solve/search/search.hpp"
 
@@ -24,25 +26,26 @@ Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::
 inline constexpr const char* from_motion = "homotopy in the ends from a motion";
 inline constexpr const char* from_arrival = "newton from a motion that arrives";
 
-/// Motions from the start whose velocities lie in a ball. A velocity is an extremal's name. The radius of the
-/// ball, the reach, is in the norm of ∂²L/∂q'∂q' at the start; or, where the energy is given and the duration
-/// free, the longest duration. In up to two coordinates curves of arrivals are followed. In more, motions
-/// fill the ball evenly, and each is led to the end that it misses: all extremals with velocities in the ball
-/// are led to, some by more motions than others.
+/// Motions from the start whose momenta lie in a ball. The momentum at the start determines an extremal. The
+/// radius of the ball, the reach, is in the norm of the inverse of ∂²L/∂q'∂q' at the start; or, where the
+/// energy is given and the duration free, the longest duration. In two coordinates, or in one where the
+/// duration is free, curves of arrivals are followed. Else motions fill the ball evenly, and each is led to
+/// the end that it misses: all extremals with momenta in the ball are led to, some by more motions than
+/// others.
 class MotionScan {
  public:
   MotionScan(const Problem& problem, Search& search);
   /// For ends that are fixed.
   bool usable() const { return usable_; }
   /// Of an extremal; and of a path that goes as far as `extent` in the duration.
-  double reach_of(const Solution& solution) const;
+  double reach_of(const Solution& solution);
   double least_reach(double extent) const;
 
   /// Whether curves of arrivals can be followed.
   bool has_curves() const;
   /// The least reach of motions whose energy suffices for the end. q'·∂L/∂q' − L grows along q' where L is
   /// convex in q': so at the end it is at least −L(q(T), 0).
-  double slowest() const;
+  double slowest();
   /// Visits the motions that meet the end, whose curves come through a reach between two. False if there were
   /// not enough integrator steps: `more` is told how many were taken.
   bool all(double nearest, double farthest, const std::function<bool(int steps)>& more,
@@ -53,15 +56,18 @@ class MotionScan {
   bool next(double reach);
 
  private:
-  static constexpr int most_followed = 2;
+  Eigen::VectorXd momentum(const Eigen::VectorXd& v);
+  Eigen::VectorXd unknown(const Eigen::VectorXd& v);
+  Eigen::VectorXd velocity(const Eigen::VectorXd& w);
   double unit();
   Eigen::VectorXd direction();
 
   const Problem& problem_;
   Search& search_;
   bool usable_;
-  Eigen::VectorXd start_;
-  Eigen::MatrixXd root_, inverse_root_;  ///< of the matrix of the norm
+  std::optional<Flow> flow_;
+  Eigen::VectorXd start_, rest_;         ///< the start, and the momentum of rest there
+  Eigen::MatrixXd root_, inverse_root_;  ///< of ∂²L/∂q'∂q'; w = root⁻¹ (p − rest)
   std::unique_ptr<Arrivals> arrivals_;
   std::mt19937_64 random_{20240229};
 };

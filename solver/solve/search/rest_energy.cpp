@@ -79,21 +79,48 @@ std::optional<double> RestEnergy::held_near(double length) const {
   return std::nullopt;
 }
 
-std::optional<RestEnergy> RestEnergy::extrapolated(const std::array<const RestEnergy*, 3>& tails,
-                                                   const std::array<double, 3>& excess, double roundoff) {
-  constexpr double amplified = (8 + 6 + 1) / 3.0;
-  const std::size_t count = tails[0]->terms_.size();
-  if (tails[1]->terms_.size() != count || tails[2]->terms_.size() != count) return std::nullopt;
+namespace {
+
+/// Lagrange's weights for the value at 0 of a polynomial given at 2^(count − 1), …, 2, 1.
+std::vector<double> weights_at_zero(std::size_t count) {
+  std::vector<double> weights(count, 1.0);
+  const auto node = [&](std::size_t i) { return std::ldexp(1.0, static_cast<int>(count - 1 - i)); };
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != i) weights[i] *= node(j) / (node(j) - node(i));
+  return weights;
+}
+
+}  // namespace
+
+std::optional<RestEnergy> RestEnergy::extrapolated(std::span<const OfTail> tails, double roundoff) {
+  const std::size_t count = tails.size(), terms_of_each = tails[0].energy->terms_.size();
+  for (const OfTail& tail : tails)
+    if (tail.energy->terms_.size() != terms_of_each) return std::nullopt;
   std::vector<Term> terms;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Complex rate = tails[0]->terms_[i].rate;
-    const auto weight = [&](int tail) {
-      return tails[tail]->terms_[i].weight * std::exp(-rate * excess[tail]);
+  for (std::size_t i = 0; i < terms_of_each; ++i) {
+    const Complex rate = tails[0].energy->terms_[i].rate;
+    // Of the last `used` tails: the value at no speed, and how much errors of the last tail count in it.
+    const auto value = [&](std::size_t used) {
+      const std::vector<double> weights = weights_at_zero(used);
+      Complex sum = 0;
+      double amplified = 0;
+      for (std::size_t k = 0; k < used; ++k) {
+        const OfTail& tail = tails[count - used + k];
+        sum += weights[k] * tail.energy->terms_[i].weight * std::exp(-rate * tail.excess);
+        amplified += std::ldexp(std::abs(weights[k]), static_cast<int>(k) - static_cast<int>(used - 1));
+      }
+      return std::pair(sum, amplified * roundoff * std::abs(sum));
     };
-    const Complex linear = 2.0 * weight(2) - weight(1),
-                  quadratic = (8.0 * weight(2) - 6.0 * weight(1) + weight(0)) / 3.0;
-    const double doubt = std::abs(quadratic - linear) + amplified * roundoff * std::abs(quadratic);
-    terms.push_back({quadratic, rate, doubt});
+    auto [weight, noise] = value(2);
+    double change = INFINITY;
+    for (std::size_t used = 3; used <= count; ++used) {
+      const auto [next, next_noise] = value(used);
+      const double next_change = std::abs(next - weight);
+      if (next_change > least_fall * change || next_change + next_noise > change + noise) break;
+      weight = next, noise = next_noise, change = next_change;
+    }
+    terms.push_back({weight, rate, change + noise});
   }
   return RestEnergy(std::move(terms));
 }

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
 #include <complex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "system/lagrangian.hpp"
@@ -44,12 +44,16 @@ class RestEnergy {
   /// Motions that turn about the equilibrium have many such lengths.
   std::optional<double> held_near(double length) const;
   bool held_at(double length) const;
-  /// What the weights of three tails tend to, of speeds 4a, 2a and a, in which errors are c₁ a + c₂ a² + …;
-  /// the doubt is what c₂ changes, and what comes of relative errors of the tails as large as `roundoff`.
-  /// `excess` are the lengths between the tails less that of which the result is a function. Nothing where
-  /// the terms of the three are not the same.
-  static std::optional<RestEnergy> extrapolated(const std::array<const RestEnergy*, 3>& tails,
-                                                const std::array<double, 3>& excess, double roundoff = 0);
+  /// Of one of several tails, each of half the speed of the one before.
+  struct OfTail {
+    const RestEnergy* energy;
+    double excess;  ///< of the length between the tails over that of which a result is a function
+  };
+  /// Each weight is extrapolated to speed zero by a polynomial through the slowest of these tails, at least
+  /// three. Its degree rises as long as each power changes the weight much less than the one before: a
+  /// weight hidden below powers of others is no polynomial. The doubt is the last change, and what relative
+  /// errors of the slowest tail as large as `roundoff` make. Nothing where tails have not the same terms.
+  static std::optional<RestEnergy> extrapolated(std::span<const OfTail> tails, double roundoff);
 
  private:
   std::vector<Term> terms_;

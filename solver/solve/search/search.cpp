@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/adapt/others_to_try.hpp"
 #include "solve/external/external_solver.hpp"
 #include "solve/homotopy/duration_homotopy.hpp"
 #include "solve/newton/ends.hpp"
@@ -71,13 +72,21 @@ Search::Pursuit Search::pursue(const char* strategy) {
   return {converged && acceptance_ ? accepted() : result, doubtful};
 }
 
-/// Doubles are faster, and often good enough.
+/// Few elements and doubles are faster, and often good enough. Where all attempts fail, what the first one
+/// met tells whether others may lead to an extremal.
 Search::Pursuit Search::pursue_guess() {
-  Pursuit result = pursue(from_guess);
-  if (result.result == Refinement::Result::converged || options_.deadline.passed()) return result;
-  if (!search_with_double_digits()) return result;
-  refinement_.allow(allowance_);
-  return pursue(from_guess);
+  const Pursuit first = pursue(from_guess);
+  const std::vector<double> mesh = mesh_;
+  Pursuit result = first;
+  for (const auto more : {&Search::search_on_steps_of_motion, &Search::search_with_double_digits}) {
+    if (result.result == Refinement::Result::converged || options_.deadline.passed()) return result;
+    if (!(this->*more)()) continue;
+    refinement_.allow(allowance_);
+    result = pursue(from_guess);
+  }
+  if (result.result == Refinement::Result::converged) return result;
+  mesh_ = mesh;
+  return first;
 }
 
 /// Whether the path that meets the tolerance is an extremal: if not, another guess may lead to one.
@@ -87,6 +96,7 @@ Refinement::Result Search::accepted() {
   if (verdict == Acceptance::Verdict::accepted) return Refinement::Result::converged;
   outcome_.status = Status::not_converged;
   refinement_.rebind();
+  if (acceptance_->too_loose()) refinement_.allow(0);
   return verdict == Acceptance::Verdict::refused ? Refinement::Result::failed
                                                  : Refinement::Result::unreachable;
 }
@@ -277,6 +287,7 @@ bool Search::from_other_guesses(GuessKind guess) {
       found("newton from the guess on finer elements"))
     return true;
   if (by_descent(mesh_) || by_gradient_flow() || from_finer_elements()) return true;
+  if (from_settled_motion()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line() || through_other_ends()) return true;
   begin();
@@ -325,6 +336,17 @@ const Outcome& Search::run(Acceptance* acceptance) {
   } else if (result == Refinement::Result::converged) {
     nearest_to_guess();
   }
+  // Between rests roundoff hides where an extremal is, from Newton's method alone.
+  if (result == Refinement::Result::unreachable && !problem_.guess.given() && problem_.has_ends()) {
+    const Outcome hidden = outcome_;
+    refinement_.allow(allowance_);
+    if (by_gradient_flow()) {
+      result = Refinement::Result::converged;
+    } else {
+      outcome_ = hidden;
+      refinement_.rebind();
+    }
+  }
   if (result == Refinement::Result::failed) {
     const std::string failure = outcome_.message;
     if (guess == GuessKind::colliding) refinement_.allow(allowance_);
@@ -332,20 +354,17 @@ const Outcome& Search::run(Acceptance* acceptance) {
       result = Refinement::Result::converged;
     } else {
       outcome_.status = Status::iteration_limit;
-      outcome_.message = fmt::format(
-          "{} Newton steps from the guess ({}){}{}{}{} found no extremal; try a better guess or {}",
-          outcome_.iterations, failure,
-          met_.contains(Met::other_durations) ? ", through other durations" : "",
-          met_.contains(Met::other_ends) ? ", through other ends" : "",
-          met_.contains(Met::noise) ? ", from smooth noise" : "",
-          met_.contains(Met::motions) ? ", from motions that miss the end" : "",
-          problem_.duration.energy ? "another one of the duration, or another energy"
-          : problem_.duration.free ? "another one of the duration"
-                                   : "a shorter duration");
+      outcome_.message = fmt::format("{} Newton steps from the guess ({}){}{}{}{} found no extremal; try {}",
+                                     outcome_.iterations, failure,
+                                     met_.contains(Met::other_durations) ? ", through other durations" : "",
+                                     met_.contains(Met::other_ends) ? ", through other ends" : "",
+                                     met_.contains(Met::noise) ? ", from smooth noise" : "",
+                                     met_.contains(Met::motions) ? ", from motions that miss the end" : "",
+                                     others_to_try(problem_, "a better guess", "a shorter duration"));
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
-        outcome_.message = fmt::format(
-            "{} from the guess and from others; try a larger guess or another duration", shrank_to_rest);
+        outcome_.message = fmt::format("{} from the guess and from others; try {}", shrank_to_rest,
+                                       others_to_try(problem_, "a larger guess", "another duration"));
       }
       // Where ends are conjugate, different elements find different members of a family.
       if (unheld_) std::swap(path_, *unheld_);
@@ -372,10 +391,9 @@ const Outcome& Search::run(Acceptance* acceptance) {
   }
   if (outcome_.status != Status::converged && options_.deadline.passed()) {
     outcome_.status = Status::iteration_limit;
-    outcome_.message = fmt::format(
-        "{} (solve.budget) is spent, in Newton steps: {}; raise it, or try a better guess or a shorter "
-        "duration",
-        options_.deadline.budget_text(), outcome_.iterations);
+    outcome_.message = fmt::format("{} (solve.budget) is spent, in Newton steps: {}; raise it, or try {}",
+                                   options_.deadline.budget_text(), outcome_.iterations,
+                                   others_to_try(problem_, "a better guess", "a shorter duration"));
   }
   acceptance_ = nullptr;
   return outcome_;

@@ -81,6 +81,8 @@ class Search {
   GuessKind prepare();
   GuessKind begin();
   bool mesh_of_motion();
+  void put_on_motion(std::size_t elements);
+  bool search_on_steps_of_motion();
   bool search_with_double_digits();
   void end_at_kinks_of_guess();
   bool resolve_guess();
@@ -95,12 +97,15 @@ class Search {
   bool refine_from(const Path& other, const char* strategy);
   bool by_gradient_flow(double side = 1);
   bool flow_from(double away, double side);
+  double displaced_by_finer_elements();
   bool held_in_time(const char* strategy, const std::function<void()>& renew);
   bool descend(int most, double close);
   bool by_descent(const std::vector<double>& mesh);
   bool from_finer_elements();
   bool from_line();
   bool from_motions();
+  bool from_bracketed_motions(double mean, double fastest);
+  bool from_settled_motion();
   bool from_noise(unsigned tries);
   bool may_be_family() const;
   bool on_family(bool resolved);

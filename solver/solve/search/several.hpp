@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,11 +23,11 @@ class Homotopy;
 /// Extremals one by one, cheapest first: the one that a solve finds; deflated Newton from its guess; guesses
 /// bent by smooth noise of growing size, and arcs of circles; and from each extremal found along the families
 /// that other durations and other ends make of it, which come past more of the problem's. The search
-/// ends after as many steps as one solve may take without a new one. Then motions from the start, evenly
-/// drawn, are led to the end until those that lead to no new extremal tell that none is likely to be missing
-/// between those found. For a periodic problem, random loops that close as it asks take the place of arcs and
-/// motions, and an orbit that closes after part of the time, so that it is run through several times, is left
-/// out.
+/// ends after as many steps as one solve may take without a new one. With one or two coordinates the motions
+/// from the start that meet the end come first. With more, motions from the start, evenly drawn, are led to
+/// the end until those that lead to no new extremal tell that none is likely to be missing between those
+/// found. For a periodic problem, random loops that close as it asks take the place of arcs and motions, and
+/// an orbit that closes after part of the time, so that it is run through several times, is left out.
 class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);
@@ -34,6 +35,8 @@ class Several {
   /// At most so many, those of least action among all found, sorted by it; the first one's message says what
   /// was searched. Where there is none, one that has not converged.
   std::vector<Solution> run(int most);
+  /// Whether a path was refused for the error that the tolerance leaves, see Acceptance::too_loose().
+  bool too_loose() const { return too_loose_; }
 
  private:
   /// The number of the extremal that is the `same`; -1 if there is none.
@@ -59,11 +62,13 @@ class Several {
   void trace_family(std::size_t solution, int family);
   std::unique_ptr<Homotopy> leave(int family, bool onward);
   void load(const Solution& solution);
+  std::function<bool(int)> scan_budget();
   bool trace_arrivals();
   bool scan_starts();
   void scan();
-  double wanted_reach() const;
-  int within(double reach) const;
+  double wanted_reach(double least, const std::function<double(const Solution&)>& reach_of) const;
+  double wanted_reach();
+  int within(double reach);
   bool reaches_known();
   std::string searched(std::size_t all) const;
 
@@ -91,6 +96,7 @@ class Several {
   std::vector<std::vector<char>> traced_;  ///< for each extremal, whether each family of it was
   std::chrono::steady_clock::time_point start_;
   double analysing_ = 0;  ///< seconds
+  bool too_loose_ = false;
 };
 
 }  // namespace extremal

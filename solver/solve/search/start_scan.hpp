@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <map>
@@ -11,17 +12,18 @@
 
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
+#include "solve/search/motion_conditions.hpp"
 
-/// \file Motions from all starts that the conditions there allow, in one and two coordinates.
+/// \file Motions from all starts that the conditions there allow.
 
 namespace extremal {
 
 inline constexpr const char* from_start = "newton from a motion that meets the end";
 
-/// Where an end is natural or has a given momentum, the conditions at the start leave one number a
-/// coordinate: w_a is p_a where q_a(0) is fixed, q_a(0) where it is not. As many conditions hold at T, so the
-/// motions sought are the zeros of a function of w with as many values. A box of w is cut into cells until
-/// the function is nearly linear in those that may hold a zero.
+/// The conditions at the start leave some entries w of (q, p) free: p_a(0) where q_a(0) is fixed, both where
+/// one coordinate returns. As many conditions hold at T, so the motions sought are the zeros of a function of
+/// w with as many values, of one or two here. A box of w is cut into cells until the function is nearly
+/// linear in those that may hold a zero. Momenta have no bound where velocities may have one.
 class StartScan {
  public:
   using Vector = Eigen::VectorXd;
@@ -31,13 +33,14 @@ class StartScan {
   /// The w whose largest |w_a − centre_a| / unit_a is between the reaches.
   struct Shell {
     Vector centre, unit;
+    Vector state_unit;  ///< of (q, p)
     double nearest, farthest;
 
     double reach(const Vector& w) const;
   };
 
   explicit StartScan(const Problem& problem);
-  bool usable() const { return usable_; }
+  bool usable() const { return conditions_.has_value(); }
 
   /// About the starts of paths between `ends` that go as far as `extent`, and as fast as `speed`.
   Shell around(std::span<const double> ends, double extent, double speed);
@@ -50,24 +53,25 @@ class StartScan {
   bool zeros(const Shell& shell, const std::function<bool(int steps)>& more, std::vector<Vector>& found);
 
  private:
-  using Place = std::array<int, 2>;  ///< on the finest lattice of a shell
+  using Place = std::array<std::int64_t, 2>;  ///< on the finest lattice of a shell
   struct Cell {
     Place corner;
-    int width;
+    std::int64_t width;
   };
   struct Side {
     Vector w;
     double miss;
   };
 
-  Vector start(const Vector& w) const;
-  Vector miss(const Vector& state) const;
+  double momentum_unit(std::span<const double> q, int coordinate, double speed);
+  double part_of_box(std::int64_t length) const;
   Vector at(Place place) const;
   const Vector& sample(Place place);
   Vector fly(const Vector& w);
   bool fly(const Vector& w, Vector& miss, Eigen::MatrixXd& derivatives);
   template <class Slope>
   bool integrate(const Slope& slope, Vector& y, double tolerance, int cost);
+  double bend(const std::vector<Place>& places, int value);
   std::vector<Place> lattice(const Cell& cell) const;
   void divide(const Cell& cell, std::deque<Cell>& cells, std::vector<Vector>& found);
   bool search(const Cell& cell, const std::vector<Place>& lattice, std::vector<Vector>& found);
@@ -76,10 +80,11 @@ class StartScan {
 
   const Problem& problem_;
   int n_, cost_;
-  bool usable_;
+  std::optional<MotionConditions> conditions_;
+  int unknowns_ = 0;
   std::optional<Flow> flow_;
   Shell shell_;
-  int cells_;  ///< of the box, along each coordinate
+  int cells_ = 0;  ///< of the box, along each coordinate
   std::map<Place, Vector> samples_;
   std::function<bool(int)> more_;
 };

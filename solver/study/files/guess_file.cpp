@@ -10,6 +10,7 @@
 
 #include "study/files/csv_file.hpp"
 #include "study/files/formats.hpp"
+#include "study/files/json_file.hpp"
 #include "study/files/numpy.hpp"
 
 namespace extremal {
@@ -75,8 +76,7 @@ GuessFile read_csv_guess(const SourcePointer& source, const std::vector<std::str
 
 GuessFile read_result(const SourcePointer& source, const std::vector<std::string>& names) {
   const Location whole{source, 0, 0};
-  const Json root = Json::parse(source->text, nullptr, false);
-  if (root.is_discarded()) throw SceneError(whole, "this is not JSON");
+  const Json root = parse_json(source, "write the file with solve --output, or as CSV with a line of names");
   const auto found = root.is_object() ? root.find("samples") : root.end();
   if (!root.is_object() || found == root.end() || !found->is_object())
     throw SceneError(whole, "this result has no samples; solve with --samples to write some");

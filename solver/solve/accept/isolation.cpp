@@ -1,0 +1,144 @@
+#include "solve/accept/isolation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "solve/accept/limits.hpp"
+#include "solve/adapt/finer_elements.hpp"
+#include "solve/newton/least_eigenvalue.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
+
+namespace extremal {
+
+using namespace limits::isolation;
+
+namespace {
+
+/// At the nodes of the path, in time: steps with 106 bits move those of the other.
+double largest_change(const Path& path, const Path& finer) {
+  const Trajectory there = trajectory_of(finer);
+  std::vector<double> q(path.coordinates()), v(q);
+  double most = 0;
+  for (int k = 0; k <= path.elements(); ++k) {
+    there.at(path.mesh()[k] * path.duration(), q, v);
+    for (int a = 0; a < path.coordinates(); ++a) most = std::max(most, std::abs(q[a] - path.node(k)[a]));
+  }
+  return most;
+}
+
+/// What a step of Newton's method leaves.
+struct Stepped {
+  bool contracted;    ///< the next step is shorter by as much as Kantorovich asks for, or below all roundoff
+  double eigenvalue;  ///< the least one
+};
+
+std::optional<Stepped> take_step(NewtonIteration& newton, Path& path) {
+  if (newton.full_step(path, 0) != StepResult::ok) return std::nullopt;
+  const bool contracted = newton.contraction() <= most_change || newton.norm() <= last_step;
+  if (!newton.factor(path)) return std::nullopt;
+  const std::optional<double> eigenvalue = least_eigenvalue(newton, path);
+  return eigenvalue ? std::optional(Stepped{contracted, *eigenvalue}) : std::nullopt;
+}
+
+bool agree(double eigenvalue, double next) {
+  return std::abs(next - eigenvalue) < most_change * std::abs(next);
+}
+
+/// With doubles, where roundoff does not hide the eigenvalue. Beside a path at which it vanishes a step
+/// halves it.
+bool isolated_to_roundoff(NewtonIteration& newton, Path& path, double eigenvalue) {
+  const std::optional<Stepped> next = take_step(newton, path);
+  return next && next->contracted && std::abs(next->eigenvalue) > roundoff &&
+         agree(eigenvalue, next->eigenvalue);
+}
+
+/// Where Newton's method ends on elements of a degree.
+struct Resolved {
+  int degree;
+  double eigenvalue;
+  int index;
+};
+
+/// With 106 bits. The first steps mend what doubles have made of the path; they need not contract.
+std::optional<Resolved> resolved(NewtonIteration& newton, Path& path) {
+  newton.double_digits();
+  newton.extend();                                            // of the gradient
+  newton.extend();                                            // of the factors
+  if (!newton.in_twice_the_precision()) return std::nullopt;  // the system has no such factors
+  std::optional<double> before;
+  for (int k = 0; k < most_steps; ++k) {
+    const std::optional<Stepped> next = take_step(newton, path);
+    if (!next) return std::nullopt;
+    if (next->contracted && before && agree(*before, next->eigenvalue))
+      return Resolved{path.degree(), next->eigenvalue, newton.model().inertia(0).negative};
+    before = next->eigenvalue;
+  }
+  return std::nullopt;
+}
+
+/// `index` was computed with 106 bits. If that of doubles differs by one, roundoff has changed the sign of
+/// the least eigenvalue there. If it differs by more, elements do not resolve Jacobi fields, and pieces told
+/// it.
+void set_index(int index, Solution& solution) {
+  if (!solution.morse_index || std::abs(*solution.morse_index - index) != 1) return;
+  solution.morse_index = index;
+  solution.minimizing = index == 0;
+  solution.windows.clear();
+  solution.conjugate_times.clear();
+  solution.conjugate_times_known = false;
+  solution.certificate = Certificate::none;
+  solution.message += "; its index is known with 106 bits only, so windows and conjugate times are not told";
+}
+
+}  // namespace
+
+bool soft(const Problem& problem, const Outcome& outcome, const Path& path, double eigenvalue, double error) {
+  // Along free ends and durations natural conditions and double roots are judged by what is left of them.
+  const bool held = problem.periodic || problem.infinite || problem.duration.free || problem.paired ||
+                    problem.ends.free > 0;
+  const double size = scales(path, *outcome.tables).q;
+  return !held && outcome.family == 0 && std::abs(eigenvalue) < honest * doubt_of_eigenvalue(size, error);
+}
+
+void judge_isolation(const Problem& problem, const Path& path, const Outcome& outcome, double eigenvalue,
+                     Workspace& w, Solution& solution) {
+  const auto begin = [&](int by) -> Path& {
+    Path& finer = on_finer_elements(problem, path, *outcome.tables, by, w);
+    w.iteration.hold_shifts(outcome.shifts_held);
+    return finer;
+  };
+  Path& finer = begin(raised);
+  w.iteration.extend();
+  bool found = isolated_to_roundoff(w.iteration, finer, eigenvalue);
+  std::optional<int> index;
+  if (!found) {
+    const auto resolved_on = [&](int by) {
+      begin(by);
+      return resolved(w.iteration, finer);
+    };
+    // An eigenvalue that depends on the elements is theirs. One of doubles may be roundoff, which tells
+    // nothing.
+    const std::optional<Resolved> other =
+        std::abs(eigenvalue) > roundoff ? Resolved{path.degree(), eigenvalue, 0} : resolved_on(2 * raised);
+    const std::optional<Resolved> own = other ? resolved_on(raised) : std::nullopt;
+    found = own && own->degree != other->degree && agree(other->eigenvalue, own->eigenvalue);
+    if (found) index = own->index;
+  }
+  const double change = largest_change(path, finer);
+  if (found && change <= std::max(outcome.tolerance, honest * solution.error_estimate)) {
+    if (change <= outcome.tolerance) solution.error_estimate = std::max(solution.error_estimate, change);
+    if (index) set_index(*index, solution);
+    return;
+  }
+  solution.status = Status::not_converged;
+  solution.message = fmt::format(
+      "the path is not isolated, to its error: hardly a force holds it along one direction, as a shift in "
+      "time of a part of it (the least eigenvalue of its second variation, by the diagonal, is {:.1e}, and "
+      "another on finer elements); try a shorter duration",
+      eigenvalue);
+}
+
+}  // namespace extremal

@@ -1,0 +1,36 @@
+#include "solve/newton/least_eigenvalue.hpp"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace extremal {
+
+std::optional<double> least_eigenvalue(NewtonIteration& newton, const Path& path) {
+  SecondVariationModel* const model = newton.second_variation();
+  if (!model || newton.action().tables().unknowns() > most_dense_unknowns || path.elements() < 2)
+    return std::nullopt;
+  const Chain& chain = newton.action().nodes.chain;
+  const std::size_t n = chain.size(), blocks = chain.blocks();
+  std::vector<double> load((blocks + 2) * n, 0);
+  std::minstd_rand random;
+  std::uniform_real_distribution<double> component(-1, 1);
+  const auto diagonal = [&](std::size_t i) {
+    return std::abs(chain.diagonal(static_cast<int>(i / n) - 1)[i % n * (n + 1)]);
+  };
+  for (std::size_t i = n; i < load.size() - n; ++i) load[i] = diagonal(i) * component(random);
+  ClosingEquation closed;
+  const ClosingEquation* const closing = newton.closing(path);
+  if (closing) closed.row = closing->row;
+  Step step;
+  model->respond(newton.action(), closing ? &closed : nullptr, load, step);
+  double product = 0, square = 0;
+  for (std::size_t i = n; i < load.size() - n; ++i) {
+    product += load[i] * step.nodes[i];
+    square += diagonal(i) * step.nodes[i] * step.nodes[i];
+  }
+  const double eigenvalue = product / square;
+  return std::isfinite(eigenvalue) ? std::optional(eigenvalue) : std::nullopt;
+}
+
+}  // namespace extremal

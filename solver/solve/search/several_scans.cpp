@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solve/search/distinct.hpp"
+#include "solve/search/limits.hpp"
+#include "solve/search/several.hpp"
+
+/// \file Other extremals from the motions that leave the start.
+
+namespace extremal {
+
+using namespace limits::several;
+
+/// Of the extremals of least action, as many as are wanted.
+double Several::wanted_reach(double least, const std::function<double(const Solution&)>& reach_of) const {
+  std::vector<std::pair<double, double>> reaches;
+  for (const Solution& s : found_) reaches.emplace_back(s.action, reach_of(s));
+  std::ranges::sort(reaches);
+  double reach = least;
+  for (std::size_t k = 0; k < std::min<std::size_t>(reaches.size(), most_); ++k)
+    reach = std::max(reach, reaches[k].second);
+  return reach;
+}
+
+double Several::wanted_reach() {
+  return wanted_reach(motions_.least_reach(scale_),
+                      [this](const Solution& s) { return motions_.reach_of(s); });
+}
+
+/// Extremals found.
+int Several::within(double reach) {
+  return static_cast<int>(std::count_if(found_.begin(), found_.end(),
+                                        [&](const Solution& s) { return motions_.reach_of(s) <= reach; }));
+}
+
+/// Whether the path, which a homotopy has led to the problem, is nearly an extremal that was found.
+bool Several::reaches_known() {
+  Solution candidate;
+  candidate.trajectory = trajectory_of(path_);
+  candidate.error_estimate = led * scales(path_, search_.tables()).q;
+  return find([&](const Solution& other) {
+           return same_path(candidate, other, options_.tolerance, scale_);
+         }) >= 0;
+}
+
+/// Whether an integrator may take so many more steps.
+std::function<bool(int)> Several::scan_budget() {
+  return [this, deadline = options_.deadline.share(arrivals_share)](int steps) {
+    scan_steps_ += steps;
+    return scan_steps_ < most_scan_steps && !deadline.passed();
+  };
+}
+
+/// All motions that meet the end, of growing reach, until enough are found or no more seem to be in reach.
+/// Whether that can be told.
+bool Several::trace_arrivals() {
+  const std::function<bool(int)> more = scan_budget();
+  double nearest = motions_.slowest();
+  double farthest = reach_beyond * std::max(wanted_reach(), nearest);
+  for (int growths = 0; growths < most_growths;) {
+    const std::size_t before = found_.size();
+    const bool complete = motions_.all(nearest, farthest, more, [&](const Guess& motion, double duration) {
+      search_.renew(patience);
+      ++scanned_;
+      if (search_.refine_motion(motion, duration, from_arrival)) keep();
+    });
+    if (!complete) return false;
+    const bool enough = static_cast<int>(found_.size()) >= most_;
+    nearest = farthest;
+    if (enough && farthest >= wanted_reach()) return true;
+    farthest = enough ? reach_beyond * wanted_reach() : farthest * growth_of_arrivals;
+    growths = found_.size() > before ? 0 : growths + 1;
+  }
+  return true;
+}
+
+/// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.
+/// Whether that can be told.
+bool Several::scan_starts() {
+  const std::function<bool(int)> more = scan_budget();
+  const double cycles = std::max(1.0, w_.frequency.phase());
+  StartScan::Shell shell = starts_.around(search_.ends(), scale_, cycles * scale_ / problem_.duration.value);
+  if (!(shell.state_unit.minCoeff() > 0) || !shell.state_unit.allFinite()) return false;
+  const auto reach_of = [&](const Solution& s) {
+    const auto n = static_cast<std::size_t>(problem_.coordinates());
+    std::vector<double> q(n), v(n);
+    s.trajectory.at(0, q, v);
+    const double reach = shell.reach(starts_.unknown(q, v));
+    return std::isfinite(reach) ? reach : 0;
+  };
+  // A box grows as much whatever its dimension.
+  const double growth = std::pow(growth_of_arrivals, 1.0 / static_cast<double>(shell.unit.size()));
+  shell.nearest = 0;
+  shell.farthest = reach_beyond * wanted_reach(1, reach_of);
+  for (int growths = 0; growths < most_growths;) {
+    std::vector<Eigen::VectorXd> zeros;
+    const bool complete = starts_.zeros(shell, more, zeros);
+    const std::size_t before = found_.size();
+    std::ranges::sort(zeros, {}, [&](const Eigen::VectorXd& w) { return shell.reach(w); });
+    for (const Eigen::VectorXd& w : zeros) {
+      const std::optional<StartScan::State> start = starts_.state(w);
+      if (!start) continue;
+      const Guess motion =
+          motion_from(*problem_.lagrangian, start->q, start->v, problem_.duration.value, [] { return true; });
+      search_.renew(patience);
+      ++scanned_;
+      if (motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start)) keep();
+    }
+    // Beyond the last extremals it has been looked in vain.
+    if (!complete) return growths > 0;
+    growths = found_.size() > before ? 0 : growths + 1;
+    const bool enough = static_cast<int>(found_.size()) >= most_;
+    const double wanted = wanted_reach(1, reach_of);
+    shell.nearest = shell.farthest;
+    if (enough && shell.farthest >= wanted) return true;
+    shell.farthest = enough ? reach_beyond * wanted : shell.farthest * growth;
+  }
+  return true;
+}
+
+/// Motions to where no extremal between those wanted is likely to be missing; where there are too few, to
+/// where none is likely to be in reach.
+void Several::scan() {
+  search_.renew(patience);
+  double reach = reach_beyond * wanted_reach();
+  for (int growths = 0, quiet = 0, astray = 0;
+       scanned_ < most_motions_each * most_ && !search_.exhausted() && !options_.deadline.passed();) {
+    const int known = within(reach);
+    if (quiet >= std::max(least_motions, motions_each * known) ||
+        astray >= most_astray * std::max(1, known)) {
+      if (static_cast<int>(found_.size()) >= most_ || growths++ == most_growths) return;
+      reach *= growth_of_reach;
+      quiet = astray = 0;
+    }
+    ++scanned_;
+    ++astray;
+    if (!motions_.next(reach)) continue;
+    astray = 0;
+    ++quiet;
+    if (reaches_known()) continue;
+    const std::size_t before = found_.size();
+    refine_and_keep(search_.tables(), from_motion);
+    if (found_.size() == before) continue;
+    const bool enough = static_cast<int>(found_.size()) >= most_;
+    reach = std::max(reach_beyond * wanted_reach(), enough ? 0 : reach);
+    quiet = 0;
+  }
+}
+
+}  // namespace extremal

@@ -1,0 +1,56 @@
+#include "study/marched_state.hpp"
+
+#include "motion/flow.hpp"
+#include "solve/solve.hpp"
+
+namespace extremal {
+namespace {
+
+/// Of q, relative: more digits than a guess needs.
+constexpr double tolerance = 1e-10;
+/// Cubic interpolation between so many samples of an element keeps about six digits.
+constexpr int samples_an_element = 64;
+
+Problem initial_problem_of(const Problem& problem, std::span<const double> q, std::span<const double> p) {
+  Problem initial;
+  initial.lagrangian = problem.lagrangian;
+  initial.copies = problem.copies;
+  initial.names = problem.names;
+  initial.boundary.coordinates = problem.coordinates();
+  for (int a = 0; a < problem.coordinates(); ++a) initial.boundary.fix(a, false, q[a]);
+  initial.duration.value = problem.duration.value;
+  initial.initial = InitialData{{q.begin(), q.end()}, {p.begin(), p.end()}};
+  return make_problem(std::move(initial));
+}
+
+Guess sampled(const Trajectory& motion) {
+  Guess guess;
+  const std::size_t n = motion.coordinates;
+  std::vector<double> q(n), v(n);
+  for (int k = 0; k < motion.elements(); ++k)
+    for (int i = k == 0 ? 0 : 1; i <= samples_an_element; ++i) {
+      const double tau = static_cast<double>(i) / samples_an_element;
+      motion.in_element(k, tau, q, v);
+      guess.tau.push_back((motion.times[k] + tau * motion.length(k)) / motion.duration());
+      guess.q.insert(guess.q.end(), q.begin(), q.end());
+    }
+  guess.tau.back() = 1;
+  guess.motion = true;
+  return guess;
+}
+
+}  // namespace
+
+std::optional<Guess> motion_across_kinks(const Problem& problem, std::span<const double> q,
+                                         std::span<const double> v, const Deadline& deadline) {
+  if (!problem.motion().kinks() || problem.manifold || problem.phase) return std::nullopt;
+  if (!Flow::suits(problem.motion(), problem.motion_copies())) return std::nullopt;
+  std::vector<double> p(q.size());
+  if (!Flow(problem.motion(), problem.motion_copies()).momentum(q, v, 0, p)) return std::nullopt;
+  const Solution motion =
+      Solver().solve(initial_problem_of(problem, q, p), {.tolerance = tolerance, .deadline = deadline});
+  if (!motion.converged()) return std::nullopt;
+  return sampled(motion.trajectory);
+}
+
+}  // namespace extremal

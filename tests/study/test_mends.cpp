@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+
+#include "scenes.hpp"
+#include "study/spectra.hpp"
+
+using namespace extremal;
+using namespace extremal::test;
+
+/// \file Mends that are told lead to a scene that is accepted.
+
+namespace {
+
+const std::string law = "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\n";
+
+}  // namespace
+
+/// A duration after initial data is a number, whatever the guess and what closes it.
+TEST_F(Scenes, FreeDurationAfterInitialData) {
+  const std::string
+      start = law + "[boundary]\nstart = { x = 0, p_x = 1 }\nduration = ",
+      told =
+          "scene.toml:6:12: 'start' gives initial data, every coordinate and every momentum: the "
+          "duration must be a number, for nothing at the end closes it";
+  EXPECT_EQ(message(start + "\"free\"\n"), told);
+  EXPECT_EQ(message(start + "\"free\"\nenergy = 0.5\n"), told);
+  EXPECT_EQ(message(start + "\"free\"\nenergy = 0.5\n[guess]\nduration = 2\n"), told);
+  EXPECT_EQ(message(start + "2\n"), "");
+}
+
+TEST_F(Scenes, FreeDurationBetweenEnds) {
+  const std::string between = law + "[boundary]\nstart = { x = 0 }\nend = { x = 0.5 }\nduration = \"free\"\n";
+  EXPECT_EQ(message(between), "scene.toml:7:12: a free duration needs 'energy' or 'where' to close it");
+  EXPECT_EQ(message(between + "energy = 0.5\n"),
+            "scene.toml:7:12: a free duration needs 'duration' in [guess], or a guess file");
+  EXPECT_EQ(message(between + "energy = 0.5\n[guess]\nduration = 0.5\n"), "");
+}
+
+/// Values at nodes are samples at equal times only where steps are equal.
+TEST_F(Scenes, SamplesOfSpectra) {
+  const auto with = [](const std::string& elements) {
+    return law +
+           "[boundary]\nstart = { x = 0 }\nend = { x = 0.5 }\nduration = 20\n[solve]\nscheme = "
+           "\"midpoint\"\nelements = " +
+           elements + "\n[spectrum]\nlines = 2\n";
+  };
+  EXPECT_EQ(message(with("6")),
+            "scene.toml:10:12: elements = 6; a spectrum of values at nodes needs 15 elements; write that or "
+            "more, or "
+            "leave 'scheme' and 'elements' out");
+  EXPECT_EQ(message(with("15")), "");
+  EXPECT_EQ(message(with("6\nsteps = \"free\"")), "");
+}
+
+/// |x'| has no second derivative by x'.
+TEST_F(Scenes, LengthOfALine) {
+  for (const char* length : {"sqrt(x'^2)", "2*sqrt(x'^2/(1 + x^2))"}) {
+    const std::string found =
+        message(std::string("[system]\ncoordinates = [\"x\"]\nlagrangian = \"") + length +
+                "\"\n[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 1\n");
+    EXPECT_EQ(found.substr(0, 78),
+              "scene.toml:3:14: the Lagrangian is homogeneous of degree one in the velocities")
+        << found;
+  }
+  EXPECT_EQ(
+      message("[system]\ncoordinates = [\"x\"]\nlagrangian = \"sqrt(1 + x'^2)\"\n[boundary]\nstart = { x "
+              "= 0 }\nend = { x = 1 }\nduration = 1\n"),
+      "");
+}
+
+TEST_F(Scenes, PlaceWhereJsonEnds) {
+  write("guess.csv", "[[\n [1, é");
+  EXPECT_EQ(message(law + "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 1\n[guess]\nfile = "
+                          "\"guess.csv\"\n"),
+            "guess.csv:2:6: from here on this is not JSON; write the file with solve --output, or as CSV "
+            "with a line "
+            "of names");
+}
