@@ -121,3 +121,26 @@ TEST_F(StartScanScenes, DrivenPeriodicOrbits) {
   ASSERT_EQ(actions.size(), expected.size());
   for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(actions[k], expected[k], 1e-4);
 }
+
+/// A pendulum that is driven weakly hangs or stands: by whole turns, and the action that the drive gives a
+/// turn, these are the same. The guess hangs.
+TEST_F(StartScanScenes, TurnsOfAnAngleAreOneOrbit) {
+  const std::vector<Solution> found = run_all(
+      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + 0.9*cos(x) + 0.2*x*cos(1.7*t)\"\n"
+            "[boundary]\nperiodic = true\nduration = \"2*pi/1.7\"\n[guess]\nx = \"0.1 + 0.2*cos(1.7*t)\"\n"
+            "[search]\nsolutions = 8\n"));
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NE(found[0].morse_index, found[1].morse_index);
+}
+
+/// Of Duffing's oscillator a guess of a tenth of their size leads to all orbits of amplitude below 3: by a
+/// scan with RK4 of 400 x 400 starts, that near the origin and two resonant ones, of one action.
+TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
+  const std::vector<Solution> found = run_all(
+      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - (1.2551*x^2/2 + 0.9748*x^4/4) + "
+            "0.6722*x*cos(1.1314*t)\"\n[boundary]\nperiodic = true\nduration = \"2*pi/1.1314\"\n[guess]\n"
+            "x = \"0.1 + 0.2*cos(1.1314*t)\"\n[search]\nsolutions = 3\n"));
+  ASSERT_EQ(found.size(), 3);
+  EXPECT_NEAR(found[1].action, 13.9167, 1e-4);
+  EXPECT_NEAR(found[2].action, 13.9167, 1e-4);
+}

@@ -22,8 +22,7 @@ bool same_continuum(const Solution& a, const Solution& b, double tolerance);
 /// energy agree.
 bool same_orbit(const Solution& a, const Solution& b, double tolerance);
 
-/// Whether one is the other moved by a vector that leaves L unchanged, as angles have: of ends that are not
-/// held.
+/// Whether one is the other moved by a vector that leaves L unchanged, as angles have.
 bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b, double tolerance);
 
 /// Whether two solutions on the same elements are the same to roundoff.

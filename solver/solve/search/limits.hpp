@@ -119,10 +119,9 @@ namespace distinct {
 inline constexpr double margin = 10;
 /// Of the size of the problem: a path smaller than this is at rest.
 inline constexpr double rest = 1e-3;
-/// Where a shift is tried, in parts of itself; and what it may change of L, by the range of L and by its
-/// size.
+/// Where a shift is tried, in parts of itself; and what it may change of forces and momenta, by the largest.
 inline constexpr double shifted[] = {-0.618, 0.382, 0.7};
-inline constexpr double unchanged = 1e-6, roundoff = 1e-12;
+inline constexpr double unchanged = 1e-6;
 
 }  // namespace distinct
 

@@ -69,11 +69,12 @@ int Several::add(Solution candidate, bool held) {
     return -1;
   }
   const bool closed = problem_.periodic && problem_.lagrangian->structure().autonomous;
-  const bool adrift = !problem_.periodic && problem_.boundary.rows == 0 && problem_.boundary.momenta.empty();
+  const bool placed =
+      problem_.paired || !problem_.boundary.momenta.empty() || !problem_.boundary.costs.empty();
   const int number = find([&](const Solution& other) {
-    return closed   ? same_orbit(candidate, other, options_.tolerance)
-           : adrift ? same_but_for_place(*problem_.lagrangian, candidate, other, options_.tolerance)
-                    : !held && same_continuum(candidate, other, options_.tolerance);
+    if (closed) return same_orbit(candidate, other, options_.tolerance);
+    return (!placed && same_but_for_place(*problem_.lagrangian, candidate, other, options_.tolerance)) ||
+           (!held && same_continuum(candidate, other, options_.tolerance));
   });
   if (number >= 0) return number;
   found_.push_back(std::move(candidate));

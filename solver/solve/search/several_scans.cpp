@@ -89,11 +89,12 @@ bool Several::scan_starts() {
     const double reach = shell.reach(starts_.unknown(q, v));
     return std::isfinite(reach) ? reach : 0;
   };
-  // A box grows as much whatever its dimension.
-  const double growth = std::pow(growth_of_arrivals, 1.0 / static_cast<double>(shell.unit.size()));
+  // A box grows as much whatever its dimension, and as far.
+  const auto dimension = static_cast<int>(shell.unit.size());
+  const double growth = std::pow(growth_of_arrivals, 1.0 / dimension);
   shell.nearest = 0;
   shell.farthest = reach_beyond * wanted_reach(1, reach_of);
-  for (int growths = 0; growths < most_growths;) {
+  for (int growths = 0; growths < most_growths * dimension;) {
     std::vector<Eigen::VectorXd> zeros;
     const bool complete = starts_.zeros(shell, more, zeros);
     const std::size_t before = found_.size();
