@@ -144,3 +144,20 @@ TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
   EXPECT_NEAR(found[1].action, 13.9167, 1e-4);
   EXPECT_NEAR(found[2].action, 13.9167, 1e-4);
 }
+
+/// An orbit of twice the period of the drive is one with its image a period later. A scan with RK4 of 400 x
+/// 400 starts has five of amplitude below 3 that are not.
+TEST_F(StartScanScenes, ImagesAPeriodLaterAreOneOrbit) {
+  const std::vector<Solution> found = run_all(
+      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - (0.6483*x^2/2 + 0.2674*x^4/4) + "
+            "0.6432*x*cos(1.7925*t)\"\n[boundary]\nperiodic = true\nduration = \"2*2*pi/1.7925\"\n"
+            "[guess]\nx = \"0.1 + 0.2*cos(1.7925*t)\"\n[search]\nsolutions = 13\n"));
+  EXPECT_GE(found.size(), 5);
+  std::vector<double> q(1), v(1);
+  for (const Solution& a : found)
+    for (const Solution& b : found) {
+      if (&a == &b) continue;
+      b.trajectory.at(b.duration() / 2, q, v);
+      EXPECT_GT(std::abs(a.trajectory.nodes[0] - q[0]) + std::abs(a.trajectory.slopes[0] - v[0]), 1e-3);
+    }
+}

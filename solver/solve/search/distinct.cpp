@@ -24,8 +24,9 @@ double extent(const Trajectory& trajectory) {
   return most > 1e-12 * magnitude ? most : magnitude;
 }
 
-/// Whether b is nowhere further than `allowed` from a, at the ends of a's elements and twice in between.
-bool near(const Trajectory& a, const Trajectory& b, double allowed) {
+/// Whether b, of which each time is `later`, is nowhere further than `allowed` from a, at the ends of a's
+/// elements and twice in between.
+bool near(const Trajectory& a, const Trajectory& b, double allowed, double later = 0) {
   const std::size_t n = a.coordinates;
   std::vector<double> here(n), there(n), v(n);
   const double stretch = b.duration() / a.duration();
@@ -33,7 +34,8 @@ bool near(const Trajectory& a, const Trajectory& b, double allowed) {
     for (int part = 0; part < 3; ++part) {
       const double t = a.times[k] + part * (a.times[k + 1] - a.times[k]) / 3;
       a.at(t, here, v);
-      b.at(std::min(t * stretch, b.duration()), there, v);
+      const double at = t * stretch + later;
+      b.at(later > 0 ? std::fmod(at, b.duration()) : std::min(at, b.duration()), there, v);
       for (std::size_t i = 0; i < n; ++i)
         if (!(std::abs(here[i] - there[i]) <= allowed)) return false;
     }
@@ -115,6 +117,17 @@ bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const S
   const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
   return near(a.trajectory, moved.trajectory, allowed) && near(moved.trajectory, a.trajectory, allowed) &&
          invariant(lagrangian, a.trajectory, b.trajectory);
+}
+
+bool same_but_for_time(const Solution& a, const Solution& b, double period, double tolerance) {
+  const double size = std::max(extent(a.trajectory), extent(b.trajectory));
+  const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
+  const double duration = b.duration();
+  for (double later = period; later < (1 - tolerance) * duration; later += period)
+    if (near(a.trajectory, b.trajectory, allowed, later) &&
+        near(b.trajectory, a.trajectory, allowed, duration - later))
+      return true;
+  return false;
 }
 
 bool same_discrete(const Solution& a, const Solution& b) {

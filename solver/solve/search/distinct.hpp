@@ -25,6 +25,9 @@ bool same_orbit(const Solution& a, const Solution& b, double tolerance);
 /// Whether one is the other moved by a vector that leaves L unchanged, as angles have.
 bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b, double tolerance);
 
+/// Whether one periodic path is the other some periods of L later.
+bool same_but_for_time(const Solution& a, const Solution& b, double period, double tolerance);
+
 /// Whether two solutions on the same elements are the same to roundoff.
 bool same_discrete(const Solution& a, const Solution& b);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "problem/recurrence.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/periodic/repetition.hpp"
 #include "solve/periodic/stability.hpp"
@@ -28,7 +29,10 @@ Several::Several(const Problem& problem, const SolveOptions& options, Workspace&
       path_(search_.path()),
       loops_(problem, options, workspace, search_),
       motions_(problem, search_),
-      starts_(problem) {}
+      starts_(problem) {
+  if (problem.periodic && !problem.lagrangian->structure().autonomous && closing_map(problem).identity())
+    period_ = recurrence_time(problem);
+}
 
 /// Whether an orbit is one of a shorter period, run through several times. One that a symmetry of L closes
 /// after m segments may repeat itself after any number of these.
@@ -74,6 +78,7 @@ int Several::add(Solution candidate, bool held) {
   const int number = find([&](const Solution& other) {
     if (closed) return same_orbit(candidate, other, options_.tolerance);
     return (!placed && same_but_for_place(*problem_.lagrangian, candidate, other, options_.tolerance)) ||
+           (period_ && same_but_for_time(candidate, other, *period_, options_.tolerance)) ||
            (!held && same_continuum(candidate, other, options_.tolerance));
   });
   if (number >= 0) return number;

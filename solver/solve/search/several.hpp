@@ -80,6 +80,7 @@ class Several {
   LoopSearch loops_;
   MotionScan motions_;
   StartScan starts_;
+  std::optional<double> period_;  ///< of L, of which that of orbits is a multiple
   std::vector<Solution> found_;
   std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times
   double scale_ = 1;                   ///< size of the problem
