@@ -66,6 +66,25 @@ TEST(FreeTimes, StepsFollowTheModifiedEnergy) {
   EXPECT_LT(spread(products), 2e-3 * products.front());
 }
 
+/// From the lowest point to near the upper one, nodes move by many of the elements: where the pendulum is
+/// slow they are far apart.
+TEST(FreeTimes, NearASeparatrix) {
+  const double energy = 1 + 1e-4;
+  const Trajectory motion =
+      solve(initial_problem(unit_pendulum(), {{0}, {std::sqrt(2 * (energy + 1))}}, 5), within(1e-12))
+          .trajectory;
+  const Problem problem = fixed_ends(unit_pendulum(), {0}, {at(motion, 5).q[0]}, 5);
+  for (const int elements : {50, 200}) {
+    const Solution s = solve(problem, free_steps(scheme("trapezoid"), elements));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_LT(spread(s.element_energies), 1e-12);
+    double farthest = 0;
+    for (int k = 0; k <= elements; ++k)
+      farthest = std::max(farthest, std::abs(s.trajectory.times[k] * elements / 5 - k));
+    EXPECT_GT(farthest, 0.05 * elements);
+  }
+}
+
 TEST(FreeTimes, OrderIsThatOfTheScheme) {
   const Problem problem = fixed_ends(systems::kepler(), {1, 0}, {0.3, 0.8}, 1.1);
   const Trajectory truth = solve(problem, within(1e-13)).trajectory;
