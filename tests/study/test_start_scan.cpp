@@ -133,8 +133,9 @@ TEST_F(StartScanScenes, TurnsOfAnAngleAreOneOrbit) {
   EXPECT_NE(found[0].morse_index, found[1].morse_index);
 }
 
-/// Of Duffing's oscillator a guess of a tenth of their size leads to all orbits of amplitude below 3: by a
-/// scan with RK4 of 400 x 400 starts, that near the origin and two resonant ones, of one action.
+/// From a guess of a tenth of their size the resonant orbits of Duffing's oscillator are found, images of
+/// each other under the reversal of time. A scan with RK4 of 400 x 400 starts has their action, of others
+/// that begin at rest, to four digits.
 TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
   const std::vector<Solution> found = run_all(
       study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - (1.2551*x^2/2 + 0.9748*x^4/4) + "
