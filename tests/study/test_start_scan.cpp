@@ -6,7 +6,16 @@
 using namespace extremal;
 using namespace extremal::test;
 
-class StartScanScenes : public Scenes {};
+class StartScanScenes : public Scenes {
+ protected:
+  /// Of one coordinate x, from a guess.
+  std::vector<Solution> periodic_orbits(const std::string& lagrangian, const std::string& duration,
+                                        const std::string& guess, int most) {
+    return run_all(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"" + lagrangian +
+                         "\"\n[boundary]\nperiodic = true\nduration = \"" + duration + "\"\n[guess]\nx = \"" +
+                         guess + "\"\n[search]\nsolutions = " + std::to_string(most) + "\n"));
+  }
+};
 
 /// Between natural ends the pendulum rests, or swings from one turning point to another: with k half swings
 /// in the duration T, which is longer than kπ. For T = 10, k is 1, 2 or 3, and each swing begins on either
@@ -111,10 +120,8 @@ TEST_F(StartScanScenes, MotionsInAWave) {
 /// Orbits of a driven pendulum, of which Newton's method from starts on a lattice knows these within a
 /// half turn: two of them are images of each other under the reversal of time.
 TEST_F(StartScanScenes, DrivenPeriodicOrbits) {
-  const std::vector<Solution> found = run_all(
-      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + cos(x) + 0.4*x*cos(2*pi*t/14)\"\n"
-            "[boundary]\nperiodic = true\nduration = 14\n[guess]\nx = \"0.1*cos(2*pi*t/14)\"\n"
-            "[search]\nsolutions = 4\n"));
+  const std::vector<Solution> found =
+      periodic_orbits("x'^2/2 + cos(x) + 0.4*x*cos(2*pi*t/14)", "14", "0.1*cos(2*pi*t/14)", 4);
   std::vector<double> actions;
   for (const Solution& s : found) actions.push_back(s.action);
   const std::vector<double> expected{14.5381, 14.5381, 14.5419, 14.7160};
@@ -125,10 +132,8 @@ TEST_F(StartScanScenes, DrivenPeriodicOrbits) {
 /// A pendulum that is driven weakly hangs or stands: by whole turns, and the action that the drive gives a
 /// turn, these are the same. The guess hangs.
 TEST_F(StartScanScenes, TurnsOfAnAngleAreOneOrbit) {
-  const std::vector<Solution> found = run_all(
-      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + 0.9*cos(x) + 0.2*x*cos(1.7*t)\"\n"
-            "[boundary]\nperiodic = true\nduration = \"2*pi/1.7\"\n[guess]\nx = \"0.1 + 0.2*cos(1.7*t)\"\n"
-            "[search]\nsolutions = 8\n"));
+  const std::vector<Solution> found =
+      periodic_orbits("x'^2/2 + 0.9*cos(x) + 0.2*x*cos(1.7*t)", "2*pi/1.7", "0.1 + 0.2*cos(1.7*t)", 8);
   ASSERT_EQ(found.size(), 2);
   EXPECT_NE(found[0].morse_index, found[1].morse_index);
 }
@@ -137,10 +142,9 @@ TEST_F(StartScanScenes, TurnsOfAnAngleAreOneOrbit) {
 /// each other under the reversal of time. A scan with RK4 of 400 x 400 starts has their action, of others
 /// that begin at rest, to four digits.
 TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
-  const std::vector<Solution> found = run_all(
-      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - (1.2551*x^2/2 + 0.9748*x^4/4) + "
-            "0.6722*x*cos(1.1314*t)\"\n[boundary]\nperiodic = true\nduration = \"2*pi/1.1314\"\n[guess]\n"
-            "x = \"0.1 + 0.2*cos(1.1314*t)\"\n[search]\nsolutions = 3\n"));
+  const std::vector<Solution> found =
+      periodic_orbits("x'^2/2 - (1.2551*x^2/2 + 0.9748*x^4/4) + 0.6722*x*cos(1.1314*t)", "2*pi/1.1314",
+                      "0.1 + 0.2*cos(1.1314*t)", 3);
   ASSERT_EQ(found.size(), 3);
   EXPECT_NEAR(found[1].action, 13.9167, 1e-4);
   EXPECT_NEAR(found[2].action, 13.9167, 1e-4);
@@ -149,10 +153,9 @@ TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
 /// An orbit of twice the period of the drive is one with its image a period later. A scan with RK4 of 400 x
 /// 400 starts has five of amplitude below 3 that are not.
 TEST_F(StartScanScenes, ImagesAPeriodLaterAreOneOrbit) {
-  const std::vector<Solution> found = run_all(
-      study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - (0.6483*x^2/2 + 0.2674*x^4/4) + "
-            "0.6432*x*cos(1.7925*t)\"\n[boundary]\nperiodic = true\nduration = \"2*2*pi/1.7925\"\n"
-            "[guess]\nx = \"0.1 + 0.2*cos(1.7925*t)\"\n[search]\nsolutions = 13\n"));
+  const std::vector<Solution> found =
+      periodic_orbits("x'^2/2 - (0.6483*x^2/2 + 0.2674*x^4/4) + 0.6432*x*cos(1.7925*t)", "2*2*pi/1.7925",
+                      "0.1 + 0.2*cos(1.7925*t)", 13);
   EXPECT_GE(found.size(), 5);
   std::vector<double> q(1), v(1);
   for (const Solution& a : found)

@@ -165,7 +165,7 @@ ResidualHomotopy::Report ResidualHomotopy::find(Path& path) {
   const auto trace_from = [&](const Path& start, double mu) {
     for (const double sense : {-1.0, 1.0}) reached = reached || trace(start, mu, sense, found);
   };
-  if (least_ < 1) trace_from(Path(nearest_), least_);
+  if (least_ < 1) trace_from(Path(nearest_), least_);  // a copy: curves replace the nearest
   trace_from(path, 1);
   if (!reached) return {false, failure(path)};
   path = std::move(found);

@@ -24,8 +24,8 @@ double extent(const Trajectory& trajectory) {
   return most > 1e-12 * magnitude ? most : magnitude;
 }
 
-/// Whether b, of which each time is `later`, is nowhere further than `allowed` from a, at the ends of a's
-/// elements and twice in between.
+/// Whether b is nowhere further than `allowed` from a, at the ends of a's elements and twice in between.
+/// Periodic paths may be compared with b at times that are `later`.
 bool near(const Trajectory& a, const Trajectory& b, double allowed, double later = 0) {
   const std::size_t n = a.coordinates;
   std::vector<double> here(n), there(n), v(n);
@@ -63,7 +63,8 @@ bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const Trajecto
   double change = 0, most = 0;
   const auto compare = [&](const std::vector<double>& one, const std::vector<double>& other) {
     for (std::size_t i = 0; i < n; ++i) {
-      change = std::max(change, std::abs(other[i] - one[i]));
+      const double by = std::abs(other[i] - one[i]);
+      change = std::isnan(by) ? INFINITY : std::max(change, by);
       most = std::max({most, std::abs(one[i]), std::abs(other[i])});
     }
   };
@@ -80,7 +81,7 @@ bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const Trajecto
       compare(value.dq, moved.dq);
       compare(value.dv, moved.dv);
     }
-  return change <= unchanged * most;
+  return std::isfinite(change) && change <= unchanged * most;
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ bool Several::scan_starts() {
     const double reach = shell.reach(starts_.unknown(q, v));
     return std::isfinite(reach) ? reach : 0;
   };
-  // A box grows as much whatever its dimension, and as far.
+  // Of two dimensions a box grows by less at a time, as its area would grow too fast, but as far in all.
   const auto dimension = static_cast<int>(shell.unit.size());
   const double growth = std::pow(growth_of_arrivals, 1.0 / dimension);
   shell.nearest = 0;
