@@ -117,8 +117,8 @@ bool Several::wanted() const {
 
 /// What was done to find `all`.
 std::string Several::searched(std::size_t all) const {
-  std::string text =
-      fmt::format("from the guess and {} {}", seed_, loops_.usable() ? "random loops" : "others");
+  std::string text = "from the guess";
+  if (seed_ > 0) text += fmt::format(" and {} {}", seed_, loops_.usable() ? "random loops" : "others");
   if (traced_count_ > 0) text += fmt::format(", along {} families", traced_count_);
   if (scanned_ > 0) text += fmt::format(", from {} motions", scanned_);
   text += fmt::format(", {} Newton steps in all", search_.outcome().iterations);
