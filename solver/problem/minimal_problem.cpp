@@ -305,7 +305,7 @@ class InChart {
     for (std::size_t e = 0; e < samples * n; ++e)
       if (!(std::abs(back.q[e] - points[e]) <= limits::minimal::same_point * size)) return false;
     minimal.stretch = std::max(1.0, *std::ranges::max_element(back.stretch));
-    if (!problem_.initial) minimal.problem.guess = {guess.tau, std::move(u), guess.motion};
+    if (!problem_.initial) minimal.problem.guess = {guess.tau, std::move(u), guess.samples_a_step};
     return true;
   }
 

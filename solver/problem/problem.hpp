@@ -75,8 +75,10 @@ struct Duration {
 struct Guess {
   std::vector<double> tau;
   std::vector<double> q;
-  bool motion = false;  ///< it solves the equations of motion, but for its ends
+  /// Of an integrator, where it solves the equations of motion but for its ends; else 0.
+  int samples_a_step = 0;
   bool given() const { return !tau.empty(); }
+  bool motion() const { return samples_a_step > 0; }
   /// Local cubic interpolation, through the samples; constant before the first and after the last.
   void at(double tau, std::span<double> q) const;
 };

@@ -194,10 +194,10 @@ EndFunction at_start(EndFunction where, const SignedPermutation& closing) {
 
 /// The part of the guess, mean of all its images unless it is a motion.
 Guess part_of(const Orbit& orbit, const Guess& guess, const Reduction& reduction) {
-  const int n = reduction.turn.size(), parts = guess.motion ? 1 : reduction.parts();
+  const int n = reduction.turn.size(), parts = guess.motion() ? 1 : reduction.parts();
   const double length = 1.0 / reduction.parts();
   Guess result;
-  result.motion = guess.motion;
+  result.samples_a_step = guess.samples_a_step;
   for (const double tau : guess.tau)
     if (tau < length * (1 - none)) result.tau.push_back(tau);
   result.tau.push_back(length);

@@ -72,7 +72,7 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
 }
 
 /// Cubic interpolation between so many samples of a step keeps about six digits.
-constexpr int samples_a_step = limits::guess_mesh::samples_a_step_of_motion;
+constexpr int samples_a_step = 64;
 /// Roundoff of so many steps is amplified by the encounters that they follow.
 constexpr std::size_t many_steps = 750;
 /// Steps between points that are kept.
@@ -80,8 +80,7 @@ constexpr int steps_a_point = 8;
 
 /// Elements that follow more steps than these are not made (limits::guess_mesh); and a guess takes at most
 /// this part of memory, as it is copied.
-constexpr std::size_t most_steps =
-    limits::guess_mesh::most_kept * limits::guess_mesh::samples_an_element / samples_a_step;
+constexpr std::size_t most_steps = limits::guess_mesh::most_kept * limits::guess_mesh::steps_an_element;
 constexpr double memory_share = 1.0 / 8;
 
 /// Of the integrator's steps, relative: what they err by is amplified until the end, or until the motion is
@@ -426,12 +425,12 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
     if (problem.periodic) {
       const Halves halves = closed_halves(state, bounds);
       add_halves(halves.first, halves.second, problem.guess);
-      problem.guess.motion = !halves.hopeless;
+      problem.guess.samples_a_step = halves.hopeless ? 0 : samples_a_step;
     } else {
       SampledMotion samples = motion_from(state, 0, duration, bounds);
       problem.guess.tau = std::move(samples.tau);
       problem.guess.q = std::move(samples.q);
-      problem.guess.motion = true;
+      problem.guess.samples_a_step = samples_a_step;
     }
   } catch (const TooManySteps&) {
     std::optional<Guess> motion = motion_across_kinks(problem, state.q, state.v, deadline);

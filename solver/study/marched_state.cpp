@@ -35,7 +35,7 @@ Guess sampled(const Trajectory& motion) {
       guess.q.insert(guess.q.end(), q.begin(), q.end());
     }
   guess.tau.back() = 1;
-  guess.motion = true;
+  guess.samples_a_step = samples_an_element;
   return guess;
 }
 

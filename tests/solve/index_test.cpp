@@ -114,7 +114,7 @@ TEST(MorseIndex, OfWhatAGuessDoesNotShow) {
     problem.guess.tau.push_back(k / 320.0);
     problem.guess.q.insert(problem.guess.q.end(), {k / 320.0, 0});
   }
-  problem.guess.motion = true;
+  problem.guess.samples_a_step = 64;
   const Solution s = solve(make_problem(problem), within(1e-9));
   EXPECT_EQ(s.morse_index, std::floor(200 / pi) + 1);
 }

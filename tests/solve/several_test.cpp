@@ -168,6 +168,22 @@ TEST(Several, LambertWithUpToSixRevolutions) {
   }
 }
 
+/// From a circle of 8,800 km to one of 42,900 km around the Earth in three days, in units of the first radius and
+/// of its period by 2π: half of the ellipses pass the centre at a fifteenth of it, up to fourteen times.
+TEST(Several, LambertByCloseEncounters) {
+  const double unit = std::sqrt(std::pow(8800.0, 3) / 398600.4418), ratio = 42900 / 8800.0;
+  const Values start{1, 0}, end{ratio * std::cos(0.7), ratio * std::sin(0.7)};
+  const double duration = 3 * 86400 / unit;
+  const Values exact = lambert_energies(start, end, duration);
+  EXPECT_EQ(exact.size(), 30u);
+  Values energies;
+  for (const Solution& s : solve_all(fixed_ends(systems::kepler(), start, end, duration), 40))
+    energies.push_back(s.energy.value());
+  std::sort(energies.begin(), energies.end());
+  ASSERT_EQ(energies.size(), exact.size());
+  EXPECT_LT(largest_difference(energies, exact), 1e-7);
+}
+
 /// Actions of x'' = x − x³ from `start` to `end` in T: shooting finds every sign of q(T) − end on a fine grid
 /// of velocities.
 Values well_actions(double start, double end, double duration, double fastest) {

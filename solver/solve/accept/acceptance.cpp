@@ -271,6 +271,18 @@ void read_index_at_rest(const Problem& problem, SecondVariation& variation, Solu
   leave_out_later_times(solution);
 }
 
+/// A null direction is a motion beside the orbit, which position and momentum determine: more of them say that
+/// L depends on the path by roundoff alone, as where masses vanish.
+void judge_nullity(const Problem& problem, Solution& solution) {
+  const int most = 2 * problem.coordinates(), null = solution.nullity.value_or(0);
+  if (null <= most) return;
+  refused({Status::not_converged,
+           fmt::format("the action hardly depends on the path: its second variation vanishes along {} "
+                       "directions, and of motions there are {}; try another guess",
+                       null, most)},
+          solution);
+}
+
 /// The second variation whose multipliers are told: of pinned elements their own. What is indefinite has none
 /// of its windows yet. It refers to `of_elements`.
 void assemble_for_multipliers(const Problem& problem, const SolveOptions& options, const Outcome& found,
@@ -320,6 +332,7 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     // Pieces that minimise have windows. The index of pinned elements is their own.
     if (problem.periodic && options.elements == 0 && !solution.windows.empty())
       read_index(problem, w.variation, size > 0 ? solution.error_estimate / size : 0, solution);
+    judge_nullity(problem, solution);
     assemble_for_multipliers(problem, options, found, path, solution, of_elements, w);
     read_stability(problem, w.variation, size, solution);
     if (found.family == 0) explain_nullity(problem, solution);

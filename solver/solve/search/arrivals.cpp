@@ -61,7 +61,7 @@ Arrivals::Arrival Arrivals::arrival(const Vector& u) const {
 }
 
 /// The motion with its variations by w.
-bool Arrivals::fly(const Vector& u, Miss& miss) {
+bool Arrivals::fly(const Vector& u, double step_error, Miss& miss) {
   const Arrival goal = arrival(u);
   Vector y = Vector::Zero(2 * n_ * (1 + n_)), v(n_);
   y.head(2 * n_) = state(goal.w);
@@ -73,7 +73,7 @@ bool Arrivals::fly(const Vector& u, Miss& miss) {
       },
       static_cast<int>(y.size()));
   IntegrationOptions options;
-  options.tolerance = fine_step;
+  options.tolerance = step_error;
   options.block = n_;
   options.controlled = 2 * n_;
   options.max_steps = most_integrator_steps;
@@ -89,14 +89,15 @@ bool Arrivals::fly(const Vector& u, Miss& miss) {
   return miss.miss.allFinite() && miss.slope.allFinite();
 }
 
-/// Newton's method across the normal.
-bool Arrivals::meet(Vector& u, const Vector& normal, Eigen::MatrixXd& slope, int& steps) {
+/// Newton's method across the normal; a step as short as the last leaves about its square.
+bool Arrivals::meet(Vector& u, const Vector& normal, const Nearness& wanted, Eigen::MatrixXd& slope,
+                    int& steps) {
   double before = INFINITY;
   for (steps = 0; steps < most_newton_steps; ++steps) {
     Miss at;
-    if (!fly(u, at)) return false;
+    if (!fly(u, wanted.step_error, at)) return false;
     slope = at.slope;
-    if (at.miss.norm() <= least_miss) return true;
+    if (at.miss.norm() <= wanted.last * wanted.last) return true;
     Eigen::MatrixXd matrix(n_ + 1, n_ + 1);
     matrix << at.slope, normal.transpose();
     Vector right = Vector::Zero(n_ + 1);
@@ -107,7 +108,7 @@ bool Arrivals::meet(Vector& u, const Vector& normal, Eigen::MatrixXd& slope, int
       return false;
     before = size;
     u += step;
-    if (size <= quadratic) return true;
+    if (size <= wanted.last) return true;
   }
   return false;
 }
@@ -127,7 +128,10 @@ void Arrivals::cross(const Vector& a, const Vector& slope_a, const Vector& b, co
       u[n_] = 0;
       Eigen::MatrixXd slope;
       int steps = 0;
-      if (meet(u, Vector::Unit(n_ + 1, n_), slope, steps)) found.push_back(arrival(u));
+      const Vector normal = Vector::Unit(n_ + 1, n_);
+      if (meet(u, normal, {step_error_along, last_step_along}, slope, steps) &&
+          meet(u, normal, {step_error_arriving, last_step_arriving}, slope, steps))
+        found.push_back(arrival(u));
     }
     last = next;
   }
@@ -137,7 +141,7 @@ void Arrivals::cross(const Vector& a, const Vector& slope_a, const Vector& b, co
 bool Arrivals::trace(const Vector& seed, double sense, double fastest, double longest,
                      std::vector<Arrival>& found) {
   Miss at;
-  if (!fly(seed, at)) return false;
+  if (!fly(seed, step_error_along, at)) return false;
   std::vector<Point>& curve = curves_.emplace_back();
   Vector u = seed, tangent = sense * null_direction(at.slope);
   curve.push_back({u, tangent});
@@ -148,7 +152,7 @@ bool Arrivals::trace(const Vector& seed, double sense, double fastest, double lo
     Vector next = u + length * tangent;
     if (last_length > 0) next += length * length / (2 * last_length) * (tangent - last_tangent);
     int steps = 0;
-    if (!meet(next, tangent, at.slope, steps)) {
+    if (!meet(next, tangent, {step_error_along, last_step_along}, at.slope, steps)) {
       if (!counted_(0)) return false;
       length *= 0.4;
       continue;
@@ -258,7 +262,7 @@ void Arrivals::land(const Vector& w, double time, std::vector<Arrival>& found) {
   normal.head(n_) = w.normalized();
   Eigen::MatrixXd slope;
   int steps = 0;
-  if (meet(u, normal, slope, steps)) found.push_back(arrival(u));
+  if (meet(u, normal, {step_error_along, last_step_along}, slope, steps)) found.push_back(arrival(u));
 }
 
 /// Arrivals between two neighbours that pass q1 on different sides. Where these are not near to it or to each

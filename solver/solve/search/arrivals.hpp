@@ -57,11 +57,16 @@ class Arrivals {
     std::vector<Passage> passages;
   };
 
+  /// Errors of the integrator's steps, and the last step of Newton's method.
+  struct Nearness {
+    double step_error, last;
+  };
+
   Vector state(const Vector& w) const;
   Vector unknowns(const Arrival& arrival) const;
   Arrival arrival(const Vector& u) const;
-  bool fly(const Vector& u, Miss& miss);
-  bool meet(Vector& u, const Vector& normal, Eigen::MatrixXd& slope, int& steps);
+  bool fly(const Vector& u, double step_error, Miss& miss);
+  bool meet(Vector& u, const Vector& normal, const Nearness& wanted, Eigen::MatrixXd& slope, int& steps);
   bool trace(const Vector& seed, double sense, double fastest, double longest, std::vector<Arrival>& found);
   void cross(const Vector& a, const Vector& slope_a, const Vector& b, const Vector& slope_b, double length,
              std::vector<Arrival>& found);

@@ -48,12 +48,13 @@ bool Search::refine_motion(const Guess& motion, double duration, const char* str
   launched.guess = motion;
   launched.duration.value = duration;
   guess_ = &launched;
-  const bool usable = begin() != GuessKind::undefined;
+  bool result = false;
+  if (begin() != GuessKind::undefined) {
+    path_.set_duration(duration);
+    result = pursue_guess(strategy).result == Refinement::Result::converged;
+    outcome_.status = result ? Status::converged : Status::not_converged;
+  }
   guess_ = &problem_;
-  if (!usable) return false;
-  path_.set_duration(duration);
-  const bool result = found(strategy);
-  outcome_.status = result ? Status::converged : Status::not_converged;
   return result;
 }
 
@@ -65,7 +66,7 @@ bool Search::from_bracketed_motions(double mean, double fastest) {
   const double duration = problem_.duration.value;
   const auto more = [this] { return !options_.deadline.passed(); };
   const auto motion = [&](double v) {
-    return motion_from(*problem_.lagrangian, {ends_.data(), 1}, {&v, 1}, duration, more);
+    return motion_from(*problem_.lagrangian, {ends_.data(), 1}, {&v, 1}, duration, step_error, more);
   };
   const auto miss = [&](double v) {
     const Guess there = motion(v);
@@ -112,7 +113,7 @@ bool Search::from_motions() {
       v[a] = (ends_[n + a] - ends_[a]) / duration +
              speeds[seed % std::size(speeds)] * frequency * extent[a] * noise();
     if (given.free && !scale_to_energy(*problem_.lagrangian, from, *given.energy, v)) continue;
-    const Guess motion = motion_from(*problem_.lagrangian, from, v, duration, count);
+    const Guess motion = motion_from(*problem_.lagrangian, from, v, duration, step_error, count);
     if (motion.given() && connect(motion, duration) && found(from_motion)) return true;
   }
   return false;

@@ -12,6 +12,13 @@ namespace extremal {
 
 using namespace limits::guess_mesh;
 
+namespace {
+
+/// Of the integrator that a motion comes from.
+std::size_t steps_of(const Guess& motion) { return (motion.tau.size() - 1) / motion.samples_a_step; }
+
+}  // namespace
+
 int Search::first_elements(const Frequency& frequency) {
   const double wanted = std::min<double>(frequency.phase() / longest_element, most_first_elements);
   return most_lanes * std::max(1, static_cast<int>(std::ceil(wanted / most_lanes)));
@@ -38,14 +45,14 @@ Search::GuessKind Search::begin() {
   int elements = first_elements(w_.frequency);
   const double floor = guess_->guess.given() ? guess_floor : 1.0;
   // A sketch of an orbit may pass a collision; elements for it serve no other path.
-  const bool colliding = problem_.periodic && !guess_->guess.motion && elements > most_launched &&
+  const bool colliding = problem_.periodic && !guess_->guess.motion() && elements > most_launched &&
                          w_.frequency.grading(floor) > collision;
   if (colliding) elements = most_launched;
   if (elements > path_.elements() || w_.frequency.grading(floor) >= mild_grading) {
     mesh_ = w_.frequency.mesh(elements, floor);
     start(mesh_, bend_);
   }
-  if (guess_->guess.motion && !mesh_of_motion()) resolve_guess();
+  if (guess_->guess.motion() && !mesh_of_motion()) resolve_guess();
   end_at_kinks_of_guess();
   return colliding ? GuessKind::colliding : GuessKind::usable;
 }
@@ -65,8 +72,7 @@ void Search::end_at_kinks_of_guess() {
 /// find one by one: each of them covers as many steps. So they do beside a collision, where the frequency
 /// asks for more. False elsewhere.
 bool Search::mesh_of_motion() {
-  const std::vector<double>& tau = guess_->guess.tau;
-  const std::size_t samples = tau.size() - 1, wanted = samples / samples_an_element;
+  const std::size_t wanted = steps_of(guess_->guess) / steps_an_element;
   const std::size_t elements = (wanted / most_lanes + 1) * most_lanes;
   const bool many = wanted >= least_kept && wanted <= most_kept;
   const bool collides = w_.frequency.grading(guess_floor) > collision;
@@ -89,9 +95,8 @@ void Search::put_on_motion(std::size_t elements) {
 /// elements follow it only relative to its whole range. They are kept, whatever the tolerance. False where
 /// they are already, or for other guesses.
 bool Search::search_on_steps_of_motion() {
-  if (!guess_->guess.motion || refinement_.mesh_kept()) return false;
-  const std::size_t wanted = (guess_->guess.tau.size() - 1) / samples_a_step_of_motion;
-  const std::size_t elements = (wanted / most_lanes + 1) * most_lanes;
+  if (!guess_->guess.motion() || refinement_.mesh_kept()) return false;
+  const std::size_t elements = (steps_of(guess_->guess) / most_lanes + 1) * most_lanes;
   if (elements <= static_cast<std::size_t>(path_.elements()) || elements > most_kept) return false;
   put_on_motion(elements);
   refinement_.keep_mesh();
@@ -115,7 +120,7 @@ bool Search::search_with_double_digits() {
 bool Search::resolve_guess() {
   bool finer_found = false;
   const double goal =
-      guess_->guess.motion ? std::clamp(options_.tolerance, best_guess_goal, guess_goal) : guess_goal;
+      guess_->guess.motion() ? std::clamp(options_.tolerance, best_guess_goal, guess_goal) : guess_goal;
   const int samples = static_cast<int>(guess_->guess.tau.size());
   for (int pass = 0; pass < most_passes; ++pass) {
     const ElementTables& tables = refinement_.tables();

@@ -12,26 +12,28 @@ namespace scanned_motions {
 
 /// An integrator's; what one with variations costs, by that of a motion alone; and one where velocities
 /// follow from momenta by Newton's method.
-inline constexpr int most_integrator_steps = 2000, variations_cost = 2, implicit_cost = 6;
+inline constexpr int most_integrator_steps = 3000, variations_cost = 2, implicit_cost = 6;
 
 }  // namespace scanned_motions
 
 namespace arrivals {
 
-/// Of an integrator's step, relative: of motions that are led to the end, and of those that are looked along.
-inline constexpr double fine_step = 1e-8, coarse_step = 1e-6;
+/// Of an integrator's step, relative: of motions that are looked along.
+inline constexpr double coarse_step = 1e-6;
 inline constexpr int samples_a_step = 4;
 /// Directions of two coordinates, and how often they are halved where passages are further apart than this
 /// part of the extent, or one that is not too far has no partner.
 inline constexpr int sectors = 48, most_halvings = 5;
 inline constexpr double near_passage = 0.3, far_passage = 0.5;
-/// Unknowns are relative to a fast velocity, and the logarithm of the time. A motion has arrived where it
-/// misses the end by this part of the extent.
-inline constexpr double least_miss = 1e-6;
 inline constexpr int most_newton_steps = 6;
-/// Steps of Newton's method shrink by this, from at most the second; one as short as the last leaves about
-/// its square.
-inline constexpr double contraction = 0.7, longest_correction = 0.3, quadratic = 3e-4;
+/// Unknowns are relative to a fast velocity, and the logarithm of the time. Steps of Newton's method shrink by
+/// this, from at most the second.
+inline constexpr double contraction = 0.7, longest_correction = 0.3;
+/// Errors of an integrator's step, relative, and the last step of Newton's method, whose square by the extent
+/// is a miss that is none: along a curve, and of motions that arrive. Those that pass a centre closely time
+/// after time amplify what they miss: the elements take them only where they are this near.
+inline constexpr double step_error_along = 1e-8, last_step_along = 1e-3;
+inline constexpr double step_error_arriving = 1e-12, last_step_arriving = 1e-6;
 /// Along a curve, and where it turns.
 inline constexpr double first_length = 0.02, longest_length = 0.2, least_length = 1e-5;
 inline constexpr double sharpest_turn = 0.9, mild_turn = 0.98;
@@ -143,7 +145,7 @@ namespace from_motions {
 
 /// Of an integrator's step, relative: a guess need not be better.
 inline constexpr double step_error = 1e-8;
-inline constexpr int most_integrator_steps = 1000, samples_a_step = 16;
+inline constexpr int most_integrator_steps = 3000, samples_a_step = 16;
 /// So many of its steps evaluate L about as often as one of Newton's.
 inline constexpr int steps_a_count = 8;
 /// Added to the mean velocity, in turn: of the extent of the guess times the frequency along it.
@@ -290,10 +292,8 @@ inline constexpr double longest_element = 2.0;
 inline constexpr double guess_goal = 1e-5, best_guess_goal = 1e-8, slope_goal = 100, guess_cut = 4;
 inline constexpr double guess_floor = 0.25;
 inline constexpr int most_passes = 10, highest_guess_degree = 12;
-/// Samples of a motion that its integrator takes in a step.
-inline constexpr std::size_t samples_a_step_of_motion = 64;
-/// Samples of a motion, elements that follow it, and their degree.
-inline constexpr std::size_t samples_an_element = 320, least_kept = 1024, most_kept = 1 << 15;
+/// Steps of an integrator, elements that follow them, and their degree.
+inline constexpr std::size_t steps_an_element = 5, least_kept = 1024, most_kept = 1 << 15;
 inline constexpr int kept_degree = 7;
 /// Their degree where a step amplifies all that doubles have lost.
 inline constexpr int exact_degree = 12;

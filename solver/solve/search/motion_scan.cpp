@@ -37,7 +37,7 @@ bool scale_to_energy(const Lagrangian& lagrangian, std::span<const double> q, do
 }
 
 Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
-                  double duration, const std::function<bool()>& count) {
+                  double duration, double step_error, const std::function<bool()>& count) {
   const auto more = [&count](int steps) {
     return steps < most_integrator_steps && (steps % steps_a_count > 0 || count());
   };
@@ -45,7 +45,7 @@ Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::
   if (!sample_motion<double>(Flow(lagrangian), q, v, 0, duration,
                              {step_error, samples_a_step, duration, more}, samples))
     return {};
-  return {std::move(samples.tau), std::move(samples.q), true};
+  return {std::move(samples.tau), std::move(samples.q), samples_a_step};
 }
 
 MotionScan::MotionScan(const Problem& problem, Search& search) : problem_(problem), search_(search) {
@@ -171,8 +171,8 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
   arrivals_->count_by(more);
   const auto take = [&](const Arrivals::Arrival& arrival) {
     const Eigen::VectorXd v = velocity(arrival.w);
-    const Guess motion =
-        motion_from(lagrangian, {start_.data(), n}, {v.data(), n}, arrival.time, [] { return true; });
+    const Guess motion = motion_from(lagrangian, {start_.data(), n}, {v.data(), n}, arrival.time,
+                                     limits::arrivals::step_error_arriving, [] { return true; });
     if (motion.given()) visit(motion, arrival.time);
   };
   if (given.free) {
@@ -201,7 +201,7 @@ bool MotionScan::next(double reach) {
   const std::span<const double> from(start_.data(), n);
   if (given.free && !scale_to_energy(*problem_.lagrangian, from, *given.energy, {v.data(), n})) return false;
   const double duration = given.free ? part * reach : given.value;
-  const Guess motion = motion_from(*problem_.lagrangian, from, {v.data(), n}, duration,
+  const Guess motion = motion_from(*problem_.lagrangian, from, {v.data(), n}, duration, step_error,
                                    [this] { return search_.count_step(); });
   return motion.given() && search_.connect(motion, duration);
 }

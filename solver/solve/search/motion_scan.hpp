@@ -19,9 +19,10 @@ namespace extremal {
 bool scale_to_energy(const Lagrangian& lagrangian, std::span<const double> q, double energy,
                      std::span<double> v);
 
-/// The motion from (q, v) at t = 0; none where the integration fails, or `count` allows no more steps.
+/// The motion from (q, v) at t = 0, with this error of a step; none where the integration fails, or `count`
+/// allows no more steps.
 Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
-                  double duration, const std::function<bool()>& count);
+                  double duration, double step_error, const std::function<bool()>& count);
 
 inline constexpr const char* from_motion = "homotopy in the ends from a motion";
 inline constexpr const char* from_arrival = "newton from a motion that arrives";

@@ -74,15 +74,15 @@ Search::Pursuit Search::pursue(const char* strategy) {
 
 /// Few elements and doubles are faster, and often good enough. Where all attempts fail, what the first one
 /// met tells whether others may lead to an extremal.
-Search::Pursuit Search::pursue_guess() {
-  const Pursuit first = pursue(from_guess);
+Search::Pursuit Search::pursue_guess(const char* strategy) {
+  const Pursuit first = pursue(strategy);
   const std::vector<double> mesh = mesh_;
   Pursuit result = first;
   for (const auto more : {&Search::search_on_steps_of_motion, &Search::search_with_double_digits}) {
     if (result.result == Refinement::Result::converged || options_.deadline.passed()) return result;
     if (!(this->*more)()) continue;
     refinement_.allow(allowance_);
-    result = pursue(from_guess);
+    result = pursue(strategy);
   }
   if (result.result == Refinement::Result::converged) return result;
   mesh_ = mesh;
@@ -283,7 +283,7 @@ void Search::renew(double share) { refinement_.allow(static_cast<int>(share * al
 /// Cheapest first; but where the user has given a guess, paths near it before noise.
 bool Search::from_other_guesses(GuessKind guess) {
   if (guess == GuessKind::colliding && from_noise(collision_noises)) return true;
-  if (problem_.guess.given() && !problem_.guess.motion && resolve_guess() &&
+  if (problem_.guess.given() && !problem_.guess.motion() && resolve_guess() &&
       found("newton from the guess on finer elements"))
     return true;
   if (by_descent(mesh_) || by_gradient_flow() || from_finer_elements()) return true;
@@ -315,7 +315,7 @@ const Outcome& Search::run_near_guess() {
   if (prepare() == GuessKind::undefined) return outcome_;
   // Between fixed ends a path may well be at rest.
   if (problem_.ends.free > 0) outcome_.first_range = scales(path_, refinement_.tables()).range;
-  auto [result, doubtful] = pursue_guess();
+  auto [result, doubtful] = pursue_guess(from_guess);
   if (problem_.infinite) {
     const bool converged = result == Refinement::Result::converged;
     if ((!converged || leaves_open()) && on_family(converged)) result = Refinement::Result::converged;
@@ -329,7 +329,7 @@ const Outcome& Search::run(Acceptance* acceptance) {
   const GuessKind guess = prepare();
   if (guess == GuessKind::undefined) return outcome_;
   acceptance_ = acceptance;
-  auto [result, doubtful] = pursue_guess();
+  auto [result, doubtful] = pursue_guess(from_guess);
   if (result != Refinement::Result::converged && on_family(false)) {
     result = Refinement::Result::converged;
     doubtful = false;

@@ -87,7 +87,7 @@ class Search {
   void end_at_kinks_of_guess();
   bool resolve_guess();
   Pursuit pursue(const char* strategy);
-  Pursuit pursue_guess();
+  Pursuit pursue_guess(const char* strategy);
   bool collapsed() const;
   Refinement::Result accepted();
   bool found(const char* strategy);

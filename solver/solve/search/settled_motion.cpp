@@ -154,7 +154,7 @@ bool SettledMotion::sample(const State& start, double duration) {
   }
   if (!(range > least_range * size_[0])) return false;
   orbit_.tau = std::move(samples.tau);
-  orbit_.motion = true;
+  orbit_.samples_a_step = settling_samples;
   for (std::size_t k = 0; k < samples.q.size(); k += n)
     for (int copy = 0; copy < 2; ++copy)
       orbit_.q.insert(orbit_.q.end(), samples.q.begin() + k, samples.q.begin() + k + n);

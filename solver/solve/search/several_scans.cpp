@@ -102,8 +102,8 @@ bool Several::scan_starts() {
     for (const Eigen::VectorXd& w : zeros) {
       const std::optional<StartScan::State> start = starts_.state(w);
       if (!start) continue;
-      const Guess motion =
-          motion_from(*problem_.lagrangian, start->q, start->v, problem_.duration.value, [] { return true; });
+      const Guess motion = motion_from(*problem_.lagrangian, start->q, start->v, problem_.duration.value,
+                                       limits::from_motions::step_error, [] { return true; });
       search_.renew(patience);
       ++scanned_;
       if (motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start)) keep();
