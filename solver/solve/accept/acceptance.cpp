@@ -271,8 +271,8 @@ void read_index_at_rest(const Problem& problem, SecondVariation& variation, Solu
   leave_out_later_times(solution);
 }
 
-/// A null direction is a motion beside the orbit, which position and momentum determine: more of them say that
-/// L depends on the path by roundoff alone, as where masses vanish.
+/// A null direction is a motion beside the orbit, which position and momentum determine: more of them say
+/// that L depends on the path by roundoff alone, as where masses vanish.
 void judge_nullity(const Problem& problem, Solution& solution) {
   const int most = 2 * problem.coordinates(), null = solution.nullity.value_or(0);
   if (null <= most) return;
