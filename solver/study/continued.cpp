@@ -11,7 +11,6 @@
 #include "problem/manifold.hpp"
 #include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
-#include "solution/on_manifold.hpp"
 #include "study/boundary.hpp"
 #include "study/constraints.hpp"
 #include "study/continued_by_values.hpp"
@@ -216,13 +215,6 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
   return continued;
 }
 
-/// By the constraints that hold there.
-void move_point_onto_manifold(const ProblemFamily& family, BranchPoint& point) {
-  std::optional<Problem> there;
-  if (family.varied == Varied::parameter) there = family.at(point.parameter);
-  move_onto_manifold(there ? *there : family.problem, point.solution);
-}
-
 }  // namespace
 
 Continued read_continued(const Scene& scene, const System& system, const Problem& problem) {
@@ -267,12 +259,7 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
   followed.parameter = continued.parameter;
   followed.names = study.problem.names;
   while (diagram.advance()) {
-    BranchPoint point = diagram.point();
-    if (study.problem.manifold) {
-      move_point_onto_manifold(continued.family, point);
-      if (!point.solution.converged()) break;
-    }
-    followed.points.push_back(std::move(point));
+    followed.points.push_back(diagram.point());
     if (progress) progress(followed.points.back());
   }
   followed.branches = diagram.branches();

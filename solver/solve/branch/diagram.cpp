@@ -4,6 +4,7 @@
 
 #include "problem/copies.hpp"
 #include "solution/in_phase_space.hpp"
+#include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/branch/other_branches.hpp"
 #include "solve/guess/hamilton_path.hpp"
@@ -80,6 +81,26 @@ Diagram::Diagram(ProblemFamily family, ContinuationOptions options)
 }
 
 bool Diagram::advance() {
+  while (to_next_point()) {
+    point_ = current_->point();
+    state_in_coordinates_of_scene();
+    if (point_.solution.converged()) {
+      point_.branch = static_cast<int>(branches_.size()) - 1;
+      ++branches_.back().points;
+      if (const std::optional<BranchStart>& start = current_->start()) find_others(*start);
+      ++count_;
+      return true;
+    }
+    BranchRecord& record = branches_.back();
+    record.end = record.points > 0 ? BranchEnd::limit : BranchEnd::not_started;
+    record.message = point_.solution.message;
+    if (!begin_next()) current_.reset();
+  }
+  return false;
+}
+
+/// False where all branches have ended.
+bool Diagram::to_next_point() {
   while (current_ && !current_->advance()) {
     if (count_ == 0 && current_->singular_at_first() && family_.varied == Varied::duration) {
       family_ = by_parameter(std::move(family_));
@@ -91,20 +112,20 @@ bool Diagram::advance() {
   }
   if (!current_) return false;
   note();
-  point_ = current_->point();
+  return true;
+}
+
+/// What was found for two copies, in phase space or with constraints. A path off these is no solution.
+void Diagram::state_in_coordinates_of_scene() {
   if (with_forces_)
     if (const std::optional<Problem> one = with_forces_->at(point_.parameter))
       point_.solution = one_copy(*one, std::move(point_.solution), nullptr);
-  if (family_.problem.phase) {
-    const bool other = family_.varied == Varied::parameter;
-    const std::optional<Problem> there = other ? family_.at(point_.parameter) : std::nullopt;
-    observe_in_phase_space(there ? *there : family_.problem, point_.solution);
-  }
-  point_.branch = static_cast<int>(branches_.size()) - 1;
-  ++branches_.back().points;
-  if (const std::optional<BranchStart>& start = current_->start()) find_others(*start);
-  ++count_;
-  return true;
+  if (!family_.problem.phase && !family_.problem.manifold) return;
+  const bool other = family_.varied == Varied::parameter;
+  const std::optional<Problem> there = other ? family_.at(point_.parameter) : std::nullopt;
+  const Problem& problem = there ? *there : family_.problem;
+  if (problem.phase) observe_in_phase_space(problem, point_.solution);
+  if (problem.manifold) move_onto_manifold(problem, point_.solution);
 }
 
 void Diagram::note() {

@@ -44,6 +44,8 @@ class Diagram {
   };
   void find_others(const BranchStart& start);
   bool begin_next();
+  bool to_next_point();
+  void state_in_coordinates_of_scene();
   void note();
 
   std::optional<ProblemFamily> with_forces_;  ///< of one copy, if the family is of two

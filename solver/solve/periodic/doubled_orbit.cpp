@@ -26,6 +26,20 @@ EndFunction halfway(EndFunction where, const ClosingMap& map) {
   };
 }
 
+/// q, and after it R q + c.
+Guess doubled(const Guess& guess, const ClosingMap& map) {
+  const Eigen::Index n = map.c.size();
+  Guess twice = guess;
+  for (double& tau : twice.tau) tau /= 2;
+  // The last sample of the first half is the first of the second.
+  for (std::size_t k = 1; k < guess.tau.size(); ++k) {
+    const VectorXd q = map.r * Map<const VectorXd>(guess.q.data() + k * n, n) + map.c;
+    twice.tau.push_back(0.5 + guess.tau[k] / 2);
+    twice.q.insert(twice.q.end(), q.begin(), q.end());
+  }
+  return twice;
+}
+
 }  // namespace
 
 Problem doubled(const Problem& problem) {
@@ -43,7 +57,7 @@ Problem doubled(const Problem& problem) {
   }
   twice.duration.value *= 2;
   if (twice.duration.where) twice.duration.where = halfway(std::move(twice.duration.where), map);
-  twice.guess = {};
+  twice.guess = doubled(problem.guess, map);
   return make_problem(std::move(twice));
 }
 
