@@ -283,6 +283,36 @@ TEST(Minimisers, SaddlesAreLeftBothWays) {
   EXPECT_NEAR(at(lowest[0].trajectory, 0.5).q[1], -at(lowest[1].trajectory, 0.5).q[1], 1e-7);
 }
 
+/// The straight line keeps the mirror symmetry, and runs over the top of a hill: round it the action is less.
+TEST(Minimisers, SymmetricSaddlesAreLeft) {
+  for (const double height : {2.0, 4.0}) {
+    const auto hill = trace(2, [=](auto q, auto v, auto) {
+      return (v[0] * v[0] + v[1] * v[1]) / 2.0 + height * exp(-(q[0] * q[0] + 2.0 * q[1] * q[1]));
+    });
+    const Solution s = solve(fixed_ends(hill, {3, 0}, {-3, 0}, 25), within(1e-9));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_EQ(s.morse_index, 0) << height;
+    EXPECT_GT(std::abs(at(s.trajectory, 12.5).q[1]), 0.1);
+  }
+}
+
+/// The action of Freidlin and Wentzell for two coupled double wells, V = Σ (x⁴/4 − x²/2) + k (x − y)²/2. The
+/// most probable path from (−1, −1) to (1, 1) turns one of them after the other: up to a saddle, where xy =
+/// −k and x² + y² = 1 − k, down to (a, −a) with a² = 1 − 2k, and over a second saddle. Each ascent costs
+/// twice its height.
+TEST(Minimisers, OneWellAfterTheOther) {
+  const double k = 0.1, a = std::sqrt(1 - 2 * k), T = 60;
+  const double saddle = ((1 - k) * (1 - k) - 2 * k * k) / 4 - (1 - k) / 2 + k * (1 + k) / 2;
+  const double between = a * a * a * a / 2 - a * a + 2 * k * a * a;
+  const auto drift = trace(2, [=](auto q, auto v, auto) {
+    const auto x = v[0] + q[0] * q[0] * q[0] - q[0] + k * (q[0] - q[1]);
+    const auto y = v[1] + q[1] * q[1] * q[1] - q[1] + k * (q[1] - q[0]);
+    return (x * x + y * y) / 2.0;
+  });
+  expect_minimum(solve(fixed_ends(drift, {-1, -1}, {1, 1}, T), within(1e-9)),
+                 2 * (saddle + 0.5) + 2 * (saddle - between), 2e-7);
+}
+
 TEST(Minimisers, MostProbablePaths) {
   for (const double T : {12.0, 30.0, 100.0}) {
     const std::vector<Solution> lowest = Solver().solve_all(maier_stein(T), within(1e-8), 2);

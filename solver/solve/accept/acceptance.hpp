@@ -34,6 +34,8 @@ class Acceptance {
 
   /// The solution that was accepted; else the first that was refused; else why the last path failed.
   Solution result(const Outcome& last);
+  /// That was accepted.
+  const Solution& solution() const { return *solution_; }
   /// Of the solution that was accepted; 0 if it has none.
   int nullity() const { return solution_ ? solution_->nullity.value_or(0) : 0; }
   /// Whether the last path is refused for the error that the tolerance leaves, see judge_isolation().

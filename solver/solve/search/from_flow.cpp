@@ -17,8 +17,26 @@ namespace extremal {
 namespace flow_limits = limits::gradient_flow;
 namespace rest_limits = limits::balance;
 
-/// Downhill along the gradient flow of the action.
+/// Downhill along the gradient flow of the action. A flow keeps symmetries of its first path, which may lead
+/// to a saddle, or to rests that hardly end: one of a bent path does not.
 bool Search::by_gradient_flow(double side) {
+  if (flow_from_guess(bend_, side)) {
+    leave_saddles();
+    return true;
+  }
+  return acceptance_ && flow_aside(INFINITY);
+}
+
+/// From the guess bent by noise, more and more, to an extremal of less action.
+bool Search::flow_aside(double action) {
+  const unsigned most = problem_.coordinates() > 1 ? flow_limits::bends_aside : 0;
+  for (unsigned seed = 1; seed <= most && !options_.deadline.passed(); ++seed)
+    if (flow_from_guess({flow_limits::bend_aside * seed, seed}, 1) && acceptance_->solution().action < action)
+      return true;
+  return false;
+}
+
+bool Search::flow_from_guess(const Bend& bend, double side) {
   const int elements = GradientFlow::elements_for(problem_);
   if (elements == 0) return false;
   const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
@@ -26,8 +44,24 @@ bool Search::by_gradient_flow(double side) {
   refinement_.open(mesh, 1);
   path_.reset(linear, mesh, problem_.duration.value);
   start_path(*guess_, ends_, linear, path_);
-  bend_path(problem_, bend_, linear, path_);
+  bend_path(problem_, bend, linear, path_);
   return flow_from(0, side);
+}
+
+/// Saddles that were accepted are left for extremals of less action.
+void Search::leave_saddles() {
+  for (int left = 0; left < flow_limits::most_saddles; ++left) {
+    if (!acceptance_ || acceptance_->solution().morse_index.value_or(0) == 0) return;
+    const Solution saddle = acceptance_->solution();
+    const Outcome found = outcome_;
+    const auto left_to = [&](double side) {
+      return descend_from(saddle.trajectory, side) && acceptance_->solution().action < saddle.action;
+    };
+    if (left_to(1) || left_to(-1) || flow_aside(saddle.action)) continue;
+    outcome_ = found;
+    refinement_.rebind();
+    return;
+  }
 }
 
 bool Search::descend_from(const Trajectory& saddle, double side) {

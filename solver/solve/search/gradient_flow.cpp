@@ -210,7 +210,7 @@ GradientFlow::Result GradientFlow::step() {
 bool GradientFlow::run(double away) {
   if (!begin()) return false;
   measure_curvature();
-  if (away != 0 && !leave_saddle(away)) return false;
+  if (away != 0 && !leave_saddle(away, 0)) return false;
   wanted_ = faithful * curvature_;
   const double first = scales(path_, tables_).magnitude;
   const int affordable = affordable_steps(path_.coordinates(), path_.elements());
@@ -219,7 +219,7 @@ bool GradientFlow::run(double away) {
     const Result result = step();
     if (result == Result::failed) return false;
     if (result == Result::minimal) {
-      if (!leave_saddle(side_ * kick) && !shorten_rest()) return true;
+      if (!leave_saddle(side_ * kick, negative) && !shorten_rest()) return true;
       left = steps;
       continue;
     }
@@ -306,13 +306,13 @@ double GradientFlow::lowest_eigenvalue() {
   return 1 / growth - shift_;
 }
 
-bool GradientFlow::leave_saddle(double size) {
+bool GradientFlow::leave_saddle(double size, double least) {
   shift_to(0);
   if (factor()) return false;
   double shift = final_shift * stiffness_;
   for (shift_to(shift); !factor(); shift_to(shift *= 2))
     if (!count_() || !(shift < most_shift * stiffness_)) return false;
-  const bool saddle = lowest_eigenvalue() < -negative * stiffness_;
+  const bool saddle = lowest_eigenvalue() < -least * stiffness_;
   saved_.copy_values(path_);
   const double before = value();
   range_ = scales(path_, tables_).q;

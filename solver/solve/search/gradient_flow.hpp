@@ -53,7 +53,7 @@ class GradientFlow {
   bool shorten_rest();
   bool redistribute();
   double lowest_eigenvalue();
-  bool leave_saddle(double size);
+  bool leave_saddle(double size, double least);
 
   const Problem& problem_;
   Path& path_;

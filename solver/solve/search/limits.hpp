@@ -204,6 +204,11 @@ inline constexpr double share = 0.5;
 /// The action has no minimum, it seems, where the path grows by this factor in so many steps, and on. Where
 /// one is rather reached as a rest becomes shorter, that is done, so often.
 inline constexpr int patient_steps = 40, most_falls = 8;
+/// Saddles that are left, one after the other; and guesses that keep no symmetry, each bent by this more, by
+/// the extent.
+inline constexpr int most_saddles = 4;
+inline constexpr unsigned bends_aside = 4;
+inline constexpr double bend_aside = 0.1;
 inline constexpr double growing = 1.5;
 /// Passes of smoothing over the density of nodes, and the part of nodes that are spread evenly.
 inline constexpr int smoothings = 4;
