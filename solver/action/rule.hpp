@@ -43,7 +43,7 @@ struct Basis {
 /// 1 <= degree <= max_degree. A point that equals a node as lobatto_rule returns it is that node: its values
 /// are exactly 0 and 1.
 Basis lobatto_basis(int degree, std::span<const double> points);
-/// The same at one point, s + 1 numbers each; without derivatives if there is no place for them.
+/// The same at one point, s + 1 numbers each, in doubles; without derivatives if there is no place for them.
 void lobatto_basis_at(int degree, double point, double* value, double* derivative);
 /// The same at the Lobatto nodes themselves, kept for the whole run.
 const Basis& lobatto_nodal_basis(int degree);
