@@ -61,8 +61,12 @@ bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, 
   // A state far off the motion must not spoil what the next search begins from.
   last_v_ = v_;
   if (!solve_newton(q, p, t)) {
-    v_ = last_v_;
-    return false;
+    // Where momenta have a bound, they hardly depend on a velocity that is too fast: no step leads back.
+    std::ranges::fill(v_, nearly_at_rest);
+    if (hamiltonian_ || !solve_newton(q, p, t)) {
+      v_ = last_v_;
+      return false;
+    }
   }
   return order != Order::hessian || (point_.evaluate(q, v_, t, order) && mass_.factor(point_.vv()));
 }

@@ -168,8 +168,8 @@ TEST(Several, LambertWithUpToSixRevolutions) {
   }
 }
 
-/// From a circle of 8,800 km to one of 42,900 km around the Earth in three days, in units of the first radius and
-/// of its period by 2π: half of the ellipses pass the centre at a fifteenth of it, up to fourteen times.
+/// From a circle of 8,800 km to one of 42,900 km around the Earth in three days, in units of the first radius
+/// and of its period by 2π: half of the ellipses pass the centre at a fifteenth of it, up to fourteen times.
 TEST(Several, LambertByCloseEncounters) {
   const double unit = std::sqrt(std::pow(8800.0, 3) / 398600.4418), ratio = 42900 / 8800.0;
   const Values start{1, 0}, end{ratio * std::cos(0.7), ratio * std::sin(0.7)};
@@ -182,6 +182,26 @@ TEST(Several, LambertByCloseEncounters) {
   std::sort(energies.begin(), energies.end());
   ASSERT_EQ(energies.size(), exact.size());
   EXPECT_LT(largest_difference(energies, exact), 1e-7);
+}
+
+/// Soap films between rings of radius 1, y = a cosh(t/a) about the middle, a shallow and a deep one. Momenta
+/// are bounded by y, and hardly depend on velocities as fast as those at the deep one's ends.
+TEST(Several, Catenaries) {
+  const auto film = trace(1, [](auto q, auto v, auto) { return q[0] * sqrt(1.0 + v[0] * v[0]); });
+  for (const double width : {0.6, 1.0, 1.3}) {
+    Values grid, exact;
+    for (int k = 1; k < 5000; ++k) grid.push_back(k / 5000.0);
+    for (const double a : roots(grid, [&](double a) { return a * std::cosh(width / (2 * a)) - 1; }))
+      exact.push_back(a * a * (width / a + std::sinh(width / a)) / 2);
+    ASSERT_EQ(exact.size(), 2u);
+    std::ranges::sort(exact);
+    const std::vector<Solution> found = solve_all(fixed_ends(film, {1}, {1}, width), 5);
+    ASSERT_EQ(found.size(), 2u) << width;
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_NEAR(found[k].action, exact[k], 1e-9);
+      EXPECT_EQ(found[k].morse_index, k);
+    }
+  }
 }
 
 /// Actions of x'' = x − x³ from `start` to `end` in T: shooting finds every sign of q(T) − end on a fine grid
