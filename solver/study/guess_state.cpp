@@ -270,10 +270,15 @@ FollowedMotion exact_motion(const InitialState& state, double from, double to, c
   return sample<Extended>(ExtendedFlow<Extended>(lagrangian), state, from, to, bounds, std::ref(exact));
 }
 
+/// Whether motions can be followed with more digits.
+bool has_digits(const Bounds& bounds) {
+  return !bounds.hamiltonian && !bounds.problem.copies &&
+         ExtendedFlow<DoubleDouble>::suits(*bounds.problem.lagrangian);
+}
+
 /// Whether a motion takes more steps than its digits are good for, and more digits are known.
 bool asks_for_digits(const SampledMotion& samples, const Bounds& bounds) {
-  return !bounds.hamiltonian && !bounds.problem.copies && samples.tau.size() > many_steps * samples_a_step &&
-         ExtendedFlow<DoubleDouble>::suits(*bounds.problem.lagrangian);
+  return samples.tau.size() > many_steps * samples_a_step && has_digits(bounds);
 }
 
 /// Where it takes many steps, with as many digits as L can be evaluated in.
@@ -363,15 +368,19 @@ InitialState moved(const InitialState& state, const PhasePoint& change, const La
 
 /// A state given to ten digits may lead to encounters later or earlier than a closed orbit does, by more than
 /// they last. The state is corrected by shooting as long as corrections become shorter, with one
-/// factorisation (natural monotonicity: Deuflhard, Newton Methods for Nonlinear Problems, 3.3). What is
+/// factorisation where that is by much (natural monotonicity: Deuflhard, Newton Methods for Nonlinear Problems, 3.3). What is
 /// solved for stays the stationary point of S_h near this motion.
 Halves closed_halves(InitialState state, const Bounds& bounds) {
   using namespace limits::closing_correction;
   const double duration = bounds.problem.duration.value;
   const ClosingMap map = closing_map(bounds.problem);
   FollowedMotion first = double_motion(state, 0, duration / 2, bounds);
-  if (!asks_for_digits(first, bounds))
-    return {std::move(first), motion_from(closed(map, state), duration, duration / 2, bounds)};
+  if (!asks_for_digits(first, bounds)) {
+    Halves near{std::move(first), motion_from(closed(map, state), duration, duration / 2, bounds)};
+    const double gap = near.gap();
+    if (gap <= easily_closed || !(gap <= most_apart) || !has_digits(bounds)) return near;
+    first = std::move(near.first);
+  }
   const double meeting = quietest(first) * duration;
   const auto halves_from = [&](const InitialState& start) -> Halves {
     return {exact_motion(start, 0, meeting, bounds),
@@ -380,18 +389,25 @@ Halves closed_halves(InitialState state, const Bounds& bounds) {
   Halves halves = halves_from(state);
   halves.hopeless = !(halves.gap() <= most_apart);
   if (halves.hopeless || halves.gap() <= easily_closed) return halves;
-  const ClosingCorrection correction(bounds.problem, halves.first.points, halves.second.points,
-                                     bounds.deadline);
+  const auto correction_of = [&bounds](const Halves& found) {
+    return ClosingCorrection(bounds.problem, found.first.points, found.second.points, bounds.deadline);
+  };
+  ClosingCorrection correction = correction_of(halves);
   if (!correction.valid()) return halves;
   PhasePoint change = correction.change(halves.apart());
   for (int k = 0; k < most_corrections && halves.gap() > closed_well; ++k) {
-    if (!(correction.size(change) > last_digits)) break;
+    const double size = correction.size(change);
+    if (!(size > last_digits)) break;
     state = moved(state, change, *bounds.problem.lagrangian);
     Halves better = halves_from(state);
-    const PhasePoint rest = correction.change(better.apart());
-    if (!(correction.size(rest) <= least_gain * correction.size(change))) break;
+    change = correction.change(better.apart());
+    const double gain = correction.size(change) / size;
+    if (!(gain <= least_gain)) break;
     halves = std::move(better);
-    change = rest;
+    if (gain <= good_gain) continue;
+    correction = correction_of(halves);
+    if (!correction.valid()) break;
+    change = correction.change(halves.apart());
   }
   return halves;
 }
