@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "problem/closing.hpp"
+#include "solve/accept/acceptance.hpp"
 #include "solve/branch/common_symmetries.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/search/search.hpp"
@@ -181,10 +182,11 @@ bool Continuation::begin_from_solve() {
   SolveOptions adaptive = options_.solve;
   adaptive.scheme.reset();
   adaptive.elements = 0;
+  Acceptance acceptance(family_.problem, adaptive, tracker_.workspace());
   Search search(family_.problem, adaptive, tracker_.workspace());
-  const Outcome& outcome = search.run();
-  if (outcome.status != Status::converged)
-    return stop(BranchEnd::not_started, "no extremal to begin with: " + outcome.message);
+  const Outcome& outcome = search.run(&acceptance);
+  if (const Solution first = acceptance.result(outcome); !first.converged())
+    return stop(BranchEnd::not_started, "no extremal to begin with: " + first.message);
   double at_rest = 0;
   for (const double x : family_.problem.guess.q) at_rest = std::max(at_rest, rest * std::abs(x));
   const bool by_parameter = family_.varied == Varied::parameter;
