@@ -60,10 +60,9 @@ MatrixXd metric_of(const Lagrangian& lagrangian, const Problem& problem) {
   return MatrixXd::Identity(n, n) / mean_mass(lagrangian, problem);
 }
 
-void put_constraints(const SystemTable& table, const System& system, const MatrixXd& metric, double rate,
+void put_constraints(const ConstrainedGraph& graph, const System& system, const MatrixXd& metric, double rate,
                      bool deferred, Problem& problem) {
-  ConstrainedSystem constrained =
-      constrained_system(make_constrained(table, system), system, metric, rate, deferred);
+  ConstrainedSystem constrained = constrained_system(graph, system, metric, rate, deferred);
   problem.lagrangian = std::move(constrained.lagrangian);
   problem.copies = std::move(constrained.copies);
   problem.manifold = std::move(constrained.manifold);
@@ -160,12 +159,14 @@ void constrain(const SystemTable& table, const System& system, double time, bool
   if (table.constraints.empty()) return;
   check_counts(table, system);
   problem.duration.value = time;
-  put_constraints(table, system, metric_of(*system.lagrangian, problem),
+  put_constraints(make_constrained(table, system), system, metric_of(*system.lagrangian, problem),
                   (problem.initial ? growth_of_motions : growth) / time, deferred, problem);
 }
 
-void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem) {
-  put_constraints(table, system, other.metric(), other.rate(), false, problem);
+void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem,
+                    const std::vector<std::string>& active) {
+  put_constraints(make_constrained(table, system, active), system, other.metric(), other.rate(), false,
+                  problem);
 }
 
 ConstrainedGraph put_manifold_like(const Manifold& other, const SystemTable& table, const System& system,

@@ -23,8 +23,9 @@ struct EndPoints {
 /// not depend on t. Throws SceneError.
 void constrain(const SystemTable& table, const System& system, double time, bool deferred, Problem& problem);
 
-/// The same with the metric and ω of another problem of the family.
-void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem);
+/// The same with the metric and ω of another problem of the family. `active` as make_system().
+void constrain_like(const Manifold& other, const SystemTable& table, const System& system, Problem& problem,
+                    const std::vector<std::string>& active = {});
 
 /// The manifold alone, with the same; `problem` has the Lagrangian of the system. Returns both as
 /// expressions.

@@ -51,6 +51,13 @@ bool depends(const BoundaryTable& boundary, const std::set<std::string>& names) 
          std::ranges::any_of(boundary.conditions, [&](const Text& t) { return names_any(t.value, names); });
 }
 
+double size_of_ends(const EndPoints& ends) {
+  double largest = 0;
+  for (const std::vector<double>* end : {&ends.start, &ends.end})
+    for (const double x : *end) largest = std::max(largest, std::abs(x));
+  return size_of(largest);
+}
+
 bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
   return std::ranges::equal(a, b, [](const Triplet& x, const Triplet& y) {
     return x.row == y.row && x.column == y.column && x.value == y.value;
@@ -62,7 +69,7 @@ bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
 FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem, ProblemOf load)
     : scene_(scene),
       load_(std::move(load)),
-      made_anew_(problem.manifold || problem.extension),
+      made_anew_(problem.extension || (problem.manifold && problem.manifold->parts().only_minimal)),
       fit_(*scene.fit),
       table_(scene.system),
       boundary_(scene.boundary),
@@ -87,6 +94,7 @@ FittedScene::FittedScene(const Scene& scene, const System& system, const Problem
   read_parameters(scene, system);
   find_dependent(scene);
   find_open(system);
+  if (problem.manifold) near_ = end_points(problem);
   problem_.guess = {};
   problem_.reduction = nullptr;
   if (!made_anew_) check_dependence();
@@ -180,7 +188,10 @@ void FittedScene::find_open(const System& system) {
 void FittedScene::check_dependence() const {
   if (!boundary_depends_) return;
   std::vector<double> values = start();
-  values.resize(values.size() + open_.size());
+  for (const OpenEnd& open : open_) {
+    const int n = problem_.coordinates();
+    values.push_back(!problem_.manifold ? 0 : open.e < n ? near_.start[open.e] : near_.end[open.e - n]);
+  }
   const Numbers here = numbers(values);
   for (std::size_t j = 0; j < parameters_.size(); ++j) {
     double step = 0;
@@ -225,8 +236,21 @@ FittedScene::Numbers FittedScene::numbers(std::span<const double> values) const 
     numbers.relation.add(row, open_[k].e, 1);
   }
   numbers.duration = read_duration(boundary_, system);
+  if (problem_.manifold) complete_by_constraints(table_at(values), numbers);
   for (const std::string& name : active_) numbers.active.push_back(system.parameters.at(name).value.front());
   return numbers;
+}
+
+/// The other coordinates of the ends follow from the constraints, near the first path.
+void FittedScene::complete_by_constraints(const SystemTable& table, Numbers& numbers) const {
+  Problem ends = problem_;
+  ends.boundary = numbers.relation;
+  ends.ends = solve_relation(ends.boundary);
+  if (!ends.duration.free) ends.duration.value = numbers.duration.value;
+  put_manifold_like(*problem_.manifold, table, make_system(table), ends);
+  EndPoints near = near_;
+  if (!complete_ends(scene_, near, ends)) refuse_partly_free(scene_, ends);
+  numbers.relation = std::move(ends.boundary);
 }
 
 /// Everything that may depend on a parameter, but for what closes a duration by a function.
@@ -239,13 +263,13 @@ std::vector<double> FittedScene::Numbers::list() const {
   return list;
 }
 
-std::vector<FittedScene::Numbers> FittedScene::around(std::span<const double> values, std::size_t parameter,
+std::vector<FittedScene::Numbers> FittedScene::around(std::span<const double> values, std::size_t unknown,
                                                       double& step) const {
-  step = part * size_of(values[parameter]);
+  step = part * (unknown < parameters_.size() ? size_of(values[unknown]) : size_of_ends(near_));
   std::vector<Numbers> result;
   std::vector<double> moved(values.begin(), values.end());
   for (const double place : places) {
-    moved[parameter] = values[parameter] + place * step;
+    moved[unknown] = values[unknown] + place * step;
     result.push_back(numbers(moved));
   }
   return result;
@@ -264,10 +288,13 @@ ObservedFormulas FittedScene::formulas(const SystemTable& table) const {
   return formulas;
 }
 
-Problem FittedScene::inner_problem(const Numbers& numbers, const System& system) const {
+Problem FittedScene::inner_problem(const Numbers& numbers, const SystemTable& table,
+                                   const std::vector<std::string>& active) const {
   Problem inner = problem_;
+  const System system = make_system(table, active);
   inner.lagrangian = system.lagrangian;
   inner.copies = system.copies;
+  if (problem_.manifold) constrain_like(*problem_.manifold, table, system, inner, active);
   inner.pair = nullptr;
   inner.boundary = numbers.relation;
   inner.ends = solve_relation(inner.boundary);
@@ -280,10 +307,11 @@ Problem FittedScene::inner_problem(const Numbers& numbers, const System& system)
 FittedProblem FittedScene::at(std::span<const double> values) const {
   const SystemTable table = table_at(values);
   const Numbers numbers = this->numbers(values);
-  const Problem inner = inner_problem(numbers, make_system(table, active_));
+  const Problem inner = inner_problem(numbers, table, active_);
   FittedProblem result;
   for (std::size_t j = 0; j < values.size(); ++j) result.changes.push_back(change(values, inner, j));
   result.problem = inner;
+  result.curved = inner.manifold && !open_.empty();
   if (inner.copies) {
     result.problem = pair_of(inner);
     result.problem.symmetries = problem_.pair->symmetries;
@@ -311,15 +339,11 @@ Scene FittedScene::scene_at(std::span<const double> values) const {
 }
 
 Problem FittedScene::problem(std::span<const double> values, const Guess& guess, double duration) const {
-  if (made_anew_) {
-    Problem made = load_(scene_at(values));
-    if (!made.manifold) made.guess = guess;
-    if (made.duration.free) made.duration.value = duration;
-    return made;
-  }
-  Problem problem = inner_problem(numbers(values), make_system(table_at(values)));
+  if (made_anew_) return load_(scene_at(values), guess, duration);
+  Problem problem = inner_problem(numbers(values), table_at(values), {});
   problem.guess = guess;
   if (problem.duration.free) problem.duration.value = duration;
+  if (problem.manifold) project_guess(scene_, near_, problem);
   return make_problem(std::move(problem));
 }
 
@@ -344,17 +368,21 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
   BoundaryRelation by = inner.boundary;
   std::ranges::fill(by.value, 0.0);
   std::ranges::fill(by.momenta, 0.0);
-  if (unknown >= parameters_.size()) {
+  if (unknown >= parameters_.size() && !inner.manifold) {
     by.value[by.rows - open_.size() + unknown - parameters_.size()] = 1;
     put_relation_change(inner, std::move(by), result);
     return result;
   }
-  result.parameters[unknown] = 1;
-  if (boundary_depends_ || active_.size() > parameters_.size()) {
+  const bool parameter = unknown < parameters_.size();
+  if (parameter) result.parameters[unknown] = 1;
+  if (boundary_depends_ || active_.size() > parameters_.size() || inner.manifold) {
     double step = 0;
     const std::vector<Numbers> numbers = around(values, unknown, step);
     std::vector<double> slopes(numbers.front().list().size(), 0);
     for (std::size_t k = 0; k < places.size(); ++k) {
+      if (!same_matrix(numbers[k].relation.matrix, inner.boundary.matrix))
+        throw SceneError(boundary_.at,
+                         "constraints determine other coordinates of the ends for parameters nearby");
       const std::vector<double> list = numbers[k].list();
       for (std::size_t i = 0; i < list.size(); ++i) slopes[i] += quotient_weights[k] * list[i] / step;
     }
@@ -364,7 +392,7 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
     };
     take(result.parameters);
     std::fill_n(result.parameters.begin(), parameters_.size(), 0.0);
-    result.parameters[unknown] = 1;
+    if (parameter) result.parameters[unknown] = 1;
     take(by.value);
     take(by.momenta);
     if (!inner.duration.free) result.duration = *next;

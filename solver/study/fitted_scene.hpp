@@ -8,6 +8,7 @@
 
 #include "scene/scene.hpp"
 #include "solve/fit/fit.hpp"
+#include "study/constraints.hpp"
 #include "study/fitting.hpp"
 #include "system/formula.hpp"
 
@@ -32,7 +33,8 @@ class FittedScene {
   /// Of the parameters in the scene.
   std::vector<double> start() const;
 
-  /// Whether constraints, integrals or waypoints ask for a problem that is made anew for all values.
+  /// Whether integrals, waypoints or ends in minimal coordinates alone ask for a problem that is made anew
+  /// for all values.
   bool made_anew() const { return made_anew_; }
 
   /// Values: those of the parameters, then of the ends. Throw SceneError, or FormulaError of a definition.
@@ -57,11 +59,13 @@ class FittedScene {
   void check_dependence() const;
   SystemTable table_at(std::span<const double> values) const;
   Numbers numbers(std::span<const double> values) const;
+  void complete_by_constraints(const SystemTable& table, Numbers& numbers) const;
   ObservedFormulas formulas(const SystemTable& table) const;
-  std::vector<Numbers> around(std::span<const double> values, std::size_t parameter, double& step) const;
+  std::vector<Numbers> around(std::span<const double> values, std::size_t unknown, double& step) const;
   ProblemChange change(std::span<const double> values, const Problem& inner, std::size_t unknown) const;
   void put_relation_change(const Problem& inner, BoundaryRelation by, ProblemChange& change) const;
-  Problem inner_problem(const Numbers& numbers, const System& system) const;
+  Problem inner_problem(const Numbers& numbers, const SystemTable& table,
+                        const std::vector<std::string>& active) const;
 
   Scene scene_;
   ProblemOf load_;
@@ -71,6 +75,7 @@ class FittedScene {
   BoundaryTable boundary_;
   System system_;
   Problem problem_;
+  EndPoints near_;  ///< with constraints: the ends of the first path
   std::vector<std::string> parameters_, active_;
   std::vector<OpenEnd> open_;
   std::vector<int> ends_left_;       ///< end coordinates that the relation leaves open

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -104,6 +105,11 @@ FitUnknown unknown_of(const OpenEnd& open, const Problem& problem, const Guess& 
   return unknown;
 }
 
+/// After which a problem has no motion to be observed.
+double latest_time(const Problem& problem) {
+  return problem.duration.free ? std::numeric_limits<double>::infinity() : problem.duration.value;
+}
+
 std::vector<std::string> names_of(const std::vector<FitUnknown>& unknowns) {
   std::vector<std::string> names;
   for (const FitUnknown& unknown : unknowns) names.push_back(unknown.name);
@@ -111,6 +117,15 @@ std::vector<std::string> names_of(const std::vector<FitUnknown>& unknowns) {
 }
 
 }  // namespace
+
+Guess observed_path(const FitTable& table, const std::string& scene, const System& system,
+                    const Problem& problem) {
+  const Observations data = read_observations(table, scene, system, latest_time(problem));
+  std::vector<char> observed(problem.coordinates(), false);
+  for (const ObservedColumn& column : data.columns)
+    if (column.kind == Observable::coordinate && column.values.size() > 1) observed[column.index] = true;
+  return std::ranges::all_of(observed, std::identity{}) ? guess_of(data, problem) : Guess{};
+}
 
 std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load) {
   const FitTable& table = *scene.fit;
@@ -121,9 +136,7 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
   FitTask& task = request->task;
   const Problem& problem = study.problem;
   if (table.loss) task.loss = find_loss(table.loss->value).value();
-  const double latest =
-      problem.duration.free ? std::numeric_limits<double>::infinity() : problem.duration.value;
-  task.data = read_observations(table, scene.path, study.system, latest);
+  task.data = read_observations(table, scene.path, study.system, latest_time(problem));
   task.guess = problem.guess.given() ? problem.guess : guess_of(task.data, problem);
   task.duration = problem.duration.value;
   task.coordinates = problem.coordinates();

@@ -8,6 +8,7 @@
 
 #include "scene/scene.hpp"
 #include "solve/fit/fit.hpp"
+#include "system/formula.hpp"
 
 /// \file [fit]: what observations determine of a scene.
 
@@ -15,14 +16,18 @@ namespace extremal {
 
 struct Study;
 
-/// The problem of a scene.
-using ProblemOf = std::function<Problem(const Scene& scene)>;
+/// The problem of a scene, with this guess in place of its own.
+using ProblemOf = std::function<Problem(const Scene& scene, const Guess& guess, double duration)>;
 
 /// What a scene asks for.
 struct FitRequest {
   FitTask task;                                    ///< but for the solver
   std::vector<std::string> parameters, open_ends;  ///< names of the unknowns, in their order
 };
+
+/// The path that was observed; no guess unless all coordinates were. Throws SceneError.
+Guess observed_path(const FitTable& table, const std::string& scene, const System& system,
+                    const Problem& problem);
 
 /// Reads [fit] of a scene, of which the rest of the study stands; `load` makes problems of scenes like it.
 /// Throws SceneError.

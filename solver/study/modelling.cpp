@@ -121,12 +121,15 @@ std::shared_ptr<const Lagrangian> make_copies(const SystemTable& table, int cons
 
 namespace {
 
-ConstrainedGraph constrained_with(const SystemTable& table, const std::vector<ForceText>& forces) {
+ConstrainedGraph constrained_with(const SystemTable& table, const std::vector<ForceText>& forces,
+                                  const std::vector<std::string>& active) {
   std::vector<ConstraintText> constraints;
   for (std::size_t k = 0; k < table.constraints.size(); ++k)
     constraints.push_back({table.constraints[k].value, fmt::format("constraints[{}]", k)});
   try {
-    return constrained_graph(system_text(table), constraints, forces);
+    SystemText text = system_text(table);
+    text.active = active;
+    return constrained_graph(text, constraints, forces);
   } catch (const FormulaError& e) {
     throw at_its_place(table, e);
   }
@@ -134,10 +137,11 @@ ConstrainedGraph constrained_with(const SystemTable& table, const std::vector<Fo
 
 }  // namespace
 
-ConstrainedGraph make_constrained(const SystemTable& table) { return constrained_with(table, {}); }
+ConstrainedGraph make_constrained(const SystemTable& table) { return constrained_with(table, {}, {}); }
 
-ConstrainedGraph make_constrained(const SystemTable& table, const System& system) {
-  return constrained_with(table, forces_of(table, system));
+ConstrainedGraph make_constrained(const SystemTable& table, const System& system,
+                                  const std::vector<std::string>& active) {
+  return constrained_with(table, forces_of(table, system), active);
 }
 
 }  // namespace extremal

@@ -31,8 +31,9 @@ std::shared_ptr<const Lagrangian> make_copies(const SystemTable& table, int cons
 
 /// The same with its constraints, as expressions; without its forces. Throws SceneError likewise.
 ConstrainedGraph make_constrained(const SystemTable& table);
-/// With its forces too; `system` has its names.
-ConstrainedGraph make_constrained(const SystemTable& table, const System& system);
+/// With its forces too; `system` has its names. `active` as make_system().
+ConstrainedGraph make_constrained(const SystemTable& table, const System& system,
+                                  const std::vector<std::string>& active = {});
 
 /// An error of a formula of the system, at its place.
 FaultyFormula at_its_place(const SystemTable& table, const FormulaError& error);

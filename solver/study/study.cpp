@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 
@@ -138,19 +139,22 @@ Problem with_guessed_ends(const Scene& scene, const ExtendedScene& parts, const 
   return problem;
 }
 
+/// Puts a guess, and that of a free duration, into a problem, in place of what its scene gives.
+using PutGuess = std::function<void(const System& system, Problem& problem)>;
+
 /// The guess, and what constraints make of it and of the ends, which become points near them. False as
 /// complete_ends().
 bool read_constrained_guess(const Scene& scene, const ExtendedScene& parts, const System& system,
-                            const Deadline& deadline, Purpose purpose, EndPoints& ends, Problem& problem) {
+                            const PutGuess& put_guess, Purpose purpose, EndPoints& ends, Problem& problem) {
   const bool extended = parts.extended;
   const bool deferred = !extended && purpose == Purpose::solution && only_near_guess(scene, purpose);
   const double time = expected_duration(scene, system, problem);
   if (!(time > 0)) {
-    read_guess(scene, system, deadline, problem);
+    put_guess(system, problem);
     constrain(scene.system, system, problem.duration.value, deferred, problem);
   } else {
     constrain(scene.system, system, time, deferred, problem);
-    read_guess(scene, system, deadline, problem);
+    put_guess(system, problem);
   }
   ends = end_points(extended ? with_guessed_ends(scene, parts, system, problem) : problem);
   check_independent(scene, ends, problem);
@@ -162,7 +166,7 @@ bool read_constrained_guess(const Scene& scene, const ExtendedScene& parts, cons
 }
 
 /// Nothing where a Hamiltonian needs phase space and `system` is its Legendre transform.
-std::optional<Problem> read_problem(const Scene& scene, const System& system, const Deadline& deadline,
+std::optional<Problem> read_problem(const Scene& scene, const System& system, const PutGuess& put_guess,
                                     Purpose purpose) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
@@ -195,9 +199,9 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   bool suited = true;
   EndPoints ends;
   if (constrained)
-    suited = read_constrained_guess(scene, parts, system, deadline, purpose, ends, problem);
+    suited = read_constrained_guess(scene, parts, system, put_guess, purpose, ends, problem);
   else
-    read_guess(scene, system, deadline, problem);
+    put_guess(system, problem);
   if (legendre && !has_legendre_transform(problem)) return std::nullopt;
   if (parts.extended) {
     read_extension(scene, parts, system, {suited, ends}, problem);
@@ -233,11 +237,10 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
 
 /// System and problem. A Hamiltonian has its Legendre transform where there is one, else it is in phase
 /// space.
-void read_law(const Scene& scene, Purpose purpose, Study& study) {
-  const Deadline deadline(study.budget);
+void read_law(const Scene& scene, const PutGuess& put_guess, Purpose purpose, Study& study) {
   const auto read = [&](Formulation formulation) {
     study.system = make_system(scene.system, {}, formulation);
-    std::optional<Problem> problem = read_problem(scene, study.system, deadline, purpose);
+    std::optional<Problem> problem = read_problem(scene, study.system, put_guess, purpose);
     if (problem) study.problem = *std::move(problem);
     return problem.has_value();
   };
@@ -248,10 +251,26 @@ void read_law(const Scene& scene, Purpose purpose, Study& study) {
   read(Formulation::phase_space);
 }
 
-/// With constraints a fit begins with, and leads to, a solution as any other.
-Scene without_fit(Scene scene) {
+void read_law(const Scene& scene, Purpose purpose, Study& study) {
+  const Deadline deadline(study.budget);
+  read_law(
+      scene, [&](const System& system, Problem& problem) { read_guess(scene, system, deadline, problem); },
+      purpose, study);
+}
+
+/// With constraints a fit begins with, and leads to, a solution as any other. Where the scene has no guess
+/// the data make the path near which the constraints and the ends are considered.
+void read_fitted_law(Scene scene, Purpose purpose, Study& study) {
+  const FitTable table = *scene.fit;
   scene.fit.reset();
-  return scene;
+  const Deadline deadline(study.budget);
+  read_law(
+      scene,
+      [&](const System& system, Problem& problem) {
+        read_guess(scene, system, deadline, problem);
+        if (!problem.guess.given()) problem.guess = observed_path(table, scene.path, system, problem);
+      },
+      purpose, study);
 }
 
 /// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
@@ -302,7 +321,10 @@ Study make_study(const Scene& scene, Purpose purpose) {
   study.options = read_options(scene.solve);
   if (scene.solve.budget) study.budget = scene.solve.budget->value;
   if (scene.search) study.solutions = static_cast<int>(scene.search->solutions.value);
-  read_law(scene.system.constraints.empty() ? scene : without_fit(scene), purpose, study);
+  if (scene.fit && !scene.system.constraints.empty())
+    read_fitted_law(scene, purpose, study);
+  else
+    read_law(scene, purpose, study);
   check_singular_ends(scene, purpose, study.problem);
   if (scene.solve.steps) check_free_steps(study.problem, scene.solve.steps->at);
   check_memory(scene, study);
@@ -312,10 +334,15 @@ Study make_study(const Scene& scene, Purpose purpose) {
     study.spectrum = read_spectrum(*scene.spectrum, scene.path, coordinate_names(study.problem));
   }
   if (scene.fit)
-    study.fit = read_fit(scene, study, [budget = study.budget](const Scene& other) {
+    study.fit = read_fit(scene, study, [](const Scene& other, const Guess& guess, double duration) {
       Study there;
-      there.budget = budget;
-      read_law(other, Purpose::solution, there);
+      read_law(
+          other,
+          [&](const System&, Problem& problem) {
+            problem.guess = guess;
+            if (problem.duration.free) problem.duration.value = duration;
+          },
+          Purpose::solution, there);
       return std::move(there.problem);
     });
   if (scene.continuation && purpose == Purpose::family)

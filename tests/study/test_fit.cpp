@@ -406,6 +406,87 @@ TEST_F(Fits, FindTheMassRatioFromAHaloOrbit) {
   EXPECT_EQ(result.values.size(), 1u);
 }
 
+/// A bead on the wire y = a (1 − cos x), written with a constraint and without. Both fits are the same,
+/// though no guess is given, the first parameters are far off and there are conjugate times in between.
+TEST_F(Fits, ConstraintsChangeNoFit) {
+  const std::string parameters = "parameters = { g = 3.0, a = 0.6, c = 0.3 }\n",
+                    end = "[boundary]\nduration = 5.0\n",
+                    one = "[system]\ncoordinates = [\"x\"]\n" + parameters +
+                          "lagrangian = \"(1 + a^2*sin(x)^2)*x'^2/2 - g*a*(1 - cos(x))\"\n"
+                          "force = { x = \"-c*(1 + a^2*sin(x)^2)*x'\" }\n",
+                    both = "[system]\ncoordinates = [\"x\", \"y\"]\n" + parameters +
+                           "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\nconstraints = [\"y = a*(1 - cos(x))\"]\n"
+                           "force = { x = \"-c*x'\", y = \"-c*y'\" }\n",
+                    fit = "[fit]\ndata = \"data.csv\"\nparameters = [\"g\", \"a\", \"c\"]\n";
+  const std::string motion = one + "[boundary]\nstart = { x = 1.2, p_x = 0.0 }\nduration = 5.0\n";
+  Study made =
+      study(motion, {"system.parameters.g=4.1", "system.parameters.a=0.9", "system.parameters.c=0.12"});
+  const Solution solution = run(made);
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  for (const double noise : {0.0, 0.01}) {
+    Noise random(11);
+    std::string text = "t,x,y\n";
+    for (int k = 0; k <= 40; ++k) {
+      std::vector<double> q(1), v(1);
+      solution.trajectory.at(5.0 * k / 40, q, v);
+      const double x = q[0] + noise * random.next(), y = 0.9 * (1 - std::cos(q[0])) + noise * random.next();
+      text += fmt::format("{},{:.17g},{:.17g}\n", 5.0 * k / 40, x, y);
+    }
+    write("data.csv", text);
+    const FitResult bound = fitted(both + end + fit);
+    ASSERT_EQ(bound.values.size(), 5);
+    if (noise == 0) {
+      EXPECT_NEAR(bound.values[0], 4.1, 1e-8);
+      EXPECT_NEAR(bound.values[1], 0.9, 1e-8);
+      EXPECT_NEAR(bound.values[2], 0.12, 1e-8);
+      continue;
+    }
+    std::string named = text;
+    named.replace(0, 5, "t,x,h");
+    write("data.csv", named);
+    const FitResult free = fitted(one + end + fit + "observe = { h = \"a*(1 - cos(x))\" }\n");
+    EXPECT_NEAR(bound.chi_squared, free.chi_squared, 1e-10 * free.chi_squared);
+    for (std::size_t j = 0; j < 5; ++j) {
+      EXPECT_NEAR(bound.values[j], free.values[j], 1e-7) << j;
+      EXPECT_NEAR(bound.covariance(j, j), free.covariance(j, j), 1e-5 * free.covariance(j, j)) << j;
+    }
+  }
+}
+
+TEST_F(Fits, DerivativesUnderConstraints) {
+  std::string text = "t,x,far\n";
+  for (int k = 0; k <= 10; ++k) text += fmt::format("{},{},1\n", 0.2 * k, 0.7 * std::cos(0.2 * k));
+  write("data.csv", text);
+  const std::string guess = "[guess]\nx = \"0.7*cos(t)\"\ny = \"-sqrt(1 - 0.49*cos(t)^2)\"\n",
+                    fit =
+                        "[fit]\ndata = \"data.csv\"\nparameters = [\"g\", \"l\", \"c\"]\n"
+                        "observe = { far = \"l*x*y + c*y'\" }\n";
+  // At rest, and with a support that moves.
+  for (const char* link : {"x^2 + y^2 = l^2", "(x - c*sin(3*t))^2 + y^2 = l^2*(1 + 0.1*c*t)"})
+    for (const char* force : {"", "force = { x = \"-c*x'\" }\n"})
+      expect_derivatives(
+          "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { g = 1.1, l = 1.0, c = 0.1 }\n"
+          "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\n" +
+          std::string(force) + "constraints = [\"" + link + "\"]\n[boundary]\nduration = 2.0\n" + guess +
+          fit);
+}
+
+/// Between data at rest the path of zeros, which constraints may not have, is no first path.
+TEST_F(Fits, DataAreTheFirstPathUnderConstraints) {
+  const auto rows = samples(rod_motion, 31);
+  std::string text = "t,x,y\n";
+  for (const auto& row : rows)
+    text += fmt::format("{},{:.17g},{:.17g}\n", row[0], 1.3 * std::sin(row[1]), -1.3 * std::cos(row[1]));
+  write("data.csv", text);
+  const std::string link =
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { g = 8.0, l = 1.0 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\nconstraints = [\"x^2 + y^2 = l^2\"]\n"
+      "[boundary]\nduration = 3.0\n[fit]\ndata = \"data.csv\"\nparameters = [\"g\", \"l\"]\n";
+  const FitResult result = fitted(link);
+  EXPECT_NEAR(result.values[0], 9.7, 1e-8);
+  EXPECT_NEAR(result.values[1], 1.3, 1e-9);
+}
+
 TEST_F(Fits, KeepTheElementsOfAScheme) {
   swing_ = samples(rod_motion, 41);
   write_swing(0, 1);

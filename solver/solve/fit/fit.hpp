@@ -28,6 +28,7 @@ struct FittedProblem {
   /// All ends are determined; with forces, that of both copies.
   Problem problem;
   std::vector<ProblemChange> changes;  ///< of it with each unknown
+  bool curved = false;                 ///< ends are no linear functions of those that are unknowns
   ObservedFormulas formulas;           ///< with the same active parameters
 };
 

@@ -43,11 +43,7 @@ std::vector<double> FittedPath::coordinates() const {
   return result;
 }
 
-std::vector<double> FittedPath::values() const {
-  std::vector<double> result = values_;
-  for (const std::size_t j : ends_) result[j] = path_.node(path_.elements())[task_.unknowns[j].last];
-  return result;
-}
+std::vector<double> FittedPath::values() const { return values_at(values_); }
 
 bool FittedPath::converge_on_elements() {
   if (!scheme_ || path_.elements() == 0) return false;
@@ -100,7 +96,7 @@ void FittedPath::choose_node() {
   }
 }
 
-/// To the path that derivatives predict, with its ends on the boundary relation.
+/// To the path that derivatives predict.
 bool FittedPath::move_to(std::span<const double> coordinates) {
   if (!steps_.empty()) {
     path_ = base_;
@@ -114,14 +110,44 @@ bool FittedPath::move_to(std::span<const double> coordinates) {
     path_.set_duration(duration);
     path_.load_ends();
   }
-  if (!at_->problem.duration.free) path_.set_duration(at_->problem.duration.value);
   return true;
 }
 
+/// The values for these coordinates, where q(T) is that of the path.
+std::vector<double> FittedPath::values_at(std::span<const double> coordinates) const {
+  std::vector<double> result(coordinates.begin(), coordinates.end());
+  if (node_ < path_.elements())
+    for (const std::size_t j : ends_) result[j] = path_.node(path_.elements())[task_.unknowns[j].last];
+  return result;
+}
+
+/// Fields move the end along a tangent of the constraints. So the end is put on these, until it moves no
+/// more.
+bool FittedPath::correct_end(std::span<const double> coordinates) {
+  const double size = scales(path_, tables_).q;
+  for (int k = 0; k < most_newton_steps; ++k) {
+    const std::vector<double> before = values_at(coordinates);
+    if (!correct(coordinates)) return false;
+    if (!at_->curved) return true;
+    const std::vector<double> after = values_at(coordinates);
+    double moved = 0;
+    for (const std::size_t j : ends_) moved = std::max(moved, std::abs(after[j] - before[j]));
+    if (moved <= roundoff_of_step * size) return true;
+    if (!bind(after)) return false;
+    newton_.reset(at_->problem, tables_, path_.elements());
+    meet_ends(at_->problem, path_);
+  }
+  return false;
+}
+
 bool FittedPath::converge_here(std::span<const double> coordinates) {
+  if (!at_->problem.duration.free) path_.set_duration(at_->problem.duration.value);
   newton_.reset(at_->problem, tables_, path_.elements());
   newton_.forget();
-  if (node_ < path_.elements()) return correct(coordinates);
+  if (node_ < path_.elements()) {
+    if (at_->curved) meet_ends(at_->problem, path_);
+    return correct_end(coordinates);
+  }
   meet_ends(at_->problem, path_);
   const NewtonReport report = converge(newton_, path_, tables_, {.steps = most_newton_steps},
                                        [&] { return !options_.deadline.passed(); });
@@ -179,7 +205,7 @@ bool FittedPath::evaluate(std::span<const double> coordinates, std::span<double>
                           std::span<double> jacobian) {
   if (!converged_ || !std::ranges::equal(coordinates, asked_)) {
     converged_ = false;
-    if (!bind(coordinates) || !move_to(coordinates) || !converge_here(coordinates)) {
+    if (!move_to(coordinates) || !bind(values_at(coordinates)) || !converge_here(coordinates)) {
       if (!steps_.empty()) path_ = base_;
       return false;
     }

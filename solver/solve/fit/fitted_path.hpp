@@ -37,6 +37,8 @@ class FittedPath final : public FittedExtremal {
   bool bind(std::span<const double> values);
   bool move_to(std::span<const double> coordinates);
   bool converge_here(std::span<const double> coordinates);
+  std::vector<double> values_at(std::span<const double> coordinates) const;
+  bool correct_end(std::span<const double> coordinates);
   bool correct(std::span<const double> coordinates);
   bool hold_node(std::span<const double> coordinates, std::span<const ProblemChange> changes, Step& step);
   bool differentiate(bool by_values, std::span<double> jacobian);
