@@ -120,7 +120,11 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
   const double missed = dependence.missed(k);
   throw SceneError(
       position(text, 0),
-      missed > end_distance
+      !std::isfinite(missed)
+          ? fmt::format("the gradient of the constraint '{}' is made of those of the ones before it, or "
+                        "vanishes, near the guess; give one near points where the constraints hold",
+                        text.value)
+      : missed > end_distance
           ? fmt::format(
                 "the gradient of the constraint '{}' is made of those of the ones before it, or "
                 "vanishes, but where these hold it is missed by {:.3g}; leave it out, or give a guess "

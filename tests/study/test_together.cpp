@@ -258,6 +258,28 @@ TEST_F(FitsTogether, APendulumUnderItsConstraint) {
   EXPECT_NEAR(fit.values[3], std::sin(coordinate_at(angle, 2)), 1e-6);
 }
 
+/// Where extremals jump from one to another as parameters change, differences are no derivatives.
+TEST_F(FitsTogether, ExtremalsThatJumpHaveNoMinimum) {
+  const double w = frequency;
+  std::string data = "t,x\n";
+  for (int k = 1; k < 20; ++k)
+    data += fmt::format("{},{:.17g}\n", k / 20.0, std::sin(w * std::min(k, 20 - k) / 20) / std::sin(w / 2));
+  write("data.csv", data);
+  const Study made = study(held_oscillator + "[[waypoints]]\nat = 0.5\nx = 1\n[fit]\nparameters = [\"k\"]\n" +
+                           "data = \"data.csv\"\n");
+  Solver solver;
+  FitTask task = made.fit->task;
+  task.solve = [&](const Problem& problem, const SolveOptions& options) {
+    return solver.solve(problem, options);
+  };
+  task.problem = [of = task.problem](std::span<const double> x, const Guess& guess, double duration) {
+    const double moved = x[0] * (1 + 0.1 * std::sin(1e5 * x[0]));
+    return of({&moved, 1}, guess, duration);
+  };
+  const FitResult fit = extremal::fit(task, made.options);
+  EXPECT_FALSE(fit.solution.converged());
+}
+
 TEST_F(FitsTogether, RefuseUnknowns) {
   write("data.csv", "t,x\n0.5,1\n");
   EXPECT_EQ(

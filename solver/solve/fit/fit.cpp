@@ -171,13 +171,27 @@ class Fit {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::MatrixXd jacobian = Eigen::Map<const RowMajor>(entries.data(), rows, count);
     result_.chi_squared = 0;
+    keep_residuals(residuals);
+    Eigen::VectorXd weighted(rows);
     for (int i = 0; i < rows; ++i) {
       const LossValue loss = extremal::evaluate(task_.loss, residuals[i] * residuals[i]);
       result_.chi_squared += loss.value;
+      weighted[i] = residuals[i] * std::sqrt(loss.slope);
       jacobian.row(i) *= std::sqrt(loss.slope);
     }
-    keep_residuals(residuals);
-    return invert(std::move(jacobian));
+    return invert(jacobian) && stationary(jacobian, weighted);
+  }
+
+  /// Whether no step of Gauss and Newton lowers χ². A trust region also shrinks to nothing, where steps lead
+  /// to other extremals.
+  bool stationary(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& weighted) {
+    const double lower = (jacobian * jacobian.colPivHouseholderQr().solve(weighted)).norm();
+    if (lower <= least_descent * weighted.norm() + options_.tolerance * task_.data.size()) return true;
+    fail(fmt::format(
+        "the fit stopped at {}, which is no minimum: a step of Gauss and Newton lowers chi squared "
+        "from {:.6g} by {:.3g}; give better values in [system] parameters or [guess]",
+        values_text(), result_.chi_squared, lower * lower));
+    return false;
   }
 
   void keep_residuals(const std::vector<double>& residuals) {
@@ -190,7 +204,7 @@ class Fit {
     }
   }
 
-  bool invert(Eigen::MatrixXd jacobian) {
+  bool invert(Eigen::MatrixXd& jacobian) {
     const Eigen::Index count = jacobian.cols();
     Eigen::VectorXd effects(count), lengths(count);
     for (Eigen::Index j = 0; j < count; ++j) {

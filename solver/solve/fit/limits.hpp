@@ -25,6 +25,11 @@ inline constexpr double undetermined = 1e-9;
 inline constexpr double without_effect = 1e-12;
 /// Unknowns with at least this part of the largest in a direction that is not determined are named.
 inline constexpr double named = 1e-3;
+/// Of the residuals at a minimum, the part that parameters still change is at most so much.
+inline constexpr double least_descent = 1e-5;
+/// Quotients of differences over one and two steps that differ by more, relative, are no derivatives: the
+/// extremals are not of one family.
+inline constexpr double quotients_apart = 0.1;
 /// χ² above its mean by so many of its standard deviations is no scatter of the data.
 inline constexpr double most_deviations = 10;
 /// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part

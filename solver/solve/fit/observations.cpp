@@ -34,6 +34,13 @@ int Observations::count() const {
   return static_cast<int>(sum);
 }
 
+double Observations::size() const {
+  double sum = 0;
+  for (const ObservedColumn& column : columns)
+    for (const ObservedValue& observed : column.values) sum += std::pow(observed.value / observed.sigma, 2);
+  return std::sqrt(sum);
+}
+
 Observer::Observer(const Observations& data, int coordinates)
     : data_(data),
       n_(coordinates),

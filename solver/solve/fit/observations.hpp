@@ -38,6 +38,7 @@ struct Observations {
   std::vector<ObservedColumn> columns;
   bool sigmas = false;  ///< some column has standard deviations of its own
   int count() const;    ///< of all values
+  double size() const;  ///< the root of Σ (value/σ)²
 };
 
 /// Formulas of observations: functions of q, q', t and active parameters, which Lagrangian describes.

@@ -1,5 +1,6 @@
 #include "solve/fit/solved_path.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 
@@ -62,25 +63,29 @@ bool SolvedPath::evaluate_by_values(std::span<double> residuals, std::span<doubl
   return evaluate(std::vector<double>(values_), residuals, jacobian);
 }
 
-/// A column, by central differences of fourth order; the path stays.
+/// A column, by central differences of fourth order; the path stays. False where the extremals beside it are
+/// of another family.
 bool SolvedPath::differentiate(std::size_t unknown, std::size_t count, std::span<double> jacobian) {
-  constexpr std::array<double, 4> places = {-2, -1, 1, 2},
-                                  weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+  constexpr std::array<double, 4> places = {-2, -1, 1, 2};
   const Solution kept = solution_;
   const std::vector<double> here = values_;
   const double step = difference * task_.unknowns[unknown].size;
-  std::vector<double> residuals(task_.data.count()), slopes(residuals.size(), 0);
+  Eigen::MatrixXd beside(task_.data.count(), static_cast<Eigen::Index>(places.size()));
   bool found = true;
   for (std::size_t k = 0; k < places.size() && found; ++k) {
     std::vector<double> moved = here;
     moved[unknown] += places[k] * step;
-    Solution beside;
-    found = solve(moved, beside) && put(beside, moved, residuals);
-    for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] += weights[k] * residuals[i] / step;
+    Solution solution;
+    const std::span<double> residuals(beside.col(static_cast<Eigen::Index>(k)).data(), task_.data.count());
+    found = solve(moved, solution) && put(solution, moved, residuals);
     solution_ = kept;
   }
-  for (std::size_t i = 0; i < slopes.size(); ++i) jacobian[i * count + unknown] = slopes[i];
-  return put(kept, here, residuals) && found;
+  std::vector<double> residuals(task_.data.count());
+  if (!put(kept, here, residuals) || !found) return false;
+  const Eigen::VectorXd one = (beside.col(2) - beside.col(1)) / 2, two = (beside.col(3) - beside.col(0)) / 4,
+                        slopes = (4 * one - two) / (3 * step);
+  for (Eigen::Index i = 0; i < slopes.size(); ++i) jacobian[i * count + unknown] = slopes[i];
+  return (one - two).norm() <= quotients_apart * one.norm() + options_.tolerance * task_.data.size();
 }
 
 }  // namespace extremal
