@@ -249,6 +249,24 @@ TEST_F(Fits, ShorterStepsKeepToValuesThatHaveExtremals) {
   EXPECT_NEAR(found.values[0], 2.2501, 1e-3);
 }
 
+/// The first path is no extremal, and steps lead along a L to where it vanishes.
+TEST_F(Fits, NameTheSameFromAllFirstValues) {
+  std::string text = "t,u\n";
+  for (int k = 0; k <= 30; ++k)
+    text += fmt::format("{},{:.17g}\n", 0.1 * k, std::sin(1.4 * 0.1 * k + 0.3) + 0.01 * std::cos(31.0 * k));
+  write("data.csv", text);
+  for (const double k : {0.6, 1.5, 1.7, 2.4, 3.0}) {
+    const FitResult found =
+        run_fit(study(fmt::format("[system]\ncoordinates = [\"u\"]\nparameters = {{ s = 2.0, k = {} }}\n"
+                                  "lagrangian = \"s*u'^2/2 - k*u^2/2\"\n[boundary]\nduration = 3.0\n[fit]\n"
+                                  "data = \"data.csv\"\nparameters = [\"s\", \"k\"]\n",
+                                  k)));
+    EXPECT_EQ(found.solution.status, Status::not_converged);
+    EXPECT_NE(found.solution.message.find("do not determine 's', 'k':"), std::string::npos)
+        << k << ": " << found.solution.message;
+  }
+}
+
 /// Directions from the centre leave the scale open: r → s r with μ → s³ μ.
 TEST_F(Fits, NameAllThatDataLeaveOpenTogether) {
   const std::string plane =

@@ -211,9 +211,11 @@ class Fit {
       lengths[j] = jacobian.col(j).norm();
       effects[j] = lengths[j] * task_.unknowns[j].size;
     }
+    // Along a direction that is not determined parameters may have become small, and their effects large.
+    const double largest = std::min(effects.maxCoeff(), task_.data.size());
     std::vector<std::string> names;
     for (Eigen::Index j = 0; j < count; ++j)
-      if (!(effects[j] > without_effect * effects.maxCoeff())) names.push_back(task_.unknowns[j].name);
+      if (!(effects[j] > without_effect * largest)) names.push_back(task_.unknowns[j].name);
     if (!names.empty()) return undetermined_names(names);
     for (Eigen::Index j = 0; j < count; ++j) jacobian.col(j) /= lengths[j];
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);

@@ -21,7 +21,7 @@ inline constexpr double first_radii[] = {1e4, 0.1};
 /// belong to what observations do not determine: ten digits of the derivatives are known at least.
 inline constexpr double undetermined = 1e-9;
 /// An unknown that changes the residuals by less than this, in σ, when it changes by its size, is alone not
-/// determined, relative to the largest such change.
+/// determined, relative to the largest such change or to what was observed.
 inline constexpr double without_effect = 1e-12;
 /// Unknowns with at least this part of the largest in a direction that is not determined are named.
 inline constexpr double named = 1e-3;
