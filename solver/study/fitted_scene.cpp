@@ -70,6 +70,7 @@ FittedScene::FittedScene(const Scene& scene, const System& system, const Problem
     : scene_(scene),
       load_(std::move(load)),
       made_anew_(problem.extension || (problem.manifold && problem.manifold->parts().only_minimal)),
+      phase_open_(problem.periodic && problem.motion().structure().autonomous && !made_anew_),
       fit_(*scene.fit),
       table_(scene.system),
       boundary_(scene.boundary),
@@ -344,7 +345,10 @@ Problem FittedScene::problem(std::span<const double> values, const Guess& guess,
   problem.guess = guess;
   if (problem.duration.free) problem.duration.value = duration;
   if (problem.manifold) project_guess(scene_, near_, problem);
-  return make_problem(std::move(problem));
+  problem = make_problem(std::move(problem));
+  // Paths with a symmetry have a phase of their own.
+  if (phase_open_) problem.reduction = nullptr;
+  return problem;
 }
 
 void FittedScene::put_relation_change(const Problem& inner, BoundaryRelation by,
@@ -365,6 +369,11 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
                                   std::size_t unknown) const {
   ProblemChange result;
   result.parameters.assign(active_.size(), 0);
+  if (unknown >= parameters_.size() + open_.size()) {
+    result.ends.assign(2 * inner.coordinates() * inner.motion_copies(), 0);
+    result.shift = true;
+    return result;
+  }
   BoundaryRelation by = inner.boundary;
   std::ranges::fill(by.value, 0.0);
   std::ranges::fill(by.momenta, 0.0);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -152,6 +153,11 @@ std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& stud
     throw SceneError(
         table.at,
         "there is nothing to be found; name parameters, or leave end coordinates out of [boundary]");
+  if (fitted->phase_open()) {
+    FitUnknown phase{"the phase", 0, problem.duration.value / (2 * std::numbers::pi)};
+    phase.phase = true;
+    task.unknowns.push_back(phase);
+  }
   const int count = task.data.count();
   if (count < static_cast<int>(task.unknowns.size()))
     throw SceneError(position(table.data, 0),

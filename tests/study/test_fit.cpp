@@ -505,6 +505,55 @@ TEST_F(Fits, DataAreTheFirstPathUnderConstraints) {
   EXPECT_NEAR(result.values[1], 1.3, 1e-9);
 }
 
+TEST_F(Fits, DerivativesOfALimitCycle) {
+  write("data.csv",
+        "t,x,x'\n0.0,0.9,0.1\n0.9,0.5,-0.6\n1.7,-0.4,-0.9\n2.6,-0.8,0.2\n3.7,0.1,1\n4.6,0.8,0.5\n");
+  expect_derivatives(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { e = 0.9, w = 1.2 }\n"
+      "lagrangian = \"x'^2/2 - w^2*x^2/2\"\nforce = { x = \"e*(1 - x'^2)*x'\" }\n"
+      "[boundary]\nperiodic = true\nduration = \"free\"\n[guess]\nduration = 5.6\n"
+      "x = \"cos(2*pi*t/T + 0.3)\"\n[fit]\ndata = \"data.csv\"\nparameters = [\"e\", \"w\"]\n");
+}
+
+/// A limit cycle of Rayleigh. Its phase is that of the data, wherever the guess begins.
+TEST_F(Fits, FindTheParametersOfALimitCycleAndItsPhase) {
+  const auto cycle = [](const std::string& phase) {
+    return "[system]\ncoordinates = [\"x\"]\nparameters = { e = 0.9, w = 1.2 }\n"
+           "lagrangian = \"x'^2/2 - w^2*x^2/2\"\nforce = { x = \"e*(1 - x'^2)*x'\" }\n"
+           "[boundary]\nperiodic = true\nduration = \"free\"\n[guess]\nduration = 5.6\n"
+           "x = \"cos(2*pi*t/T + " +
+           phase + ")\"\n";
+  };
+  const auto rows = samples(cycle("0.3"), 45);
+  for (const double noise : {0.0, 0.02}) {
+    Noise random(3);
+    std::string text = "t,x\n";
+    for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+      text += fmt::format("{:.17g},{:.17g}\n", rows[k][0], rows[k][1] + noise * random.next());
+    write("data.csv", text);
+    std::vector<FitResult> results;
+    for (const char* phase : {"0.3", "0.8"})
+      for (const char* first : {"system.parameters.e=1.0", "system.parameters.e=0.7"})
+        results.push_back(fitted(cycle(phase) + "[fit]\ndata = \"data.csv\"\nparameters = [\"e\", \"w\"]\n",
+                                 {first, "system.parameters.w=1.23"}));
+    for (const FitResult& result : results) {
+      ASSERT_EQ(result.values.size(), 2u);
+      for (std::size_t j = 0; j < 2; ++j) {
+        EXPECT_NEAR(result.values[j], results[0].values[j], 2e-7);
+        const double truth = j == 0 ? 0.9 : 1.2;
+        EXPECT_NEAR(result.values[j], truth, noise > 0 ? 4 * std::sqrt(result.covariance(j, j)) : 1e-7);
+      }
+      EXPECT_NEAR(result.chi_squared, results[0].chi_squared, 1e-9 * (1e-3 + results[0].chi_squared));
+      // The trajectory has the phase of the data.
+      std::vector<double> q(1), v(1);
+      for (std::size_t k = 0; k + 1 < rows.size(); k += 7) {
+        result.solution.trajectory.at(rows[k][0], q, v);
+        EXPECT_NEAR(q[0], rows[k][1], noise + 1e-7);
+      }
+    }
+  }
+}
+
 TEST_F(Fits, KeepTheElementsOfAScheme) {
   swing_ = samples(rod_motion, 41);
   write_swing(0, 1);

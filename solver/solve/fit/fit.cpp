@@ -16,14 +16,15 @@ namespace extremal {
 
 using namespace limits::fit;
 
-Guess guess_of_elements(const Trajectory& trajectory) {
+Guess guess_of_elements(const Trajectory& trajectory, double after) {
   Guess guess;
   std::vector<double> q(trajectory.coordinates), v(q.size());
   const std::vector<double>& places = lobatto_barycentric(trajectory.degree).nodes;
   for (int k = 0; k < trajectory.elements(); ++k)
     for (int j = k == 0 ? 0 : 1; j <= trajectory.degree; ++j) {
-      trajectory.in_element(k, places[j], q, v);
-      const double t = trajectory.times[k] + places[j] * (trajectory.times[k + 1] - trajectory.times[k]);
+      const double length = trajectory.times[k + 1] - trajectory.times[k];
+      trajectory.in_element(k, places[j] + after / length, q, v);
+      const double t = trajectory.times[k] + places[j] * length;
       guess.tau.push_back(t / trajectory.duration());
       guess.q.insert(guess.q.end(), q.begin(), q.end());
     }
@@ -52,7 +53,7 @@ class Fit {
     for (int round = 0; round < most_rounds; ++round) {
       if (!minimise_on_elements() || !determined()) return std::move(result_);
       const Trajectory fitted = first_copy(trajectory_of(path_->path()), task_.coordinates);
-      result_.solution = solve(guess_of_elements(fitted), fitted.duration());
+      result_.solution = solve_again(fitted);
       if (!result_.solution.converged()) return std::move(result_);
       if (agrees(fitted)) return covers_data() ? finished(before) : std::move(result_);
     }
@@ -96,9 +97,40 @@ class Fit {
     return none;
   }
 
+  bool phase_unknown() const { return task_.unknowns.back().phase; }
+
+  /// On elements of its own. Coarse ones, with which a solve begins, shift a closed orbit in time by as much
+  /// as they err: then the guess is shifted back.
+  Solution solve_again(const Trajectory& fitted) {
+    double after = 0;
+    for (int k = 0;; ++k) {
+      Solution solution = solve(guess_of_elements(fitted, after), fitted.duration());
+      if (!solution.converged() || !phase_unknown() || k == most_shifts) return solution;
+      const double late = shift_between(fitted, solution.trajectory);
+      if (std::abs(late) <= least_shift * options_.tolerance * fitted.duration()) return solution;
+      after -= late;
+    }
+  }
+
+  /// By how much the times of one trajectory are those of another.
+  static double shift_between(const Trajectory& fitted, const Trajectory& other) {
+    std::vector<double> q(fitted.coordinates), v(q), there(q), unused(q);
+    double along = 0, squares = 0;
+    for (int k = 0; k < fitted.elements(); ++k) {
+      const double length = fitted.times[k + 1] - fitted.times[k];
+      fitted.in_element(k, 0.5, q, v);
+      other.at(std::min(fitted.times[k] + length / 2, other.duration()), there, unused);
+      for (std::size_t a = 0; a < q.size(); ++a) {
+        along += length * v[a] * (there[a] - q[a]);
+        squares += length * v[a] * v[a];
+      }
+    }
+    return squares > 0 ? along / squares : 0;
+  }
+
   std::string values_text() const {
     std::vector<std::string> texts;
-    for (std::size_t j = 0; j < result_.values.size(); ++j)
+    for (std::size_t j = 0; j < result_.values.size() - phase_unknown(); ++j)
       texts.push_back(fmt::format("{} = {:.12g}", task_.unknowns[j].name, result_.values[j]));
     return fmt::format("{}", fmt::join(texts, ", "));
   }
@@ -150,6 +182,7 @@ class Fit {
     std::vector<double> x = path_->coordinates();
     for (std::size_t j = 0; j < x.size(); ++j) x[j] /= task_.unknowns[j].size;
     const CurveFitReport report = minimise(fit, x, options_.deadline);
+    if (report.converged) polish(x);
     // The path of a step that was not taken is left for that of the minimum.
     std::vector<double> residuals(fit.residuals);
     const bool there = path_->evaluate(unscaled(x), residuals, {});
@@ -160,6 +193,45 @@ class Fit {
     return report.converged && there;
   }
 
+  /// Roundoff of the sum hides the last digits of its minimum: steps of Gauss and Newton go on while they
+  /// shrink.
+  void polish(std::vector<double>& x) {
+    std::vector<double> residuals(task_.data.count()), entries(residuals.size() * x.size()), best = x;
+    double length = INFINITY;
+    for (int k = 0; k < most_last_steps && evaluate(x, residuals, entries); ++k) {
+      const Weighted at = weighted(residuals, entries);
+      if (k == 0) length = first_last_step * at.residuals.norm();
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least(at.jacobian.rows(), at.jacobian.cols());
+      least.setThreshold(undetermined);
+      const Eigen::VectorXd step = least.compute(at.jacobian).solve(at.residuals);
+      const double next = (at.jacobian * step).norm();
+      if (!(next < length / 2)) break;
+      length = next;
+      best = x;
+      for (std::size_t j = 0; j < x.size(); ++j) x[j] -= step[static_cast<Eigen::Index>(j)];
+    }
+    x = best;
+  }
+
+  /// With √ρ' as weights.
+  struct Weighted {
+    Eigen::VectorXd residuals;
+    Eigen::MatrixXd jacobian;
+  };
+  Weighted weighted(std::span<const double> residuals, std::span<const double> entries) {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const auto rows = static_cast<Eigen::Index>(residuals.size()),
+               count = static_cast<Eigen::Index>(task_.unknowns.size());
+    Weighted result{Eigen::Map<const Eigen::VectorXd>(residuals.data(), rows),
+                    Eigen::Map<const RowMajor>(entries.data(), rows, count)};
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const double weight = std::sqrt(extremal::evaluate(task_.loss, std::pow(result.residuals[i], 2)).slope);
+      result.residuals[i] *= weight;
+      result.jacobian.row(i) *= weight;
+    }
+    return result;
+  }
+
   /// Residuals, χ² and covariance at the minimum. False where some unknown is not determined.
   bool determined() {
     const int rows = task_.data.count(), count = static_cast<int>(task_.unknowns.size());
@@ -168,25 +240,18 @@ class Fit {
       fail(fmt::format("at {} the second variation is singular", values_text()));
       return false;
     }
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Eigen::MatrixXd jacobian = Eigen::Map<const RowMajor>(entries.data(), rows, count);
     result_.chi_squared = 0;
+    for (const double r : residuals) result_.chi_squared += extremal::evaluate(task_.loss, r * r).value;
     keep_residuals(residuals);
-    Eigen::VectorXd weighted(rows);
-    for (int i = 0; i < rows; ++i) {
-      const LossValue loss = extremal::evaluate(task_.loss, residuals[i] * residuals[i]);
-      result_.chi_squared += loss.value;
-      weighted[i] = residuals[i] * std::sqrt(loss.slope);
-      jacobian.row(i) *= std::sqrt(loss.slope);
-    }
-    return invert(jacobian) && stationary(jacobian, weighted);
+    const Weighted at = weighted(residuals, entries);
+    return invert(at.jacobian) && stationary(at);
   }
 
   /// Whether no step of Gauss and Newton lowers χ². A trust region also shrinks to nothing, where steps lead
   /// to other extremals.
-  bool stationary(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& weighted) {
-    const double lower = (jacobian * jacobian.colPivHouseholderQr().solve(weighted)).norm();
-    if (lower <= least_descent * weighted.norm() + options_.tolerance * task_.data.size()) return true;
+  bool stationary(const Weighted& at) {
+    const double lower = (at.jacobian * at.jacobian.colPivHouseholderQr().solve(at.residuals)).norm();
+    if (lower <= least_descent * at.residuals.norm() + options_.tolerance * task_.data.size()) return true;
     fail(fmt::format(
         "the fit stopped at {}, which is no minimum: a step of Gauss and Newton lowers chi squared "
         "from {:.6g} by {:.3g}; give better values in [system] parameters or [guess]",
@@ -204,7 +269,7 @@ class Fit {
     }
   }
 
-  bool invert(Eigen::MatrixXd& jacobian) {
+  bool invert(Eigen::MatrixXd jacobian) {
     const Eigen::Index count = jacobian.cols();
     Eigen::VectorXd effects(count), lengths(count);
     for (Eigen::Index j = 0; j < count; ++j) {
@@ -320,7 +385,12 @@ class Fit {
 
 FitResult fit(const FitTask& task, const SolveOptions& options,
               const std::function<void(const FitStep&)>& progress) {
-  return Fit(task, options, progress).run();
+  FitResult result = Fit(task, options, progress).run();
+  if (!task.unknowns.back().phase) return result;
+  result.values.pop_back();
+  const auto count = static_cast<Eigen::Index>(result.values.size());
+  if (result.covariance.size() > 0) result.covariance.conservativeResize(count, count);
+  return result;
 }
 
 }  // namespace extremal

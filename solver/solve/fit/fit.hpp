@@ -21,6 +21,8 @@ struct FitUnknown {
   double start = 0;
   double size = 1;  ///< its order of magnitude
   int last = -1;    ///< of an end at t = T its coordinate
+  /// Where on a closed orbit time begins, relative to the first path; the last unknown, and no result.
+  bool phase = false;
 };
 
 /// What values of the unknowns make of the problem.
@@ -60,7 +62,7 @@ struct FitStep {
 
 struct FitResult {
   Solution solution;           ///< that fits; else says why there is none
-  std::vector<double> values;  ///< of the unknowns
+  std::vector<double> values;  ///< of the unknowns, without a phase
   /// Of the unknowns: (JᵀWJ)⁻¹ with J the derivatives of (observed − computed)/σ and W = ρ'. Where no σ is
   /// given, times Σ ρ/(values − unknowns): the scatter of the residuals then tells their σ.
   Eigen::MatrixXd covariance;
@@ -69,8 +71,8 @@ struct FitResult {
   std::vector<std::vector<double>> residuals;  ///< observed − computed, of each column
 };
 
-/// A trajectory at the nodes of its elements.
-Guess guess_of_elements(const Trajectory& trajectory);
+/// A trajectory at the nodes of its elements, or by a little after them.
+Guess guess_of_elements(const Trajectory& trajectory, double after = 0);
 
 /// Fits by Ceres around extremals on elements that are kept while it iterates. They are then chosen anew for
 /// the extremal that was found, until they meet the tolerance along it. Where observations do not determine

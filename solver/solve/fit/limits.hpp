@@ -30,6 +30,14 @@ inline constexpr double least_descent = 1e-5;
 /// Quotients of differences over one and two steps that differ by more, relative, are no derivatives: the
 /// extremals are not of one family.
 inline constexpr double quotients_apart = 0.1;
+/// Steps after the minimisation, at most, the first of which changes no more than half of this part of the
+/// residuals.
+inline constexpr int most_last_steps = 6;
+inline constexpr double first_last_step = 0.02;
+/// A closed orbit is solved for again at most so often, until it begins within this part of the tolerance
+/// where the fit has it.
+inline constexpr int most_shifts = 6;
+inline constexpr double least_shift = 0.01;
 /// χ² above its mean by so many of its standard deviations is no scatter of the data.
 inline constexpr double most_deviations = 10;
 /// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part
