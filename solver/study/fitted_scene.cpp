@@ -180,10 +180,13 @@ void FittedScene::find_open(const System& system) {
   const int n = problem_.coordinates();
   ends_left_ = problem_.manifold ? solve_relation(placed.relation).home : problem_.ends.home;
   std::ranges::sort(ends_left_);
-  for (const int e : ends_left_)
-    if ((placed.momentum_given.empty() || !placed.momentum_given[e]) &&
-        !determined_by_constraints(e, problem_.guess))
+  for (const int e : ends_left_) {
+    if (!placed.momentum_given.empty() && placed.momentum_given[e]) continue;
+    if (determined_by_constraints(e, problem_.guess))
+      determined_.push_back(e);
+    else
       open_.push_back({e, fmt::format("{}({})", system.names[e % n], e < n ? "0" : "T")});
+  }
 }
 
 void FittedScene::check_dependence() const {
@@ -251,6 +254,10 @@ void FittedScene::complete_by_constraints(const SystemTable& table, Numbers& num
   put_manifold_like(*problem_.manifold, table, make_system(table), ends);
   EndPoints near = near_;
   if (!complete_ends(scene_, near, ends)) refuse_partly_free(scene_, ends);
+  // At some points the natural conditions are those on the manifold with these coordinates free as well.
+  const int n = problem_.coordinates();
+  for (const int e : determined_)
+    if (!ends.ends.fixed[e]) ends.boundary.fix(e % n, e >= n, e < n ? near.start[e] : near.end[e - n]);
   numbers.relation = std::move(ends.boundary);
 }
 

@@ -83,6 +83,7 @@ class FittedScene {
   std::vector<std::string> parameters_, active_;
   std::vector<OpenEnd> open_;
   std::vector<int> ends_left_;       ///< end coordinates that the relation leaves open
+  std::vector<int> determined_;      ///< of these, what constraints determine by the others
   std::set<std::string> dependent_;  ///< names whose values depend on those of the parameters
   bool boundary_depends_ = false;
 };
