@@ -96,7 +96,7 @@ TEST_F(ExtendedSchemes, DenseOutputMeetsTheTolerance) {
   for (const Known& known : {waypoint(), nonlinear_end(), integral(), unknown()})
     for (const auto& [scheme, tolerance] :
          {Case{"gauss(2)", 1e-9}, Case{"gauss(3)", 1e-9}, Case{"lobatto(4)", 1e-9}, Case{"midpoint", 1e-5},
-          Case{"simpson", 1e-5}, Case{"trapezoid", 1e-4}}) {
+          Case{"simpson", 1e-5}, Case{"trapezoid", 1e-4}, Case{"linear", 1e-5}, Case{"quadratic", 1e-9}}) {
       const Solution found = run(
           study(known.scene + fmt::format("[solve]\nscheme = \"{}\"\ntolerance = {}\n", scheme, tolerance)));
       ASSERT_TRUE(found.converged()) << scheme << '\n' << known.scene << found.message;
@@ -109,7 +109,8 @@ TEST_F(ExtendedSchemes, DenseOutputMeetsTheTolerance) {
 TEST_F(ExtendedSchemes, PinnedElementsKnowTheErrorsBetweenNodes) {
   // The estimate compares at the nodes of finer elements, the largest error may be between these.
   for (const Known& known : {waypoint(), nonlinear_end(), integral(), unknown()})
-    for (const char* scheme : {"gauss(2)", "gauss(3)", "lobatto(4)", "midpoint", "trapezoid"}) {
+    for (const char* scheme :
+         {"gauss(2)", "gauss(3)", "lobatto(4)", "midpoint", "trapezoid", "linear", "quadratic"}) {
       const Solution found =
           run(study(known.scene + fmt::format("[solve]\nscheme = \"{}\"\nelements = 32\n", scheme)));
       ASSERT_TRUE(found.converged()) << scheme << '\n' << known.scene << found.message;
@@ -119,6 +120,35 @@ TEST_F(ExtendedSchemes, PinnedElementsKnowTheErrorsBetweenNodes) {
           << scheme << '\n'
           << known.scene;
     }
+}
+
+TEST_F(ExtendedSchemes, ExactQuadratureHasItsOrder) {
+  // L and the integral are not polynomials: no number of points integrates them exactly.
+  struct Case {
+    const char* scheme;
+    double order;
+  };
+  const std::string given =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + cos(x)\"\n"
+      "[boundary]\nstart = { x = 0.2 }\nend = { x = 0.9 }\nduration = 2\nintegrals = [\"exp(x) = 5\"]\n"
+      "[guess]\nx = \"0.2 + 0.35*t + sin(pi*t/2)/2\"\n";
+  const Solution exact = run(study(given));
+  ASSERT_TRUE(exact.converged()) << exact.message;
+  for (const auto& [scheme, order] : {Case{"linear", 2}, Case{"quadratic", 4}}) {
+    std::array<double, 2> differences{};
+    for (const int half : {0, 1}) {
+      const Solution found =
+          run(study(given + fmt::format("[solve]\nscheme = \"{}\"\nelements = {}\n", scheme, 8 << half)));
+      ASSERT_TRUE(found.converged()) << scheme << ": " << found.message;
+      for (int k = 1; k < found.trajectory.elements(); ++k) {
+        std::array<double, 1> x{}, v{}, y{};
+        found.trajectory.in_element(k, 0, x, v);
+        exact.trajectory.at(found.trajectory.times[k], y, v);
+        differences[half] = std::max(differences[half], std::abs(x[0] - y[0]));
+      }
+    }
+    EXPECT_NEAR(std::log2(differences[0] / differences[1]), order, 0.15) << scheme;
+  }
 }
 
 TEST_F(ExtendedSchemes, WhatIsSpentIsTold) {

@@ -48,7 +48,7 @@ class BorderedSolve {
     levels_.bind(extension_.lagrangian);
     own_levels_.bind(problem.lagrangian);
     if (options.scheme) {
-      rule_.emplace(*options.scheme, 0);
+      rule_.emplace(*options.scheme, limits::pinned::most_points);
       scheme_.bind(*rule_, *extension_.lagrangian);
       own_scheme_.bind(*rule_, *problem.lagrangian);
     }
