@@ -51,14 +51,21 @@ namespace singular_ends {
 /// to the level it is a power, farther from it the energy loses fewer digits.
 inline constexpr double first_distance = 1e-3, nearer = 0.1;
 inline constexpr int distances = 64;
+/// So much nearer than there the momentum is read.
+inline constexpr double gauge_distance = 1e-10;
 inline constexpr int bisections = 60;
 /// Of an exponent, from one distance to the next.
 inline constexpr double exponent_change = 4e-3;
 /// Beyond the largest one the integral of L is infinite; below the least one L is nearly finite.
 inline constexpr double least_exponent = 0.02, largest_exponent = 0.98;
-/// Denominators of fractions; the error of an exponent that is measured, and that of arithmetic.
-inline constexpr int largest_power = 16;
-inline constexpr double whole = 3e-4, roundoff = 1e-12;
+/// Denominators of simple fractions and of others; the errors of an exponent that is one of these, and that
+/// of arithmetic. Distances from a level that have few digits in 106 bits, by the level.
+inline constexpr int small_denominator = 16, most_denominator = 1000;
+inline constexpr double whole = 3e-4, exact = 1e-10, roundoff = 1e-12, extended_roundoff = 1e-28;
+/// Powers of the smooth variable that the time is, where powers of what is left are whole and where not; of
+/// the latter, one that elements resolve.
+inline constexpr int small_time = 5, least_time = 3, largest_time = 9;
+inline constexpr double smooth_power = 1.6;
 inline constexpr int most_coordinates = 16;
 /// Samples of a guess in the new variables; sizes of it, by powers of two of the duration to both sides.
 inline constexpr int guess_samples = 256, scanned_sizes = 24;

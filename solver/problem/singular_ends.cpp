@@ -63,19 +63,27 @@ bool infinite_at(const Lagrangian& lagrangian, const End& end, double way) {
 class EnergyBeside {
  public:
   EnergyBeside(const Lagrangian& lagrangian, const End& end, std::size_t a, double side)
-      : lagrangian_(lagrangian), end_(end), a_(a), side_(side), q_(end.q), v_(end.mean) {}
+      : end_(end),
+        a_(a),
+        side_(side),
+        v_(end.mean),
+        beside_(lagrangian, static_cast<int>(a), end.q[a], side) {}
 
   double operator()(double distance, double speed) {
-    q_[a_] = end_.q[a_] + side_ * distance;
     v_[a_] = speed * (end_.at_end ? -side_ : side_);
-    const PointValues at = evaluate_at(lagrangian_, q_, v_, end_.time, Order::gradient, scratch_);
-    double energy = -at.value;
-    for (std::size_t b = 0; b < v_.size(); ++b) energy += at.dv[b] * v_[b];
-    return energy;
+    values_ = &beside_.at(distance, end_.q, v_, end_.time, Order::gradient);
+    return beside_.energy();
   }
 
-  /// A distance as the coordinate, rounded, has it.
-  double rounded(double distance) const { return side_ * ((end_.q[a_] + side_ * distance) - end_.q[a_]); }
+  /// ∂L/∂d' at the point evaluated last.
+  DoubleDouble momentum() const { return side_ * values_->v[a_]; }
+
+  double rounded(double distance) const { return beside_.rounded(distance); }
+
+  /// Distances below have few digits.
+  double nearest() const {
+    return std::abs(end_.q[a_]) * (beside_.extended() ? extended_roundoff : roundoff);
+  }
 
   /// The speed at which the energy is the given one, which rises with the speed; 0 if there is none.
   double speed(double distance, double energy, double guess) {
@@ -91,12 +99,12 @@ class EnergyBeside {
   }
 
  private:
-  const Lagrangian& lagrangian_;
   const End& end_;
   std::size_t a_;
   double side_;
-  std::vector<double> q_, v_;
-  Scratch scratch_;
+  std::vector<double> v_;
+  BesideLevel beside_;
+  const BesideLevel::Values* values_ = nullptr;
 };
 
 /// What a sequence tends to whose distance from that falls like a power: Aitken's extrapolation.
@@ -105,60 +113,87 @@ double extrapolated(double before, double middle, double last) {
   return std::abs(change) < 0.9 * std::abs(first) ? last + change * change / (first - change) : last;
 }
 
-/// γ of d' ~ d^−γ; 0 if no motion leaves the level, or not by a power. The slopes at pairs of distances
-/// differ from γ by a power of the distance, until the energy has lost its digits: of their limits that which
-/// moves least to the next.
-double exponent(const Lagrangian& lagrangian, const End& end, std::size_t a, double side, double way,
-                double duration) {
-  EnergyBeside energy(lagrangian, end, a, side);
-  double speed = way / duration, distance = energy.rounded(first_distance * way);
-  const double level = energy(distance, speed);
-  if (!std::isfinite(level)) return 0;
-  std::vector<double> slopes;
-  double found = 0, least = exponent_change, limit = NAN;
-  for (int k = 0; k < distances && least > roundoff; ++k) {
-    const double next = energy.rounded(nearer * distance);
-    if (!(next > roundoff * std::abs(end.q[a]))) break;
-    const double faster = energy.speed(next, level, speed);
-    if (!(faster > 0) || !std::isfinite(faster)) break;
-    slopes.push_back(std::log(faster / speed) / std::log(distance / next));
-    speed = faster;
-    distance = next;
-    const std::size_t known = slopes.size();
-    if (known < 3) continue;
-    const double before = limit;
-    limit = extrapolated(slopes[known - 3], slopes[known - 2], slopes[known - 1]);
-    if (!(std::abs(limit - before) <= least)) continue;
-    least = std::abs(limit - before);
-    found = limit;
-  }
-  return found;
-}
+/// Motions that leave the level with one energy.
+class Departure {
+ public:
+  Departure(const Lagrangian& lagrangian, const End& end, std::size_t a, double side, double way,
+            double duration)
+      : energy_(lagrangian, end, a, side),
+        speed_(way / duration),
+        distance_(energy_.rounded(first_distance * way)),
+        level_(energy_(distance_, speed_)) {}
 
-struct Powers {
-  double m = 0, time = 0;
+  /// γ of d' ~ d^−γ; 0 if no motion leaves the level, or not by a power. The slopes at pairs of distances
+  /// differ from γ by a power of the distance, until the energy has lost its digits: of their limits that
+  /// which moves least to the next.
+  double exponent() {
+    if (!std::isfinite(level_)) return 0;
+    std::vector<double> slopes;
+    double found = 0, least = exponent_change, limit = NAN;
+    for (int k = 0; k < distances && least > roundoff; ++k) {
+      const double next = energy_.rounded(nearer * distance_);
+      if (!(next > energy_.nearest())) break;
+      const double faster = energy_.speed(next, level_, speed_);
+      if (!(faster > 0) || !std::isfinite(faster)) break;
+      slopes.push_back(std::log(faster / speed_) / std::log(distance_ / next));
+      speed_ = faster;
+      distance_ = next;
+      const std::size_t known = slopes.size();
+      if (known < 3) continue;
+      const double before = limit;
+      limit = extrapolated(slopes[known - 3], slopes[known - 2], slopes[known - 1]);
+      if (!(std::abs(limit - before) <= least)) continue;
+      least = std::abs(limit - before);
+      found = limit;
+    }
+    return found;
+  }
+
+  /// The limit of ∂L/∂d' d^γ, from which it differs by d^2γ.
+  DoubleDouble strength(double gamma) {
+    const double near = energy_.rounded(std::max(gauge_distance * distance_, energy_.nearest() / nearer)),
+                 far = energy_.rounded(near / nearer);
+    const DoubleDouble fall = power(DoubleDouble(near) / far, 2 * gamma);
+    return (strength_at(near, gamma) - fall * strength_at(far, gamma)) / (1.0 - fall);
+  }
+
+ private:
+  DoubleDouble strength_at(double distance, double gamma) {
+    energy_(distance, energy_.speed(distance, level_, speed_ * std::pow(distance_ / distance, gamma)));
+    return energy_.momentum() * power(distance, gamma);
+  }
+
+  EnergyBeside energy_;
+  double speed_, distance_;  ///< at the nearest distance so far
+  double level_;             ///< the energy
 };
 
-/// The simple fraction that an exponent is but for its error; else the exponent.
-double simplified(double gamma, int& denominator) {
-  for (denominator = 2; denominator <= largest_power; ++denominator)
+struct Powers {
+  double gamma = 0, m = 0, time = 0;
+};
+
+/// The simple fraction that an exponent is but for its error, as far as it is measured; else the exponent.
+double simplified(double gamma) {
+  for (int denominator = 2; denominator <= most_denominator; ++denominator)
     if (const double p = std::round(gamma * denominator);
-        p >= 1 && std::abs(gamma - p / denominator) <= whole)
+        p >= 1 && std::abs(gamma - p / denominator) <= (denominator <= small_denominator ? whole : exact))
       return p / denominator;
-  denominator = 0;
   return gamma;
 }
 
-/// m and m (1 + γ). With m = 1/(1 − γ) the part of L that is infinite becomes w', and what is left powers of
-/// w^2γm: smooth where that is a whole number. Else w is a root with which all powers are whole; or twice m.
+/// γ, m and k = m (1 + γ). Beside the end L̃ is s^(k−1) times powers of w^2γm. Gauss's rule integrates the
+/// former if k is whole, and the less it is, the more digits has w. The latter are smooth if 2γm is whole,
+/// and hardly disturb if it is large. Weak powers do not become so.
 std::optional<Powers> powers_of(double measured) {
-  int denominator = 0;
-  const double gamma = simplified(measured, denominator);
+  const double gamma = simplified(measured);
   if (!(gamma > least_exponent && gamma < largest_exponent)) return std::nullopt;
-  const double m = 1 / (1 - gamma), left = 2 * gamma * m;
-  if (std::abs(left - std::round(left)) < roundoff) return Powers{m, m * (1 + gamma)};
-  if (denominator > 0) return Powers{1.0 * denominator, denominator * (1 + gamma)};
-  return Powers{2 * m, 2 * m * (1 + gamma)};
+  const auto by_time = [gamma](double k) { return Powers{gamma, k / (1 + gamma), k}; };
+  const auto left = [gamma](double k) { return 2 * gamma * k / (1 + gamma); };
+  for (int k = 2; k <= small_time; ++k)
+    if (std::abs(left(k) - std::round(left(k))) < roundoff) return by_time(k);
+  for (int k = least_time; k <= largest_time; ++k)
+    if (left(k) > smooth_power) return by_time(k);
+  return by_time(2 * (1 + gamma) / (1 - gamma));
 }
 
 /// The way between the ends; where there is none, that in which the action is least against it.
@@ -247,7 +282,13 @@ std::optional<InfiniteLagrangian> infinite_lagrangian(const Problem& problem) {
 double EndVariables::time(double s) const {
   const double x = std::clamp(s / duration, 0.0, 1.0);
   if (!singular(true)) return duration * std::pow(x, start);
-  return duration - remaining(s);
+  if (!singular(false)) return duration - remaining(s);
+  const double a = std::pow(x, start);
+  return duration * a / (a + std::pow(1 - x, end));
+}
+
+DoubleDouble EndVariables::precise_time(double s) const {
+  return s < 0.5 * duration ? DoubleDouble(time(s)) : DoubleDouble(duration) - remaining(s);
 }
 
 double EndVariables::remaining(double s) const {
@@ -290,11 +331,6 @@ double EndVariables::variable_at(double q) const {
   return std::pow(std::max(0.0, side * (q - level)), 1.0 / power);
 }
 
-double EndVariables::rounded(double w, double q) const {
-  const double distance = side * (q - level);
-  return level != 0 && w > 0 && distance > 0 ? std::pow(distance, 1.0 / power) : w;
-}
-
 std::optional<EndVariables> singular_ends(const Problem& problem) {
   if (!supported(problem)) return std::nullopt;
   const Lagrangian& lagrangian = *problem.lagrangian;
@@ -305,19 +341,21 @@ std::optional<EndVariables> singular_ends(const Problem& problem) {
     const auto [coordinate, side] = level_of(problem, end);
     if (coordinate < 0) return std::nullopt;
     const auto a = static_cast<std::size_t>(coordinate);
-    const auto powers =
-        powers_of(exponent(lagrangian, end, a, side, way_of(problem, a), problem.duration.value));
+    Departure departure(lagrangian, end, a, side, way_of(problem, a), problem.duration.value);
+    const auto powers = powers_of(departure.exponent());
     if (!powers) return std::nullopt;
     EndVariables variables{.coordinate = coordinate,
                            .level = end.q[a],
                            .side = side,
                            .power = powers->m,
-                           .duration = problem.duration.value};
+                           .duration = problem.duration.value,
+                           .speed = powers->gamma};
     if (found && (found->coordinate != variables.coordinate || found->level != variables.level ||
                   found->side != variables.side || found->power != variables.power))
       return std::nullopt;
     if (!found) found = variables;
     (end.at_end ? found->end : found->start) = powers->time;
+    (end.at_end ? found->of_end : found->of_start) = departure.strength(powers->gamma);
   }
   return found;
 }

@@ -5,26 +5,30 @@
 #include <optional>
 #include <vector>
 
+#include "problem/beside_level.hpp"
 #include "problem/problem.hpp"
 #include "system/open_ends.hpp"
 
 /// \file Ends at which L is infinite but its integral is not, as of a fall from rest itself.
 ///
 /// At such an end one coordinate is at a level beside which L is finite. On motions of energy E its distance
-/// d from the level has d' ~ d^−γ, so d ~ t^(1/(1+γ)), and ∫ L dt is finite if γ < 1. Let γ = p/m. Then
-///   d = w^m,  t = T φ(s/T),  φ ~ (s/T)^(m + p)
-/// make w(s) a smooth function, which rises like s, and L̃(w, w', s) = φ' L a smooth Lagrangian along it. The
-/// extremals, the action and the momenta of the other coordinates stay what they are.
+/// d from the level has d' ~ d^−γ, so d ~ t^(1/(1+γ)), and ∫ L dt is finite if γ < 1. Then
+///   d = w^m,  t = T φ(s/T),  φ ~ (s/T)^k,  k = m (1 + γ)
+/// make w(s) a smooth function, which rises like s, and L̃(w, w', s) = φ' (L − dF/dt) a smooth Lagrangian
+/// along it. F = C(t) d^(1−γ)/(1−γ) has the part of the momentum that is infinite, and is 0 at both ends: d
+/// is, or C. The extremals, the action and the momenta at ends stay as they are.
 
 namespace extremal {
 
 /// The variables (w, s) of one coordinate and of the time.
 struct EndVariables {
   int coordinate = 0;
-  double level = 0, side = 1;  ///< q = level + side w^m
-  double power = 1;            ///< m
-  double start = 1, end = 1;   ///< exponents of φ at both ends; 1: that end is regular
-  double duration = 0;         ///< T
+  double level = 0, side = 1;                 ///< q = level + side w^m
+  double power = 1;                           ///< m
+  double start = 1, end = 1;                  ///< exponents of φ at both ends; 1: that end is regular
+  double duration = 0;                        ///< T
+  double speed = 0;                           ///< γ
+  DoubleDouble of_start = 0.0, of_end = 0.0;  ///< C at both ends
 
   bool singular(bool at_end) const { return (at_end ? end : start) > 1; }
   /// Whether L̃ vanishes at the start or at the end, and the second variation beside it.
@@ -32,16 +36,15 @@ struct EndVariables {
     const auto by = [this](double exponent) { return std::abs(2 * power - exponent - 1) > 1e-3; };
     return (singular(false) && by(start)) || (singular(true) && by(end));
   }
+  LevelGauge gauge() const { return {speed, of_start, of_end, duration}; }
   double time(double s) const;
-  double rate(double s) const;       ///< dt/ds
-  double remaining(double s) const;  ///< T − t, to its last digits
+  DoubleDouble precise_time(double s) const;  ///< with the last digits of T − t
+  double rate(double s) const;                ///< dt/ds
+  double remaining(double s) const;           ///< T − t, to its last digits
   double time_inverse(double t) const;
   double remaining_inverse(double rest) const;  ///< T − s by T − t
   double coordinate_at(double w) const;
   double variable_at(double q) const;  ///< w
-  /// The w of q(w) as it is rounded: next to its level q has few digits, and derivatives by w are to be those
-  /// at the same point.
-  double rounded(double w, double q) const;
 };
 
 /// L̃.

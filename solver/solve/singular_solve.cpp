@@ -58,13 +58,13 @@ class InTime {
     solution.energy = solution.energy_drift = std::nullopt;
     if (!problem_.lagrangian->structure().autonomous) return;
     const std::vector<double>& times = smooth_.trajectory.times;
+    BesideLevel beside(*problem_.lagrangian, x_.coordinate, x_.level, x_.side);
     double least = INFINITY, most = -INFINITY, last = 0;
     for (std::size_t k = 0; k + 1 < times.size(); ++k) {
       const double s = 0.5 * (times[k] + times[k + 1]);
       read(s);
-      const PointValues at = evaluate_at(*problem_.lagrangian, q_, v_, x_.time(s), Order::gradient, scratch_);
-      last = -at.value;
-      for (std::size_t a = 0; a < n_; ++a) last += at.dv[a] * v_[a];
+      beside.at(distance_, q_, v_, x_.precise_time(s), Order::gradient);
+      last = beside.energy();
       least = std::min(least, last);
       most = std::max(most, last);
     }
@@ -109,6 +109,7 @@ class InTime {
     const std::size_t a = x_.coordinate;
     for (double& v : v_) v /= rate;
     v_[a] *= x_.side * x_.power * std::pow(q_[a], x_.power - 1);
+    distance_ = std::pow(q_[a], x_.power);
     q_[a] = x_.coordinate_at(q_[a]);
   }
 
@@ -126,7 +127,7 @@ class InTime {
   const Solution& smooth_;
   std::size_t n_;
   std::vector<double> q_, v_;
-  Scratch scratch_;
+  double distance_ = 0;  ///< from the level
 };
 
 /// A function of the duration that vanishes at the one wanted.

@@ -94,6 +94,60 @@ TEST_F(SingularEnds, MediaOfOtherPowers) {
   }
 }
 
+/// The time to y = 1, or the action, of √(1 + y'²)/y^a by its first integral y^−a/√(1 + y'²) = c: with
+/// z = (c y^a)^((1−a)/a) the integrands are smooth.
+double time_to_one(double a, double c, bool action) {
+  const double end = std::pow(c, 1 / a), power = (1 - a) / a;
+  const int steps = 2000;
+  double sum = 0;  // Simpson's rule
+  const double top = std::pow(end, 1 - a);
+  for (int k = 0; k <= 2 * steps; ++k) {
+    const double z = top * k / (2 * steps), slope = std::pow(z, 1 / power),
+                 f = (action ? 1 : slope * slope) / std::sqrt(1 - slope * slope);
+    sum += f * (k == 0 || k == 2 * steps ? 1 : k % 2 == 1 ? 4 : 2);
+  }
+  sum *= top / (6 * steps) / (1 - a);
+  return sum * std::pow(c, action ? 1 - 1 / a : -1 / a);
+}
+
+TEST_F(SingularEnds, PowersThatAreNoSimpleFractions) {
+  for (const double a : {0.23, 0.3, 0.45, 0.55, 0.7, 0.8, 0.9}) {
+    double low = 0, high = 1 - 1e-9;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      (time_to_one(a, middle, false) < 0.8 ? low : high) = middle;
+    }
+    const Solution found = solved(singular_scene(fmt::format("sqrt(1 + y'^2)/y^{}", a),
+                                                 "start = { y = 0 }\nend = { y = 1 }\nduration = 0.8"));
+    ASSERT_TRUE(found.converged()) << a << ": " << found.message;
+    EXPECT_NEAR(found.action, time_to_one(a, low, true), 1e-7) << a;
+    ASSERT_TRUE(found.energy) << a;
+    EXPECT_NEAR(*found.energy, -low, 1e-7) << a;
+  }
+}
+
+/// One Lagrangian written so that nothing cancels at the end, and so that nearly all does.
+TEST_F(SingularEnds, FormulasOfWhichTermsCancelAtTheEnd) {
+  struct Pair {
+    const char *apart, *cancelling, *ends;
+  };
+  for (const auto& [apart, cancelling, ends] :
+       {Pair{"(3 - y)*(3 + y)", "9 - y^2", "start = { y = 3 }\nend = { y = 2.5 }"},
+        Pair{"(3 - y)*(3 + y)", "9 - y^2", "start = { y = 2.5 }\nend = { y = 3 }"},
+        Pair{"2*exp(y/2)*sinh(y/2)", "exp(y) - 1", "start = { y = 0 }\nend = { y = 0.7 }"},
+        Pair{"2*(y - 2)/y", "1 - (4 - y)/y", "start = { y = 2 }\nend = { y = 3 }"}}) {
+    const auto found = [&](const char* medium) {
+      return solved(singular_scene(fmt::format("sqrt((1 + y'^2)/({}))", medium),
+                                   fmt::format("{}\nduration = 0.6", ends)));
+    };
+    const Solution expected = found(apart), other = found(cancelling);
+    ASSERT_TRUE(expected.converged()) << apart << ": " << expected.message;
+    ASSERT_TRUE(other.converged()) << cancelling << ": " << other.message;
+    EXPECT_NEAR(other.action, expected.action, 1e-10) << cancelling;
+    EXPECT_NEAR(*other.energy, *expected.energy, 1e-8) << cancelling;
+  }
+}
+
 /// From rest at infinity, x' = √(2c) x^(−a/2): x ~ t^(1/(1 + a/2)), and the action is ∫ x' dx.
 TEST_F(SingularEnds, WeakPowers) {
   for (const double a : {0.1, 0.2, 0.25, 0.4}) {
