@@ -148,7 +148,9 @@ std::string change_text(const Problem& problem, const ClosingChange& change) {
 std::string mend_text(const Problem& problem) {
   const Structure& s = problem.lagrangian->structure();
   if (const std::optional<double> period = recurrence_time(problem))
-    return fmt::format("; L repeats after {:.15g}: give that duration, or a multiple of it", *period);
+    // With a map it repeats after a multiple only if the map is the same as so many.
+    return fmt::format("; L repeats after {:.15g}: give that duration{}", *period,
+                       sparse_closing(problem).identity ? ", or a multiple of it" : "");
   if (!s.harmonic)
     return "; t stands in L outside of sin, cos and tan, and no period is known: give both ends instead of "
            "'periodic', or an L that repeats";

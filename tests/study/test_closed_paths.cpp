@@ -136,3 +136,13 @@ TEST_F(ClosedPaths, OfOneThatMayBeShiftedOneIsFound) {
   const double perimeter = 8 * std::comp_ellint_2(std::sqrt(0.75));
   EXPECT_NEAR(found[0].action, perimeter * perimeter / 2, 1e-3);
 }
+
+/// After two of these durations L repeats too, but not up to the map.
+TEST_F(ClosedPaths, AMapRepeatsAfterNoMultiple) {
+  const std::string text = message(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2 + x*cos(3*t)\"\n"
+      "[boundary]\nperiodic = true\nmap = { x = \"-x\" }\nduration = \"2*pi/3\"\n"
+      "[guess]\nx = \"0.1*cos(3*t)\"\n");
+  EXPECT_NE(text.find("L repeats after 1.04719755119"), std::string::npos) << text;
+  EXPECT_EQ(text.find("or a multiple of it"), std::string::npos) << text;
+}
