@@ -424,6 +424,8 @@ class InfiniteSolve {
 
   Solution explained(Solution solution) const {
     solution.message += "; on an infinite interval";
+    if (solution.message.find("try ") == std::string::npos)
+      solution.message += ": try another guess, or another 'guess.duration' for the part that it describes";
     return solution;
   }
 

@@ -277,6 +277,22 @@ TEST_F(SingularEnds, TimesAtWhichLIsInfiniteAreNamed) {
   EXPECT_NEAR(mended.action, 19.0 / 18, 2e-9);
 }
 
+/// Beside the start L is finite, about the end it is not.
+TEST_F(SingularEnds, TheEndOutsideOfTheDomainIsNamed) {
+  const Solution found =
+      solved(singular_scene("sqrt((1 + y'^2)/y)", "start = { y = 0 }\nend = { y = -2 }\nduration = 3"));
+  EXPECT_EQ(found.message.find("L is not finite about the end, y = -2; move this end"), 0u) << found.message;
+}
+
+/// Where L is finite but not its momenta.
+TEST_F(SingularEnds, MeanVelocitiesAtTheLargestOneAreOutOfReach) {
+  const Solution found =
+      solved(singular_scene("-sqrt(1 - y'^2) - y^2/3", "start = { y = 1 }\nend = { y = 4 }\nduration = 3"));
+  EXPECT_NE(found.message.find("they may be out of reach in this duration; try a longer one"),
+            std::string::npos)
+      << found.message;
+}
+
 TEST_F(SingularEnds, WhatIsNotAvailableIsRefused) {
   const std::string ends = "start = { y = 0 }\nend = { y = 5 }\nduration = 10";
   const auto refused = [&](const std::string& boundary, const std::string& more, const std::string& place,

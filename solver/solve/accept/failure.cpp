@@ -65,23 +65,25 @@ std::string place_of(const Problem& problem, Point q) {
   return place + (q.size() > most_named ? ", …" : "");
 }
 
-/// A point at a thousandth of the coordinates from another, or of one where all are zero.
-std::vector<double> beside(Point q) {
+/// A point at a thousandth of the coordinates from another, or of one where all are zero, to one side.
+std::vector<double> beside(Point q, double side) {
   double size = 0;
   for (const double x : q) size = std::max(size, std::abs(x));
   std::vector<double> result(q.begin(), q.end());
-  for (double& x : result) x += 1e-3 * (size > 0 ? size : 1);
+  for (double& x : result) x += side * 1e-3 * (size > 0 ? size : 1);
   return result;
 }
 
-/// An end where L is not finite at rest nor at speeds along each axis, or an end that no motion reaches in
-/// time: where L is finite at rest, but not at the mean velocity between the ends.
+/// An end where L is not finite at rest nor at speeds along each axis, first one beside which it is not
+/// either; or an end that no motion reaches in time: where L is finite at rest, but it or its momenta are not
+/// at the mean velocity between the ends.
 std::string unreachable(const Problem& problem) {
   const std::size_t n = problem.coordinates();
   const double duration = problem.duration.value;
   Scratch scratch;
   const auto finite = [&](Point q, const std::vector<double>& v, double t) {
-    return std::isfinite(evaluate_at(*problem.lagrangian, q, v, t, Order::value, scratch).value);
+    const PointValues at = evaluate_at(*problem.lagrangian, q, v, t, Order::gradient, scratch);
+    return std::isfinite(at.value) && std::ranges::all_of(at.dv, [](double p) { return std::isfinite(p); });
   };
   const auto finite_at_some_velocity = [&](Point q, double t) {
     std::vector<double> v(n, 0);
@@ -96,20 +98,23 @@ std::string unreachable(const Problem& problem) {
     return false;
   };
   const auto* const open = dynamic_cast<const OpenEnds*>(problem.lagrangian.get());
-  for (const bool end : {false, true}) {
-    const Point q = fixed_end(problem, end);
-    if (q.empty() || (open && (end ? open->open_end() : open->open_start()))) continue;
-    const double time = end ? duration : 0;
-    if (finite_at_some_velocity(q, time)) continue;
-    // Either the point is singular, and points beside it are not, or the time is.
-    const double little = 1e-9 * duration;
-    if (!finite_at_some_velocity(beside(q), time) &&
-        finite_at_some_velocity(q, end ? duration - little : little))
-      return fmt::format("L is not finite at t = {:.6g}; write t {} {:.1g} for t in L", time, end ? '-' : '+',
-                         little);
-    return fmt::format("L is not finite at the {}, {}; move this end", end ? "end" : "start",
-                       place_of(problem, q));
-  }
+  const auto finite_beside = [&](Point q, double t) {
+    return finite_at_some_velocity(beside(q, 1), t) || finite_at_some_velocity(beside(q, -1), t);
+  };
+  for (const bool within : {false, true})
+    for (const bool end : {false, true}) {
+      const Point q = fixed_end(problem, end);
+      if (q.empty() || (open && (end ? open->open_end() : open->open_start()))) continue;
+      const double time = end ? duration : 0;
+      if (finite_at_some_velocity(q, time) || finite_beside(q, time) != within) continue;
+      // Either the point is singular, and points beside it are not, or the time is.
+      const double little = 1e-9 * duration;
+      if (!within && finite_at_some_velocity(q, end ? duration - little : little))
+        return fmt::format("L is not finite at t = {:.6g}; write t {} {:.1g} for t in L", time,
+                           end ? '-' : '+', little);
+      return fmt::format("L is not finite {} the {}, {}; move this end", within ? "at" : "about",
+                         end ? "end" : "start", place_of(problem, q));
+    }
   const Point start = fixed_end(problem, false), end = fixed_end(problem, true);
   if (start.empty() || end.empty() || problem.duration.free || open) return {};
   std::vector<double> mean(n);
