@@ -1,10 +1,13 @@
 #include "action/corners.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "action/momentum_jump.hpp"
 #include "action/rule.hpp"
 #include "action/tables.hpp"
 #include "machine/aligned.hpp"
@@ -24,6 +27,8 @@ constexpr double most_stretch = 2;
 constexpr double near = 0.01;
 /// Of a change of u over an element: a value of u that is on its side of the surface.
 constexpr double beside = 0x1p-40;
+/// Of the change of the momentum beside a surface: what is left of it on the surface if the momentum jumps.
+constexpr double jumping = 0.01;
 /// Halvings of an interval, after which the crossing is known to the last digit.
 constexpr int most_halvings = 60;
 
@@ -160,6 +165,12 @@ double product(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
+double largest(const std::vector<double>& x) {
+  double result = 0;
+  for (const double value : x) result = std::max(result, std::abs(value));
+  return result;
+}
+
 /// Moves a point along the slope of u by as much as changes u so, to first order.
 void move_along(std::span<double> x, std::span<const double> slope, double change) {
   const double square = product(slope, slope);
@@ -276,6 +287,81 @@ std::vector<Switch> switches_of(const Kinks& kinks, const Polynomials& path, con
     switches.push_back(std::move(found));
   });
   return switches;
+}
+
+namespace {
+
+/// The points of a path between which surfaces that depend on velocities are crossed, also from one element
+/// to the next and, if it is closed, beyond T.
+std::vector<State> samples(const Problem& problem, const Polynomials& path) {
+  std::vector<State> states;
+  const int parts = 2 * path.degree;
+  for (int k = 0; k < path.elements(); ++k)
+    for (int i = 0; i <= parts; ++i) states.push_back(state_at(path, k, static_cast<double>(i) / parts));
+  if (problem.periodic) {
+    states.push_back(state_at(path, 0, 0));
+    continue_beyond(path, closing_map(problem), states.back());
+  }
+  const int n = path.coordinates / 2;  // of one of two copies
+  for (State& state : states)
+    for (std::vector<double>* x : {&state.q, &state.v})
+      for (int a = 0; problem.paired && a < n; ++a) (*x)[a] = (*x)[n + a] = 0.5 * ((*x)[a] + (*x)[n + a]);
+  return states;
+}
+
+/// Between two states in which u has different signs: the one nearest to the surface with u >= 0.
+State on_surface(const Lagrangian& u, State positive, State negative, Along& along) {
+  for (int k = 0; k < most_halvings; ++k) {
+    State middle = positive;
+    for (std::size_t a = 0; a < middle.q.size(); ++a) {
+      middle.q[a] = 0.5 * (positive.q[a] + negative.q[a]);
+      middle.v[a] = 0.5 * (positive.v[a] + negative.v[a]);
+    }
+    middle.t = 0.5 * (positive.t + negative.t);
+    (along.at(u, middle) < 0 ? negative : positive) = std::move(middle);
+  }
+  return positive;
+}
+
+}  // namespace
+
+std::optional<MomentumJump> momentum_jump(const Problem& problem, const Polynomials& path) {
+  const Kinks* const kinks = problem.lagrangian->kinks();
+  std::optional<MomentumJump> first;
+  if (!kinks) return first;
+  std::vector<State> states;
+  Along along(path);
+  for (const KinkSurface& surface : kinks->surfaces()) {
+    if (!surface.by_velocity) continue;
+    if (states.empty()) states = samples(problem, path);
+    double before = along.at(*surface.u, states[0]);
+    for (std::size_t i = 1; i < states.size(); ++i) {
+      const double u = along.at(*surface.u, states[i]);
+      const bool rising = before < 0, crosses = rising != (u < 0);
+      before = u;
+      if (!crosses) continue;
+      const State &positive = states[rising ? i : i - 1], &negative = states[rising ? i - 1 : i];
+      const State at = on_surface(*surface.u, positive, negative, along);
+      const double size = largest(along.gradient(*surface.odd, at).dv);
+      if (!(size > jumping * largest(along.gradient(*surface.odd, positive).dv))) continue;
+      if (!first || at.t < first->time) first = {at.t, size};
+      break;
+    }
+  }
+  return first;
+}
+
+std::optional<MomentumJump> momentum_jump(const Problem& problem, const Path& path) {
+  if (!problem.lagrangian->kinks()) return std::nullopt;
+  return momentum_jump(problem, Copy(path, path.duration()).pieces);
+}
+
+std::string describe(const MomentumJump& jump) {
+  return fmt::format(
+      "at t = {:.6g} a velocity crosses a kink of abs, min or max, where the momentum jumps by {:.3g}: there "
+      "velocities of extremals stay for a while, or jump, which is not computed; write L with a smooth "
+      "function, such as sqrt(u^2 + e^2) for abs(u)",
+      jump.time, jump.size);
 }
 
 std::vector<Corner> corners_of(const Kinks& kinks, const Path& path, const ClosingMap* closed) {

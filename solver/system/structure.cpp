@@ -19,7 +19,8 @@ class QuadraticForm {
  public:
   QuadraticForm(const LagrangianGraph& l, Structure& s) : l_(l), structure_(s), linear_(l.coordinates) {}
 
-  /// False if some second derivative with a velocity, or the term linear in it, is not constant.
+  /// False if some second derivative with a velocity, or the term linear in it, is not constant, or a
+  /// momentum jumps: then second derivatives do not tell the first ones.
   bool add(const Kernel& kernel);
   void finish();
 
@@ -66,6 +67,13 @@ bool QuadraticForm::add_hessian(const Kernel& kernel) {
   return true;
 }
 
+/// Whether a step of coordinates or velocities is part of the expression.
+bool jumps(const Kernel& kernel, NodeId f) {
+  const std::vector<bool> moves = dependents(kernel, {Variable::coordinate, Variable::velocity});
+  const std::vector<NodeId> nodes = nodes_of(kernel.graph, f);
+  return std::ranges::any_of(nodes, [&](NodeId id) { return kernel.graph[id].op == Op::step && moves[id]; });
+}
+
 /// a = ∂L/∂q' where q = q' = 0.
 bool QuadraticForm::add_linear(const Kernel& kernel) {
   Kernel origin;
@@ -82,6 +90,7 @@ bool QuadraticForm::add_linear(const Kernel& kernel) {
   std::vector<Scaled> values;
   for (const Partial& p : kernel.gradient) {
     if (kernel.kinds[p.input] != Variable::velocity) continue;
+    if (jumps(kernel, p.value.node)) return false;
     Scaled value = algebra.import(kernel.graph, p.value.node, replacement);
     value.factor *= p.value.factor;
     velocities.push_back(p.input);

@@ -308,5 +308,43 @@ TEST(Kinks, MotionsAreBracketedWhereNoGuessLeads) {
       << s.momentum_start[0];
 }
 
+TEST(Kinks, PathsOnOneSideOfAMomentumJumpAreFound) {
+  const auto lagrangian = written({"x"}, "x'^2/2 + 0.2*abs(x') - x^2/2");
+  const Solution s = solve(fixed_ends(lagrangian, {0}, {-0.7}, 1.2), within(1e-11));
+  const double size = -0.7 / std::sin(1.2);
+  EXPECT_LT(distance(s.trajectory, [&](double t) { return Values{size * std::sin(t)}; }), 1e-10);
+  EXPECT_NEAR(s.momentum_start[0], size - 0.2, 1e-10);
+}
+
+/// p jumps with the sign of a velocity: a path that changes it is no extremal.
+TEST(Kinks, PathsAcrossAMomentumJumpAreNone) {
+  const auto refused = [](const Problem& problem, const SolveOptions& options) {
+    Solver solver;
+    const Solution s = solver.solve(problem, options);
+    EXPECT_FALSE(s.converged());
+    EXPECT_NE(s.message.find("the momentum jumps by 0.4"), std::string::npos) << s.message;
+  };
+  for (const char* jump : {"+ 0.2*abs(x')", "- 0.2*abs(x')", "+ 0.4*max(0, x' - 0.1)"}) {
+    const auto lagrangian = written({"x"}, std::string("x'^2/2 - x^2/2 ") + jump);
+    refused(fixed_ends(lagrangian, {0}, {0.4}, 2.3), within(1e-8));
+  }
+  refused(fixed_ends(written({"x"}, "x'^2/2 - x^2/2 + 0.4*max(0, x' - 0.1)"), {0}, {0.4}, 2.3),
+          pinned(scheme("midpoint"), 24));
+  const auto pair = written({"x", "y"}, "(x'^2 + y'^2)/2 + 0.2*abs(x' - y') - x^2/2 - y^2");
+  refused(fixed_ends(pair, {0, 0.8}, {0.6, 0.2}, 2), within(1e-8));
+}
+
+/// A momentum that is continuous across a kink in the velocity: x'' = −x/2 where x' > 0, else −x.
+TEST(Kinks, MomentaWithoutAJumpAreCrossed) {
+  const auto lagrangian = written({"x"}, "x'^2/2 + max(0, x')^2/2 - x^2/2");
+  const double w = std::sqrt(0.5), turn = pi / 2 / w;
+  const auto truth = [&](double t) { return Values{t < turn ? std::sin(w * t) : std::cos(t - turn)}; };
+  const double T = turn + 0.6;
+  const Problem problem = guessed(fixed_ends(lagrangian, truth(0), truth(T), T), [&](double tau) {
+    return Values{truth(T * tau)[0] + 0.01 * std::sin(pi * tau)};
+  });
+  EXPECT_LT(distance(solve(problem, within(1e-10)).trajectory, truth), 1e-9);
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -75,5 +75,16 @@ TEST(Kinks, StepsAndVelocitiesAreKnown) {
   EXPECT_NE(surfaces[0].by_velocity, surfaces[1].by_velocity);
 }
 
+/// Second derivatives that are constant on both sides do not make the momentum one function of q'.
+TEST(Kinks, MomentaThatJumpAreEvaluated) {
+  for (const char* text :
+       {"x'^2/2 + 0.3*abs(x')", "x'^2/2 - 0.3*max(2*x', -x')", "x'^2/2 + x*x' + abs(x' - 1)"}) {
+    const auto l = written({"x"}, text);
+    EXPECT_FALSE(l->structure().quadratic) << text;
+    const double left = values(*l, {0}, {-2}, 0).dv[0], right = values(*l, {0}, {2}, 0).dv[0];
+    EXPECT_GT(std::abs(right - left - 4), 0.1) << text;
+  }
+}
+
 }  // namespace
 }  // namespace extremal

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "action/momentum_jump.hpp"
 #include "problem/closing.hpp"
 #include "problem/symmetry.hpp"
 #include "solution/on_manifold.hpp"
@@ -122,6 +123,8 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   if (problem.paired)
     if (auto fails = copies_differ(solution.trajectory, scales(path, *outcome.tables).q))
       return refused(*std::move(fails), solution);
+  if (const auto jump = momentum_jump(problem, path))
+    return refused({Status::not_converged, describe(*jump)}, solution);
   // Velocities that momenta give are the same on both sides of a node.
   if (auto fails =
           has_broken_node(problem, *problem.lagrangian,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "action/momentum_jump.hpp"
 #include "machine/simd.hpp"
 #include "solve/adapt/element_count.hpp"
 #include "solve/adapt/limits.hpp"
@@ -339,6 +340,8 @@ Outcome PinnedSolve::run() {
       break;
     }
   }
+  if (outcome_.status == Status::not_converged && outcome_.path.elements() > 0)
+    if (const auto jump = momentum_jump(problem_, path_)) outcome_.message = describe(*jump);
   outcome_.astray = outcome_.status == Status::not_converged && !count.any();
   return std::move(outcome_);
 }

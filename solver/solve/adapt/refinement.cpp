@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "action/momentum_jump.hpp"
 #include "solve/mesh/kink_nodes.hpp"
 #include "solve/mesh/limits.hpp"
 #include "solve/periodic/equilibrium.hpp"
@@ -212,15 +213,22 @@ bool Refinement::end_at_kinks() {
 
 /// Newton's method again, as long as the path that it found crosses kinks elsewhere than where elements end.
 NewtonReport Refinement::converge_with_kinks(NewtonReport newton) {
+  if (!tables_->kinks()) return newton;
   const auto on_step = [this] { return count_step(); };
-  for (int k = 0; k < most_realignments && tables_->kinks() && !exhausted(); ++k) {
-    if (!end_at_kinks()) return newton;
-    newton = converge(w_.iteration, path_, *tables_, {coarse_goal, steps_left(coarse_steps)}, on_step);
+  bool at_nodes = false;
+  std::optional<MomentumJump> jump;
+  for (int k = 0; k < most_realignments && !at_nodes && !exhausted(); ++k) {
+    if (newton.reached) jump = momentum_jump(problem_, path_);
+    if (jump) break;
+    at_nodes = !end_at_kinks();
+    if (!at_nodes)
+      newton = converge(w_.iteration, path_, *tables_, {coarse_goal, steps_left(coarse_steps)}, on_step);
   }
-  if (newton.reached && tables_->kinks()) {
-    newton.reached = false;
-    newton.failure = "the path crosses kinks of the Lagrangian at ever other times";
-  }
+  if (at_nodes && newton.reached) return newton;
+  if (newton.reached) newton.failure = "the path crosses kinks of the Lagrangian at ever other times";
+  newton.reached = false;
+  if (!jump) jump = momentum_jump(problem_, path_);
+  if (jump) newton.failure = describe(*jump);
   return newton;
 }
 
