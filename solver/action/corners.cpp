@@ -27,6 +27,9 @@ constexpr double most_stretch = 2;
 constexpr double near = 0.01;
 /// Of a change of u over an element: a value of u that is on its side of the surface.
 constexpr double beside = 0x1p-40;
+/// A jump that falls to less than the second part, from so many times as far from the surface, is none on it:
+/// so that of |u|^p with p > 1 falls.
+constexpr double farther = 1024, falling = 0.9;
 /// Of the change of the momentum beside a surface: what is left of it on the surface if the momentum jumps.
 constexpr double jumping = 0.01;
 /// Halvings of an interval, after which the crossing is known to the last digit.
@@ -245,8 +248,12 @@ std::vector<Corner> corners_of(const Kinks& kinks, const Polynomials& path, cons
     if (!crosses || !(std::abs(corner.u) < gap * at.shorter * std::abs(corner.rate))) return;
     const double square = product(corner.normal, corner.normal);
     if (square > 0) {
-      move_along(here.q, corner.normal, beside * at.shorter * std::abs(corner.rate) - corner.u);
-      const std::vector<double> jump = along.slope(*surface.odd, here);
+      const double change = at.shorter * std::abs(corner.rate);
+      move_along(here.q, corner.normal, farther * beside * change - corner.u);
+      const double far = largest(along.slope(*surface.odd, here));
+      move_along(here.q, corner.normal, (1 - farther) * beside * change);
+      std::vector<double> jump = along.slope(*surface.odd, here);
+      if (!(largest(jump) > falling * far)) std::ranges::fill(jump, 0.0);
       const double along_normal = product(jump, corner.normal) / square;
       corner.stiffness = along_normal / std::abs(corner.rate);
       for (int a = 0; a < n; ++a)

@@ -13,6 +13,11 @@ namespace {
 constexpr std::size_t most_bases = 6;
 constexpr int most_halves = 32;  ///< powers beyond are left to pow
 
+/// Where max(0, u) is zero so are its derivatives, and with them those of its powers above 1. A negative
+/// power as a factor of a derivative must then be finite: it is that of no less than `above_zero`.
+constexpr double above_zero = 1e-150;
+bool vanishes_widely(Op op) { return op == Op::min || op == Op::max; }
+
 bool is_odd(Op op) {
   return op == Op::sin || op == Op::tan || op == Op::asin || op == Op::atan || op == Op::sinh ||
          op == Op::tanh;
@@ -124,7 +129,10 @@ NodeId Algebra::power_node(Power p) {
     if (rooted_.insert(p.base).second) powers_.clear();  // others are built of the root from here on
     result = graph_.unary(Op::sqrt, p.base);
   } else if (p.halves == -1) {
-    result = graph_.div(one_, power_node({p.base, 1}));
+    const bool cut = vanishes_widely(graph_[p.base].op);
+    const NodeId least = graph_.constant(above_zero);
+    result = graph_.div(
+        one_, cut ? graph_.unary(Op::sqrt, graph_.binary(Op::max, p.base, least)) : power_node({p.base, 1}));
   } else if (p.halves == -2 && !rooted_.contains(p.base)) {
     result = graph_.div(one_, p.base);
   } else if (p.halves > 0 && odd) {
@@ -195,6 +203,8 @@ Scaled Algebra::binary(Op op, Scaled a, Scaled b) {
   const bool number = b.node == one_ && !b.zero() && !a.zero();
   if (op == Op::pow && number && halves == std::round(halves) && std::abs(halves) <= most_halves)
     return power(a, static_cast<int>(halves));
+  if (op == Op::pow && number && halves < 0 && vanishes_widely(graph_[a.node].op))
+    return scaled(1, graph_.pow(graph_.binary(Op::max, node(a), graph_.constant(above_zero)), node(b)));
   return scaled(1, graph_.binary(op, node(a), node(b)));
 }
 

@@ -1,6 +1,7 @@
 #include "system/kinks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <utility>
 
@@ -45,19 +46,28 @@ NodeId beyond(Graph& graph, NodeId kink) {
   return graph.binary(n.op == Op::max ? Op::min : Op::max, n.a, n.b);
 }
 
+/// Of a base that would be negative beyond the surface this is not a number: such a base vanishes on the
+/// surface, and goes on as zero.
+bool needs_positive(const Graph& graph, const Node& n) {
+  return n.op == Op::sqrt ||
+         (n.op == Op::pow && !(graph.is_constant(n.b) && graph[n.b].value == std::floor(graph[n.b].value)));
+}
+
 /// The value of the body less that which it would have if the kink went on smoothly beyond its surface.
 NodeId odd_part(Body& body, NodeId kink) {
   Graph& graph = body.graph;
   std::unordered_map<NodeId, NodeId> image;
   for (const NodeId id : nodes_of(graph, body.value)) {
     const Node n = graph[id];
-    if (id == kink)
+    if (id == kink) {
       image[id] = beyond(graph, kink);
-    else if (arity(n.op) == 0)
+    } else if (arity(n.op) == 0) {
       image[id] = id;
-    else
-      image[id] =
-          arity(n.op) == 1 ? graph.unary(n.op, image[n.a]) : graph.binary(n.op, image[n.a], image[n.b]);
+    } else {
+      const bool cut = needs_positive(graph, n) && image[n.a] != n.a;
+      const NodeId a = cut ? graph.binary(Op::max, image[n.a], graph.constant(0)) : image[n.a];
+      image[id] = arity(n.op) == 1 ? graph.unary(n.op, a) : graph.binary(n.op, a, image[n.b]);
+    }
   }
   return graph.sub(body.value, image[body.value]);
 }

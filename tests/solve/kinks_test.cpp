@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <functional>
 #include <numbers>
 
 #include "solve/branches.hpp"
@@ -344,6 +347,27 @@ TEST(Kinks, MomentaWithoutAJumpAreCrossed) {
     return Values{truth(T * tau)[0] + 0.01 * std::sin(pi * tau)};
   });
   EXPECT_LT(distance(solve(problem, within(1e-10)).trajectory, truth), 1e-9);
+}
+
+/// The time that x'²/2 + V = E takes from 1 to −1.
+double time_of_flight(double energy, const std::function<double(double)>& potential) {
+  const int steps = 200000;
+  double sum = 0;
+  for (int k = 0; k < steps; ++k)
+    sum += 2.0 / steps / std::sqrt(2 * (energy - potential(-1 + (k + 0.5) * 2.0 / steps)));
+  return sum;
+}
+
+TEST(Kinks, PowersOfAKinkAreCrossed) {
+  for (const double power : {1.3, 1.5, 2.2, 2.5, 3.5})
+    for (const bool both : {true, false}) {
+      const std::string text = fmt::format("x'^2/2 - {}^{}", both ? "abs(x)" : "max(0, x)", power);
+      const Solution s = solve(fixed_ends(written({"x"}, text), {1}, {-1}, 1.5), within(1e-9));
+      const auto potential = [&](double x) { return std::pow(both ? std::abs(x) : std::max(0.0, x), power); };
+      EXPECT_NEAR(time_of_flight(*s.energy, potential), 1.5, 1e-8) << text;
+      EXPECT_EQ(s.morse_index, 0) << text;
+      EXPECT_TRUE(s.conjugate_times.empty()) << text;
+    }
 }
 
 }  // namespace

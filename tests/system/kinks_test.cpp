@@ -86,5 +86,22 @@ TEST(Kinks, MomentaThatJumpAreEvaluated) {
   }
 }
 
+/// Powers of a base that vanishes on a kink: forces do not jump there, and all is finite on both sides.
+TEST(Kinks, PowersAreFiniteBesideTheirKinks) {
+  for (const char* text : {"-abs(x)^2.5", "-abs(x)^1.3", "-max(0, x)^2.5", "-max(0, -x)^1.5",
+                           "-max(0, x)^1.7", "-max(0, 2*x - x^2)^1.25", "-sqrt(abs(x)^3)"}) {
+    const auto l = written({"x"}, std::string("x'^2/2 ") + text);
+    Scratch scratch;
+    for (const double x : {-0.4, 0.4}) {
+      const PointValues at = evaluate_at(*l, std::vector{x}, std::vector{0.1}, 0, Order::hessian, scratch);
+      EXPECT_TRUE(std::isfinite(at.value + at.dq[0] + at.qq[0])) << text << " at " << x;
+    }
+    for (const KinkSurface& surface : l->kinks()->surfaces()) {
+      const double jump = values(*surface.odd, {1e-14}, {0.1}, 0).dq[0];
+      EXPECT_LT(std::abs(jump), 3e-3) << text;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace extremal
