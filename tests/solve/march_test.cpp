@@ -430,5 +430,43 @@ TEST(MarchedMotion, LatticesOfManyCoordinates) {
             2e-2);
 }
 
+/// Where a motion has no element the message names the place and the reason, and comes soon.
+TEST(MarchedMotion, TellsWhatStopsIt) {
+  const auto message = [](const Problem& problem) {
+    Solver solver;
+    SolveOptions options = within(1e-9);
+    const Solution s = solver.solve(problem, options);
+    EXPECT_FALSE(s.converged());
+    EXPECT_LT(s.seconds_solve, 3);
+    return s.message;
+  };
+  const auto expect = [](const std::string& found, const char* part) {
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  };
+  const auto jumping = marched_system({"x"}, "x'^2/2 + 0.2*abs(x') - x^2/2");
+  expect(message(from(jumping, {0.3}, {0.1}, 2)), "no velocity with these momenta at");
+  expect(message(from(jumping, {0}, {0.9}, 4)), "stays on a kink");
+  expect(message(from(marched_system({"x"}, "x'^2/2 - sqrt(x)"), {0}, {0}, 4)),
+         "has no derivative, at q[1] = 0");
+  expect(message(from(marched_system({"x"}, "x'^2/2 - 1/x"), {0}, {1}, 4)), "L is not finite at q[1] = 0");
+}
+
+/// A ball on a floor whose stiffness is infinite at first: x'' = −1 + 1.5 k (−x)^0.5.
+TEST(MarchedMotion, MeetsKinksWithInfiniteCurvature) {
+  const auto ball = marched_system({"x"}, "x'^2/2 - x - 200*max(0, -x)^1.5");
+  const Solution s = solve(from(ball, {1}, {0}, 4), within(1e-8));
+  EXPECT_LT(*s.energy_drift, 1e-7);
+}
+
+/// Far more elements than can be kept are not followed until there is no room for them.
+TEST(MarchedMotion, FarTooLongIsToldSoon) {
+  const Problem problem = from(marched_system({"x"}, "x'^2/2 - 1e10*x^2/2"), {1}, {0}, 1e6);
+  Solver solver;
+  const Solution s = solver.solve(problem, within(1e-9));
+  EXPECT_FALSE(s.converged());
+  EXPECT_NE(s.message.find("oscillations"), std::string::npos) << s.message;
+  EXPECT_LT(s.seconds_solve, 5);
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
 #include <climits>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "action/momentum_jump.hpp"
 #include "solution/broken_node.hpp"
 #include "solution/observe.hpp"
 #include "solve/march/deviation.hpp"
@@ -24,6 +26,14 @@ namespace extremal {
 using namespace limits::march;
 
 namespace {
+
+/// Coordinates that a message names; steps to the velocities of given momenta.
+constexpr std::size_t most_named = 3;
+constexpr int velocity_steps = 20;
+/// Of the duration: a march that comes no farther has not begun.
+constexpr double at_start = 1e-9;
+/// Of the sizes of what u is made of: a motion so near a surface is on it.
+constexpr double on_surface = 1e-8;
 
 using Clock = std::chrono::steady_clock;
 
@@ -168,8 +178,11 @@ class InitialMotion {
     }
     const MotionDeviation::Part worst = apart.worst(options_.tolerance);
     solution_.message = fmt::format(
-        "the motion amplifies roundoff: the tolerance {:.1e} holds until t = {:.6g}; after that {} are known "
+        "{}: the tolerance {:.1e} holds until t = {:.6g}; after that {} are known "
         "to {:.1e}, where {:.1e} is allowed; shorten the duration to {:.6g}, or loosen the tolerance",
+        lagrangian_.kinks()
+            ? "the motion amplifies roundoff, or its elements do not resolve it beside kinks of L"
+            : "the motion amplifies roundoff",
         options_.tolerance, until, worst.of, worst.error, worst.allowed, shorter * until);
   }
 
@@ -238,6 +251,13 @@ class InitialMotion {
       solution_.message = describe(*broken);
       return;
     }
+    const Polynomials path{march.trajectory.coordinates, march.trajectory.degree, march.trajectory.times,
+                           march.trajectory.nodes};
+    if (const auto jump = momentum_jump(problem_, path)) {
+      solution_.trajectory = {};
+      solution_.message = describe(*jump);
+      return;
+    }
     solution_.status = Status::converged;
     solution_.message = "converged";
     if (const int kinked = options_.scheme ? kinked_elements(lagrangian_, march.trajectory) : 0; kinked > 0)
@@ -277,6 +297,22 @@ class InitialMotion {
     return end > collision_speed * mean;
   }
 
+  /// Half the number of turning points of the coordinate that turns most often.
+  static double oscillations(const Trajectory& trajectory) {
+    const std::size_t n = trajectory.coordinates, step = (trajectory.degree + 1) * n;
+    double most = 0;
+    for (std::size_t a = 0; a < n; ++a) {
+      double turns = 0, before = 0;
+      for (std::size_t k = a; k < trajectory.slopes.size(); k += step) {
+        const double slope = trajectory.slopes[k];
+        turns += slope * before < 0;
+        if (slope != 0) before = slope;
+      }
+      most = std::max(most, turns);
+    }
+    return 0.5 * most;
+  }
+
   /// Says where the march ended; `elements` equal ones were asked for, or none.
   void fail(const March& march, int elements) {
     solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
@@ -289,10 +325,13 @@ class InitialMotion {
           "loosen the tolerance",
           options_.deadline.budget_text(), t);
     } else if (march.end == March::End::memory) {
+      const double parts = problem_.duration.value / t;
       solution_.message = fmt::format(
-          "the motion takes more than {} elements until t = {:.6g}; shorten the duration or loosen the "
-          "tolerance",
-          march.trajectory.elements(), t);
+          "the motion takes {} elements until t = {:.6g}, with {:.3g} oscillations; the duration {:.6g} "
+          "would "
+          "take about {:.2g} elements, more than can be kept; shorten it or loosen the tolerance",
+          march.trajectory.elements(), t, oscillations(march.trajectory), problem_.duration.value,
+          march.trajectory.elements() * parts);
     } else if (elements > 0) {
       solution_.message = fmt::format(
           "element {} has no solution near the motion: {} from t = {:.9g} over {:.3g}; raise solve.elements, "
@@ -309,10 +348,79 @@ class InitialMotion {
     } else {
       solution_.message = fmt::format(
           "no element, however short, continues the motion beyond t = {:.9g}: {}; end it before, at a "
-          "shorter "
-          "duration",
-          t, reason(march.reason));
+          "shorter duration",
+          t, reason_at(march));
     }
+  }
+
+  /// Why there is no element from where a march has come to, with its place.
+  std::string reason_at(const March& march) const {
+    const std::size_t n = march.last.q.size(), named = n / (problem_.paired ? 2 : 1);
+    std::vector<double> q(n), p(n), v(n);
+    for (std::size_t a = 0; a < n; ++a) {
+      q[a] = march.last.q[a].high;
+      p[a] = march.last.p[a].high;
+    }
+    double speed = 0;
+    for (const double x : march.trajectory.slopes) speed = std::max(speed, std::abs(x));
+    bool found = true;
+    const std::vector<double>& slopes = march.trajectory.slopes;
+    if (slopes.size() >= n && march.reached > at_start * problem_.duration.value)
+      std::copy(slopes.end() - static_cast<std::ptrdiff_t>(n), slopes.end(), v.begin());
+    else
+      found = find_velocity(q, p, v);
+    Scratch scratch;
+    const PointValues at = evaluate_at(lagrangian_, q, v, march.reached, Order::hessian, scratch);
+    std::string positions, velocities;
+    for (std::size_t a = 0; a < std::min(named, most_named); ++a) {
+      const std::string name = problem_.names.empty() ? fmt::format("q[{}]", a + 1) : problem_.names[a];
+      positions += fmt::format("{}{} = {:.6g}", a ? ", " : "", name, q[a]);
+      velocities += fmt::format(", {}' = {:.3g}", name, v[a]);
+    }
+    const std::string place = positions + velocities;
+    const auto finite = [](const std::vector<double>& x) {
+      return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
+    };
+    const char* const what = problem_.paired ? "L or a force" : "L";
+    if (!std::isfinite(at.value)) return fmt::format("{} is not finite at {}", what, place);
+    if (!finite(at.dq) || !finite(at.dv))
+      return fmt::format("{} is not finite, or has no derivative, at {}", what, place);
+    if (!finite(at.qq) || !finite(at.vq) || !finite(at.vv))
+      return fmt::format("second derivatives of {} are not finite at {}", what, place);
+    if (!found) return fmt::format("Newton's method finds no velocity with these momenta at {}", positions);
+    if (on_kink(q, v, march.reached, speed))
+      return fmt::format("from {} on it stays on a kink of abs, min or max", place);
+    return fmt::format("{}, at {}", reason(march.reason), place);
+  }
+
+  /// The velocities that have these momenta at t = 0. False if they are not found where L is finite.
+  bool find_velocity(const std::vector<double>& q, const std::vector<double>& p,
+                     std::vector<double>& v) const {
+    const auto n = static_cast<Eigen::Index>(q.size());
+    const Eigen::Map<const Eigen::VectorXd> wanted(p.data(), n);
+    Scratch scratch;
+    for (int k = 0; k < velocity_steps; ++k) {
+      const PointValues at = evaluate_at(lagrangian_, q, v, 0, Order::hessian, scratch);
+      const Eigen::Map<const Eigen::MatrixXd> mass(at.vv.data(), n, n);
+      const Eigen::VectorXd missing = wanted - Eigen::Map<const Eigen::VectorXd>(at.dv.data(), n);
+      if (!mass.allFinite() || !missing.allFinite()) return true;
+      if (missing.norm() <= roundings * wanted.norm()) return true;
+      Eigen::Map<Eigen::VectorXd>(v.data(), n) += mass.fullPivLu().solve(missing);
+    }
+    return false;
+  }
+
+  /// Whether a kink passes through a state. `speed`: of the motion before.
+  bool on_kink(const std::vector<double>& q, const std::vector<double>& v, double t, double speed) const {
+    const Kinks* const kinks = lagrangian_.kinks();
+    Scratch scratch;
+    return kinks && std::ranges::any_of(kinks->surfaces(), [&](const KinkSurface& surface) {
+             const PointValues u = evaluate_at(*surface.u, q, v, t, Order::gradient, scratch);
+             double size = 0;
+             for (std::size_t a = 0; a < q.size(); ++a)
+               size += std::abs(u.dq[a] * q[a]) + std::abs(u.dv[a]) * speed;
+             return std::abs(u.value) <= on_surface * size;
+           });
   }
 
   static const char* reason(ElementSolver::Result result) {

@@ -86,9 +86,10 @@ KinkWatch::Verdict KinkWatch::judge(const MotionState& state, std::span<const do
   return verdict;
 }
 
-void KinkWatch::accept() {
+bool KinkWatch::accept() {
   sides_ = next_;
   missed_ = INFINITY;
+  return std::ranges::any_of(sides_, [](const Side& side) { return side.on; });
 }
 
 int kinked_elements(const Lagrangian& lagrangian, const Trajectory& trajectory) {

@@ -31,8 +31,8 @@ class KinkWatch {
   };
   /// Of the element x over h from the state. `precision`: of times.
   Verdict judge(const MotionState& state, std::span<const double> x, double h, double precision);
-  /// The element just judged was taken.
-  void accept();
+  /// The element just judged was taken. True if it ends on a surface.
+  bool accept();
 
  private:
   struct Side {

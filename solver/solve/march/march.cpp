@@ -19,6 +19,16 @@ namespace {
 
 /// Elements between two looks at the clock.
 constexpr int elements_a_look = 256;
+/// So many elements tell how many the whole motion takes; it is given up where these are that much more than
+/// can be kept.
+constexpr int telling_elements = 1 << 16;
+constexpr double hopeless_excess = 100;
+/// So many elements in a row, each shorter than this part of the duration, do not lead on.
+constexpr int most_creeping = 256;
+constexpr double creeping = 1e-12;
+/// A motion that meets so many kinks within this part of the duration stays on one.
+constexpr int crowd = 64;
+constexpr double crowded = 1e-5;
 
 void report(const MarchRecord& record, const ElementSolver& solver, const MarchProgress& progress) {
   if (progress) progress({record.elements(), solver.tables().degree(), solver.residual(), 0, 1});
@@ -91,14 +101,16 @@ class AdaptiveMarch {
         if (deadline.passed()) return record_.finish(March::End::deadline);
         report(record_, solver_, progress);
       }
-      if (record_.full()) return record_.finish(March::End::memory);
+      if (record_.full() || (tries % elements_a_look == 0 && hopeless()))
+        return record_.finish(March::End::memory);
       length_ = std::min(length_, bound_);
       const double left = (duration_ - time_.high) - time_.low;
       if (kinks_.active() && kink_tries_ == 0)
-        length_ = std::max(kinks_.expected(length_), 4 * least_length * duration_);
+        length_ = std::min(length_, std::max(kinks_.expected(length_), 4 * least_length * duration_));
       const bool last = length_ * (1 + 1e-3) >= left;
       const double h = last ? left : kinks_.active() ? length_ : std::min(length_, left / 2);
-      if (h < least_length * duration_ || record_.state().time + h == record_.state().time) {
+      if (h < least_length * duration_ || stays_on_kink_ || creeping_ > most_creeping ||
+          record_.state().time + h == record_.state().time) {
         record_.march().wanted = h;
         return record_.finish(March::End::no_element);
       }
@@ -154,11 +166,25 @@ class AdaptiveMarch {
     record_.add(solver_, last_, h, last ? duration_ : time_.high);
     if (last) time_ = {duration_, 0};
     kink_tries_ = 0;
-    if (kinks_.active()) kinks_.accept();
+    creeping_ = h < creeping * duration_ ? creeping_ + 1 : 0;
+    if (kinks_.active() && kinks_.accept()) count_kink();
     const double most = tail_.size == 0 || excess < 1e-6 ? fast_growth : most_growth;
     cheap_cuts_ = 0;
     longest_ *= cheap_growth;
     length_ = std::min(h * std::clamp(factor, most_shrink, most), longest_);
+  }
+
+  void count_kink() {
+    if (++met_ % crowd != 0) return;
+    stays_on_kink_ = time_.high - crowd_from_ < crowded * duration_;
+    crowd_from_ = time_.high;
+  }
+
+  /// Whether a motion that goes on as it began takes far more elements than can be kept.
+  bool hopeless() {
+    const double numbers = static_cast<double>(record_.march().trajectory.nodes.size());
+    return record_.elements() > telling_elements &&
+           numbers * duration_ > hopeless_excess * most_numbers * time_.high;
   }
 
   /// The truncation error of the element relative to what is allowed: the first coefficient that the output
@@ -191,7 +217,9 @@ class AdaptiveMarch {
   MarchRecord record_;
   ElementSolver solver_;
   KinkWatch kinks_;
-  int kink_tries_ = 0;
+  int kink_tries_ = 0, met_ = 0, creeping_ = 0;
+  double crowd_from_ = -INFINITY;
+  bool stays_on_kink_ = false;
   UniformMotion uniform_;
   PolynomialContinuation continuation_;
   PolynomialContinuation::Tail tail_;
