@@ -458,6 +458,22 @@ TEST(MarchedMotion, MeetsKinksWithInfiniteCurvature) {
   EXPECT_LT(*s.energy_drift, 1e-7);
 }
 
+/// Beads that touch with the force of a power of their overlap, and part: compared with a motion of a much
+/// smaller tolerance.
+TEST(MarchedMotion, KeepsItsToleranceAcrossPowersOfKinks) {
+  for (const char* power : {"2.2", "2.5", "3"}) {
+    const auto beads =
+        marched_system({"x", "y", "z"}, std::string("(x'^2 + y'^2 + z'^2)/2 - max(0, 0.1 + x - y)^") + power +
+                                            " - max(0, 0.1 + y - z)^" + power + " - z^2/2");
+    const Solution s = solve(from(beads, {0, 0, 0}, {0.6, 0, 0}, 9), within(1e-7)),
+                   better = solve(from(beads, {0, 0, 0}, {0.6, 0, 0}, 9), within(1e-9));
+    const double error = largest_difference(node(s.trajectory, s.trajectory.elements()),
+                                            node(better.trajectory, better.trajectory.elements()));
+    EXPECT_LT(error, 1e-6) << power;
+    EXPECT_LT(error, 10 * s.error_estimate) << power;
+  }
+}
+
 /// Far more elements than can be kept are not followed until there is no room for them.
 TEST(MarchedMotion, FarTooLongIsToldSoon) {
   const Problem problem = from(marched_system({"x"}, "x'^2/2 - 1e10*x^2/2"), {1}, {0}, 1e6);

@@ -29,6 +29,9 @@ constexpr double creeping = 1e-12;
 /// A motion that meets so many kinks within this part of the duration stays on one.
 constexpr int crowd = 64;
 constexpr double crowded = 1e-5;
+/// Beside kinks: points that a finer quadrature has more, and roundings of momenta that it does not tell.
+constexpr int more_points = 3;
+constexpr double roundings_of_force = 64 * unit_roundoff;
 
 void report(const MarchRecord& record, const ElementSolver& solver, const MarchProgress& progress) {
   if (progress) progress({record.elements(), solver.tables().degree(), solver.residual(), 0, 1});
@@ -76,6 +79,13 @@ Result solve_by_pieces(ElementSolver& solver, UniformMotion& uniform, const Moti
   return solver.solve(state, h);
 }
 
+/// The rule that tells what Gauss's rule of an element misses.
+Scheme with_more_points(const StepTables& tables) {
+  Scheme scheme = gauss(tables.degree());
+  scheme.points = std::min(scheme.points + more_points, most_points);
+  return scheme;
+}
+
 /// Elements whose lengths follow the truncation error.
 class AdaptiveMarch {
  public:
@@ -90,6 +100,8 @@ class AdaptiveMarch {
         kinks_(tables, record_.state()),
         uniform_(tables, start.paired),
         continuation_(tables),
+        finer_tables_(with_more_points(tables), 0, tables.lagrangian()),
+        finer_(finer_tables_),
         last_(tables.unknowns(), 0.0),
         length_(first_length * duration) {
     if (near) reader_.emplace(*near, tables);
@@ -209,7 +221,18 @@ class AdaptiveMarch {
                  range_p = std::max(record_.range_p(), momentum);
     const double by_size =
         std::max({error / range_q, v / (10 * range_v), v * momentum / (speed * 10 * range_p)}) / truncation_;
-    return tail_.fall > slowest_fall ? std::max(by_size, 2 * accepted) : by_size;
+    const double missed = kinks_.active() ? missed_force(h, momentum) / (range_p * truncation_) : 0;
+    return std::max(tail_.fall > slowest_fall ? std::max(by_size, 2 * accepted) : by_size, missed);
+  }
+
+  /// What the quadrature of an element misses of the change of a momentum. A force like u^1.5 beside a kink
+  /// has no series there: coefficients of the motion do not tell how its momentum errs.
+  double missed_force(double h, double momentum) {
+    finer_.action_of(record_.state(), solver_.x(), h);
+    double missed = 0;
+    for (std::size_t a = 0; a < solver_.force().size(); ++a)
+      missed = std::max(missed, std::abs(finer_.force()[a] - solver_.force()[a]));
+    return missed > roundings_of_force * momentum ? missed : 0;
   }
 
   const StepTables& tables_;
@@ -223,6 +246,8 @@ class AdaptiveMarch {
   UniformMotion uniform_;
   PolynomialContinuation continuation_;
   PolynomialContinuation::Tail tail_;
+  StepTables finer_tables_;
+  ElementSolver finer_;
   std::optional<TrajectoryReader> reader_;
   std::vector<double> last_;
   double length_, last_length_ = 0;
