@@ -32,6 +32,8 @@ constexpr double beside = 0x1p-40;
 constexpr double farther = 1024, falling = 0.9;
 /// Of the change of the momentum beside a surface: what is left of it on the surface if the momentum jumps.
 constexpr double jumping = 0.01;
+/// Of the terms of u: a value of u that no rounding makes.
+constexpr double roundings = 0x1p-50;
 /// Halvings of an interval, after which the crossing is known to the last digit.
 constexpr int most_halvings = 60;
 
@@ -248,7 +250,9 @@ std::vector<Corner> corners_of(const Kinks& kinks, const Polynomials& path, cons
     if (!crosses || !(std::abs(corner.u) < gap * at.shorter * std::abs(corner.rate))) return;
     const double square = product(corner.normal, corner.normal);
     if (square > 0) {
-      const double change = at.shorter * std::abs(corner.rate);
+      double change = at.shorter * std::abs(corner.rate), size = 0;
+      for (int a = 0; a < n; ++a) size += std::abs(corner.normal[a] * here.q[a]);
+      change = std::max(change, roundings * size / beside);
       move_along(here.q, corner.normal, farther * beside * change - corner.u);
       const double far = largest(along.slope(*surface.odd, here));
       move_along(here.q, corner.normal, (1 - farther) * beside * change);

@@ -349,6 +349,37 @@ TEST(Kinks, MomentaWithoutAJumpAreCrossed) {
   EXPECT_LT(distance(solve(problem, within(1e-10)).trajectory, truth), 1e-9);
 }
 
+/// A driven orbit that begins a little before it crosses a kink, or after, has the multipliers of any other
+/// beginning.
+TEST(Kinks, MultipliersDoNotDependOnTheBeginning) {
+  const double w = 1.7, T = 2 * pi / w;
+  const auto driven = [&](double phase) {
+    return periodic(
+        written({"x"},
+                fmt::format("x'^2/2 - x^2/2 - 0.5*max(0, x - 0.3)^2/2 + x*cos({}*t + {:.17g})", w, phase)),
+        T);
+  };
+  const Solution first = solve(
+      guessed(driven(0), [](double tau) { return Values{-0.6 * std::cos(2 * pi * tau)}; }), within(1e-11));
+  double before = 0, after = T / 2;
+  for (int k = 0; k < 60; ++k) {
+    const double t = 0.5 * (before + after);
+    (at(first.trajectory, t).q[0] < 0.3 ? before : after) = t;
+  }
+  const auto trace = [](const Solution& s) { return s.floquet->multipliers[0] + s.floquet->multipliers[1]; };
+  for (const double early : {1e-2, 1e-4, 3e-6, 1e-7, -1e-4}) {
+    const double start = before - early;
+    const Problem shifted = guessed(
+        driven(w * start), [&](double tau) { return at(first.trajectory, std::fmod(start + tau * T, T)).q; });
+    const Solution s = solve(shifted, within(1e-11));
+    if (s.floquet)
+      EXPECT_LT(std::abs(trace(s) - trace(first)), 1e-6) << early;
+    else
+      EXPECT_NE(s.message.find("beside t = 0"), std::string::npos) << s.message;
+    if (std::abs(early) > 1e-5) EXPECT_TRUE(s.floquet.has_value()) << early;
+  }
+}
+
 /// The time that x'²/2 + V = E takes from 1 to −1.
 double time_of_flight(double energy, const std::function<double(double)>& potential) {
   const int steps = 200000;

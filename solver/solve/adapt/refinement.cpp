@@ -39,6 +39,7 @@ void Refinement::open(const std::vector<double>& mesh, int degree) {
 
 void Refinement::take(const ElementTables& tables) {
   longest_ = 0;
+  beside_ = 1;
   mesh_kept_ = nodes_move_ = false;
   digits_ = Digits::of_double;
   outcome_.shifts_held = false;
@@ -124,7 +125,8 @@ bool Refinement::holds_on_other_elements() {
   std::vector<double> other{0};
   for (std::size_t k = 0; k + 1 < mesh.size(); ++k) other.push_back(0.5 * (mesh[k] + mesh[k + 1]));
   other.push_back(1);
-  w_.other.resample_from(path_, *tables_, with_nodes(other, kink_times(*tables_, path_, problem_.periodic)));
+  w_.other.resample_from(path_, *tables_,
+                         with_nodes(other, kink_times(*tables_, path_, problem_.periodic, beside_)));
   w_.before.assign(w_.other.nodes().begin(), w_.other.nodes().end());
   w_.iteration.reset(problem_, *tables_, w_.other.elements());
   w_.iteration.hold_shifts(outcome_.shifts_held);
@@ -181,7 +183,7 @@ void Refinement::adopt(const Plan& plan) {
     if (plan.degree > path_.degree()) raise(plan.degree);
     return;
   }
-  const std::vector<double> times = kink_times(*tables_, path_, problem_.periodic);
+  const std::vector<double> times = kink_times(*tables_, path_, problem_.periodic, beside_);
   move_to(w_.levels.at(plan.degree), times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
 }
 
@@ -192,6 +194,14 @@ void Refinement::move_to(const ElementTables& tables, std::span<const double> me
   std::swap(path_, w_.other);
   rebind();
   w_.iteration.set_scale(scales_.q);
+}
+
+/// Once a closed path is known it no longer crosses kinks now before and now after T: from then on elements
+/// end also where it crosses them beside T. Not where it does so at T itself, or where roundings of q in so
+/// short an element would hide q'.
+void Refinement::end_beside_closing() {
+  const double hidden = slope_roundoff * path_.degree() * path_.degree() / options_.tolerance;
+  beside_ = std::max({options_.tolerance, limits::kinks::least_misplacement, hidden});
 }
 
 /// Whether a closed path crosses no kink beside t = 0, unless it does so at t = 0 itself.
@@ -206,7 +216,7 @@ bool Refinement::closes_beside_kinks() const {
 
 /// Puts the path on elements that end where it crosses kinks of L, unless they do to the tolerance.
 bool Refinement::end_at_kinks() {
-  const auto mesh = mesh_to_kinks(*tables_, path_, problem_.periodic, options_.tolerance);
+  const auto mesh = mesh_to_kinks(*tables_, path_, problem_.periodic, options_.tolerance, beside_);
   if (mesh) move_to(*tables_, *mesh);
   return mesh.has_value();
 }
@@ -326,16 +336,17 @@ Refinement::Attempt Refinement::refine_from(NewtonReport newton) {
       if (!newton.reached && !options_.deadline.passed()) break;
       result = judge(newton, aim, nodes);
     }
-    if (result == Attempt::converged && !closes_beside_kinks()) {
-      outcome_.message = "the orbit crosses a kink of the Lagrangian beside t = 0; shift the guess in time";
-      return Attempt::failed;
-    }
+    if (result == Attempt::converged && problem_.periodic) end_beside_closing();
     if (result == Attempt::converged && end_at_kinks()) {
       newton = converge_with_kinks(converge_to(aim, false));
       measure();
       result = newton.reached ? Attempt::refine : Attempt::failed;
       outcome_.message = newton.failure;
       worst_ = INFINITY;
+    }
+    if (result == Attempt::converged && !closes_beside_kinks()) {
+      outcome_.message = "the orbit crosses a kink of the Lagrangian beside t = 0; shift the guess in time";
+      return Attempt::failed;
     }
     if (result == Attempt::converged) {
       const Attempt satisfied = satisfy_natural_conditions(newton);

@@ -116,6 +116,7 @@ class Refinement {
   void raise(int degree);
   void move_to(const ElementTables& tables, std::span<const double> mesh);
   bool end_at_kinks();
+  void end_beside_closing();
   bool closes_beside_kinks() const;
   NewtonReport converge_with_kinks(NewtonReport newton);
   void adopt(const Plan& plan);
@@ -137,6 +138,7 @@ class Refinement {
   double cost_ = 0, first_cost_ = 0, most_cost_ = 0, share_ = 1;
   double first_magnitude_ = 0;  ///< of the path that is pursued
   bool varied_mass_ = false;    ///< with q
+  double beside_ = 1;           ///< of T: elements of a closed path end at kinks farther from T than this
   bool mesh_kept_ = false;      ///< see keep_mesh()
   bool nodes_move_ = false;     ///< see move_nodes()
   Digits digits_ = Digits::of_double;

@@ -44,9 +44,9 @@ Crossed crossed_by(const ElementTables& tables, const Path& path, bool closed, d
 
 }  // namespace
 
-std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed) {
+std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed, double beside) {
   if (!tables.kinks()) return {};
-  return crossed_by(tables, path, closed, 1).times;
+  return crossed_by(tables, path, closed, beside).times;
 }
 
 std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,

@@ -11,8 +11,8 @@
 namespace extremal {
 
 /// The crossings, in t/T, ascending; empty where L is smooth. A closed path may cross where it closes: so
-/// near 0 and T no element ends for it.
-std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed);
+/// near 0 and T no element ends for it, unless that is farther than `beside` from T.
+std::vector<double> kink_times(const ElementTables& tables, const Path& path, bool closed, double beside = 1);
 
 /// The mesh of the path with these crossings as nodes, and none of those for which no element ends; nothing
 /// where it is so, to `tolerance` of T, and where L is smooth. Of a closed path elements end also for

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "action/corners.hpp"
 #include "analysis/orbit_form.hpp"
 #include "linear/dense.hpp"
 #include "problem/closing.hpp"
@@ -47,6 +48,21 @@ bool one_of_a_family(const Problem& problem, const ClosedOrbit& orbit, const Flo
   return ones > problem.lagrangian->structure().autonomous + orbit.symmetries;
 }
 
+/// Whether a path crosses kinks inside its elements: their second variation is that of one side. `error`: of
+/// the path, relative.
+bool kinks_between_nodes(const Lagrangian& lagrangian, const Trajectory& path, double error) {
+  constexpr double least_misplacement = 1e-8, errors = 100;
+  if (!lagrangian.kinks()) return false;
+  const double allowed = std::max(least_misplacement, errors * error) * path.duration();
+  const std::vector<double> times =
+      crossings(*lagrangian.kinks(), {path.coordinates, path.degree, path.times, path.nodes});
+  return std::ranges::any_of(times, [&](double t) {
+    const auto after = std::ranges::lower_bound(path.times, t);
+    const double away = std::min(*after - t, after == path.times.begin() ? t : t - *(after - 1));
+    return away > allowed;
+  });
+}
+
 }  // namespace
 
 double distinct_distance(const Solution& solution, double size) {
@@ -81,6 +97,11 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
                     most_coordinates_for_multipliers / (problem.paired || problem.phase ? 2 : 1));
   } else if (variation.count() == 0) {
     solution.message += "; multipliers are not found";
+  } else if (!variation.of_scheme() && kinks_between_nodes(*problem.lagrangian, solution.trajectory,
+                                                           size > 0 ? solution.error_estimate / size : 0)) {
+    solution.message +=
+        "; multipliers are not known: the orbit crosses a kink of the Lagrangian beside t = 0; let it begin "
+        "elsewhere";
   } else {
     const double error = size > 0 ? solution.error_estimate / size : 0;
     const ClosedOrbit orbit = variation.of_scheme() ? orbit_of_scheme(problem, solution.trajectory)
