@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace extremal {
 
 /// QD prints a complaint where there is no logarithm.

@@ -368,8 +368,8 @@ InitialState moved(const InitialState& state, const PhasePoint& change, const La
 
 /// A state given to ten digits may lead to encounters later or earlier than a closed orbit does, by more than
 /// they last. The state is corrected by shooting as long as corrections become shorter, with one
-/// factorisation where that is by much (natural monotonicity: Deuflhard, Newton Methods for Nonlinear Problems, 3.3). What is
-/// solved for stays the stationary point of S_h near this motion.
+/// factorisation where that is by much (natural monotonicity: Deuflhard, Newton Methods for Nonlinear
+/// Problems, 3.3). What is solved for stays the stationary point of S_h near this motion.
 Halves closed_halves(InitialState state, const Bounds& bounds) {
   using namespace limits::closing_correction;
   const double duration = bounds.problem.duration.value;

@@ -19,7 +19,8 @@ inline constexpr double closed_well = 1e-13;
 inline constexpr double most_apart = 0.1;
 /// Of a state, relative: corrections this short are those of the last digits of doubles, which nodes have.
 inline constexpr double last_digits = 1e-14;
-/// A correction must be this much shorter than the last; if not by the second, variations are integrated anew.
+/// A correction must be this much shorter than the last; if not by the second, variations are integrated
+/// anew.
 inline constexpr double least_gain = 0.8, good_gain = 0.1;
 inline constexpr int most_corrections = 8;
 

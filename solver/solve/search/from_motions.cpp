@@ -44,6 +44,7 @@ bool Search::connect(const Guess& motion, double duration) {
 }
 
 bool Search::refine_motion(const Guess& motion, double duration, const char* strategy) {
+  if (refinement_.exhausted()) return false;
   Problem launched = problem_;
   launched.guess = motion;
   launched.duration.value = duration;

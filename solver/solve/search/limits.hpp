@@ -26,8 +26,8 @@ inline constexpr int samples_a_step = 4;
 inline constexpr int sectors = 48, most_halvings = 5;
 inline constexpr double near_passage = 0.3, far_passage = 0.5;
 inline constexpr int most_newton_steps = 6;
-/// Unknowns are relative to a fast velocity, and the logarithm of the time. Steps of Newton's method shrink by
-/// this, from at most the second.
+/// Unknowns are relative to a fast velocity, and the logarithm of the time. Steps of Newton's method shrink
+/// by this, from at most the second.
 inline constexpr double contraction = 0.7, longest_correction = 0.3;
 /// Errors of an integrator's step, relative, and the last step of Newton's method, whose square by the extent
 /// is a miss that is none: along a curve, and of motions that arrive. Those that pass a centre closely time
