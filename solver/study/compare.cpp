@@ -62,6 +62,7 @@ class Comparer {
     find_reference();
     share_among(parties--);
     run_method([this](double tolerance) { return solve(tolerance); });
+    if (nothing_found()) return result_;
     for (const ShootingMethod& method : shooting) {
       share_among(parties--);
       run_method([&](double tolerance) { return shoot_row(method, tolerance); });
@@ -79,6 +80,13 @@ class Comparer {
     share_among(1);
     run_method([this](double tolerance) { return integrate_row(tolerance); });
     return result_;
+  }
+
+  /// Neither a reference nor a time: others have nothing to be compared with.
+  bool nothing_found() const {
+    return !result_.reference && std::ranges::none_of(result_.rows, [](const ComparisonRow& row) {
+      return row.status == Status::converged;
+    });
   }
 
   /// Of what is left of the budget, for the next of so many.

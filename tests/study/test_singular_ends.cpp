@@ -131,20 +131,19 @@ TEST_F(SingularEnds, FormulasOfWhichTermsCancelAtTheEnd) {
   struct Pair {
     const char *apart, *cancelling, *ends;
   };
-  for (const auto& [apart, cancelling, ends] :
-       {Pair{"(3 - y)*(3 + y)", "9 - y^2", "start = { y = 3 }\nend = { y = 2.5 }"},
-        Pair{"(3 - y)*(3 + y)", "9 - y^2", "start = { y = 2.5 }\nend = { y = 3 }"},
-        Pair{"2*exp(y/2)*sinh(y/2)", "exp(y) - 1", "start = { y = 0 }\nend = { y = 0.7 }"},
-        Pair{"2*(y - 2)/y", "1 - (4 - y)/y", "start = { y = 2 }\nend = { y = 3 }"}}) {
+  for (const Pair& pair : {Pair{"(3 - y)*(3 + y)", "9 - y^2", "start = { y = 3 }\nend = { y = 2.5 }"},
+                           Pair{"(3 - y)*(3 + y)", "9 - y^2", "start = { y = 2.5 }\nend = { y = 3 }"},
+                           Pair{"2*exp(y/2)*sinh(y/2)", "exp(y) - 1", "start = { y = 0 }\nend = { y = 0.7 }"},
+                           Pair{"2*(y - 2)/y", "1 - (4 - y)/y", "start = { y = 2 }\nend = { y = 3 }"}}) {
     const auto found = [&](const char* medium) {
       return solved(singular_scene(fmt::format("sqrt((1 + y'^2)/({}))", medium),
-                                   fmt::format("{}\nduration = 0.6", ends)));
+                                   fmt::format("{}\nduration = 0.6", pair.ends)));
     };
-    const Solution expected = found(apart), other = found(cancelling);
-    ASSERT_TRUE(expected.converged()) << apart << ": " << expected.message;
-    ASSERT_TRUE(other.converged()) << cancelling << ": " << other.message;
-    EXPECT_NEAR(other.action, expected.action, 1e-10) << cancelling;
-    EXPECT_NEAR(*other.energy, *expected.energy, 1e-8) << cancelling;
+    const Solution expected = found(pair.apart), other = found(pair.cancelling);
+    ASSERT_TRUE(expected.converged()) << pair.apart << ": " << expected.message;
+    ASSERT_TRUE(other.converged()) << pair.cancelling << ": " << other.message;
+    EXPECT_NEAR(other.action, expected.action, 1e-10) << pair.cancelling;
+    EXPECT_NEAR(*other.energy, *expected.energy, 1e-8) << pair.cancelling;
   }
 }
 
