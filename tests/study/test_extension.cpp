@@ -221,6 +221,39 @@ TEST_F(Scenes, UnknownOfAContinuumOfOrbits) {
   EXPECT_EQ(s.morse_index, 0);
 }
 
+/// A loop in the potential -1/r, which begins anywhere: the energy is the same on all legs. So it is in the
+/// isotropic oscillator, where that of a leg from a to b in τ is (a² + b² − 2 a·b cos τ)/(2 sin² τ).
+TEST_F(Scenes, LoopsThroughPointsAtFreeTimes) {
+  const double a[3][2] = {{1.2, 0}, {0, 0.9}, {-1, -0.5}};
+  const auto loop = [&](const std::string& potential, double T) {
+    std::string points;
+    for (const auto& point : a)
+      points += fmt::format("[[waypoints]]\nat = \"free\"\nx = {}\ny = {}\n", point[0], point[1]);
+    return run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - " + potential) +
+                     fmt::format("[boundary]\nperiodic = true\nduration = {}\n", T) + points +
+                     "[guess]\nx = \"cos(2*pi*t/T)\"\ny = \"sin(2*pi*t/T)\"\n"));
+  };
+  for (const double T : {4.0, 5.0, 6.0, 7.0}) {
+    const Solution s = loop("-1/sqrt(x^2 + y^2)", T);
+    ASSERT_TRUE(s.converged()) << T << ' ' << s.message;
+    EXPECT_LT(s.energy_drift.value(), 1e-7) << T;
+  }
+  for (const double T : {4.0, 5.0}) {
+    const Solution s = loop("(x^2 + y^2)/2", T);
+    ASSERT_TRUE(s.converged()) << T << ' ' << s.message;
+    const std::vector<WaypointImpulse>& at = s.extension->waypoints;
+    for (int k = 0; k < 3; ++k) {
+      const double *from = a[k], *to = a[(k + 1) % 3];
+      const double tau = k < 2 ? at[k + 1].time - at[k].time : T - at[2].time + at[0].time;
+      const double squares = from[0] * from[0] + from[1] * from[1] + to[0] * to[0] + to[1] * to[1];
+      const double product = from[0] * to[0] + from[1] * to[1];
+      EXPECT_NEAR((squares / 2 - product * std::cos(tau)) / std::pow(std::sin(tau), 2), s.energy.value(),
+                  1e-7)
+          << T << ' ' << k;
+    }
+  }
+}
+
 /// With a free duration one condition more; an end made of an unknown.
 TEST_F(Scenes, UnknownWithAFreeDuration) {
   const Solution s =
