@@ -34,7 +34,10 @@ bool meet_first(const Manifold& manifold, Index count, double t, std::vector<dou
 class Dependence {
  public:
   explicit Dependence(const Manifold& manifold)
-      : manifold_(manifold), found_(manifold.constraints(), 1), missed_(manifold.constraints(), INFINITY) {}
+      : manifold_(manifold),
+        found_(manifold.constraints(), 1),
+        missed_(manifold.constraints(), INFINITY),
+        differences_(manifold.constraints(), 0) {}
 
   /// At a point, on the manifold if it can be moved there.
   void look_near(const std::vector<double>& q, double t) {
@@ -51,6 +54,8 @@ class Dependence {
   }
   /// By how much it is missed at the least where those before it hold, to first order, in units of q.
   double missed(int k) const { return missed_[k]; }
+  /// What its sides differ by there.
+  double difference(int k) const { return differences_[k]; }
 
   /// By how much it is missed at the most beside the points, where those before it hold, by the distance.
   double missed_beside(int k) const {
@@ -84,7 +89,10 @@ class Dependence {
         row -= basis * parts;
         g -= of_basis.dot(parts);
       }
-      missed_[k] = std::min(missed_[k], size > 0 ? std::abs(g) / size : INFINITY);
+      if (const double distance = size > 0 ? std::abs(g) / size : INFINITY; distance < missed_[k]) {
+        missed_[k] = distance;
+        differences_[k] = std::abs(g);
+      }
       const double left = row.norm();
       if (!(left > dependence * size)) continue;
       found_[k] = 0;
@@ -97,7 +105,8 @@ class Dependence {
 
   const Manifold& manifold_;
   std::vector<char> found_;
-  std::vector<double> missed_;
+  std::vector<double> missed_;       ///< distances from the surfaces
+  std::vector<double> differences_;  ///< of both sides there
   std::vector<std::vector<double>> points_;
   std::vector<double> times_;
 };
@@ -129,7 +138,7 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
                 "the gradient of the constraint '{}' is made of those of the ones before it, or "
                 "vanishes, but where these hold it is missed by {:.3g}; leave it out, or give a guess "
                 "where it is regular",
-                text.value, missed)
+                text.value, dependence.difference(k))
       : dependence.missed_beside(k) > end_distance
           ? fmt::format("the constraint '{}' touches the ones before it: its gradient is made of theirs "
                         "wherever all hold, though it does not follow from them; give the points where all "

@@ -209,6 +209,9 @@ long Evaluator::integer(const Formula& formula, std::uint32_t node, std::vector<
                         std::string_view what) {
   const double result = exact(formula, node, indices);
   const Syntax& syntax = formula.nodes[node];
+  if (!std::isfinite(result))
+    fail(formula, syntax.offset,
+         fmt::format("{} is not finite{}", what, circumstances(formula, syntax, indices)));
   if (result != std::floor(result) || !(std::abs(result) <= largest_integer))
     fail(formula, syntax.offset,
          fmt::format("{} is {}, not an integer{}", what, result, circumstances(formula, syntax, indices)));

@@ -284,7 +284,7 @@ TEST_F(Scenes, ConstraintsThatDependOnEachOther) {
   };
   EXPECT_EQ(plane("x^2 + y^2 = 2"),
             "scene.toml:4:34: the gradient of the constraint 'x^2 + y^2 = 2' is made of those of the ones "
-            "before it, or vanishes, but where these hold it is missed by 0.5; leave it out, or give a guess "
+            "before it, or vanishes, but where these hold it is missed by 1; leave it out, or give a guess "
             "where it is regular");
   EXPECT_EQ(plane("2 - 2*x^2 = 2*y^2"),
             "scene.toml:4:34: the constraint '2 - 2*x^2 = 2*y^2' follows from the ones before it; leave it "
