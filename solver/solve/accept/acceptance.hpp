@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "solve/adapt/outcome.hpp"
 #include "solve/adapt/workspace.hpp"
@@ -36,6 +37,8 @@ class Acceptance {
   Solution result(const Outcome& last);
   /// That was accepted.
   const Solution& solution() const { return *solution_; }
+  /// One that was accepted before.
+  void put_back(Solution solution) { solution_ = std::move(solution); }
   /// Of the solution that was accepted; 0 if it has none.
   int nullity() const { return solution_ ? solution_->nullity.value_or(0) : 0; }
   /// Whether the last path is refused for the error that the tolerance leaves, see judge_isolation().

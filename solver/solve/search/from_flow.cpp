@@ -58,6 +58,7 @@ void Search::leave_saddles() {
       return descend_from(saddle.trajectory, side) && acceptance_->solution().action < saddle.action;
     };
     if (left_to(1) || left_to(-1) || flow_aside(saddle.action)) continue;
+    acceptance_->put_back(saddle);
     outcome_ = found;
     refinement_.rebind();
     return;
