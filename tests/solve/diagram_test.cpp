@@ -142,17 +142,17 @@ Values characteristic(bool changing, bool odd, double theta = 1) {
   }
   if (changing) matrix(0, 0) += odd ? -theta : theta;
   const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues();
-  return {values[0], values[1]};
+  return Values(values.begin(), values.begin() + 6);
 }
 
 /// A spring that stiffens, shaken by 2θ at twice the frequency one.
-ProblemFamily shaken_spring(double theta, double from, double to) {
-  const auto problem = [theta](double a) {
+ProblemFamily shaken_spring(double theta, double from, double to, double period = pi) {
+  const auto problem = [=](double a) {
     const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {
       const auto square = q[0] * q[0];
       return v[0] * v[0] / 2 - (a - 2 * theta * cos(2 * t)) * square / 2 - square * square / 4;
     });
-    Problem periodic = with_ends(lagrangian, pi, [](BoundaryRelation& r) {
+    Problem periodic = with_ends(lagrangian, period, [](BoundaryRelation& r) {
       const int row = r.add_row(0);
       r.add(row, 0, -1);
       r.add(row, 1, 1);
@@ -212,6 +212,25 @@ TEST(Diagram, MathieusEquationShakenHard) {
   ASSERT_EQ(doublings.size(), changing.size());
   for (std::size_t k = 0; k < even.size(); ++k) EXPECT_NEAR(crossings[k], even[k], 1e-8);
   for (std::size_t k = 0; k < changing.size(); ++k) EXPECT_NEAR(doublings[k], changing[k], 1e-8);
+}
+
+/// Of twice the period all of them cross, and two by two ever nearer to each other: on one step, whose
+/// elements suffice for rest, and not for what crosses there.
+TEST(Diagram, CrossingsInPairs) {
+  for (const double theta : {1.0, 2.0}) {
+    Diagram diagram(shaken_spring(theta, -1, 20, 2 * pi), {.solve = within(1e-9), .points = 200});
+    Followed found;
+    while (diagram.advance()) found.points.push_back(diagram.point());
+    Values expected;
+    for (const bool changing : {false, true})
+      for (const bool odd : {false, true})
+        for (const double a : characteristic(changing, odd, theta))
+          if (a > -1 && a < 20) expected.push_back(a);
+    std::sort(expected.begin(), expected.end());
+    const std::vector<double> crossings = found.values(PointKind::branch);
+    ASSERT_EQ(crossings.size(), expected.size()) << theta;
+    for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(crossings[k], expected[k], 1e-7) << theta;
+  }
 }
 
 /// Shaken ever so little it is unstable for so few a about 1 that both ends of them fall within one step.

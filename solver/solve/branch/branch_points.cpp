@@ -85,17 +85,20 @@ double state_near(Tracker& tracker, const BranchState& from, double guess, doubl
 
 const Side& nearer(const Side (&sides)[2]) { return sides[sides[0].size > sides[1].size ? 0 : 1]; }
 
+/// How branch points are narrowed down.
+enum class Narrowing { by_responses, by_halves };
+
 /// By halves where the orientation changes, then by the secant of ±1/|response|, which passes zero at a
 /// branch point. States next to it are reached with the directions of the responses held.
 double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
-              const BranchState& before, int count, Side (&sides)[2]) {
+              const BranchState& before, int count, Narrowing how, Side (&sides)[2]) {
   const Branch& branch = tracker.branch();
   Move response;
   double last = sides[0].at, best = NAN, far = 0;
   bool lower_before = false, balanced = false;
   std::optional<double> aside_of;
   for (int k = 0; k < most_trials; ++k) {
-    const bool known = sides[0].size > 0 && sides[1].size > 0;
+    const bool known = how == Narrowing::by_responses && sides[0].size > 0 && sides[1].size > 0;
     const bool near =
         known && branch.dot(sides[0].response, sides[1].response) < opposite * sides[0].size * sides[1].size;
     const double a = near ? sides[0].weight / sides[0].size : 1,
@@ -129,7 +132,7 @@ double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& 
     // Without a response that grows the index was miscounted, as it may be where elements are very unequal;
     // where both sides were known, roundoff hides all that is nearer.
     if (!std::isfinite(size) || size == 0 || gone || is_located(tracker, family, at - last) || at == last)
-      return near ? at : best;
+      return near || how == Narrowing::by_halves ? at : best;
     last = at;
     // The same side again: the other one counts less (Illinois).
     if (near && lower == lower_before) sides[lower ? 1 : 0].weight *= 0.5;
@@ -182,16 +185,43 @@ struct Located {
   std::vector<Move> singular = {};
 };
 
-/// Between low, where the branch is as `before`, and high, where it is as `after`. NaN where the branch
-/// cannot be followed, or no response grows.
-Located find_branch_point(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
-                          const BranchState& before, const BranchState& after, double low, double high) {
-  Side sides[2] = {{.at = low}, {.at = high}};
-  const double at = narrow(tracker, family, from, before, passing(before, after), sides);
+/// A part of a step, from the state that its points are reached from: on the elements of that state.
+struct Span {
+  BranchState from, before, after;  ///< `before` and `after`: at its ends
+  double low, high;
+};
+
+/// NaN where the branch cannot be followed, or no response grows.
+Located find_branch_point(Tracker& tracker, const ProblemFamily& family, const Span& span, Narrowing how) {
+  Side sides[2] = {{.at = span.low}, {.at = span.high}};
+  const double at =
+      narrow(tracker, family, span.from, span.before, passing(span.before, span.after), how, sides);
   tracker.hold({});
   const Side& side = nearer(sides);
   if (side.singular.empty() || !std::isfinite(at)) return {};
   return {at, side.singular};
+}
+
+enum class Finer { not_needed, found, lost };
+
+/// The span on elements that resolve a singular direction too, if its own do not. There points lie elsewhere,
+/// and may have left the span: by no more than its length.
+Finer refine(Tracker& tracker, const Move& singular, Span& span) {
+  const std::optional<BranchState> finer = tracker.resolved_for(span.from, singular);
+  if (!finer) return Finer::not_needed;
+  const double length = span.high - span.low;
+  const auto alike = [&](double at, const BranchState& coarse, BranchState& state) {
+    if (!tracker.reach(*finer, at, true)) return false;
+    state = tracker.state;
+    return !branches_cross(state, coarse);
+  };
+  Span fine{*finer, span.before, span.after, span.low, span.high};
+  if (!alike(fine.low, span.before, fine.before) && !alike(fine.low -= length, span.before, fine.before))
+    return Finer::lost;
+  if (!alike(fine.high, span.after, fine.after) && !alike(fine.high += length, span.after, fine.after))
+    return Finer::lost;
+  span = std::move(fine);
+  return Finer::found;
 }
 
 /// Eigenvalues that pass zero at a branch point are null there, however far off it is located.
@@ -202,28 +232,33 @@ void count_null_directions(Solution& at, const BranchState& before, const Branch
   at.morse_index = std::min({*at.morse_index, before.index, after.index});
 }
 
-/// Points between low, where the branch is as `before`, and high, where it is as `after`; to the last of them
-/// both move. False where the search is at its end.
-bool find_between(Tracker& tracker, const EventSearch& search, const BranchState& from, BranchState& before,
-                  const BranchState& after, double low, double high, Crossings& found) {
-  for (int k = 0; k < most_points && branches_cross(before, after); ++k) {
-    const Located first = find_branch_point(tracker, search.family, from, before, after, low, high);
-    if (!std::isfinite(first.at)) return false;
-    Located point = first;
-    BranchState base = from;
-    if (auto finer = tracker.resolved_for(from, first.singular.front())) {
-      const bool begins = tracker.reach(*finer, low, true) && !branches_cross(tracker.state, before);
-      Located again;
-      if (begins)
-        again =
-            find_branch_point(tracker, search.family, *finer, BranchState(tracker.state), after, low, high);
-      if (begins && !std::isfinite(again.at)) return false;  // on those elements alone
-      if (begins) {
-        base = *std::move(finer);
-        point = std::move(again);
-      }
+/// Points of a span, in their order; `apart`: nearer points are one. False where one is not found.
+bool find_between(Tracker& tracker, const EventSearch& search, Span span, double apart, Crossings& found) {
+  const auto reach = [&](double at) {
+    return span.low < at && at < span.high && tracker.reach(span.from, at, true);
+  };
+  for (int k = 0; k < most_points && branches_cross(span.before, span.after); ++k) {
+    Located point = find_branch_point(tracker, search.family, span, Narrowing::by_responses);
+    if (!std::isfinite(point.at)) return false;
+    const Finer finer = refine(tracker, point.singular.front(), span);
+    if (finer == Finer::found) continue;
+    if (finer == Finer::lost) return false;  // on those elements alone
+    // Of several that pass the responses may lead to a later one, or to none.
+    const bool several = passing(span.before, span.after) > 1;
+    if (several && reach(point.at - apart) && branches_cross(span.before, tracker.state)) {
+      Span earlier = span;
+      earlier.after = tracker.state;
+      earlier.high = point.at - apart;
+      if (!find_between(tracker, search, earlier, apart, found)) return false;
+      span.before = std::move(earlier.after);
+      span.low = earlier.high;
+      continue;
     }
-    FoundBranchPoint read = branch_point_at(tracker, base, point.at, high, point.singular);
+    if (reach(point.at + apart) && !branches_cross(span.before, tracker.state)) {
+      point = find_branch_point(tracker, search.family, span, Narrowing::by_halves);
+      if (!std::isfinite(point.at)) return false;
+    }
+    FoundBranchPoint read = branch_point_at(tracker, span.from, point.at, span.high, point.singular);
     if (!read.point) return false;
     if (!read.balanced) {
       found.leaps = true;
@@ -232,15 +267,15 @@ bool find_between(Tracker& tracker, const EventSearch& search, const BranchState
     const bool crosses = !of_squares_alone(tracker, point.singular.front());
     if (crosses)
       found.events.push_back(
-          {first.at,
-           {*std::move(read.point), branch_start(tracker, search, PointKind::branch, base, point.at,
+          {point.at,
+           {*std::move(read.point), branch_start(tracker, search, PointKind::branch, span.from, point.at,
                                                  static_cast<int>(point.singular.size()))}});
-    low = first.at + beyond_it * high;
-    if (!(low < high) || !tracker.reach(from, low, true)) return false;
-    if (crosses) count_null_directions(found.events.back().found.point.solution, before, tracker.state);
-    before = tracker.state;
+    if (!reach(point.at + apart)) return false;
+    if (crosses) count_null_directions(found.events.back().found.point.solution, span.before, tracker.state);
+    span.before = tracker.state;
+    span.low = point.at + apart;
   }
-  return true;
+  return !branches_cross(span.before, span.after);
 }
 
 std::vector<Sample> crossings_on(const BranchStep& step) {
@@ -295,12 +330,13 @@ Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const 
     if (sample.at <= low) continue;
     if (!tracker.reach(from, sample.at, true)) return found;
     const BranchState after = tracker.state;
-    if (!find_between(tracker, search, from, before, after, low, sample.at, found)) return found;
+    if (!find_between(tracker, search, {from, before, after, low, sample.at}, beyond_it * length, found))
+      return found;
     found.change = after.index - from.index;
-    found.complete = !branches_cross(before, after);
     before = after;
     low = sample.at;
   }
+  found.complete = true;
   return found;
 }
 
