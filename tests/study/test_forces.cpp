@@ -152,6 +152,17 @@ TEST_F(Scenes, DragFromInitialData) {
   EXPECT_NEAR(q[1], 0.8 * std::log(1 + 0.5 * 5 * 2) / 0.5, 1e-8);
 }
 
+/// The drag of a body at rest is zero, and its derivative 0/0: one element closed upon itself is no orbit.
+TEST_F(Scenes, NoOrbitIsReadWhereDerivativesAreNotFinite) {
+  const Solution s =
+      run(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - y\"\n"
+                "force = { x = \"-sqrt(x'^2 + y'^2)*x'\", y = \"-sqrt(x'^2 + y'^2)*y'\" }\n"
+                "[boundary]\nperiodic = true\nduration = \"free\"\n"
+                "[guess]\nx = \"4 + 15*cos(2*pi*t/T)\"\ny = \"10 + 2*sin(2*pi*t/T)\"\nduration = 0.02\n"
+                "[solve]\nscheme = \"simpson\"\nelements = 1\n"));
+  EXPECT_FALSE(s.converged()) << s.message;
+}
+
 /// A potential written as a force: each orbit has its own period.
 TEST_F(Scenes, PeriodsThatAreNotIsolated) {
   const Solution s =

@@ -55,6 +55,19 @@ std::vector<Twin> twins() {
   };
 }
 
+/// Where hardly any prey is left, q' = exp(p) - 1 has no digits of p: such a path is none whose momenta are
+/// known.
+TEST_F(HamiltonianScenes, MomentaThatRoundoffHides) {
+  const Solution s =
+      run(study("[system]\ncoordinates = [\"y\"]\nhamiltonian = \"exp(p_y) - p_y + exp(y) - y\"\n"
+                "[boundary]\nstart = { y = 0.8170772466716945 }\nend = { y = -1.0206785999311254 }\n"
+                "duration = 28.5660967111268\n[guess]\ny = \"0.8170772466716945 - 1.8377558466028199*t/T + "
+                "0.23229036435052697*sin(3*pi*t/T)\"\n"));
+  if (s.converged()) {
+    EXPECT_LT(*s.energy_drift, 1e-7 * std::abs(*s.energy)) << s.message;
+  }
+}
+
 void expect_equal(const Solution& l, const Solution& h, const std::string& what, double roundoff) {
   ASSERT_TRUE(l.converged() && h.converged()) << what << ": " << l.message << " / " << h.message;
   const auto near = [&](double a, double b, double size) {

@@ -66,13 +66,25 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
          std::max(part * tolerance * range, momentum_roundoff * action.momentum_scale());
 }
 
+/// By how much momenta jump from element to element, of their range, where that is more than they may err and
+/// than roundoff of their sums: forces or masses are formed of terms that cancel. A path at rest has no
+/// range.
+double jump_of_momenta(const Survey& survey, double tolerance, const Scales& size,
+                       const DiscreteAction& action) {
+  const double range = *std::max_element(survey.p.begin(), survey.p.end()), jump = action.residual();
+  const bool moves = size.range == size.q && range > momentum_roundoff * action.momentum_scale();
+  const double allowed = std::max(jump_margin * momentum_tolerances * tolerance * range,
+                                  momentum_roundoff * action.momentum_scale());
+  return moves && jump > allowed ? jump / range : 0;
+}
+
 }  // namespace
 
 std::optional<Refusal> equations_fail(const Problem& problem, const SolveOptions& options,
                                       const Outcome& outcome, const Path& path, NewtonIteration& newton,
                                       const Solution& solution) {
   const ElementTables& tables = *outcome.tables;
-  if (!std::isfinite(solution.action) || !std::isfinite(solution.residual))
+  if (!newton.action().finite() || !std::isfinite(solution.action) || !std::isfinite(solution.residual))
     return Refusal{Status::not_converged, "the path runs through a singularity of L; try another guess"};
   if (!balanced(solution, path, newton))
     return Refusal{
@@ -124,6 +136,12 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
         "the path found is far from the guess, and its second variation is singular: the ends may be "
         "conjugate, or forces vanish along the path; move an end, change the duration, or try a better "
         "guess"};
+  if (!found || options.scheme) return std::nullopt;
+  if (const double jump = jump_of_momenta(*found, options.tolerance, scales(path, *outcome.tables), action))
+    return Refusal{Status::not_converged,
+                   fmt::format("momenta jump by {:.1e} of their range from element to element, more than the "
+                               "tolerance {:.1e} allows: roundoff hides them; try another tolerance",
+                               jump, options.tolerance)};
   return std::nullopt;
 }
 

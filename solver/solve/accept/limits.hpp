@@ -40,6 +40,8 @@ inline constexpr double longest_duration = 1e6;
 /// Forces that hold closed paths, in tolerances of the range of momenta: a small part of
 /// momentum_tolerances, or the paths are no family.
 inline constexpr double held_tolerances = 0.1;
+/// Momenta may jump by so many times their error: that is an estimate.
+inline constexpr double jump_margin = 10;
 
 }  // namespace conditions
 
