@@ -314,17 +314,28 @@ TEST(Several, OfAnOscillatorThereIsOne) {
 
 /// q'' = −λ eᑫ between zeros: 2 ln cosh(√(λ e^θ/8)) = θ for the maximum θ of each.
 TEST(Several, BothSolutionsOfBratu) {
-  for (double lambda : {1.0, 2.0, 3.3}) {
+  for (double lambda : {1e-3, 0.1, 1.0, 2.0, 3.3}) {
     const std::vector<Solution> found = solve_all(fixed_ends(systems::bratu(lambda), {0}, {0}, 1), 5);
     ASSERT_EQ(found.size(), 2u);
     Values grid;
-    for (int i = 0; i <= 2000; ++i) grid.push_back(0.01 * i);
+    for (int i = 0; i <= 200; ++i) grid.push_back(1e-4 * std::pow(20 / 1e-4, i / 200.0));
     const Values peaks = roots(grid, [&](double theta) {
       return 2 * std::log(std::cosh(std::sqrt(lambda * std::exp(theta) / 8))) - theta;
     });
     ASSERT_EQ(peaks.size(), 2u);
     for (int k = 0; k < 2; ++k) EXPECT_NEAR(at(found[k].trajectory, 0.5).q[0], peaks[k], 1e-7);
   }
+}
+
+/// q'' = −q² between zeros, beside rest.
+TEST(Several, TheOtherSolutionOfEmden) {
+  const auto emden = trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 - q[0] * q[0] * q[0] / 3; });
+  const std::vector<Solution> found = solve_all(fixed_ends(emden, {0}, {0}, 1), 4);
+  ASSERT_EQ(found.size(), 2u);
+  // With m the maximum, T = 2 sqrt(3/2) ∫ dq/sqrt(m^3 - q^3) from 0 to m = sqrt(6/m) B(1/3, 1/2)/3.
+  const double m = 6 * std::pow(std::beta(1.0 / 3, 0.5) / 3, 2);
+  EXPECT_NEAR(at(found[1].trajectory, 0.5).q[0], m, 1e-7);
+  EXPECT_NEAR(found[1].momentum_start[0], std::sqrt(2 * m * m * m / 3), 1e-6);
 }
 
 TEST(Several, WhereThereIsNone) {

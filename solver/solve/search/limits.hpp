@@ -363,12 +363,14 @@ inline constexpr int motions_each = 8, least_motions = 24;
 inline constexpr int most_motions_each = 60;
 /// Of integrators, in all, of the search for all motions that arrive; and its part of the time there is.
 inline constexpr int most_scan_steps = 1500000;
+/// So many of them may find nothing new.
+inline constexpr int most_quiet_steps = most_scan_steps / 16;
 inline constexpr double arrivals_share = 0.3;
 /// The ball reaches so much further than the extremals that are wanted; and grows so, so often in vain, where
 /// there are not enough in it; more where curves of arrivals are followed, for few of fast motions are
 /// costly.
 inline constexpr double reach_beyond = 1.1, growth_of_reach = 1.4, growth_of_arrivals = 2.5;
-inline constexpr int most_growths = 4;
+inline constexpr int most_growths = 4, most_cheap_growths = 24;
 /// Motions for each extremal known that may lead nowhere, in a row.
 inline constexpr int most_astray = 40;
 /// A path that a homotopy has led to the problem is known to this, relative to its extent.

@@ -94,9 +94,13 @@ bool Several::scan_starts() {
   const double growth = std::pow(growth_of_arrivals, 1.0 / dimension);
   shell.nearest = 0;
   shell.farthest = reach_beyond * wanted_reach(1, reach_of);
-  for (int growths = 0; growths < most_growths * dimension;) {
+  // Where motions are cheap, as those of slow starts, the next extremal may be far.
+  long steps_before = scan_steps_;
+  const auto cheap = [&](int steps) { return more(steps) && scan_steps_ - steps_before <= most_quiet_steps; };
+  for (int growths = 0; growths < most_growths * dimension || (growths < most_cheap_growths && cheap(0));) {
+    const bool near = growths < most_growths * dimension;
     std::vector<Eigen::VectorXd> zeros;
-    const bool complete = starts_.zeros(shell, more, zeros);
+    const bool complete = starts_.zeros(shell, near ? more : cheap, zeros);
     const std::size_t before = found_.size();
     std::ranges::sort(zeros, {}, [&](const Eigen::VectorXd& w) { return shell.reach(w); });
     for (const Eigen::VectorXd& w : zeros) {
@@ -110,7 +114,9 @@ bool Several::scan_starts() {
     }
     // Beyond the last extremals it has been looked in vain.
     if (!complete) return growths > 0;
-    growths = found_.size() > before ? 0 : growths + 1;
+    const bool news = found_.size() > before;
+    growths = news ? 0 : growths + 1;
+    if (news) steps_before = scan_steps_;
     const bool enough = static_cast<int>(found_.size()) >= most_;
     const double wanted = wanted_reach(1, reach_of);
     shell.nearest = shell.farthest;
