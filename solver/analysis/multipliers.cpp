@@ -45,7 +45,12 @@ struct Factor {
 
   /// The flow of the fields of the energy, but for multiples of the shift: both are known, and with them one
   /// pair of multipliers 1. Their rows and columns make a Jordan block, which alone costs half of the digits.
-  MatrixXd across_shift() const { return across(after).transpose() * flow * across(before); }
+  /// The image of the shift differs from the shift by the error of the path, and what is across the one is
+  /// turned to across the other: so the result is symplectic to second order in that error.
+  MatrixXd across_shift() const {
+    const MatrixXd image = across(flow * before);
+    return (across(after).transpose() * image) * (image.transpose() * flow * across(before));
+  }
 };
 
 /// Products of some pieces each, then R⁻¹: q ← R⁻¹q, p ← Rᵀp.

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "analysis/symplectic.hpp"
 #include "problem/closing.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/root.hpp"
@@ -76,13 +77,14 @@ DoublingSamples divided_by_index(Tracker& tracker, const BranchStep& step) {
 
 /// Where two multipliers pass −1 and each other between two points, so that no test changes its sign: there
 /// the index changes by two, and the root of the product of all tests, of the sign that the index tells,
-/// passes zero. NaN if it is not found.
+/// passes zero: down to the roundoff of the product, and from there the index alone tells the place. NaN if
+/// it is not found.
 double find_passing_pair(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
                          const DoublingSamples::value_type& low, const DoublingSamples::value_type& high) {
   const double middle = 0.5 * (*low.second.index + *high.second.index);
   const auto test = [&](const DoublingTests& tests) {
     if (!tests.index) return double(NAN);
-    return std::copysign(std::sqrt(std::abs(product(tests.values))), *tests.index - middle);
+    return std::copysign(std::sqrt(std::abs(product(tests.values)) + sum_accuracy), *tests.index - middle);
   };
   return root(
       tracker, from, {low.first, test(low.second)}, {high.first, test(high.second)}, std::nullopt,

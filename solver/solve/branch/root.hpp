@@ -69,7 +69,7 @@ double root(Tracker& tracker, const BranchState& from, Sample low, Sample high, 
         (k + 1) % most_parabolas == 0 ? 0.5 * (low.at + high.at) : parabola_root(low, high, third);
     // A test that jumps is not zero where a parabola through the jump is.
     const double by_chord = here.value * (at - third->at) / (third->value - here.value);
-    const double change = std::max(std::abs(next - at), std::abs(by_chord));
+    const double change = std::min(std::max(std::abs(next - at), std::abs(by_chord)), high.at - low.at);
     if (here.value == 0 || done(here.value, change)) return at;
     at = next;
   }
