@@ -248,11 +248,10 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
   if (continued_by_values(study.problem, study.options)) return follow_by_values(study, continued, progress);
   SolveOptions options = study.options;
   options.deadline = deadline_of(study);
-  if (std::optional<FollowedBranch> followed = follow_in_minimal_coordinates(study, options)) {
-    if (progress)
-      for (const BranchPoint& point : followed->points) progress(point);
-    return *std::move(followed);
-  }
+  std::optional<FollowedBranch> minimal = follow_in_minimal_coordinates(study, options);
+  if (minimal && progress)
+    for (const BranchPoint& point : minimal->points) progress(point);
+  if (minimal && unended(*minimal) == 0) return *std::move(minimal);
   Diagram diagram(continued.family, {std::move(options), continued.points, continued.switching});
   FollowedBranch followed;
   followed.title = study.title;
@@ -263,6 +262,7 @@ FollowedBranch follow(const Study& study, const std::function<void(const BranchP
     if (progress) progress(followed.points.back());
   }
   followed.branches = diagram.branches();
+  if (minimal && unended(*minimal) <= unended(followed)) return *std::move(minimal);
   return followed;
 }
 

@@ -97,6 +97,10 @@ bool ended(const BranchRecord& branch) {
 
 }  // namespace
 
+std::ptrdiff_t unended(const FollowedBranch& followed) {
+  return std::ranges::count_if(followed.branches, [](const BranchRecord& branch) { return !ended(branch); });
+}
+
 std::optional<FollowedBranch> follow_in_minimal_coordinates(const Study& study, const SolveOptions& options) {
   if (!study.problem.manifold || options.scheme || options.method != Method::newton) return std::nullopt;
   const std::shared_ptr<const MinimalProblem> first = study.problem.manifold->parts().minimal;
@@ -117,7 +121,6 @@ std::optional<FollowedBranch> follow_in_minimal_coordinates(const Study& study, 
     followed.points.push_back(std::move(point));
   }
   followed.branches = diagram.branches();
-  if (!std::ranges::all_of(followed.branches, ended)) return std::nullopt;
   return followed;
 }
 

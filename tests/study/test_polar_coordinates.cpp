@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -313,4 +314,40 @@ TEST_F(Scenes, EndsOnParallelsHaveAFamilyOfExtremals) {
   EXPECT_NEAR(found.action, std::pow(std::numbers::pi / 3, 2) / 2, 1e-12);
   EXPECT_EQ(found.morse_index, 0);
   EXPECT_EQ(found.nullity, 1);
+}
+
+/// At E = −2.32505731392 and −1.64779718936 the multipliers touch −1, where four branches of doubled orbits
+/// meet.
+TEST_F(Scenes, MultipliersThatTouchMinusOneAreOneDoubling) {
+  const std::string pendulum =
+      "[system]\ncoordinates = [\"x\", \"y\", \"u\", \"v\"]\n"
+      "lagrangian = \"(x'^2 + y'^2 + u'^2 + v'^2)/2 - (y + v)\"\n"
+      "constraints = [\"x^2 + y^2 = 1\", \"(u - x)^2 + (v - y)^2 = 1\"]\n[boundary]\nperiodic = true\n"
+      "duration = \"free\"\nenergy = -2.9\n[guess]\nx = \"0.15*sin(2*pi*t/T)\"\ny = \"-1\"\n"
+      "u = \"0.36*sin(2*pi*t/T)\"\nv = \"-2\"\nduration = 8.3\n[continuation]\nparameter = \"energy\"\n"
+      "to = -1.0\npoints = 60\n";
+  for (const std::string tolerance : {"1e-6", "1e-9"}) {
+    const FollowedBranch found = follow(study(pendulum + "[solve]\ntolerance = " + tolerance + "\n"));
+    std::vector<double> doublings;
+    for (const BranchPoint& point : found.points)
+      if (point.kind == PointKind::period_doubling) doublings.push_back(point.parameter);
+    ASSERT_EQ(doublings.size(), 2u) << tolerance;
+    EXPECT_NEAR(doublings[0], -2.32505731392, 1e-8);
+    EXPECT_NEAR(doublings[1], -1.64779718936, 1e-8);
+  }
+  const FollowedBranch all = follow(study(pendulum + "switch = true\n"));
+  ASSERT_EQ(all.branches.size(), 5u);
+  for (std::size_t k = 1; k < all.branches.size(); ++k)
+    EXPECT_EQ(all.branches[k].end, BranchEnd::closed) << all.branches[k].message;
+}
+
+TEST_F(Scenes, AFamilyThatRests) {
+  const FollowedBranch found = follow(
+      study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - x\"\n"
+            "constraints = [\"x^2 + y^2 = 1\"]\n[boundary]\nstart = { x = -1, y = 0 }\n"
+            "end = { x = -1, y = 0 }\nduration = 2\n[continuation]\nparameter = \"duration\"\nto = 4\n"));
+  EXPECT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  const auto branch = std::ranges::find(found.points, PointKind::branch, &BranchPoint::kind);
+  ASSERT_NE(branch, found.points.end());
+  EXPECT_NEAR(branch->parameter, std::numbers::pi, 1e-9);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "action/rule.hpp"
+#include "problem/closing.hpp"
 #include "solve/adapt/workspace.hpp"
 #include "solve/homotopy/curve.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
@@ -24,6 +25,8 @@ struct ProblemFamily {
   /// The problem with this value of a parameter, if it has one; for Varied::parameter. Its boundary relation
   /// has the same coefficients, its ends, duration and energy may differ.
   std::function<std::optional<Problem>(double)> at = {};
+  /// Of orbits of twice the period: how those of the single one close.
+  std::function<ClosingMap(double)> half = {};
   std::string name = varied == Varied::energy     ? "energy"
                      : varied == Varied::duration ? "duration"
                                                   : "parameter";

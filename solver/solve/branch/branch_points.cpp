@@ -122,7 +122,7 @@ double narrow(Tracker& tracker, const ProblemFamily& family, const BranchState& 
     const bool lower = near ? branch.dot(response, sides[0].response) > 0 : !across;
     // At the branch point itself the way along the other branch may count as null and be left out. The secant
     // between points as far on either side shows where that is.
-    const bool gone = near && size < std::min(sides[0].size, sides[1].size);
+    const bool gone = near && size < left_out * std::min(sides[0].size, sides[1].size);
     if (gone && !balanced) {
       balanced = true;
       const Side& nearer = at - sides[0].at < sides[1].at - at ? sides[0] : sides[1];

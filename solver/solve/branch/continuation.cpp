@@ -7,9 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include "problem/closing.hpp"
+#include "problem/point_range.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/branch/common_symmetries.hpp"
+#include "solve/branch/half_period.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/search/search.hpp"
 
@@ -64,6 +65,13 @@ double action_difference(Tracker& tracker) {
   return least;
 }
 
+/// Along rest the energy closes no equations: it is the same for all durations.
+bool rests(const Path& path) {
+  double size = 0;
+  for (const double x : path.nodes()) size = std::max(size, std::abs(x));
+  return largest_range(path.nodes(), path.coordinates()) <= rest * size;
+}
+
 /// Of a period, while the path hardly moves.
 double share_at_rest(const Path& path) {
   const std::size_t n = path.coordinates();
@@ -77,25 +85,6 @@ double share_at_rest(const Path& path) {
   for (int k = 0; k < path.elements(); ++k)
     if (speed(k) < slow * fastest) rest += path.mesh()[k + 1] - path.mesh()[k];
   return rest;
-}
-
-/// Of what is left of two orbits less themselves half a period later: the mean of its product.
-double alternation(const Trajectory& a, const Trajectory& b) {
-  constexpr int samples = 128;
-  const std::size_t n = a.coordinates;
-  std::vector<double> q(n), later(n), v(n), of_a(n);
-  double sum = 0;
-  for (int k = 0; k < samples; ++k) {
-    for (const Trajectory* path : {&a, &b}) {
-      const double t = path->duration() * k / (2 * samples);
-      path->at(t, q, v);
-      path->at(t + path->duration() / 2, later, v);
-      for (std::size_t i = 0; i < n; ++i) q[i] -= later[i];
-      if (path == &a) std::swap(q, of_a);
-    }
-    sum += std::inner_product(q.begin(), q.end(), of_a.begin(), 0.0) / samples;
-  }
-  return sum;
 }
 
 /// Nothing where the period is given.
@@ -187,6 +176,7 @@ bool Continuation::begin_from_solve() {
   const Outcome& outcome = search.run(&acceptance);
   if (const Solution first = acceptance.result(outcome); !first.converged())
     return stop(BranchEnd::not_started, "no extremal to begin with: " + first.message);
+  if (family_.varied == Varied::duration && rests(outcome.path)) return end_at_first();
   double at_rest = 0;
   for (const double x : family_.problem.guess.q) at_rest = std::max(at_rest, rest * std::abs(x));
   const bool by_parameter = family_.varied == Varied::parameter;
@@ -273,7 +263,7 @@ bool Continuation::step() {
   std::swap(state, from_);
   for (;; length_ *= shortening) {
     if (length_ < least_length || options_.solve.deadline.passed()) return give_up(from_);
-    if (tracker_.reach_smoothly(from_, length_) && tracker_.turns_one_way(from_)) break;
+    if (tracker_.reach_smoothly(from_, length_) && tracker_.turns_one_way(from_) && !halves_period()) break;
   }
   if (ends_on_crossing()) end_beside_crossing();
   const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
@@ -326,16 +316,32 @@ bool Continuation::retry(double length) {
   return step();
 }
 
+/// Orbits that differ by less from themselves half a period later have half the period.
+double Continuation::half_distance() const {
+  return std::max(half_period * from_.units.extent, half_period_errors * tracker_.error());
+}
+
+/// Whether the last step led from an orbit onto one of half the period: these are another branch.
+bool Continuation::halves_period() {
+  const auto has_half = [&](const BranchState& state) {
+    return has_half_period(family_, state.varied, trajectory_of(state.path), half_distance());
+  };
+  return has_half(tracker_.state) && !has_half(from_);
+}
+
 /// Where orbits meet those of half their period, run through twice, beyond are the same ones half a period
 /// later: what is left of them less themselves half a period later passes zero there.
 void Continuation::end_at_half_period(StepEvents& events) {
-  const auto met = std::ranges::find_if(
-      events.points, [](const FoundPoint& found) { return found.point.kind == PointKind::branch; });
-  const Problem& problem = family_.problem;
-  if (met == events.points.end() || !problem.periodic || !closing_map(problem).identity()) return;
-  const Trajectory from = trajectory_of(from_.path), to = trajectory_of(to_.path);
-  const double size = half_period * from_.units.extent;
-  if (alternation(from, from) < size * size || alternation(from, to) >= 0) return;
+  const Trajectory from = trajectory_of(from_.path), to = trajectory_of(tracker_.state.path);
+  const double before = alternation(family_, from_.varied, from, from).value_or(0);
+  if (before <= std::pow(half_distance(), 2) || *alternation(family_, from_.varied, from, to) >= 0) return;
+  const double most = nearly_half_period * std::sqrt(before);
+  const auto met = std::ranges::find_if(events.points, [&](const FoundPoint& found) {
+    return found.point.kind == PointKind::branch ||
+           (found.point.kind == PointKind::fold &&
+            has_half_period(family_, found.point.parameter, found.point.solution.trajectory, most));
+  });
+  if (met == events.points.end()) return;
   const double parameter = met->point.parameter;
   events.points.erase(met + 1, events.points.end());
   events.end = BranchEnd::closed;

@@ -71,6 +71,8 @@ class Continuation {
   void end_beside_crossing();
   bool retry(double length);
   void check_action();
+  double half_distance() const;
+  bool halves_period();
   void end_at_half_period(StepEvents& events);
   void count_index(StepEvents& events, BranchPoint& next);
   bool end_where_period_diverges(double error);

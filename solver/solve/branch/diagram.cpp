@@ -18,6 +18,10 @@ namespace {
 ProblemFamily doubled(const ProblemFamily& family) {
   ProblemFamily twice = family;
   twice.problem = doubled(family.problem);
+  twice.half = [at = family.at, map = closing_map(family.problem)](double value) {
+    const std::optional<Problem> problem = at ? at(value) : std::nullopt;
+    return problem ? closing_map(*problem) : map;
+  };
   if (family.varied == Varied::duration) {
     twice.from *= 2;
     twice.to *= 2;

@@ -35,6 +35,9 @@ inline constexpr double beside[] = {0, 1e-7, 1e-5, 1e-4};
 /// the singular directions a branch point is as good as its predictor, 1e-4 or better; at a saddle of the
 /// forces they are of second order in that.
 inline constexpr double momentum_tolerances = 10, least_momentum = 1e-8;
+/// Responses are inverse to the distance from a branch point: one that is less than this part of those
+/// farther off has the null direction left out.
+inline constexpr double left_out = 0.5;
 /// A second direction is singular if its response is so many times the one far from the branch point.
 inline constexpr double grown = 10;
 /// Changes of momenta, relative to their terms, that are none of motions in phase space: well above errors.
@@ -115,8 +118,12 @@ inline constexpr double on_crossing = 1e-6;
 /// On a branch the extremal half as far from the first one as another is no farther away than this part of
 /// its distance.
 inline constexpr double half_as_far = 0.75;
-/// Of its size: an orbit that differs by less from itself half a period later has half the period.
-inline constexpr double half_period = 1e-6;
+/// Of its size, and of its error: an orbit that differs by less from itself half a period later has half the
+/// period.
+inline constexpr double half_period = 1e-6, half_period_errors = 10;
+/// A fold is where orbits meet those of half their period if it alternates by no more than this share of what
+/// the state before it does.
+inline constexpr double nearly_half_period = 1e-2;
 /// Of the size of the guess: a path smaller than this is at rest.
 inline constexpr double rest = 1e-9;
 /// The action is compared with its derivatives at one point of so many, over half the lengths in turn until

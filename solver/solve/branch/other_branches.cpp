@@ -6,6 +6,7 @@
 
 #include "solve/branch/bifurcation_equations.hpp"
 #include "solve/branch/common_symmetries.hpp"
+#include "solve/branch/half_period.hpp"
 #include "solve/branch/limits.hpp"
 
 namespace extremal {
@@ -21,6 +22,7 @@ class BranchPointCentre {
       : family_(family),
         options_(options),
         at_rest_(limits::continuation::rest * start.units.extent),
+        twice_(start.kind == PointKind::period_doubling),
         tracker_(family, options.tolerance) {
     if (start.regular) tracker_.branch().set_regular();
     if (!tracker_.begin(start.beside.path, start.beside.coordinate, start.units, at_rest_)) return;
@@ -60,6 +62,7 @@ class BranchPointCentre {
       from.tangent = tracker_.difference_to(centre_);
       from.tangent.scale(-1);
     }
+    if (twice_ && repeats_half(tracker_.state, distance)) return std::nullopt;
     return tracker_.state;
   }
 
@@ -86,6 +89,12 @@ class BranchPointCentre {
   bool out_of_time() const { return options_.deadline.passed(); }
 
  private:
+  /// Null directions turn their sign after half of the doubled period, so that a path so far along them
+  /// differs by twice as much from itself half a period later.
+  bool repeats_half(const BranchState& state, double distance) const {
+    return has_half_period(family_, state.varied, trajectory_of(state.path), distance * state.units.extent);
+  }
+
   Move move(const Departure& departure) const {
     Move sum = centre_.tangent;
     sum.scale(departure.along);
@@ -103,6 +112,7 @@ class BranchPointCentre {
   const ProblemFamily& family_;
   const SolveOptions& options_;
   const double at_rest_;
+  const bool twice_;
   Tracker tracker_;
   BranchState centre_;
   std::vector<Move> null_;
