@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "scenes.hpp"
+#include "study/continued.hpp"
 
 using namespace extremal;
 using namespace extremal::test;
@@ -128,4 +129,24 @@ TEST_F(FamiliesBetweenEnds, TheNearestAndNotTheFarthest) {
   EXPECT_EQ(found.nullity, 1);
   EXPECT_NEAR(found.momentum_start[1], std::numbers::sqrt2, 1e-8);
   EXPECT_NEAR(found.momentum_start[2], 0, 1e-8);
+}
+
+TEST_F(FamiliesBetweenEnds, AKinkThatPassesAnEnd) {
+  // From a < 0 the motion to −1 is a + v t + t²/2 with v = −(2.125 + a)/1.5.
+  const FollowedBranch found = follow(
+      study("[system]\ncoordinates = [\"x\"]\nparameters = { a = 0.5 }\nlagrangian = \"x'^2/2 - abs(x)\"\n"
+            "[boundary]\nstart = { x = \"a\" }\nend = { x = -1 }\nduration = 1.5\n[continuation]\n"
+            "parameter = \"a\"\nto = -0.5\npoints = 60\n"));
+  EXPECT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  EXPECT_NEAR(found.points.back().solution.action, -1.18229166666667, 1e-9);
+}
+
+TEST_F(FamiliesBetweenEnds, AMotionWhoseVelocityCrossesAKink) {
+  const Solution found =
+      run(study("[system]\ncoordinates = [\"s\", \"z\"]\nparameters = { mu = 0.3 }\n"
+                "lagrangian = \"s'^2/2 + z'^2/2 - s^2/2 - z^2/2 - s*z - mu*abs(s')\"\n[boundary]\n"
+                "start = { s = 1.0, z = 0.0, p_s = -0.3, p_z = 0.1 }\nduration = 6.0\n"));
+  EXPECT_FALSE(found.converged());
+  EXPECT_NE(found.message.find("a velocity crosses a kink of abs, min or max"), std::string::npos)
+      << found.message;
 }

@@ -140,7 +140,10 @@ class InitialMotion {
         continue;
       }
       const bool stagnates = excess > stagnant * before && apart.error.q < near_motions * apart.range.q;
-      if (truncation <= finest || stagnates) return refuse_roundoff(apart);
+      if (truncation <= finest || stagnates) {
+        if (!refuse_jump(found.march.trajectory)) refuse_roundoff(apart);
+        return;
+      }
       before = excess;
       truncation = std::max(truncation * std::clamp(spare / excess, most_fall, 0.5), finest);
     }
@@ -163,6 +166,17 @@ class InitialMotion {
     const std::optional<double> step = overlooked_force(lagrangian_, trajectory);
     if (!step || !(steps_an_element * *step < longest_)) return false;
     longest_ = steps_an_element * *step;
+    return true;
+  }
+
+  /// Whether a velocity crosses a kink; says so.
+  bool refuse_jump(const Trajectory& trajectory) {
+    if (trajectory.elements() == 0) return false;
+    const auto jump = momentum_jump(
+        problem_, {trajectory.coordinates, trajectory.degree, trajectory.times, trajectory.nodes});
+    if (!jump) return false;
+    solution_.trajectory = {};
+    solution_.message = describe(*jump);
     return true;
   }
 
@@ -251,13 +265,7 @@ class InitialMotion {
       solution_.message = describe(*broken);
       return;
     }
-    const Polynomials path{march.trajectory.coordinates, march.trajectory.degree, march.trajectory.times,
-                           march.trajectory.nodes};
-    if (const auto jump = momentum_jump(problem_, path)) {
-      solution_.trajectory = {};
-      solution_.message = describe(*jump);
-      return;
-    }
+    if (refuse_jump(march.trajectory)) return;
     solution_.status = Status::converged;
     solution_.message = "converged";
     if (const int kinked = options_.scheme ? kinked_elements(lagrangian_, march.trajectory) : 0; kinked > 0)
@@ -332,6 +340,8 @@ class InitialMotion {
           "take about {:.2g} elements, more than can be kept; shorten it or loosen the tolerance",
           march.trajectory.elements(), t, oscillations(march.trajectory), problem_.duration.value,
           march.trajectory.elements() * parts);
+    } else if (refuse_jump(march.trajectory)) {
+      return;
     } else if (elements > 0) {
       solution_.message = fmt::format(
           "element {} has no solution near the motion: {} from t = {:.9g} over {:.3g}; raise solve.elements, "
