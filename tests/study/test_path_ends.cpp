@@ -217,3 +217,14 @@ TEST_F(PathEnds, RefusesWhatDoesNotRecur) {
               fmt::format("{}duration = \"free\"\nenergy = 1.0\n[guess]\nduration = 2.0\n", opposite_ends)),
           "inequalities that depend on t change the energy");
 }
+
+TEST_F(PathEnds, TheEnergyNearestToTheOneGiven) {
+  // Parabolas of the duration T have the energy 2.005/T² + T²/2 + 0.7, at least 2.7025.
+  const Solution solution =
+      run(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - 2*y\"\n[path]\n"
+                "constraints = [\"y >= -0.5 + 0.2*x\"]\n[boundary]\nstart = { x = -1.0, y = 0.4 }\n"
+                "end = { x = 1.0, y = 0.3 }\nduration = \"free\"\nenergy = 2.0\n[guess]\nduration = 1.5\n"));
+  EXPECT_EQ(solution.status, Status::no_solution_near);
+  EXPECT_NE(solution.message.find("the nearest is about 2.702, at a duration of 1.415"), std::string::npos)
+      << solution.message;
+}

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -30,9 +32,47 @@ class DurationSearch {
   explicit DurationSearch(CoarseMinima& minima) : minima_(minima) {}
 
   bool run() {
-    std::optional<Point> old = point();
-    std::optional<Point> now = at(old->duration * first_ratio);
-    if (!now) now = at(old->duration / first_ratio);
+    const Point first = point();
+    note(first);
+    std::optional<Point> now = at(first.duration * first_ratio);
+    if (!now) now = at(first.duration / first_ratio);
+    if (now) note(*now);
+    if (close(first, now)) return true;
+    if (other_side_) return false;
+    const std::optional<Point> beyond = least();
+    return beyond && close(nearest_, beyond);
+  }
+
+  /// Why it was not found, where that is known.
+  std::string reason() const {
+    if (!std::isfinite(nearest_.value) || other_side_) return {};
+    if (closed_by_condition(problem()))
+      return fmt::format(
+          "minimisers do not satisfy 'where': they come nearest to it, by {:.3g}, at a duration of {:.6g}",
+          nearest_.value, nearest_.duration);
+    return fmt::format(
+        "no minimiser near the guess has this energy: the nearest is about {:.4g}, at a duration of {:.4g}",
+        nearest_.value + *problem().duration.energy, nearest_.duration);
+  }
+
+ private:
+  struct Point {
+    double duration, value;
+  };
+  const Problem& problem() const { return minima_.last().problem; }
+  Point point() const { return {problem().duration.value, minima_.last().closing}; }
+  /// The minimum there becomes the last one.
+  std::optional<Point> at(double duration) {
+    if (!minima_.find(duration, {})) return std::nullopt;
+    return point();
+  }
+  void note(const Point& found) {
+    known_[found.duration] = found.value;
+    if (std::abs(found.value) < std::abs(nearest_.value)) nearest_ = found;
+  }
+
+  /// From two durations.
+  bool close(std::optional<Point> old, std::optional<Point> now) {
     int vain = 0;
     for (int k = 0; k < most_durations && now && vain < most_vain_durations && !minima_.deadline().passed();
          ++k) {
@@ -48,34 +88,31 @@ class DurationSearch {
       old = now;
       now = found;
       const double before = std::abs(nearest_.value);
-      if (now && std::abs(now->value) < before) nearest_ = *now;
+      if (now) note(*now);
       vain = other_side_ || std::abs(nearest_.value) < useful_share * before ? 0 : vain + 1;
     }
     return false;
   }
 
-  /// Why it was not found, where that is known.
-  std::string reason() const {
-    if (!std::isfinite(nearest_.value) || other_side_) return {};
-    if (closed_by_condition(problem()))
-      return fmt::format(
-          "minimisers do not satisfy 'where': they come nearest to it, by {:.3g}, at a duration of {:.6g}",
-          nearest_.value, nearest_.duration);
-    return fmt::format(
-        "no minimiser near the guess has this energy: the nearest is {:.6g}, at a duration of {:.6g}",
-        nearest_.value + *problem().duration.energy, nearest_.duration);
-  }
-
- private:
-  struct Point {
-    double duration, value;
-  };
-  const Problem& problem() const { return minima_.last().problem; }
-  Point point() const { return {problem().duration.value, minima_.last().closing}; }
-  /// The minimum there becomes the last one.
-  std::optional<Point> at(double duration) {
-    if (!minima_.find(duration, {})) return std::nullopt;
-    return point();
+  /// The least value, of one sign so far, between durations that are known: by parabolas through it and its
+  /// neighbours. A duration beyond zero if there is one.
+  std::optional<Point> least() {
+    for (int k = 0; k < most_durations && !minima_.deadline().passed(); ++k) {
+      const auto middle = known_.find(nearest_.duration), after = std::next(middle);
+      if (middle == known_.begin() || after == known_.end()) break;
+      const auto before = std::prev(middle);
+      const double back = middle->first - before->first, onward = after->first - middle->first;
+      const double fall = (middle->second - before->second) / back,
+                   rise = (after->second - middle->second) / onward;
+      const double next = 0.5 * (before->first + middle->first - fall * (back + onward) / (rise - fall));
+      if (!(next > before->first && next < after->first)) break;
+      if (std::abs(next - middle->first) <= near_duration * middle->first) break;
+      const std::optional<Point> found = at(next);
+      if (!found) break;
+      if ((found->value < 0) != (nearest_.value < 0)) return found;
+      note(*found);
+    }
+    return std::nullopt;
   }
 
   /// Between values of different signs the zero stays enclosed.
@@ -91,7 +128,8 @@ class DurationSearch {
 
   CoarseMinima& minima_;
   std::optional<Point> other_side_;
-  Point nearest_{0, INFINITY};  ///< the least value so far
+  Point nearest_{0, INFINITY};      ///< the least value so far
+  std::map<double, double> known_;  ///< values by durations
 };
 
 /// Unknown constants, and a free duration with them, for which the conditions hold at coarse minima: Newton's
