@@ -9,7 +9,7 @@
 
 namespace extremal {
 
-PhaseRanges phase_ranges(const Trajectory& trajectory) {
+PhaseRanges phase_ranges(const Problem& problem, const Trajectory& trajectory) {
   const std::size_t all = trajectory.coordinates, n = all / 2;
   std::vector<double> low(all, INFINITY), high(all, -INFINITY);
   for (std::size_t k = 0; k < trajectory.nodes.size(); ++k) {
@@ -25,13 +25,16 @@ PhaseRanges phase_ranges(const Trajectory& trajectory) {
     constexpr double negligible = 1e-10;
     return most > negligible * size ? most : size;
   };
-  return {range(0), range(n)};
+  constexpr double least_share = 1e-7;
+  const PhaseWeights& weights = problem.phase->weights;
+  const double q = range(0), p = range(n), p_by_q = std::sqrt(weights.velocity / weights.force);
+  return {std::max(q, least_share * p / p_by_q), std::max(p, least_share * q * p_by_q)};
 }
 
 double phase_defect(const Problem& problem, const Trajectory& trajectory, int degree) {
   const std::size_t all = trajectory.coordinates, n = all / 2;
   const Rule rule = gauss_rule(degree);
-  const PhaseRanges ranges = phase_ranges(trajectory);
+  const PhaseRanges ranges = phase_ranges(problem, trajectory);
   std::vector<double> state(all), rate(all), motion(all);
   Scratch scratch;
   const double shift = problem.phase->weights.shift;

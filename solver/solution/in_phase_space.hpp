@@ -21,10 +21,11 @@ std::vector<double> shifted_energies(const Problem& problem, const Trajectory& t
 /// Between two trajectories of one duration, in any coordinate, at points of the elements of the first.
 double largest_difference(const Trajectory& one, const Trajectory& other);
 
-/// Of p and of q: largest range of any, else its largest value.
+/// Of p and of q: largest range of any, else its largest value. Neither is less than a share of the other, in
+/// the units of the squares in the phase-space Lagrangian: less is roundoff of momenta that vanish.
 struct PhaseRanges {
   double q = 0, p = 0;
 };
-PhaseRanges phase_ranges(const Trajectory& trajectory);
+PhaseRanges phase_ranges(const Problem& problem, const Trajectory& trajectory);
 
 }  // namespace extremal

@@ -46,11 +46,12 @@ class Surveyor {
  public:
   Surveyor(const Lagrangian& lagrangian, int coordinates)
       : lagrangian_(lagrangian), n_(coordinates), ranges_q_(n_), ranges_v_(n_), ranges_p_(n_) {
-    const std::size_t rows = 4 * n_ + 1 + sums + lagrangian.rows(Order::gradient);
+    const std::size_t rows = 5 * n_ + 1 + sums + lagrangian.rows(Order::gradient);
     q_ = storage_.reserve(rows * batch);
     v_ = q_ + n_ * batch;
     t_ = v_ + n_ * batch;
-    p_ = t_ + batch;
+    inertial_ = t_ + batch;
+    p_ = inertial_ + n_ * batch;
     force_ = p_ + n_ * batch;
     for (double*& sum : sums_) sum = force_ + (n_ + (&sum - sums_)) * batch;
     out_ = sums_[sums - 1] + batch;
@@ -98,6 +99,7 @@ class Surveyor {
         energy[i] += 0.5 * v[i] * m.value * other[i];
       }
     }
+    std::copy(p_, force_, inertial_);
     for (const Triplet& c : s.gyroscopic)
       for (int i = 0; i < batch; ++i) {
         p_[c.row * batch + i] += c.value * q_[c.column * batch + i];
@@ -116,19 +118,22 @@ class Surveyor {
     }
   }
 
+  /// Of p the terms M q' of constant masses and the others count each by itself: in phase space they cancel.
   void measure() {
     const double* const energy = sums_[energies];
     std::fill(sums_[speeds], sums_[speeds] + 4 * batch, 0.0);
     for (std::size_t a = 0; a < n_; ++a) {
-      const double *v = v_ + a * batch, *p = p_ + a * batch, *force = force_ + a * batch;
+      const double *v = v_ + a * batch, *p = p_ + a * batch, *force = force_ + a * batch,
+                   *inertial = inertial_ + a * batch;
       ranges_q_[a].add(q_ + a * batch, count_);
       ranges_v_[a].add(v, count_);
       ranges_p_[a].add(p, count_);
       for (int i = 0; i < batch; ++i) {
         sums_[speeds][i] += std::abs(v[i]);
-        sums_[momenta][i] += std::abs(p[i]);
+        const double terms = std::abs(inertial[i]) + std::abs(p[i] - inertial[i]);
+        sums_[momenta][i] += terms;
         sums_[forces][i] += std::abs(force[i]);
-        sums_[products][i] += std::abs(p[i] * v[i]);
+        sums_[products][i] += terms * std::abs(v[i]);
       }
     }
     if (std::exchange(first_, false)) found_.energy = energy[0];
@@ -150,7 +155,7 @@ class Surveyor {
   const Lagrangian& lagrangian_;
   std::size_t n_;
   Scratch storage_, scratch_;
-  double *q_, *v_, *t_, *p_, *force_, *sums_[sums], *out_;
+  double *q_, *v_, *t_, *inertial_, *p_, *force_, *sums_[sums], *out_;
   bool end_[batch] = {};  ///< of the trajectory
   int count_ = 0;
   bool first_ = true;

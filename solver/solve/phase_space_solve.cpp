@@ -115,7 +115,7 @@ class PhaseSpaceSolve {
   /// The tolerance is one of the largest range of any coordinate; the range of q may be smaller, or that of
   /// p.
   Solution with_exact_momenta(Solution solution) {
-    const PhaseRanges ranges = phase_ranges(solution.trajectory);
+    const PhaseRanges ranges = phase_ranges(problem_, solution.trajectory);
     const double allowed = options_.tolerance * std::min(ranges.q, momentum_tolerances * ranges.p);
     const double most = std::max(ranges.q, ranges.p);
     if (!(allowed > 0) || solution.error_estimate <= allowed || problem_.initial) return solution;

@@ -358,5 +358,15 @@ TEST_F(PhaseSpaceScenes, RefusedWithTheirPlace) {
             std::string::npos);
 }
 
+/// The momenta are those nearest to the guess: none.
+TEST_F(PhaseSpaceScenes, MomentaThatVanish) {
+  const Solution solution =
+      run(study("[system]\ncoordinates = [\"x\", \"y\"]\nhamiltonian = \"p_x*y - p_y*x\"\n[boundary]\n"
+                "start = { x = 1, y = 0 }\nend = { x = 0, y = -1 }\nduration = \"pi/2\"\n"));
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  EXPECT_NEAR(solution.action, 0, 1e-12);
+  EXPECT_NEAR(solution.momentum_start[0], 0, 1e-9);
+}
+
 }  // namespace
 }  // namespace extremal::test
