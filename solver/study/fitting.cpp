@@ -117,6 +117,18 @@ std::vector<std::string> names_of(const std::vector<FitUnknown>& unknowns) {
   return names;
 }
 
+/// Nothing where the scene has no guess, or needs it.
+std::shared_ptr<const FitRequest> without_guess(const FitRequest& request) {
+  if (!request.from_data) return nullptr;
+  try {
+    return request.from_data();
+  } catch (const SceneError&) {
+  } catch (const FormulaError&) {
+  } catch (const std::invalid_argument&) {
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Guess observed_path(const FitTable& table, const std::string& scene, const System& system,
@@ -128,7 +140,7 @@ Guess observed_path(const FitTable& table, const std::string& scene, const Syste
   return std::ranges::all_of(observed, std::identity{}) ? guess_of(data, problem) : Guess{};
 }
 
-std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load) {
+std::shared_ptr<FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load) {
   const FitTable& table = *scene.fit;
   if (!can_fit())
     throw SceneError(table.at, "fits are not part of this build; build with -DEXTREMAL_CERES=ON");
@@ -194,9 +206,11 @@ FitResult run_fit(const Study& study, int repeat, const std::function<void(const
   if (repeat < 1) throw std::invalid_argument(fmt::format("repeat = {}; need at least 1", repeat));
   if (!study.fit) throw std::invalid_argument(study.scene + ": the table [fit] is missing");
   Solver solver;
-  FitTask task = study.fit->task;
-  task.solve = [&solver](const Problem& problem, const SolveOptions& options) {
-    return solver.solve(problem, options);
+  const auto fit_to = [&](FitTask task, const SolveOptions& options) {
+    task.solve = [&solver](const Problem& problem, const SolveOptions& how) {
+      return solver.solve(problem, how);
+    };
+    return fit(task, options, progress);
   };
   FitResult result;
   SolveOptions options = study.options;
@@ -204,7 +218,15 @@ FitResult run_fit(const Study& study, int repeat, const std::function<void(const
   for (int k = 0; k < repeat && !(k > 0 && options.deadline.passed()); ++k) {
     options.deadline = deadline_of(study);
     const auto begin = std::chrono::steady_clock::now();
-    result = fit(task, options, progress);
+    result = fit_to(study.fit->task, options);
+    if (!result.solution.converged() && !options.deadline.passed())
+      if (const auto request = without_guess(*study.fit)) {
+        FitResult other = fit_to(request->task, options);
+        if (other.solution.converged()) {
+          other.solution.message += "; from the observations, since the fit from the guess failed";
+          result = std::move(other);
+        }
+      }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     solving.push_back(seconds - result.solution.seconds_analyse);
     analysing.push_back(result.solution.seconds_analyse);

@@ -23,6 +23,8 @@ using ProblemOf = std::function<Problem(const Scene& scene, const Guess& guess, 
 struct FitRequest {
   FitTask task;                                    ///< but for the solver
   std::vector<std::string> parameters, open_ends;  ///< names of the unknowns, in their order
+  /// The same without the guess of the scene, if that has one: from the observations. Throws SceneError.
+  std::function<std::shared_ptr<const FitRequest>()> from_data = {};
 };
 
 /// The path that was observed; no guess unless all coordinates were. Throws SceneError.
@@ -31,9 +33,10 @@ Guess observed_path(const FitTable& table, const std::string& scene, const Syste
 
 /// Reads [fit] of a scene, of which the rest of the study stands; `load` makes problems of scenes like it.
 /// Throws SceneError.
-std::shared_ptr<const FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load);
+std::shared_ptr<FitRequest> read_fit(const Scene& scene, const Study& study, const ProblemOf& load);
 
-/// Fits `repeat` times from the same guess, as run() solves. Throws std::invalid_argument if repeat < 1, or
+/// Fits `repeat` times from the same guess, as run() solves; where a fit from the guess of the scene fails,
+/// from the observations. Throws std::invalid_argument if repeat < 1, or
 /// without a [fit].
 FitResult run_fit(const Study& study, int repeat = 1,
                   const std::function<void(const FitStep&)>& progress = {});

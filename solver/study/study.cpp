@@ -333,8 +333,8 @@ Study make_study(const Scene& scene, Purpose purpose) {
     if (scene.solve.elements) check_samples(study, scene.solve.elements->at);
     study.spectrum = read_spectrum(*scene.spectrum, scene.path, coordinate_names(study.problem));
   }
-  if (scene.fit)
-    study.fit = read_fit(scene, study, [](const Scene& other, const Guess& guess, double duration) {
+  if (scene.fit) {
+    const auto request = read_fit(scene, study, [](const Scene& other, const Guess& guess, double duration) {
       Study there;
       read_law(
           other,
@@ -345,6 +345,16 @@ Study make_study(const Scene& scene, Purpose purpose) {
           Purpose::solution, there);
       return std::move(there.problem);
     });
+    if (const GuessTable& guess = scene.guess; !guess.formulas.empty() || guess.file || guess.state)
+      request->from_data = [scene, purpose] {
+        Scene bare = scene;
+        bare.guess.formulas.clear();
+        bare.guess.file.reset();
+        bare.guess.state.reset();
+        return make_study(bare, purpose).fit;
+      };
+    study.fit = request;
+  }
   if (scene.continuation && purpose == Purpose::family)
     study.continuation = read_continued(scene, study.system, study.problem);
   return study;

@@ -664,3 +664,23 @@ TEST_F(Fits, TellWhereTheModelDoesNotExplainTheData) {
   ASSERT_TRUE(told.solution.converged()) << told.solution.message;
   EXPECT_NE(told.solution.message.find("per degree of freedom"), std::string::npos) << told.solution.message;
 }
+
+/// The guess leaves the data, and its end is on the other side of the ellipse.
+TEST_F(Fits, BeginFromTheDataWhereTheGuessLeadsToNone) {
+  const auto rows = samples(
+      "[system]\ncoordinates = [\"a\"]\n"
+      "lagrangian = \"(sin(a)^2 + 0.49*cos(a)^2)*a'^2/2 - 2.5*0.7*sin(a)\"\n"
+      "[boundary]\nstart = { a = -1, p_a = 0 }\nduration = 5\n",
+      61);
+  std::string text = "t,x,y\n";
+  for (const auto& row : rows)
+    text += fmt::format("{},{:.17g},{:.17g}\n", row[0], std::cos(row[1]), 0.7 * std::sin(row[1]));
+  write("data.csv", text);
+  const FitResult found = fitted(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { g = 2.4, b = 0.7 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 - g*y\"\nconstraints = [\"x^2 + y^2/b^2 = 1\"]\n[boundary]\n"
+      "duration = 5\n[guess]\nx = \"cos(-1 + 0.4*t)\"\ny = \"0.7*sin(-1 + 0.4*t)\"\n[fit]\n"
+      "data = \"data.csv\"\nparameters = [\"g\", \"b\"]\n");
+  EXPECT_NEAR(found.values[0], 2.5, 1e-6);
+  EXPECT_NEAR(found.values[1], 0.7, 1e-6);
+}
