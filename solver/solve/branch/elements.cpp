@@ -19,16 +19,12 @@ double excess(const Resolution::Error& error, const Scales& size, double toleran
   return std::max(error.q / size.q, 1 / slope_tolerances * error.v / size.v) / tolerance;
 }
 
-/// Forces beyond a kink, of the size of others, bend a path by (2π t/T)²/2 of its range: nearer to an end
-/// than t that is within the tolerance.
-double beside_end(double tolerance) { return std::sqrt(2 * tolerance) / (2 * std::numbers::pi); }
-
 }  // namespace
 
 /// Elements that meet the tolerance, and not many more than that takes.
 Tracker::Fit Tracker::fit_elements() {
   const ElementTables& tables = branch_.tables();
-  if (auto mesh = mesh_to_kinks(tables, path_, true, tolerance_, beside_end(tolerance_))) {
+  if (auto mesh = mesh_to_kinks(tables, path_, true, tolerance_)) {
     change_elements(path_.degree(), *mesh);
     return Fit::changed;
   }
@@ -67,12 +63,15 @@ Plan Tracker::plan_for(const Scales& size) {
 
 void Tracker::adopt(const Plan& plan) {
   if (plan.mesh.empty()) return change_elements(plan.degree, {path_.mesh().begin(), path_.mesh().end()});
-  const std::vector<double> times = kink_times(branch_.tables(), path_, true, beside_end(tolerance_));
+  const std::vector<double> times = kink_times(branch_.tables(), path_, true);
   change_elements(plan.degree, times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
 }
 
+/// Forces beyond a kink, of the size of others, bend a path by (2π t/T)²/2 of its range: nearer to T than t
+/// that is within the tolerance.
 std::optional<std::vector<double>> Tracker::mesh_beside_closing() const {
-  return mesh_to_kinks(branch_.tables(), path_, true, tolerance_, beside_end(tolerance_));
+  const double beside = std::sqrt(2 * tolerance_) / (2 * std::numbers::pi);
+  return mesh_to_kinks(branch_.tables(), path_, true, tolerance_, beside);
 }
 
 bool Tracker::move_to(const std::vector<double>& mesh, bool across) {
