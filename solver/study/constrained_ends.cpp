@@ -146,9 +146,13 @@ class ConstrainedEnds {
     const std::vector<double> projection = manifold_.projected_momentum(q, 0, p);
     std::vector<double> v(n_, 0);
     const std::vector<double> own = manifold_.momentum(q, 0, projection, v);
-    const double largest = vector(p).lpNorm<Eigen::Infinity>();
+    const double largest = vector(p).lpNorm<Eigen::Infinity>(), T = problem_.duration.value;
+    // At rest a constraint that hardly moves gives momenta that are roundoff.
+    const double crossing =
+        vector(q).lpNorm<Eigen::Infinity>() / (manifold_.metric().diagonal().minCoeff() * T);
+    const double missed = std::max(normal_momentum * largest, negligible_momentum * crossing);
     for (int a = 0; a < n_; ++a)
-      if (!(std::abs(own[a] - p[a]) <= normal_momentum * largest))
+      if (!(std::abs(own[a] - p[a]) <= missed))
         throw SceneError(place_of(scene_.boundary, false),
                          fmt::format("the momenta at the start are those of a velocity that leaves the "
                                      "constraints: p_{} is {:.9g}, and {:.9g} keeps them",

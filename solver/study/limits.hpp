@@ -70,6 +70,8 @@ inline constexpr double dependent_condition = 1e-7;
 inline constexpr double dependence = 1e-9;
 /// A part of the largest momentum that may be normal to the manifold: decimals that a scene gives.
 inline constexpr double normal_momentum = 1e-7;
+/// A part of the momentum that crosses the size of the ends in the duration.
+inline constexpr double negligible_momentum = 1e-12;
 /// Equal steps of a default guess.
 inline constexpr int guess_steps = 256;
 /// A guess that is moved onto the manifold jumps if one of its steps is this part of its length.
