@@ -86,6 +86,30 @@ double range_of(const Trajectory& trajectory) {
   return largest_range(trajectory.nodes, trajectory.coordinates);
 }
 
+/// Whether points and velocities are those of one motion on the manifold: the first and the middle node of
+/// each element satisfy the constraints, and velocities integrate to the change of q over it. `error`: of q.
+bool is_motion(const Manifold& manifold, const Trajectory& path, double error, double tolerance) {
+  const std::size_t n = path.coordinates, s = path.degree, each = (s + 1) * n;
+  const Rule rule = lobatto_rule(path.degree + 1);
+  double size = 0;
+  for (const double x : path.nodes) size = std::max(size, std::abs(x));
+  const double rounded = roundings * size;
+  const double speed_error = velocity_share * tolerance * largest_range(path.slopes, n);
+  for (int k = 0; k < path.elements(); ++k) {
+    const double h = path.length(k), *const q = &path.nodes[k * each], *const v = &path.slopes[k * each];
+    for (const std::size_t j : {std::size_t{0}, s / 2})
+      if (!(manifold.distance({q + j * n, n}, path.times[k] + rule.nodes[j] * h) <= error + rounded))
+        return false;
+    for (std::size_t a = 0; a < n; ++a) {
+      double swept = 0;
+      for (std::size_t j = 0; j <= s; ++j) swept += h * rule.weights[j] * v[j * n + a];
+      if (!(std::abs(q[s * n + a] - q[a] - swept) <= most_errors * (error + h * speed_error) + rounded))
+        return false;
+    }
+  }
+  return true;
+}
+
 /// The momentum of L at an end, whose part along u is given.
 void convert(const Manifold& manifold, const MinimalProblem& minimal, const Trajectory& trajectory, double t,
              std::vector<double>& momentum) {
@@ -131,7 +155,8 @@ std::optional<Solution> from_minimal(const Problem& problem, const MinimalProble
     if (between <= between_nodes * std::max(own, error) || degree == max_degree) break;
   }
   if (between > between_nodes * error) solution.error_estimate += between;
-  if (!(solution.error_estimate <= error) || !meets(problem.boundary, solution.trajectory))
+  if (!(solution.error_estimate <= error) || !meets(problem.boundary, solution.trajectory) ||
+      !is_motion(*problem.manifold, solution.trajectory, error, tolerance))
     return std::nullopt;
   convert(*problem.manifold, minimal, solution.trajectory, 0, solution.momentum_start);
   convert(*problem.manifold, minimal, solution.trajectory, solution.duration(), solution.momentum_end);

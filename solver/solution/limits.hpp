@@ -20,6 +20,9 @@ inline constexpr double between_nodes = 0.1;
 inline constexpr int raise = 4;
 /// Ends may miss their relation by this part of what stands in it: decimals that a scene gives.
 inline constexpr double relation_missed = 1e-7;
+/// Velocities meet so many tolerances relative to their range. What they integrate to differs from the change
+/// of q by no more than so many errors, and so many roundings of the largest coordinate.
+inline constexpr double velocity_share = 10, most_errors = 100, roundings = 1e-12;
 
 }  // namespace extremal::limits::minimal
 

@@ -279,13 +279,29 @@ Frame frame_of(const Manifold& manifold, const PathPoints& path, const std::vect
   return frame;
 }
 
+/// Marks the constraints that depend on t, if t multiplies coordinates in any of them; else none. What
+/// rotations leave unchanged at the times of a path may change at others.
+std::vector<char> moving_constraints(const Manifold& manifold) {
+  const int n = manifold.coordinates();
+  const std::vector<HessianEntry>& entries = manifold.parts().forms->structure().hessian;
+  std::vector<char> timed(manifold.constraints());
+  bool mixed = false;
+  for (const HessianEntry& e : entries) {
+    const auto [low, high] = std::minmax(e.row, e.column);
+    mixed |= low < n && high == n;
+    if (low == n && high > n) timed[high - n - 1] = 1;
+  }
+  if (!mixed) std::ranges::fill(timed, 0);
+  return timed;
+}
+
 }  // namespace
 
 std::vector<int> invariant_constraints(const Manifold& manifold, const PathPoints& path,
                                        const MatrixXd& basis, const Polar& pair) {
   const MatrixXd inverse = basis.inverse();
   const Index m = manifold.constraints();
-  std::vector<char> changed(m);
+  std::vector<char> changed = moving_constraints(manifold);
   std::mt19937_64 random(20240229);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < tries; ++i) {

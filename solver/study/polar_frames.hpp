@@ -34,7 +34,8 @@ struct PathPoints {
 /// plane that the path is nearest to.
 std::vector<Frame> polar_frames(const Manifold& manifold, const PathPoints& path);
 
-/// The constraints that rotations of a pair of z = B⁻¹ q about its centre leave as they are, near a path.
+/// The constraints that rotations of a pair of z = B⁻¹ q about its centre leave as they are, near a path and
+/// at all times.
 std::vector<int> invariant_constraints(const Manifold& manifold, const PathPoints& path,
                                        const Eigen::MatrixXd& basis, const Polar& pair);
 

@@ -8,6 +8,8 @@
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
 #include "scenes.hpp"
+#include "solution/from_minimal.hpp"
+#include "solve/solve.hpp"
 #include "study/continued.hpp"
 #include "study/minimal_family.hpp"
 #include "system/minimal_lagrangian.hpp"
@@ -135,6 +137,79 @@ TEST_F(Scenes, ACircleWhoseCentreMoves) {
               run(study("[system]\ncoordinates = [\"a\"]\nlagrangian = \"((0.2*cos(t) + cos(a)*a')^2 + "
                         "(sin(a)*a')^2)/2 + cos(a)\"\n[boundary]\nstart = { a = -2 }\nend = { a = 2 }\n" +
                         ends + "a = \"-2 + 4*t/T\"\n")));
+}
+
+/// A rod whose pivot moves in time as (0.3 sin 2t, 0.1 cos 3t − 0.1), from initial data.
+const std::string moving_pivot =
+    "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - 3*y\"\n"
+    "constraints = [\"(x - 0.3*sin(2*t))^2 + (y - 0.1*cos(3*t) + 0.1)^2 = 1\"]\n[boundary]\n"
+    "start = { x = 0.6, y = -0.8, p_x = 0.6, p_y = 0 }\nduration = 5\n";
+
+TEST_F(Scenes, AMotionAboutAPivotThatMoves) {
+  const Study s = study(moving_pivot);
+  ASSERT_EQ(chart(s).polar.size(), 1u);
+  EXPECT_TRUE(chart(s).polar[0].invariants.empty());
+  const Solution found = run(s);
+  const Solution angle = run(study(
+      "[system]\ncoordinates = [\"a\"]\nlagrangian = \"((0.6*cos(2*t) + cos(a)*a')^2 + (sin(a)*a' - "
+      "0.3*sin(3*t))^2)/2 + 3*cos(a) - 0.3*cos(3*t)\"\n[boundary]\nstart = { a = \"asin(0.6)\", p_a = 0.48 "
+      "}\nduration = 5\n"));
+  ASSERT_TRUE(found.converged() && angle.converged()) << found.message << angle.message;
+  std::vector<double> q(2), v(2), a(1), turn(1);
+  for (const double t : {0.0, 0.4, 1.7, 3.1, 5.0}) {
+    found.trajectory.at(t, q, v);
+    angle.trajectory.at(t, a, turn);
+    EXPECT_NEAR(q[0], 0.3 * std::sin(2 * t) + std::sin(a[0]), 1e-8);
+    EXPECT_NEAR(q[1], 0.1 * std::cos(3 * t) - 0.1 - std::cos(a[0]), 1e-8);
+    EXPECT_NEAR(v[0], 0.6 * std::cos(2 * t) + std::cos(a[0]) * turn[0], 1e-7);
+    EXPECT_NEAR(v[1], -0.3 * std::sin(3 * t) + std::sin(a[0]) * turn[0], 1e-7);
+  }
+}
+
+/// The radius of a circle that grows about a fixed centre does not depend on the angle.
+TEST_F(Scenes, ACircleThatGrowsIsInvariantUnderRotations) {
+  const Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - y\"\n"
+      "constraints = [\"x^2 + y^2 = (1 + 0.2*sin(t))^2\"]\n[boundary]\n"
+      "start = { x = 0.6, y = -0.8, p_x = 0.12, p_y = -0.16 }\nduration = 4\n");
+  ASSERT_EQ(chart(s).polar.size(), 1u);
+  EXPECT_EQ(chart(s).polar[0].invariants, std::vector<int>{0});
+  const Solution found = run(s);
+  const Solution angle =
+      run(study("[system]\ncoordinates = [\"a\"]\nlagrangian = \"(1 + 0.2*sin(t))^2*a'^2/2 + (1 + "
+                "0.2*sin(t))*cos(a)\"\n[boundary]\nstart = { a = \"asin(0.6)\", p_a = 0 }\nduration = 4\n"));
+  ASSERT_TRUE(found.converged() && angle.converged()) << found.message << angle.message;
+  std::vector<double> q(2), v(2), a(1), turn(1);
+  found.trajectory.at(4, q, v);
+  angle.trajectory.at(4, a, turn);
+  EXPECT_NEAR(q[0], (1 + 0.2 * std::sin(4)) * std::sin(a[0]), 1e-8);
+}
+
+/// Minimal coordinates of a pivot that rests are those of no motion about one that moves.
+TEST_F(Scenes, APathInMinimalCoordinatesThatLeavesTheManifoldIsNoSolution) {
+  const std::string resting =
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - 3*y\"\n"
+      "constraints = [\"x^2 + y^2 = 1\"]\n[boundary]\n"
+      "start = { x = 0.6, y = -0.8, p_x = 0.8, p_y = 0.6 }\nduration = 5\n";
+  const Study s = study(resting), moving = study(moving_pivot);
+  ASSERT_TRUE(minimal(s));
+  const Solution found = Solver().solve(minimal(s)->problem, s.options);
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_TRUE(from_minimal(s.problem, *minimal(s), found, 1e-7));
+  EXPECT_FALSE(from_minimal(moving.problem, *minimal(s), found, 1e-7));
+}
+
+/// The pivot rests at first to the last digit.
+TEST_F(Scenes, MomentaThatAConstraintMissesByRoundoffAreThoseOfRest) {
+  const auto from = [&](const std::string& momentum) {
+    return message(
+        "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - y\"\n"
+        "constraints = [\"(x - 0.5*exp(-((t - 3)/0.3)^2))^2 + y^2 = 1\"]\n[boundary]\n"
+        "start = { x = 0.6, y = -0.8, p_x = " +
+        momentum + ", p_y = 0 }\nduration = 5\n");
+  };
+  EXPECT_EQ(from("0"), "");
+  EXPECT_NE(from("1e-6"), "");
 }
 
 TEST_F(Scenes, AnEllipseIsPassedByItsEccentricAnomaly) {
