@@ -104,7 +104,7 @@ std::ptrdiff_t unended(const FollowedBranch& followed) {
 std::optional<FollowedBranch> follow_in_minimal_coordinates(const Study& study, const SolveOptions& options) {
   if (!study.problem.manifold || options.scheme || options.method != Method::newton) return std::nullopt;
   const std::shared_ptr<const MinimalProblem> first = study.problem.manifold->parts().minimal;
-  if (!first || first->lagrangian->chart().polar.empty()) return std::nullopt;
+  if (!first) return std::nullopt;
   const MinimalFamily minimal(study, first);
   SolveOptions own = options;
   own.deadline = options.deadline.share(limits::polar::share_of_family);
@@ -121,6 +121,12 @@ std::optional<FollowedBranch> follow_in_minimal_coordinates(const Study& study, 
     followed.points.push_back(std::move(point));
   }
   followed.branches = diagram.branches();
+  // Where a chart without angles ends may look like a point of rest.
+  const auto doubtful = [](const BranchRecord& branch) {
+    return branch.end == BranchEnd::rest || branch.end == BranchEnd::infinite_period;
+  };
+  if (first->lagrangian->chart().polar.empty() && std::ranges::any_of(followed.branches, doubtful))
+    return std::nullopt;
   return followed;
 }
 

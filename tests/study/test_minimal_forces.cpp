@@ -274,6 +274,65 @@ TEST_F(Scenes, FamiliesOfLimitCyclesInAChart) {
   }
 }
 
+/// Of a rod whose pivot is driven: in all coordinates, in a chart, and by the angle.
+TEST_F(Scenes, FamiliesOfADrivenPivotHaveTheMultipliersOfTheAngle) {
+  const std::string rest =
+      "[boundary]\nperiodic = true\nduration = \"2*pi/w\"\n[continuation]\nparameter = \"w\"\nto = 0.9\n"
+      "[guess]\n";
+  const Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { w = 0.6 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 - y\"\nconstraints = [\"(x - 0.06*sin(w*t))^2 + y^2 = 1\"]\n"
+      "force = { x = \"-0.08*(x' - 0.06*w*cos(w*t))\", y = \"-0.08*y'\" }\n" +
+      rest + "x = \"0.1*sin(w*t)\"\ny = -0.995\n");
+  const FollowedBranch angle = follow(
+      study("[system]\ncoordinates = [\"a\"]\nparameters = { w = 0.6 }\n"
+            "lagrangian = \"a'^2/2 + 0.06*w*cos(w*t)*cos(a)*a' + cos(a)\"\nforce = { a = \"-0.08*a'\" }\n" +
+            rest + "a = \"0.04*sin(w*t)\"\n"));
+  ASSERT_EQ(angle.branches.front().end, BranchEnd::target);
+  const Solution& expected = angle.points.back().solution;
+  std::vector<double> q(2), v(2), a(1), turn(1);
+  expected.trajectory.at(0, a, turn);
+  const auto compare = [&](double parameter, const Solution& last) {
+    EXPECT_NEAR(parameter, 0.9, 1e-12);
+    ASSERT_TRUE(last.floquet);
+    ASSERT_EQ(last.floquet->multipliers.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_NEAR(std::abs(last.floquet->multipliers[k] - expected.floquet->multipliers[k]), 0, 1e-7);
+    last.trajectory.at(0, q, v);
+    EXPECT_NEAR(q[0], std::sin(a[0]), 1e-8);
+    EXPECT_NEAR(v[0], 0.06 * 0.9 + std::cos(a[0]) * turn[0], 1e-7);
+    EXPECT_NEAR(last.momentum_start[0], v[0], 1e-7);
+  };
+  const std::optional<FollowedBranch> in_chart = follow_in_minimal_coordinates(s, s.options);
+  ASSERT_TRUE(in_chart);
+  compare(in_chart->points.back().parameter, in_chart->points.back().solution);
+  Diagram whole(s.continuation->family, {s.options, s.continuation->points, false});
+  BranchPoint last;
+  while (whole.advance()) {
+    last = whole.point();
+    ASSERT_EQ(last.solution.floquet->multipliers.size(), 2u);
+  }
+  compare(last.parameter, last.solution);
+}
+
+/// The momenta of a bead that rests in a turning hoop vanish along the hoop.
+TEST_F(Scenes, ABeadThatRestsInATurningHoop) {
+  const Solution found =
+      run(study("[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - z\"\n"
+                "constraints = [\"x^2 + y^2 + z^2 = 1\", \"x*sin(1.5*t) - y*cos(1.5*t) = 0\"]\n[boundary]\n"
+                "periodic = true\nduration = \"2*pi/1.5\"\n[guess]\nx = \"0.9*cos(1.5*t)\"\n"
+                "y = \"0.9*sin(1.5*t)\"\nz = -0.44\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  std::vector<double> q(3), v(3);
+  found.trajectory.at(1, q, v);
+  EXPECT_NEAR(q[2], -1 / 2.25, 1e-9);
+  // Beside rest the bead swings with Ω² = ω² − 1/ω².
+  ASSERT_TRUE(found.floquet);
+  ASSERT_EQ(found.floquet->multipliers.size(), 2u);
+  EXPECT_NEAR(found.floquet->multipliers[0].real(), std::cos(std::sqrt(2.25 - 1 / 2.25) * found.duration()),
+              1e-8);
+}
+
 TEST_F(Scenes, TurnsOfADrivenRotorInAChart) {
   const Study s =
       study(pendulum_in_plane("x = \"-y*(1.6 - k*(x*y' - y*x'))\", y = \"x*(1.6 - k*(x*y' - y*x'))\"",

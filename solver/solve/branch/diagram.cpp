@@ -121,13 +121,12 @@ bool Diagram::to_next_point() {
 
 /// What was found for two copies, in phase space or with constraints. A path off these is no solution.
 void Diagram::state_in_coordinates_of_scene() {
-  if (with_forces_)
-    if (const std::optional<Problem> one = with_forces_->at(point_.parameter))
-      point_.solution = one_copy(*one, std::move(point_.solution), nullptr);
-  if (!family_.problem.phase && !family_.problem.manifold) return;
-  const bool other = family_.varied == Varied::parameter;
-  const std::optional<Problem> there = other ? family_.at(point_.parameter) : std::nullopt;
-  const Problem& problem = there ? *there : family_.problem;
+  const ProblemFamily& own = with_forces_ ? *with_forces_ : family_;
+  const bool other = own.varied == Varied::parameter;
+  const bool needed = with_forces_ || own.problem.phase || own.problem.manifold;
+  const std::optional<Problem> there = needed && other ? own.at(point_.parameter) : std::nullopt;
+  const Problem& problem = there ? *there : own.problem;
+  if (with_forces_) point_.solution = one_copy(problem, std::move(point_.solution), nullptr);
   if (problem.phase) observe_in_phase_space(problem, point_.solution);
   if (problem.manifold) move_onto_manifold(problem, point_.solution);
 }
