@@ -47,11 +47,12 @@ void DiscreteAction::reset(const Lagrangian& lagrangian, const ElementTables& ta
   sums_.resize(batches_ * sizes_.sums);
   nodes.gradient.resize(static_cast<std::size_t>(elements + 1) * n_);
   nodes.border.resize(border ? nodes.gradient.size() : 0);
-  if (condensed == Condense::to_nodes) {
-    nodes.chain.resize(std::max(elements - 1, 0), n_);
-    for (auto* block : {&nodes.first, &nodes.last, &nodes.first_lower, &nodes.last_lower})
-      block->resize(static_cast<std::size_t>(n_) * n_);
-  }
+  const bool to_nodes = condensed == Condense::to_nodes;
+  if (to_nodes) nodes.chain.resize(std::max(elements - 1, 0), n_);
+  for (auto* block : {&nodes.first, &nodes.last, &nodes.first_lower, &nodes.last_lower})
+    block->resize(to_nodes ? static_cast<std::size_t>(n_) * n_ : 0);
+  nodes.negative = 0;
+  nodes.pivot_ratio = 1;
   raw_nodes_.resize(nodes.gradient.size());
   start_gradient_.resize(n_);
   end_gradient_.resize(n_);

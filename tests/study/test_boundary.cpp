@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "scenes.hpp"
 
@@ -31,6 +32,30 @@ TEST_F(Scenes, EndsAreNumbersFormulasListsAndElements) {
   EXPECT_EQ(s.problem.ends.free, 3);
   EXPECT_DOUBLE_EQ(s.problem.duration.value, 1.5707963267948966);
   EXPECT_FALSE(s.problem.guess.given());
+}
+
+/// Elements with more unknowns than a dense matrix takes. By modes of a chain with a natural end the index is
+/// Σ ⌊Tω_k/π + 1/2⌋, and the momentum at the start ω tan(ωT) times the coordinates, where these are one mode.
+TEST_F(Scenes, NaturalEndsOfManyCoordinates) {
+  const int n = 200;
+  const double T = 2.1;
+  const Study s = study(
+      "[system]\ncoordinates = [\"x[n]\"]\nparameters = { n = 200, a = 0.5, k = 0.3 }\n"
+      "lagrangian = \"sum(i,1,n,x[i]'^2/2 - a*x[i]^2/2) - k/2*x[1]^2 - k/2*x[n]^2 - "
+      "sum(i,1,n-1,k*(x[i+1]-x[i])^2/2)\"\n[boundary]\nstart = { x = \"0.1*sin(3*pi*i/(n+1))\" }\n"
+      "duration = 2.1\n");
+  const Solution solution = run(s);
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  const auto rate = [&](int k) {
+    const double half = std::sin(k * std::numbers::pi / (2 * (n + 1)));
+    return std::sqrt(0.5 + 4 * 0.3 * half * half);
+  };
+  int index = 0;
+  for (int k = 1; k <= n; ++k) index += static_cast<int>(std::floor(T * rate(k) / std::numbers::pi + 0.5));
+  EXPECT_EQ(solution.morse_index, index);
+  for (const int i : {1, 50, 200})
+    EXPECT_NEAR(solution.momentum_start[i - 1],
+                0.1 * rate(3) * std::tan(rate(3) * T) * std::sin(3 * std::numbers::pi * i / (n + 1)), 1e-9);
 }
 
 TEST_F(Scenes, EndsThatAreWrong) {

@@ -67,6 +67,12 @@ class CondensedModel final : public SecondVariationModel {
 
 }  // namespace
 
+void QuadraticModel::add_at_ends(DiscreteAction& action, std::span<const double> parts) {
+  std::vector<double>& to = action.nodes.end_parts;
+  to.resize(parts.size());
+  for (std::size_t e = 0; e < parts.size(); ++e) to[e] += parts[e];
+}
+
 std::unique_ptr<SecondVariationModel> make_condensed_model() { return std::make_unique<CondensedModel>(); }
 
 }  // namespace extremal

@@ -87,8 +87,7 @@ void Equations::spread(std::vector<double>& to, int first, int last, const doubl
 
 void Equations::clear_gradient() { std::fill(gradient_.begin(), gradient_.end(), 0.0); }
 
-void Equations::add_end_parts(const DiscreteAction& action) {
-  const std::vector<double>& parts = action.nodes.end_parts;
+void Equations::add_at_ends(std::span<const double> parts) {
   for (std::size_t e = 0; e < parts.size(); ++e)
     for (int s = end_start_[e]; s < end_start_[e + 1]; ++s)
       gradient_[end_shares_[s].unknown] += end_shares_[s].factor * parts[e];
@@ -122,7 +121,7 @@ void Equations::evaluate(DiscreteAction& action, const Path& path, std::span<dou
     spread(by_duration_, first, last, values.border);
     for (int k = first; k < last; ++k) corner_ += values.corner[k - first];
   });
-  add_end_parts(action);
+  add_at_ends(action.nodes.end_parts);
   slope_ = action.slope_duration();
 }
 

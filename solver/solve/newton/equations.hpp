@@ -57,8 +57,8 @@ class Equations {
   /// In place of the gradient that was evaluated last, another: add_gradient() for each batch of elements,
   /// over their local unknowns in lanes.
   void clear_gradient();
-  /// What momenta and costs that the ends are given make of the gradient that `action` evaluated last.
-  void add_end_parts(const DiscreteAction& action);
+  /// Derivatives by q(0) and q(T) (2n, or empty), as those that momenta and costs of the ends make.
+  void add_at_ends(std::span<const double> parts);
   void add_gradient(int batch, const double* gradient);
   /// Or a load on the nodes, (N + 1) × n, that on the ends left out.
   void load(std::span<const double> nodes);

@@ -192,7 +192,7 @@ bool NewtonIteration::factor(const Path& path) {
   bool done = factor_quickly(path);
   if (action_.finite() && (lost_digits() || (!done && extended_ && doubling_)) && extend())
     done = factor_quickly(path);
-  if (done && action_.nodes.pivot_ratio > breakdown) return true;
+  if (done && (pivoted() || action_.nodes.pivot_ratio > breakdown)) return true;
   const bool condensed = model_ == condensed_.get();
   if (!action_.finite() || !(condensed || approximate())) return false;
   if (condensed && path.elements() * std::pow(tables_->unknowns(), 3) > most_pivoted_work) return false;

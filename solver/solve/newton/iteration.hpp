@@ -140,6 +140,8 @@ class NewtonIteration {
   void use_low(const ElementTables& low, int elements);
   void use_sparse(int elements);
   void use_dense();
+  /// Whether all unknowns are factored at once, with pivoting.
+  bool pivoted() const { return sparse_ && model_ == &*sparse_; }
   bool dense() const { return model_ == condensed_.get() || in_twice_the_precision(); }
   bool moves_nodes() const { return nodes_move_ || in_twice_the_precision(); }
   bool doubles_digits() const;

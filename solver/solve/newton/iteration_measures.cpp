@@ -134,10 +134,12 @@ double NewtonIteration::steepness(const Path& path) const {
   return most / path.duration();
 }
 
-/// Sum of the terms of an equation of an end, as the second variation has them. Where the mass vanishes at an
-/// end, as at a radius of zero, it is far below the largest momentum.
+/// Sum of the terms of an equation of an end, as the second variation has them, at most the largest momentum.
+/// Where the mass vanishes at an end, as at a radius of zero, it is far below. Of a sparse matrix, which is
+/// not condensed, the bound alone is known.
 double NewtonIteration::terms_at_end(const Path& path, std::size_t e) const {
   const NodeEquations& nodes = action_.nodes;
+  if (nodes.first.empty()) return action_.momentum_scale();
   const std::size_t n = path.coordinates();
   const bool start = e < n;
   const std::size_t a = start ? e : e - n, elements = path.elements();
@@ -149,7 +151,7 @@ double NewtonIteration::terms_at_end(const Path& path, std::size_t e) const {
   for (std::size_t b = 0; b < n; ++b)
     sum += std::abs(block[a * n + b] * at[b]) +
            std::abs((start ? beside[b * n + a] : beside[a * n + b]) * next[b]);
-  return sum;
+  return std::min(sum, action_.momentum_scale());
 }
 
 /// Moves the equation that closes the duration, and the momenta at free ends, by half a digit of their terms;
@@ -162,13 +164,13 @@ bool NewtonIteration::round_equations(const Path& path) {
       terms += std::abs(closing_.row[e] * (e < n ? path.node(0)[e] : path.node(path.elements())[e - n]));
     closing_.value += half_a_digit * terms;
   }
-  const double digit = extended_ ? half_an_extended_digit : half_a_digit, most = action_.momentum_scale();
-  std::vector<double>& parts = action_.nodes.end_parts;
-  parts.resize(2 * n);
+  const double digit = extended_ ? half_an_extended_digit : half_a_digit;
+  std::vector<double> parts(2 * n, 0);
   for (const Triplet& z : problem_->ends.z) {
     const std::size_t at = z.row < path.coordinates() ? z.row : step_.nodes.size() - 2 * n + z.row;
-    parts[z.row] -= std::copysign(digit * std::min(most, terms_at_end(path, z.row)), step_.nodes[at]);
+    parts[z.row] -= std::copysign(digit * terms_at_end(path, z.row), step_.nodes[at]);
   }
+  model_->add_at_ends(action_, parts);
   return problem_->duration.free || problem_->ends.free > 0;
 }
 

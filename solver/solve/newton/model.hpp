@@ -46,6 +46,8 @@ class QuadraticModel {
   virtual void evaluate_gradient(DiscreteAction& action, const Path& path) = 0;
   /// The step from the gradient that was evaluated last.
   virtual void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) = 0;
+  /// Adds to the gradient by q(0) and q(T) (2n) that was evaluated last.
+  virtual void add_at_ends(DiscreteAction& action, std::span<const double> parts);
   /// Directions that evaluate() and solve() hold from now until reset(); null for none.
   void set_phases(const PhaseConditions* phases) { phases_ = phases; }
   /// From now until reset() steps have nothing along directions whose eigenvalue is so small, relative, or

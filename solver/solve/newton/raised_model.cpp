@@ -68,7 +68,7 @@ void RaisedModel::evaluate_gradient(DiscreteAction& action, const Path& path) {
   low_.equations().clear_gradient();
   action.visit(path, false,
                [&](int batch, const BatchValues& values) { restrict_batch(path, batch, values.gradient); });
-  low_.equations().add_end_parts(action);
+  low_.equations().add_at_ends(action.nodes.end_parts);
   low_.equations().set_slope_duration(action.slope_duration());
 }
 

@@ -25,6 +25,9 @@ class RaisedModel final : public QuadraticModel {
   bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;
   void evaluate_gradient(DiscreteAction& action, const Path& path) override;
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
+  void add_at_ends(DiscreteAction&, std::span<const double> parts) override {
+    low_.equations().add_at_ends(parts);
+  }
   /// Of the model; the second variation itself may differ.
   Inertia inertia(double threshold, VariedBy by) override;
 

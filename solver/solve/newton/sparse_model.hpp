@@ -16,6 +16,7 @@ class SparseModel final : public SecondVariationModel {
   bool evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) override;
   void evaluate_gradient(DiscreteAction& action, const Path& path) override;
   void solve(const DiscreteAction& action, const ClosingEquation* closing, Step& step) override;
+  void add_at_ends(DiscreteAction&, std::span<const double> parts) override { equations_.add_at_ends(parts); }
   void respond(DiscreteAction& action, const ClosingEquation* closing, std::span<const double> load,
                Step& step) override;
   void put_load(DiscreteAction& action, const Path& path, const AlignedDoubles& load,
