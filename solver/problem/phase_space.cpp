@@ -14,6 +14,12 @@ namespace {
 
 using Eigen::MatrixXd;
 
+/// Of the largest value: a smaller range is the roundoff of what is constant.
+constexpr double roundoff_of_constant = 1e-10;
+/// √(wv) by the duration. An eigenvalue −1/w of the second variation A, as H_pp = 1 makes it where w = 1, is
+/// one of 0 of A + A W A: durations, masses and frequencies that are simple numbers must not make it.
+constexpr double weight_by_duration = 0.7548776662466927;
+
 /// What coordinates and momenta extend over.
 struct Extents {
   double q = 0, p = 0;
@@ -32,7 +38,7 @@ Extents extents_of_guess(const Guess& guess, std::size_t n) {
       range = std::max(range, high[a] - low[a]);
       size = std::max({size, std::abs(low[a]), std::abs(high[a])});
     }
-    return range > 0 ? range : size;
+    return range > roundoff_of_constant * size ? range : size;
   };
   return {extent(0), extent(n)};
 }
@@ -58,7 +64,7 @@ Extents extents_of_start(const Lagrangian& hamiltonian, const std::vector<double
   return {q_size, p_size};
 }
 
-/// √(wv) is the duration; w/v makes the squares alike.
+/// √(wv) is about the duration; w/v makes the squares alike.
 PhaseWeights weights_of(const Problem& problem, const Lagrangian& hamiltonian) {
   Extents extents = problem.initial ? extents_of_start(hamiltonian, problem.initial->q)
                                     : extents_of_guess(problem.guess, problem.coordinates() / 2);
@@ -66,7 +72,8 @@ PhaseWeights weights_of(const Problem& problem, const Lagrangian& hamiltonian) {
   if (!(extents.p > 0)) extents.p = extents.q;
   // A power of two: what is equal for q and p stays so to the last digit.
   const double ratio = std::exp2(std::round(std::log2(extents.p / extents.q)));
-  return {.velocity = problem.duration.value * ratio, .force = problem.duration.value / ratio};
+  const double scale = weight_by_duration * problem.duration.value;
+  return {.velocity = scale * ratio, .force = scale / ratio};
 }
 
 /// Closed paths have the symmetric form, but for those that are shifted.

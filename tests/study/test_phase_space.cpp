@@ -343,6 +343,43 @@ TEST_F(PhaseSpaceScenes, RestsAreNoOrbits) {
   EXPECT_NEAR(4 * std::comp_ellint_1(std::sqrt(1 - energy * energy)), 7, 1e-7);
 }
 
+/// x is cyclic in p_x: v'' = −p_x. Momenta of the guess are constant, those of the path are not; H_pp = 1 and
+/// durations that are powers of two are no resonance.
+TEST_F(PhaseSpaceScenes, LinearEquationsTakeOneStep) {
+  const std::string system = "[system]\ncoordinates = [\"x\", \"v\"]\nhamiltonian = \"p_v^2/2 + p_x*v\"\n";
+  for (const double T : {0.5, 1.0, 1.2, 1.5, 2.0, 3.0, 4.0, 5.0})
+    for (const double p : {0.0, 0.3}) {
+      const std::string given = p == 0 ? "" : ", p_x = 0.3";
+      const Study s =
+          study(system + fmt::format("[boundary]\nstart = {{ x = 0, v = 0.2 }}\nend = {{ v = 0.5{} "
+                                     "}}\nduration = {}\n",
+                                     given, T));
+      const Solution solution = run(s);
+      ASSERT_TRUE(solution.converged()) << T << ": " << solution.message;
+      EXPECT_EQ(solution.strategy, "newton from the guess") << T;
+      EXPECT_LE(solution.iterations, 6) << T;
+      const double slope = 0.3 / T + p * T / 2;  // v = 0.2 + slope·t − p t²/2
+      for (const double part : {0.3, 0.7, 1.0}) {
+        const double t = part * T;
+        const Point point = at(s, solution, t);
+        EXPECT_NEAR(point.q[0], 0.2 * t + slope * t * t / 2 - p * t * t * t / 6, 1e-9) << T;
+        EXPECT_NEAR(point.q[1], 0.2 + slope * t - p * t * t / 2, 1e-9) << T;
+        EXPECT_NEAR(point.p[1], slope - p * t, 1e-8) << T;
+      }
+    }
+}
+
+/// x' = p_x, y' = sin x: the start by shooting.
+TEST_F(PhaseSpaceScenes, SingularInOneMomentum) {
+  const Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nhamiltonian = \"p_x^2/2 + p_y*sin(x) - cos(y)\"\n"
+      "[boundary]\nstart = { x = 0.2, y = 0 }\nend = { x = 0.5, p_y = 0.3 }\nduration = 1.5\n");
+  const Solution solution = run(s);
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  EXPECT_NEAR(solution.momentum_start[0], 0.65657582, 1e-8);
+  EXPECT_NEAR(solution.momentum_start[1], 0.72564189, 1e-8);
+}
+
 TEST_F(PhaseSpaceScenes, RefusedWithTheirPlace) {
   const std::string ends = "[boundary]\nstart = { x = 0.1 }\nend = { p_x = 2 }\nduration = 5\n";
   const auto refused = [&](const std::string& rest, const std::string& part) {
