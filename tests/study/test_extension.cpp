@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -135,6 +136,25 @@ TEST_F(Scenes, TheIndexCountsTheTimeOfAWaypoint) {
   EXPECT_EQ(s.morse_index, 1);
   EXPECT_EQ(s.nullity, 0);
   EXPECT_FALSE(s.minimizing);
+}
+
+/// Two oscillators through a point at a free time: S(t) is a sum of four actions between points, and S' has
+/// nine zeros, two of which are 0.17 apart.
+TEST_F(Scenes, AllTimesOfAWaypoint) {
+  const Study asked =
+      study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 - x^2/2 - 1.3^2*y^2/2") +
+            "[boundary]\nstart = { x = 1, y = 0 }\nend = { x = -0.3, y = 0.7 }\nduration = 7\n"
+            "[[waypoints]]\nat = \"free\"\nx = 0.8\ny = 0.5\n[search]\nsolutions = 9\n");
+  std::vector<double> times;
+  for (const Solution& s : run_all(asked)) {
+    ASSERT_TRUE(s.converged()) << s.message;
+    times.push_back(s.extension->waypoints.at(0).time);
+  }
+  std::ranges::sort(times);
+  const std::vector<double> expected = {0.1551, 1.6562, 2.0634, 2.2297, 3.6920,
+                                        4.7593, 5.0239, 6.1141, 6.3986};
+  ASSERT_EQ(times.size(), expected.size());
+  for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(times[k], expected[k], 1e-4);
 }
 
 TEST_F(Scenes, WaypointsAtGivenTimes) {

@@ -14,6 +14,7 @@
 #include "solve/bordered/bordered_judge.hpp"
 #include "solve/bordered/bordered_newton.hpp"
 #include "solve/bordered/found.hpp"
+#include "solve/bordered/jump_scan.hpp"
 #include "solve/bordered/limits.hpp"
 #include "solve/bordered/minimise.hpp"
 #include "solve/bordered/starting_states.hpp"
@@ -81,7 +82,10 @@ class BorderedSolve {
         why = Failure{solution.message, solution.status, refused_};
       }
       const bool wanted = static_cast<int>(found.size()) < most;
-      if (tried + 1 == unbent && wanted) add_bent(starts);
+      if (tried + 1 == unbent && wanted) {
+        add_zeros_of_jump(starts);
+        add_bent(starts);
+      }
     }
     if (found.empty()) return {timed(failure(*why), start)};
     std::ranges::stable_sort(found, {}, &Solution::action);
@@ -150,6 +154,56 @@ class BorderedSolve {
           all.push_back(start);
         }
       }
+  }
+
+  /// The waypoint of which alone the time is unknown; −1 where there is none.
+  int only_free_waypoint() const {
+    const auto& all = extension_.waypoints;
+    const auto is_free = [](const WaypointCondition& w) { return w.free; };
+    if (problem_.periodic || problem_.duration.free || std::ranges::count_if(all, is_free) != 1) return -1;
+    return static_cast<int>(std::ranges::find_if(all, is_free) - all.begin());
+  }
+
+  /// Stationary with the times held, on so many elements.
+  std::optional<JumpAtTime> solve_held(int waypoint, double time, int elements, const JumpAtTime* near) {
+    if (spent()) return std::nullopt;
+    const Elements coarse = lobatto(first_degree);
+    std::vector<double> times = starts_.times();
+    times[waypoint] = time;
+    const LegMesh mesh = equal_elements(times, elements);
+    Found found = near ? near->found : begin(mesh, coarse, {});
+    move_to(found.state, *found.tables, times);
+    if (near) found = moved(found, mesh, coarse);
+    Failure failure;
+    equations_.hold_times(true);
+    const bool reached = newton(found, failure);
+    equations_.hold_times(false);
+    if (!reached || !equations_.evaluate(found.state, false)) return std::nullopt;
+    return JumpAtTime{time, equations_.values()[equations_.first_time()], std::move(found)};
+  }
+
+  /// Those nearest to the guess first.
+  void add_zeros_of_jump(std::vector<Start>& all) {
+    const int waypoint = only_free_waypoint();
+    if (waypoint < 0) return;
+    downhill_ = false;
+    equations_.set_offsets({});
+    const std::vector<double>& times = starts_.times();
+    const double at_guess = times[waypoint];
+    int elements = fewest_scan_elements;
+    for (; elements < most_scan_elements; elements *= 2) {
+      const std::optional<JumpAtTime> first = solve_held(waypoint, at_guess, elements, nullptr);
+      if (!first || errors(first->found).q <= way_error * sizes(first->found).q) break;
+    }
+    const int most = iterations_ + most_scan_steps;
+    zeros_ = zeros_of_jump(waypoint > 0 ? times[waypoint - 1] : 0, times[waypoint + 1],
+                           [&](double time, const JumpAtTime* near) -> std::optional<JumpAtTime> {
+                             if (iterations_ > most) return std::nullopt;
+                             return solve_held(waypoint, time, elements, near);
+                           });
+    std::ranges::stable_sort(zeros_, {},
+                             [&](const JumpAtTime& zero) { return std::abs(zero.time - at_guess); });
+    for (int k = 0; k < std::ssize(zeros_); ++k) all.push_back({.zero = k});
   }
 
   /// Of L alone; infinite where it is not finite.
@@ -311,7 +365,7 @@ class BorderedSolve {
 
   Solution solve_adapted(const Start& start) {
     const Elements coarse = lobatto(first_degree);
-    Found found = begin(first_mesh(coarse, start), coarse, start);
+    Found found = start.zero < 0 ? begin(first_mesh(coarse, start), coarse, start) : zeros_[start.zero].found;
     Failure failure;
     if (!reach(found, start, failure)) return failed(failure);
     for (int round = 0; round < most_refinements && !spent(); ++round) {
@@ -397,7 +451,10 @@ class BorderedSolve {
     ElementCount count(*options_.scheme, options_.tolerance,
                        adaptive ? std::max(first_elements, 2 * starts_.legs()) : options_.elements,
                        most_scheme_elements);
-    Found found = begin(starts_.equal_elements(count.now()), elements, start);
+    Found found = start.zero < 0
+                      ? begin(starts_.equal_elements(count.now()), elements, start)
+                      : moved(zeros_[start.zero].found,
+                              equal_elements(zeros_[start.zero].found.state.times, count.now()), elements);
     Failure failure;
     if (!reach(found, start, failure)) return failed(failure);
     for (;;) {
@@ -439,6 +496,7 @@ class BorderedSolve {
   StartingStates starts_;
   BorderedEquations equations_;
   Resolution resolution_;
+  std::vector<JumpAtTime> zeros_;
   int iterations_ = 0;
   double cost_ = 0;        ///< nanoseconds of the steps, by batch_cost()
   bool downhill_ = false;  ///< of the start that is tried

@@ -97,6 +97,12 @@ struct BendRow {
 inline constexpr std::initializer_list<BendRow> bends = {{0.1, 1, 1, 1}, {0.1, 2, 2, 1}, {0.3, 1, 1, 2},
                                                          {0.3, 2, 2, 2}, {0.1, 3, 3, 1}, {0.3, 1, 3, 4},
                                                          {1.0, 1, 3, 4}};
+/// Of the jump at a waypoint as a function of its time: equal steps, the shortest leg by their sum, halvings
+/// of a bracket, steps towards a minimum, elements of each time, and steps of Newton's method in all.
+inline constexpr int scanned_steps = 96, bisections = 8, descents = 6;
+inline constexpr double shortest_scanned = 1e-4;
+inline constexpr int fewest_scan_elements = 16, most_scan_elements = 128, most_scan_steps = 3000;
+
 /// On the way from what a starting path has to what is given, shortest step.
 inline constexpr double least_part = 1.0 / 512;
 /// Of the range: elements on that way.

@@ -20,8 +20,10 @@ struct Start {
   unsigned seed = 0;
   bool led = false;
   bool downhill = false;  ///< to a minimiser first
+  int zero = -1;          ///< of the jump at a waypoint, beside which a state was found
 
   const char* strategy() const {
+    if (zero >= 0) return "newton from a time of the waypoint next to which the jump of the energy vanishes";
     if (downhill) return "minimisation from the guess";
     if (size == 0)
       return led ? "newton from the guess, integrals and conditions led to what is given"
@@ -43,6 +45,7 @@ class StartingStates {
   explicit StartingStates(const Problem& problem);
 
   int legs() const { return static_cast<int>(times_.size()); }
+  const std::vector<double>& times() const { return times_; }
   LegMesh equal_elements(int elements) const { return extremal::equal_elements(times_, elements); }
   /// On these elements, constants at their guesses and multipliers zero.
   BorderedState at(const LegMesh& mesh, const Elements& elements, const Start& start) const;
