@@ -1,12 +1,14 @@
 #include "solve/homotopy/duration_homotopy.hpp"
 
 #include <numbers>
+#include <utility>
 
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
+#include "solve/homotopy/force_homotopy.hpp"
 #include "solve/laws.hpp"
 
-/// \file Families of extremals of all durations.
+/// \file Families of extremals of all durations, and of all strengths of forces.
 
 namespace extremal::laws {
 namespace {
@@ -103,6 +105,65 @@ TEST(DurationHomotopy, StopsWhenToldTo) {
   EXPECT_FALSE(
       DurationHomotopy(problem, begun.path, begun.w, [&] { return ++steps < 5; }).trace(*begun.tables));
   EXPECT_EQ(steps, 5);
+}
+
+/// Of a chain of pendulums: linear between neighbours, bounded in each angle.
+std::shared_ptr<const Lagrangian> pendulums(int n) {
+  return trace(n, [n](auto q, auto v, auto) {
+    auto sum = v[0] * v[0] / 2 + cos(q[0]);
+    for (int i = 1; i < n; ++i)
+      sum = sum + v[i] * v[i] / 2 + cos(q[i]) - 0.15 * (q[i] - q[i - 1]) * (q[i] - q[i - 1]);
+    return sum;
+  });
+}
+
+Problem chain_of_pendulums(int n) {
+  Values start, end;
+  for (int i = 1; i <= n; ++i) {
+    start.push_back(1.5 * std::cos(2 * pi * i / n));
+    end.push_back(0.5 * std::sin(2 * pi * i / n));
+  }
+  return fixed_ends(pendulums(n), start, end, 4);
+}
+
+/// Far from the guess bounded forces have no second derivatives: Q is linear forces alone.
+TEST(ForceHomotopy, BeginsWithLinearForces) {
+  const Problem problem = chain_of_pendulums(3);
+  const auto weakened = WeakenedLagrangian::about(problem, 8);
+  ASSERT_TRUE(weakened);
+  weakened->set_part(0);
+  Scratch scratch;
+  const Values q = {0.3, -1, 2}, v = {0, 0, 0};
+  const PointValues at = evaluate_at(*weakened, q, v, 0, Order::hessian, scratch);
+  const double expected[] = {-0.3, 0.3, 0, 0.3, -0.6, 0.3, 0, 0.3, -0.3};
+  for (int k = 0; k < 9; ++k) EXPECT_NEAR(at.qq[k], expected[k], 0.01) << k;
+  EXPECT_EQ(at.vv[0], 1);
+}
+
+/// Rows of L_λ are derivatives of its value.
+TEST(ForceHomotopy, DerivativesAreThoseOfTheValue) {
+  const auto weakened = WeakenedLagrangian::about(chain_of_pendulums(3), 1);
+  ASSERT_TRUE(weakened);
+  weakened->set_part(0.4);
+  Scratch scratch;
+  const Values v = {0.1, 0.2, -0.3};
+  const auto values = [&](double x) {
+    return evaluate_at(*weakened, Values{x, -1, 2}, v, 0, Order::hessian, scratch);
+  };
+  const double h = 1e-5;
+  EXPECT_NEAR((values(0.3 + h).value - values(0.3 - h).value) / (2 * h), values(0.3).dq[0], 1e-8);
+  for (int b = 0; b < 3; ++b)
+    EXPECT_NEAR((values(0.3 + h).dq[b] - values(0.3 - h).dq[b]) / (2 * h), values(0.3).qq[b], 1e-8) << b;
+}
+
+/// The start by shooting. The straight line is far from it.
+TEST(ForceHomotopy, FindsWhatOtherGuessesDoNot) {
+  const Solution solution = solve(chain_of_pendulums(5), within(1e-10));
+  ASSERT_TRUE(solution.converged()) << solution.message;
+  for (const int n : {20, 60}) {
+    const Solution more = solve(chain_of_pendulums(n), within(1e-8));
+    EXPECT_TRUE(more.converged()) << n << ": " << more.message;
+  }
 }
 
 }  // namespace

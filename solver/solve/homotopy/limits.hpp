@@ -62,4 +62,11 @@ inline constexpr double strongest_cut = 4;
 
 }  // namespace homotopy
 
+namespace weakened_lagrangian {
+
+/// Points whose derivatives are averaged; halvings for their places.
+inline constexpr int samples = 512, bisections = 50;
+
+}  // namespace weakened_lagrangian
+
 }  // namespace extremal::limits

@@ -335,6 +335,9 @@ inline constexpr unsigned first_noises = 8, most_noises = 10000, collision_noise
 /// Of the guess's extent, in turn.
 inline constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 
+/// Points about the guess that tell linear forces from bounded ones: their distance by its extent.
+inline constexpr double force_spreads[] = {8, 1};
+
 }  // namespace search
 
 namespace several {

@@ -8,6 +8,7 @@
 #include "solve/adapt/others_to_try.hpp"
 #include "solve/external/external_solver.hpp"
 #include "solve/homotopy/duration_homotopy.hpp"
+#include "solve/homotopy/force_homotopy.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/periodic/equilibrium.hpp"
 #include "solve/search/balance.hpp"
@@ -23,6 +24,8 @@ using namespace limits::search;
 namespace {
 
 constexpr const char* from_guess = "newton from the guess";
+/// Of the effort, for weaker forces where the routes before have spent all.
+constexpr double share_of_forces = 0.25;
 
 }  // namespace
 
@@ -137,6 +140,27 @@ bool Search::through_other_durations() {
     refinement_.rebind();
     if (found("homotopy in the duration")) return true;
   }
+  return false;
+}
+
+/// From the extremal of a quadratic Lagrangian, through those of weaker nonlinear forces.
+bool Search::through_weaker_forces() {
+  if (problem_.duration.free || problem_.paired || problem_.infinite || problem_.phase || problem_.manifold ||
+      !problem_.has_ends() || problem_.lagrangian->kinks() || options_.deadline.passed())
+    return false;
+  if (refinement_.exhausted()) renew(share_of_forces);
+  const auto count = [this] { return refinement_.count_step(); };
+  for (const double spread : force_spreads) {
+    const auto weakened = WeakenedLagrangian::about(*guess_, spread);
+    if (!weakened || refinement_.exhausted()) continue;
+    start(mesh_, bend_, homotopy_degree);
+    ForceHomotopy homotopy(problem_, path_, w_, count, weakened);
+    met_.insert(Met::weaker_forces);
+    if (!homotopy.trace(refinement_.tables())) continue;
+    refinement_.rebind();
+    if (found("homotopy in the strength of the nonlinear forces")) return true;
+  }
+  refinement_.rebind();
   return false;
 }
 
@@ -290,6 +314,7 @@ bool Search::from_other_guesses(GuessKind guess) {
   if (from_settled_motion()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line() || through_other_ends()) return true;
+  if (through_weaker_forces()) return true;
   begin();
   if (from_noise(most_noises)) return true;
   begin();
@@ -354,13 +379,14 @@ const Outcome& Search::run(Acceptance* acceptance) {
       result = Refinement::Result::converged;
     } else {
       outcome_.status = Status::iteration_limit;
-      outcome_.message = fmt::format("{} Newton steps from the guess ({}){}{}{}{} found no extremal; try {}",
-                                     outcome_.iterations, failure,
-                                     met_.contains(Met::other_durations) ? ", through other durations" : "",
-                                     met_.contains(Met::other_ends) ? ", through other ends" : "",
-                                     met_.contains(Met::noise) ? ", from smooth noise" : "",
-                                     met_.contains(Met::motions) ? ", from motions that miss the end" : "",
-                                     others_to_try(problem_, "a better guess", "a shorter duration"));
+      outcome_.message = fmt::format(
+          "{} Newton steps from the guess ({}){}{}{}{}{} found no extremal; try {}", outcome_.iterations,
+          failure, met_.contains(Met::other_durations) ? ", through other durations" : "",
+          met_.contains(Met::weaker_forces) ? ", through weaker forces" : "",
+          met_.contains(Met::other_ends) ? ", through other ends" : "",
+          met_.contains(Met::noise) ? ", from smooth noise" : "",
+          met_.contains(Met::motions) ? ", from motions that miss the end" : "",
+          others_to_try(problem_, "a better guess", "a shorter duration"));
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
         outcome_.message = fmt::format("{} from the guess and from others; try {}", shrank_to_rest,

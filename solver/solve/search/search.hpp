@@ -72,7 +72,7 @@ class Search {
     bool doubtful;  ///< the equations were nearly singular
   };
   /// Routes tried and ends met, for the message.
-  enum class Met { other_durations, other_ends, noise, motions, equilibrium };
+  enum class Met { other_durations, weaker_forces, other_ends, noise, motions, equilibrium };
   static constexpr int most_first_elements = 1 << 12;
   /// Coarse elements may not resolve a family of extremals as it grows.
   static constexpr int homotopy_degree = 8;
@@ -93,6 +93,7 @@ class Search {
   bool found(const char* strategy);
   bool from_other_guesses(GuessKind guess);
   bool through_other_durations();
+  bool through_weaker_forces();
   bool through_other_ends();
   bool refine_from(const Path& other, const char* strategy);
   bool by_gradient_flow(double side = 1);
