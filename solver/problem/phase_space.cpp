@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 constexpr double roundoff_of_constant = 1e-10;
 /// √(wv) by the duration. An eigenvalue −1/w of the second variation A, as H_pp = 1 makes it where w = 1, is
 /// one of 0 of A + A W A: durations, masses and frequencies that are simple numbers must not make it.
-constexpr double weight_by_duration = 0.7548776662466927;
+constexpr double weight_by_duration = 1.0594630943592953;
 
 /// What coordinates and momenta extend over.
 struct Extents {

@@ -160,7 +160,8 @@ class BorderedSolve {
   int only_free_waypoint() const {
     const auto& all = extension_.waypoints;
     const auto is_free = [](const WaypointCondition& w) { return w.free; };
-    if (problem_.periodic || problem_.duration.free || std::ranges::count_if(all, is_free) != 1) return -1;
+    const bool others = problem_.periodic || problem_.paired || problem_.duration.free;
+    if (others || std::ranges::count_if(all, is_free) != 1) return -1;
     return static_cast<int>(std::ranges::find_if(all, is_free) - all.begin());
   }
 
