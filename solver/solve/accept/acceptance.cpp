@@ -84,6 +84,7 @@ void read_path(const Problem& problem, const SolveOptions& options, const Path& 
 struct Examined {
   std::optional<Survey> survey = {};
   bool hopeless = false;
+  int held = 0;  ///< shifts between rests
 };
 
 Examined refused(Refusal refusal, Solution& solution) {
@@ -113,6 +114,7 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
   const int inner = (path.degree() - 1) * path.elements() + path.elements() - 1;
   solution.unknowns = inner * problem.coordinates() + problem.ends.free + problem.duration.free;
   read_path(problem, options, path, outcome, w, solution);
+  const int held = w.iteration.held_shifts();
   if (outcome.family > 0) {
     solution.nullity = outcome.family;
     solution.morse_index = outcome.index_across;
@@ -130,7 +132,7 @@ Examined examine(const Problem& problem, const SolveOptions& options, const Path
           has_broken_node(problem, *problem.lagrangian,
                           outcome.recovered ? trajectory_of(path) : solution.trajectory, 0, path.elements()))
     return refused(*std::move(fails), solution);
-  Examined result{observe_energy(*problem.lagrangian, solution)};
+  Examined result{.survey = observe_energy(*problem.lagrangian, solution), .held = held};
   if (result.survey && !problem.paired) explain_drift(*result.survey, solution);  // two copies have none
   if (auto fails =
           elements_fail(problem, options, outcome, path, result.survey, w.iteration.action(), solution))
@@ -275,9 +277,9 @@ void read_index_at_rest(const Problem& problem, SecondVariation& variation, Solu
 }
 
 /// A null direction is a motion beside the orbit, which position and momentum determine: more of them say
-/// that L depends on the path by roundoff alone, as where masses vanish.
-void judge_nullity(const Problem& problem, Solution& solution) {
-  const int most = 2 * problem.coordinates(), null = solution.nullity.value_or(0);
+/// that L depends on the path by roundoff alone, as where masses vanish. Shifts between rests are none.
+void judge_nullity(const Problem& problem, int held, Solution& solution) {
+  const int most = 2 * problem.coordinates(), null = solution.nullity.value_or(0) - held;
   if (null <= most) return;
   refused({Status::not_converged,
            fmt::format("the action hardly depends on the path: its second variation vanishes along {} "
@@ -335,7 +337,7 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     // Pieces that minimise have windows. The index of pinned elements is their own.
     if (problem.periodic && options.elements == 0 && !solution.windows.empty())
       read_index(problem, w.variation, size > 0 ? solution.error_estimate / size : 0, solution);
-    judge_nullity(problem, solution);
+    judge_nullity(problem, examined.held, solution);
     assemble_for_multipliers(problem, options, found, path, solution, of_elements, w);
     read_stability(problem, w.variation, size, solution);
     if (found.family == 0) explain_nullity(problem, solution);
