@@ -5,6 +5,7 @@
 #include "solve/laws.hpp"
 #include "solve/search/balance.hpp"
 #include "solve/search/gradient_flow.hpp"
+#include "solve/search/time_law.hpp"
 
 /// \file Minimisers in intervals of any length, from the straight line. Exact actions of paths from rest to
 /// rest are ∫ √(2V) along them; a fixed end at a rest costs e^−2rt more.
@@ -126,6 +127,33 @@ TEST(Minimisers, KinksOfManyCoordinates) {
   ASSERT_TRUE(s.converged()) << s.message;
   EXPECT_NEAR(s.action, n * 2 * std::sqrt(2.0) / 3, 1e-8);
   EXPECT_EQ(s.morse_index, 0);
+}
+
+/// The drift −V' with wells at −2, 0 and 2 and saddles at −1 and 1: shifts between the five rests are more
+/// than motions beside the path. The action is twice the rise of V, 9/8 and 11/24.
+TEST(Minimisers, SeveralRestsOfOneCoordinate) {
+  const auto drift = trace(1, [](auto q, auto v, auto) {
+    const auto off = v[0] + 0.5 * q[0] * (q[0] * q[0] - 1.0) * (q[0] * q[0] - 4.0);
+    return off * off / 2.0;
+  });
+  for (const double T : {80.0, 150.0, 300.0}) {
+    const Solution s = solve(fixed_ends(drift, {-2}, {2}, T), within(1e-8));
+    expect_minimum(s, 19.0 / 6, 1e-9);
+    EXPECT_EQ(s.nullity, 4) << T;
+  }
+}
+
+/// Three double wells, coupled: the middle one is passed first. The action by collocation of Hamilton's
+/// equations (scipy's solve_bvp).
+TEST(Minimisers, SeveralRestsOfCoupledCoordinates) {
+  const auto wells = trace(3, [](auto q, auto v, auto) {
+    const auto a = 0.1 * (q[0] - q[1]), b = 0.1 * (q[1] - q[2]);
+    const auto x = v[0] + q[0] * q[0] * q[0] - q[0] + a, y = v[1] + q[1] * q[1] * q[1] - q[1] - a + b,
+               z = v[2] + q[2] * q[2] * q[2] - q[2] - b;
+    return (x * x + y * y + z * z) / 2.0;
+  });
+  const Solution s = solve(fixed_ends(wells, {-1, -1, -1}, {1, 1, 1}, 80), within(1e-8));
+  expect_minimum(s, 1.2575036579, 1e-8);
 }
 
 TEST(Minimisers, MonotonePathsStayMonotone) {
@@ -393,6 +421,33 @@ TEST(GradientFlow, GivesUpWhereThereIsNoMinimum) {
   Flow flow(problem);
   GradientFlow descent(problem, flow.path, flow.w, [] { return true; });
   EXPECT_FALSE(descent.run());
+}
+
+/// Of a straight line between the wells, each element with the energy of all: the kink, but for the elements.
+TEST(TimeLaw, OneEnergyInAllElements) {
+  const Problem problem = double_well(30);
+  Flow flow(problem);
+  TimeLaw times;
+  times.reset(problem, GradientFlow::linear_elements(flow.w.levels), flow.path.elements());
+  ASSERT_TRUE(times.apply(flow.path, 30));
+  EXPECT_EQ(flow.path.duration(), 30);
+  for (int k = 0; k < flow.path.elements(); ++k) {
+    const double t = 30 * (flow.path.mesh()[k] - 0.5), q = flow.path.node(k)[0];
+    if (std::abs(q) < 0.9) {
+      EXPECT_NEAR(q, std::tanh(t / std::sqrt(2.0)), 1e-2);
+    }
+  }
+  ASSERT_TRUE(times.apply(flow.path, 30, 0.1));
+  EXPECT_LT(flow.path.duration(), 10);
+}
+
+TEST(TimeLaw, NeedsAnActionWithoutTime) {
+  const Problem problem =
+      fixed_ends(trace(1, [](auto, auto v, auto t) { return v[0] * v[0] / 2.0 + cos(t); }), {0}, {1}, 5);
+  Flow flow(problem);
+  TimeLaw times;
+  times.reset(problem, GradientFlow::linear_elements(flow.w.levels), flow.path.elements());
+  EXPECT_FALSE(times.apply(flow.path, 5));
 }
 
 /// Ends that are not at rest hold a path in time.

@@ -20,23 +20,27 @@ namespace rest_limits = limits::balance;
 /// Downhill along the gradient flow of the action. A flow keeps symmetries of its first path, which may lead
 /// to a saddle, or to rests that hardly end: one of a bent path does not.
 bool Search::by_gradient_flow(double side) {
-  if (flow_from_guess(bend_, side)) {
+  if (flow_from_guess(bend_, side) || (stages() && flow_from_guess(bend_, side, true))) {
     leave_saddles();
     return true;
   }
-  return acceptance_ && flow_aside(INFINITY);
+  return acceptance_ && (flow_aside(INFINITY) || (stages() && flow_aside(INFINITY, true)));
 }
 
+/// Whether the flow may begin with less time. A guess of the user has the times of its rests.
+bool Search::stages() const { return problem_.lagrangian->structure().autonomous && !guess_->guess.given(); }
+
 /// From the guess bent by noise, more and more, to an extremal of less action.
-bool Search::flow_aside(double action) {
+bool Search::flow_aside(double action, bool staged) {
   const unsigned most = problem_.coordinates() > 1 ? flow_limits::bends_aside : 0;
   for (unsigned seed = 1; seed <= most && !options_.deadline.passed(); ++seed)
-    if (flow_from_guess({flow_limits::bend_aside * seed, seed}, 1) && acceptance_->solution().action < action)
+    if (flow_from_guess({flow_limits::bend_aside * seed, seed}, 1, staged) &&
+        acceptance_->solution().action < action)
       return true;
   return false;
 }
 
-bool Search::flow_from_guess(const Bend& bend, double side) {
+bool Search::flow_from_guess(const Bend& bend, double side, bool staged) {
   const int elements = GradientFlow::elements_for(problem_);
   if (elements == 0) return false;
   const ElementTables& linear = GradientFlow::linear_elements(w_.levels);
@@ -45,7 +49,7 @@ bool Search::flow_from_guess(const Bend& bend, double side) {
   path_.reset(linear, mesh, problem_.duration.value);
   start_path(*guess_, ends_, linear, path_);
   bend_path(problem_, bend, linear, path_);
-  return flow_from(0, side);
+  return flow_from(0, side, staged);
 }
 
 /// Saddles that were accepted are left for extremals of less action.
@@ -96,16 +100,18 @@ bool Search::descend_from_guess(double side) {
 
 /// From the path, which is on linear elements, to a minimiser, and by Newton's method on elements made of
 /// several of those to the tolerance.
-bool Search::flow_from(double away, double side) {
+bool Search::flow_from(double away, double side, bool staged) {
   constexpr const char* strategy = "minimisation by the gradient flow";
   // A search for several solutions renews its effort with each.
   const int most = acceptance_ ? options_.max_iterations : outcome_.attempts + allowance_;
   if (outcome_.attempts >= most) return false;
-  GradientFlow flow(problem_, path_, w_, [&] {
+  const auto count = [&] {
     outcome_.record(w_.iteration, options_);
     return !options_.deadline.passed() && outcome_.attempts < most;
-  });
+  };
+  GradientFlow flow(problem_, path_, w_, count);
   flow.prefer(side);
+  if (staged) flow.lengthen_by_stages();
   if (!flow.run(away * flow_limits::kick)) return false;
   // Newton's method may have spent all on long intervals, where its equations are nearly singular.
   const auto renew = [&] {

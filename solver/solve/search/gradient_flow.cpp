@@ -59,6 +59,7 @@ bool GradientFlow::evaluate() {
 
 bool GradientFlow::begin() {
   w_.iteration.reset(problem_, tables_, path_.elements());
+  times_.reset(problem_, tables_, path_.elements());
   system_.reset(problem_.ends, path_.elements(), path_.coordinates(), false);
   saved_ = path_;
   if (path_.elements() < 3 || !evaluate()) return false;
@@ -208,7 +209,9 @@ GradientFlow::Result GradientFlow::step() {
 }
 
 bool GradientFlow::run(double away) {
-  if (!begin()) return false;
+  T_ = path_.duration();
+  staged_ = least_energy_ > 0;
+  if (!begin() || (staged_ && !(equalise_energies() && redistribute()))) return false;
   measure_curvature();
   if (away != 0 && !leave_saddle(away, 0)) return false;
   wanted_ = faithful * curvature_;
@@ -219,7 +222,8 @@ bool GradientFlow::run(double away) {
     const Result result = step();
     if (result == Result::failed) return false;
     if (result == Result::minimal) {
-      if (!leave_saddle(side_ * kick, negative) && !shorten_rest()) return true;
+      const double least = staged_ ? negative_of_stage : negative;
+      if (!leave_saddle(side_ * kick, least) && !lengthen() && !shorten_rest()) return true;
       left = steps;
       continue;
     }
@@ -233,7 +237,8 @@ bool GradientFlow::run(double away) {
       if (relaxed < close) shorten_rest();
       relaxed = 1;
     }
-    if (steps % steps_a_mesh == 0 && !redistribute()) return false;
+    if (steps % steps_a_mesh == 0 && !((least_energy_ == 0 || equalise_energies()) && redistribute()))
+      return false;
   }
   // An interface that creeps through the elements; what holds it is found on better ones.
   return size_ <= short_step * range_;
@@ -247,6 +252,32 @@ bool GradientFlow::shorten_rest() {
   if (!balance.falls() || !balance.fall(path_) || !evaluate()) return false;
   ++rests_shortened_;
   wanted_ = faithful * curvature_;
+  return true;
+}
+
+/// Of the elements, their corners kept. False if the path is no longer evaluated.
+bool GradientFlow::equalise_energies() {
+  const double before = value();
+  const Path path = path_;
+  if (!times_.apply(path_, T_, least_energy_)) return true;
+  if (evaluate() && (path_.duration() < T_ || path.duration() < T_ || value() < before)) return true;
+  path_ = path;
+  return evaluate();
+}
+
+/// The next stage, of less energy and more time; the last has all of it, and times are those of the flow.
+/// False where there is none.
+bool GradientFlow::lengthen() {
+  if (least_energy_ == 0) return false;
+  least_energy_ = path_.duration() < T_ ? less_energy * least_energy_ : 0;
+  if (least_energy_ < last_energy) least_energy_ = 0;
+  if (path_.duration() < T_ && !times_.apply(path_, T_, least_energy_)) {
+    path_.set_duration(T_);
+    path_.load_ends();
+  }
+  if (!evaluate() || !redistribute()) return false;
+  measure_curvature();
+  if (least_energy_ == 0) wanted_ = faithful * curvature_;
   return true;
 }
 
@@ -309,8 +340,11 @@ double GradientFlow::lowest_eigenvalue() {
 bool GradientFlow::leave_saddle(double size, double least) {
   shift_to(0);
   if (factor()) return false;
-  double shift = final_shift * stiffness_;
-  for (shift_to(shift); !factor(); shift_to(shift *= 2))
+  double shift = least * stiffness_;
+  shift_to(shift);
+  if (least > 0 && factor()) return false;
+  if (!(least > 0)) shift_to(shift = final_shift * stiffness_);
+  for (; !factor(); shift_to(shift *= 2))
     if (!count_() || !(shift < most_shift * stiffness_)) return false;
   const bool saddle = lowest_eigenvalue() < -least * stiffness_;
   saved_.copy_values(path_);

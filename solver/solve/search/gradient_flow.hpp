@@ -5,7 +5,9 @@
 
 #include "solve/adapt/workspace.hpp"
 #include "solve/newton/node_system.hpp"
+#include "solve/search/limits.hpp"
 #include "solve/search/monotone_cubic.hpp"
+#include "solve/search/time_law.hpp"
 
 /// \file Minimisation of the action by its gradient flow, on linear elements that are redistributed.
 
@@ -36,6 +38,9 @@ class GradientFlow {
   bool run(double away = 0);
   /// To which side saddles are left that the flow meets: 1 or −1.
   void prefer(double side) { side_ = side; }
+  /// Begins with less time, as energies are higher then: what rests cannot hold them still. Where L does not
+  /// depend on t.
+  void lengthen_by_stages() { least_energy_ = limits::gradient_flow::first_energy; }
 
  private:
   enum class Result { minimal, moved, failed };
@@ -52,6 +57,8 @@ class GradientFlow {
   Result step();
   bool shorten_rest();
   bool redistribute();
+  bool equalise_energies();
+  bool lengthen();
   double lowest_eigenvalue();
   bool leave_saddle(double size, double least);
 
@@ -63,6 +70,7 @@ class GradientFlow {
   DiscreteAction& action_;
   NodeSystem system_;
   MonotoneCubic curve_;
+  TimeLaw times_;
   Density density_;
   std::vector<double> mass_;  ///< n: of each coordinate, the mean along the path
   Step step_;
@@ -74,6 +82,9 @@ class GradientFlow {
   double softness_ = 0;          ///< the harmonic mean in time of the largest curvature at each node
   double range_ = 0, size_ = 0;  ///< of the path and of the last step
   double side_ = 1;
+  double T_ = 0;             ///< wanted
+  double least_energy_ = 0;  ///< of this stage, see TimeLaw; 0: of none
+  bool staged_ = false;
   int rests_shortened_ = 0;
 };
 

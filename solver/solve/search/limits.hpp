@@ -232,6 +232,10 @@ inline constexpr double kick = 0.1, least_kick = 1e-3;
 /// An eigenvalue below this, by the largest curvature of L in q, is negative: that of a shift of an interface
 /// through the elements has either sign.
 inline constexpr double negative = 0.02;
+/// Of paths with less time, by the largest kinetic energy: the energy of the first stage, of each that
+/// follows by that of the one before, and a smaller one that makes no stage. There energies hold interfaces
+/// in time, and eigenvalues below this are negative.
+inline constexpr double first_energy = 0.1, less_energy = 0.1, last_energy = 1e-8, negative_of_stage = 1e-4;
 inline constexpr int inverse_iterations = 12;
 /// A path this much larger than at first has run away.
 inline constexpr double runaway = 1e3;
@@ -243,6 +247,16 @@ inline constexpr double finished = 1e-5;
 inline constexpr double steepest_grading = 4;
 
 }  // namespace gradient_flow
+
+namespace time_law {
+
+/// Of the largest of the elements: what is none, and what elements count at least that stand still.
+inline constexpr double roundoff = 1e-12, standing = 1e-30;
+/// An element is not shorter than this, by the mean.
+inline constexpr double shortest = 1e-4;
+inline constexpr int most_octaves = 100, halvings = 60;
+
+}  // namespace time_law
 
 namespace continuum {
 

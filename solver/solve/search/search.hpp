@@ -97,9 +97,10 @@ class Search {
   bool through_other_ends();
   bool refine_from(const Path& other, const char* strategy);
   bool by_gradient_flow(double side = 1);
-  bool flow_from_guess(const Bend& bend, double side);
-  bool flow_aside(double action);
-  bool flow_from(double away, double side);
+  bool flow_from_guess(const Bend& bend, double side, bool staged = false);
+  bool stages() const;
+  bool flow_aside(double action, bool staged = false);
+  bool flow_from(double away, double side, bool staged = false);
   void leave_saddles();
   double displaced_by_finer_elements();
   bool held_in_time(const char* strategy, const std::function<void()>& renew);
