@@ -85,16 +85,17 @@ void DiscreteAction::make_room(Buffers& buffers) const {
 }
 
 /// evaluate(buffers, b) for each batch in any order, gather(b) from the first to the last: sums do not depend
-/// on how many threads there are.
+/// on how many threads there are. Several threads end at the deadline only before they begin.
 template <class Evaluate, class Gather>
 void DiscreteAction::for_batches(const Evaluate& evaluate, const Gather& gather) {
   if (buffers_.size() == 1) {
-    for (int b = 0; b < batches_; ++b) {
+    for (int b = 0; b < batches_ && !stop(); ++b) {
       evaluate(buffers_.front(), b);
       gather(b);
     }
     return;
   }
+  if (stop()) return;
   share_out(batches_, [&](int thread, int b) { evaluate(buffers_[thread], b); });
   for (int b = 0; b < batches_; ++b) gather(b);
 }
@@ -131,7 +132,7 @@ const double* DiscreteAction::rows(const Path& path, int b, Order order) {
 void DiscreteAction::evaluate_plain(const Path& path) {
   clear_sums();
   Buffers& buffers = buffers_.front();
-  for (int b = 0; b < batches_; ++b) {
+  for (int b = 0; b < batches_ && !stop(); ++b) {
     const ElementBatch elements = batch(path, b, buffers);
     play(elements, Order::gradient, buffers);
     assemble_gradient(elements, b, buffers.work.data());
@@ -206,7 +207,7 @@ void DiscreteAction::visit(const Path& path, bool hessian,
   const std::size_t count = hessian ? tables_->entries().row.size() * lanes_ : 0;
   entries_.resize(std::max(entries_.size(), count));
   Buffers& buffers = buffers_.front();
-  for (int b = 0; b < batches_; ++b) {
+  for (int b = 0; b < batches_ && !stop(); ++b) {
     const ElementBatch elements = batch(path, b, buffers);
     play(elements, hessian ? Order::hessian : Order::gradient, buffers);
     double *corner = sums(b, of_corner), *gradient = buffers.work.data(), *row = gradient + sizes_.vector;

@@ -8,6 +8,7 @@
 #include "action/extended.hpp"
 #include "action/path.hpp"
 #include "linear/chain.hpp"
+#include "machine/deadline.hpp"
 #include "machine/simd.hpp"
 #include "problem/end_cost.hpp"
 #include "system/lagrangian.hpp"
@@ -71,6 +72,10 @@ class DiscreteAction {
   std::span<const double> momenta() const { return momenta_; }
   /// Likewise costs of the ends (2; or empty): `nodes`, imbalance() and action() are those of S_h with them.
   void give_costs(std::span<const EndCost> costs) { costs_ = costs; }
+
+  /// From now on evaluations end when the deadline passes; the action is then not finite.
+  void end_at(const Deadline& deadline) { deadline_ = deadline; }
+  const Deadline& deadline() const { return deadline_; }
 
   /// From now on evaluate() and evaluate_gradient() take gradients in extended precision, where they can.
   void extend(bool on) { extended_on_ = on; }
@@ -197,6 +202,7 @@ class DiscreteAction {
   void gather_gradient(int b);
   void eliminated(int b, const double* x, const double* y, double* sum) const;
   void clear_sums();
+  bool stop() { return stopped_ = stopped_ || deadline_.passed(); }
   void measure_corners(const Path& path);
   void add_corners();
   void finish_sums();
@@ -218,6 +224,8 @@ class DiscreteAction {
   int n_ = 0, elements_ = 0, batches_ = 0, inner_ = 0, unknowns_ = 0;
   Condense condense_ = Condense::to_nodes;
   bool border_ = false, finite_ = false;
+  Deadline deadline_;
+  bool stopped_ = false;                               ///< at the deadline
   bool extended_on_ = false, extended_ready_ = false;  ///< asked for; evaluated at the path
   ExtendedGradient extended_;
   std::span<const double> momenta_;

@@ -35,7 +35,7 @@ void DiscreteAction::clear_sums() {
   nodes.border_gradient = nodes.border_part = 0;
   nodes.end_parts.clear();
   corners_.clear();
-  extended_ready_ = false;
+  extended_ready_ = stopped_ = false;
 }
 
 /// Keeps of the gradient of a batch, before condensation, what is summed up.
@@ -202,7 +202,7 @@ void DiscreteAction::finish_sums() {
   if (!momenta_.empty() && !changed_) add_momenta();
   double sum = action_;
   for (double g : raw_nodes_) sum += g;
-  finite_ = std::isfinite(sum) && std::isfinite(residual_) && std::isfinite(slope_duration_);
+  finite_ = !stopped_ && std::isfinite(sum) && std::isfinite(residual_) && std::isfinite(slope_duration_);
 }
 
 /// ∂/∂q of p(0)·q(0) − p(T)·q(T).

@@ -30,8 +30,8 @@ struct FrontKernels {
   /// each column so far. False if there is no pivot but zero, or one is not finite.
   bool (*eliminate)(const FrontShape& shape, double* w, double* v, int* order, double* diagonal, double* size,
                     double* taken, double* work, FrontMonitor* monitor);
-  /// U −= Vᵀ W over the columns of the rest.
-  void (*update)(const FrontShape& shape, const double* v, const double* w, double* u);
+  /// U −= Vᵀ W over the columns of the rest, in the rows from `first` to `end`, multiples of the padding.
+  void (*update)(const FrontShape& shape, const double* v, const double* w, double* u, int first, int end);
   /// Adds U of a front to the front that comes next: column k of the rest goes to column to[k] there, W or,
   /// from its half on, U; run[k] is where the contiguous columns from k on end.
   void (*extend)(const FrontShape& child, const double* u, const int* to, const int* run,

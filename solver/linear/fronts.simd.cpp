@@ -143,9 +143,9 @@ bool eliminate(const FrontShape& shape, double* w, double* v, int* order, double
   return true;
 }
 
-void update(const FrontShape& s, const double* v, const double* w, double* u) {
+void update(const FrontShape& s, const double* v, const double* w, double* u, int first, int end) {
   const int columns = s.stride - s.half;
-  for (int i = 0; i < columns; i += tile)
+  for (int i = first; i < end; i += tile)
     take_rows(u + long(i) * columns, columns, v + s.half + i, w + s.half, s.pivots, s.stride, i & -lanes,
               columns);
 }

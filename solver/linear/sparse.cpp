@@ -17,7 +17,6 @@ namespace extremal {
 
 namespace {
 
-
 /// Growth beyond which solutions are refined, and beyond which refinement is not trusted to bring back what
 /// it costs.
 constexpr double mild = 16, wild = 1e5;
@@ -118,7 +117,8 @@ SparseSymmetric::~SparseSymmetric() = default;
 SparseSymmetric::SparseSymmetric(SparseSymmetric&&) noexcept = default;
 SparseSymmetric& SparseSymmetric::operator=(SparseSymmetric&&) noexcept = default;
 
-void SparseSymmetric::pattern(int n, std::span<const int> rows, std::span<const int> columns) {
+bool SparseSymmetric::pattern(int n, std::span<const int> rows, std::span<const int> columns,
+                              const Deadline& deadline) {
   if (n < 0 || rows.size() != columns.size())
     throw std::invalid_argument(fmt::format("sparse: order {} with {} rows and {} columns of entries", n,
                                             rows.size(), columns.size()));
@@ -128,7 +128,7 @@ void SparseSymmetric::pattern(int n, std::span<const int> rows, std::span<const 
           fmt::format("sparse: entry {} at ({}, {}) of order {}", k, rows[k], columns[k], n));
   Work& w = *work_;
   w.factored = false;
-  if (n == w.n && std::ranges::equal(rows, w.rows) && std::ranges::equal(columns, w.columns)) return;
+  if (n == w.n && std::ranges::equal(rows, w.rows) && std::ranges::equal(columns, w.columns)) return true;
   w.clear();
   w.n = n;
   w.rows.assign(rows.begin(), rows.end());
@@ -137,14 +137,16 @@ void SparseSymmetric::pattern(int n, std::span<const int> rows, std::span<const 
   w.full = {};
   w.entry.assign(rows.size(), 0.0);
   w.value.assign(w.pattern.row.size(), 0.0);
-  w.plain.analyse(w.pattern);
+  if (w.plain.analyse(w.pattern, deadline)) return true;
+  *this = {};
+  return false;
 }
 
 double* SparseSymmetric::values() { return work_->entry.data(); }
 
 bool SparseSymmetric::pivoted() const { return work_->pivoted; }
 
-bool SparseSymmetric::factor() {
+bool SparseSymmetric::factor(const Deadline& deadline) {
   Work& w = *work_;
   w.factored = w.pivoted = w.refine = false;
   if (!std::all_of(w.entry.begin(), w.entry.end(), [](double v) { return std::isfinite(v); })) return false;
@@ -154,7 +156,9 @@ bool SparseSymmetric::factor() {
   w.equilibrate();
   const double roundoff = 64 * machine_epsilon * std::sqrt(double(w.n));
   const SupernodalFactor::Growth& growth = w.plain.growth();
-  const bool plain = w.plain.factor(w.value, 0) && growth.most <= wild && growth.cancellation * roundoff < 1;
+  const bool plain =
+      w.plain.factor(w.value, 0, deadline) && growth.most <= wild && growth.cancellation * roundoff < 1;
+  if (!plain && deadline.passed()) return false;
   w.pivoted = !plain;
   w.refine = growth.most > mild;
   return w.factored = plain || w.factor_pivoted();

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "linear/inertia.hpp"
+#include "machine/deadline.hpp"
 
 /// \file Symmetric sparse systems of any structure (lattices, many bodies), by SuiteSparse.
 
@@ -20,15 +21,17 @@ class SparseSymmetric {
   SparseSymmetric& operator=(SparseSymmetric&&) noexcept;
 
   /// Entry k stands at (rows[k], columns[k]), in either triangle, and at its mirror image. Entries that share
-  /// a place add up. Throws std::invalid_argument for an index outside 0 … n−1 or spans of different
-  /// lengths, std::bad_alloc without memory.
-  void pattern(int n, std::span<const int> rows, std::span<const int> columns);
+  /// a place add up. False, and there is no pattern, if the deadline passes before it is ordered. Throws
+  /// std::invalid_argument for an index outside 0 … n−1 or spans of different lengths, std::bad_alloc without
+  /// memory.
+  bool pattern(int n, std::span<const int> rows, std::span<const int> columns, const Deadline& deadline = {});
 
   /// One value for each entry of the pattern, in its order.
   double* values();
 
-  /// Numerical factorisation. False if singular to working precision or not finite.
-  bool factor();
+  /// Numerical factorisation. False if singular to working precision or not finite, or if the deadline
+  /// passes before.
+  bool factor(const Deadline& deadline = {});
 
   /// X := A⁻¹ X, row-major n × `columns`, refined once where the factors grew. Throws std::logic_error unless
   /// factor() has returned true. Not for two threads at a time.

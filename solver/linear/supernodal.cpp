@@ -12,6 +12,9 @@ namespace {
 /// Wider supernodes are divided: within one, pivots are taken one by one.
 constexpr int most_pivots = 64;
 
+/// Multiplications between two questions of the deadline.
+constexpr double most_at_once = 5e7;
+
 int padded(int n, int padding) { return (n + padding - 1) / padding * padding; }
 
 std::size_t size_of_u(const FrontShape& s) {
@@ -21,9 +24,12 @@ std::size_t size_of_u(const FrontShape& s) {
 
 }  // namespace
 
-void SupernodalFactor::analyse(const SparsePattern& lower) {
+bool SupernodalFactor::analyse(const SparsePattern& lower, const Deadline& deadline) {
+  fronts_.clear();
+  if (deadline.passed()) return false;
   kernels_ = at_simd_level(EXTREMAL_AT_EACH_LEVEL(front_kernels))();
   nodes_ = find_supernodes(lower, most_pivots);
+  if (deadline.passed()) return false;
   const int n = int(nodes_.order.size()), count = nodes_.count();
   fronts_.resize(count);
   std::size_t v = 0, most_w = 0, most_stride = 0;
@@ -56,6 +62,7 @@ void SupernodalFactor::analyse(const SparsePattern& lower) {
   chosen_.resize(n);
   lay_out(lower);
   plan_stack();
+  return true;
 }
 
 /// Where the entries of the matrix and the rows of the children go in each front.
@@ -168,7 +175,20 @@ bool SupernodalFactor::eliminate(const Front& front, double shift) {
   return true;
 }
 
-bool SupernodalFactor::factor(std::span<const double> value, double shift) {
+/// In parts of rows, as a front may be large.
+bool SupernodalFactor::update(const Front& front, const Deadline& deadline) {
+  const FrontShape& shape = front.shape;
+  const int rows = shape.stride - shape.half;
+  const double wanted = most_at_once / (double(shape.pivots) * rows);
+  const int part = padded(int(std::clamp(wanted, 1.0, double(rows))), kernels_.padding);
+  for (int i = 0; i < rows; i += part) {
+    if (deadline.passed()) return false;
+    kernels_.update(shape, v_.data() + front.v, w_.data(), u_.data(), i, std::min(i + part, rows));
+  }
+  return true;
+}
+
+bool SupernodalFactor::factor(std::span<const double> value, double shift, const Deadline& deadline) {
   growth_ = {};
   std::fill(taken_.begin(), taken_.end(), 0.0);
   for (std::size_t s = 0; s < fronts_.size(); ++s) {
@@ -176,7 +196,7 @@ bool SupernodalFactor::factor(std::span<const double> value, double shift) {
     load(s, value);
     if (!eliminate(front, shift)) return false;
     if (front.shape.rest == 0) continue;
-    kernels_.update(front.shape, v_.data() + front.v, w_.data(), u_.data());
+    if (!update(front, deadline)) return false;
     std::copy_n(u_.begin(), size_of_u(front.shape), stack_.begin() + front.below);
   }
   return std::isfinite(growth_.most) && std::isfinite(growth_.cancellation);

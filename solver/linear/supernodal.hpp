@@ -9,6 +9,7 @@
 #include "linear/sparse_pattern.hpp"
 #include "linear/supernodes.hpp"
 #include "machine/aligned.hpp"
+#include "machine/deadline.hpp"
 
 /// \file LDLᵀ of a sparse symmetric matrix by dense fronts.
 
@@ -26,12 +27,13 @@ class SupernodalFactor {
     Inertia inertia;
   };
 
-  /// Ordering and layout for a pattern. Throws std::bad_alloc without memory.
-  void analyse(const SparsePattern& lower);
+  /// Ordering and layout for a pattern; false, and nothing is laid out, if the deadline passes before. Throws
+  /// std::bad_alloc without memory.
+  bool analyse(const SparsePattern& lower, const Deadline& deadline = {});
 
   /// LDLᵀ of A + shift·I, with A's values in the order of the pattern. False where a pivot is zero or not
-  /// finite.
-  bool factor(std::span<const double> value, double shift);
+  /// finite, or where the deadline passes before.
+  bool factor(std::span<const double> value, double shift, const Deadline& deadline = {});
   const Growth& growth() const { return growth_; }
 
   /// x := A⁻¹ x, n entries, after factor() has returned true.
@@ -51,6 +53,7 @@ class SupernodalFactor {
   void plan_stack();
   bool eliminate(const Front& front, double shift);
   void load(std::size_t front, std::span<const double> value);
+  bool update(const Front& front, const Deadline& deadline);
 
   FrontKernels kernels_ = {};
   Supernodes nodes_;

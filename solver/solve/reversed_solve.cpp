@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "action/rule.hpp"
+#include "motion/point.hpp"
 #include "solve/limits.hpp"
 
 namespace extremal {
@@ -20,16 +21,20 @@ bool reversible(const Structure& s) {
 }
 
 /// 1/√(V''/M) at an end that is fixed, the shortest of the coordinates; 0 where it is free.
-double shortest_time(const Problem& problem, bool at_end, Scratch& scratch) {
+double shortest_time(const Problem& problem, bool at_end, PointEvaluator& point) {
   const std::size_t n = problem.coordinates(), first = at_end ? n : 0;
   const std::span<const double> q(problem.ends.offset.data() + first, n);
   for (std::size_t a = 0; a < n; ++a)
     if (!problem.ends.fixed[first + a]) return 0;
   const std::vector<double> rest(n, 0);
-  const PointValues at = evaluate_at(*problem.lagrangian, q, rest, 0, Order::hessian, scratch);
+  if (!point.evaluate(q, rest, 0, Order::hessian)) return 0;
+  std::vector<double> stiffness(n, 0), mass(n, 0);
+  for (const auto& [form, diagonal] : {std::pair(&point.qq(), &stiffness), std::pair(&point.vv(), &mass)})
+    for (const Triplet& entry : *form)
+      if (entry.row == entry.column) (*diagonal)[entry.row] += entry.value;
   double fastest = 0;
   for (std::size_t a = 0; a < n; ++a)
-    fastest = std::max(fastest, std::sqrt(std::abs(at.qq[a * n + a] / at.vv[a * n + a])));
+    fastest = std::max(fastest, std::sqrt(std::abs(stiffness[a] / mass[a])));
   return std::isfinite(fastest) && fastest > 0 ? 1 / fastest : 0;
 }
 
@@ -84,10 +89,10 @@ bool has_layer_at_end(const Problem& problem) {
       problem.manifold || problem.phase || problem.extension || problem.inequalities ||
       !problem.boundary.momenta.empty() || !reversible(problem.lagrangian->structure()))
     return false;
-  Scratch scratch;
-  const double T = problem.duration.value, end = shortest_time(problem, true, scratch);
+  PointEvaluator point(*problem.lagrangian);
+  const double T = problem.duration.value, end = shortest_time(problem, true, point);
   if (end == 0 || end > thinnest * T) return false;
-  return shortest_time(problem, false, scratch) > end;
+  return shortest_time(problem, false, point) > end;
 }
 
 Problem reversed(const Problem& problem) {

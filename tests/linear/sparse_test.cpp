@@ -213,6 +213,34 @@ TEST(Sparse, MalformedIsRefused) {
   EXPECT_FALSE(a.factor());
 }
 
+/// Each question of the deadline may be the last one: then nothing is factored, and the same matrix is later.
+TEST(Sparse, EndsAtTheDeadline) {
+  dense::Random random(7);
+  const Entries e = lattice(12, 20, random);
+  struct Questions {
+    int left;
+  };
+  const auto after = [](Questions& questions) {
+    return Deadline().or_stopped([](void* q) { return --static_cast<Questions*>(q)->left < 0; }, &questions);
+  };
+  SparseSymmetric a;
+  Questions none{0};
+  EXPECT_FALSE(a.pattern(e.n, e.rows, e.columns, after(none)));
+  Questions many{1 << 20};
+  ASSERT_TRUE(a.pattern(e.n, e.rows, e.columns, after(many)));
+  std::copy(e.values.begin(), e.values.end(), a.values());
+  ASSERT_TRUE(a.factor(after(many)));
+  const int asked = (1 << 20) - many.left;
+  EXPECT_GT(asked, 10);
+  for (const int last : {0, 1, asked / 3}) {
+    Questions few{last};
+    EXPECT_FALSE(a.factor(after(few)));
+    EXPECT_THROW(a.solve_step(std::vector<double>(e.n).data()), std::logic_error);
+  }
+  ASSERT_TRUE(e.factor(a));
+  expect_solves(a, e.dense(), near_roundoff);
+}
+
 TEST(Sparse, NothingIsPrinted) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();

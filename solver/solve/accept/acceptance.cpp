@@ -316,10 +316,11 @@ struct Judged {
   bool not_isolated;  ///< to the error that the tolerance leaves
 };
 
-/// Sets the solution.
+/// Sets the solution, without a deadline: the path meets the tolerance.
 Judged judge_path(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w,
                   Solution& solution) {
   const auto start = Clock::now();
+  w.iteration.end_at({});
   QuadratureCheck check;
   std::optional<Path> better;
   const Examined examined = examine_all(problem, options, found, w, better, check, solution);

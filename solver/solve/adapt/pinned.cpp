@@ -23,7 +23,9 @@ using namespace limits::pinned;
 
 PinnedSolve::PinnedSolve(const Problem& problem, const SolveOptions& options, Workspace& workspace,
                          const SchemeStart& start)
-    : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme), start_(start) {}
+    : problem_(problem), options_(options), w_(workspace), scheme_(*options.scheme), start_(start) {
+  w_.iteration.end_at(options.deadline);
+}
 
 void PinnedSolve::bind(int points) {
   w_.pinned_scheme = std::make_unique<SchemeTables>(scheme_, points);

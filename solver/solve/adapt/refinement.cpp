@@ -21,6 +21,7 @@ Refinement::Refinement(const Problem& problem, const SolveOptions& options, Work
 
 void Refinement::rebind() {
   w_.iteration.reset(problem_, *tables_, path_.elements(), &w_.levels.at(first_degree));
+  w_.iteration.end_at(options_.deadline);
   w_.iteration.hold_shifts(outcome_.shifts_held);
   w_.iteration.move_nodes(nodes_move_);
 }

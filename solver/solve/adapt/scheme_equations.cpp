@@ -17,6 +17,7 @@ SchemeEquations::SchemeEquations(const Problem& problem, const ElementTables& ta
   action_.give_momenta(problem.boundary.momenta);
   action_.give_costs(problem.boundary.costs);
   equations_.reset(problem, tables, elements);
+  equations_.list_entries();
   entries_.resize(equations_.rows().size());
   left_.resize(unknowns());
 }

@@ -56,6 +56,7 @@ void Branch::bind() {
   w_.levels.bind(problem_.lagrangian);
   tables_ = &w_.levels.at(path_.degree());
   w_.iteration.reset(problem_, *tables_, path_.elements());
+  w_.iteration.end_at({});
   if (folds_ == true) w_.iteration.model().set_null_below(0);
   factored_ = false;
 }

@@ -12,6 +12,7 @@ Displacement::Displacement(const Problem& problem, const ElementTables& tables, 
   action_.give_momenta(problem.boundary.momenta);
   action_.give_costs(problem.boundary.costs);
   equations_.reset(problem, tables, path.elements());
+  equations_.list_entries();
   entries_.resize(equations_.rows().size());
   weights_.resize(equations_.unknowns());
   equations_.share_time(path, weights_);

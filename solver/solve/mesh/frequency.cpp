@@ -50,6 +50,7 @@ void measure_frequency(const Problem& problem, DiscreteAction& action, const Ele
   frequency.clear();
   frequency.set_duration(path.duration());
   for (int b = 0; b < path.batches(); ++b) {
+    if (action.deadline().passed()) return frequency.add(0, NAN);
     const double* hessian = action.rows(path, b, Order::hessian) + (1 + s.gradient.size()) * stride;
     for (int lane = 0; lane < std::min(lanes, path.elements() - b * lanes); ++lane) {
       const double from = path.mesh()[b * lanes + lane], to = path.mesh()[b * lanes + lane + 1];

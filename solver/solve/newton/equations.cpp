@@ -16,8 +16,11 @@ void Equations::reset(const Problem& problem, const ElementTables& tables, int e
   all_.resize(unknowns_);
   for (int u = 0; u < unknowns_; ++u) all_[u] = {u, 1};
   number_ends();
-  list_entries();
-  list_entries_of_costs(problem.boundary.costs);
+  costs_ = problem.boundary.costs;
+  rows_.clear();
+  columns_.clear();
+  sources_.clear();
+  source_start_.clear();
   gradient_.resize(unknowns_);
   by_duration_.resize(problem.duration.free ? unknowns_ : 0);
 }
@@ -39,25 +42,40 @@ std::span<const Equations::Share> Equations::shares(int element, int local) cons
   return {end_shares_.data() + end_start_[e], static_cast<std::size_t>(end_start_[e + 1] - end_start_[e])};
 }
 
-void Equations::list_entries() {
-  const ElementTables::Entries& entries = tables_->entries();
-  rows_.clear();
-  columns_.clear();
-  sources_.clear();
+bool Equations::list_entries(const Deadline& deadline) {
+  if (!source_start_.empty()) return true;
+  const std::size_t most = tables_->entries().row.size() * elements_;
+  rows_.reserve(most + nodal());
+  columns_.reserve(most + nodal());
+  sources_.reserve(most);
   source_start_.assign(1, 0);
   for (int k = 0; k < elements_; ++k) {
-    for (std::size_t e = 0; e < entries.row.size(); ++e)
-      for (const Share& r : shares(k, entries.row[e]))
-        for (const Share& c : shares(k, entries.column[e])) {
-          // xᵀHx holds an entry off the diagonal twice: both meet where two unknowns become one.
-          const bool twice = entries.row[e] != entries.column[e] && r.unknown == c.unknown;
-          rows_.push_back(r.unknown);
-          columns_.push_back(c.unknown);
-          sources_.push_back(
-              {static_cast<int>(e) * lanes_ + k % lanes_, r.factor * c.factor * (twice ? 2 : 1)});
-        }
-    source_start_.push_back(static_cast<int>(sources_.size()));
+    if (deadline.passed()) {
+      rows_.clear();
+      columns_.clear();
+      sources_.clear();
+      source_start_.clear();
+      return false;
+    }
+    list_entries_of(k);
   }
+  list_entries_of_costs(costs_);
+  return true;
+}
+
+void Equations::list_entries_of(int element) {
+  const ElementTables::Entries& entries = tables_->entries();
+  for (std::size_t e = 0; e < entries.row.size(); ++e)
+    for (const Share& r : shares(element, entries.row[e]))
+      for (const Share& c : shares(element, entries.column[e])) {
+        // xᵀHx holds an entry off the diagonal twice: both meet where two unknowns become one.
+        const bool twice = entries.row[e] != entries.column[e] && r.unknown == c.unknown;
+        rows_.push_back(r.unknown);
+        columns_.push_back(c.unknown);
+        sources_.push_back(
+            {static_cast<int>(e) * lanes_ + element % lanes_, r.factor * c.factor * (twice ? 2 : 1)});
+      }
+  source_start_.push_back(static_cast<int>(sources_.size()));
 }
 
 /// Those of the costs of the ends, after those of the elements.

@@ -20,6 +20,9 @@ struct LengthDerivatives {
 class Equations {
  public:
   void reset(const Problem& problem, const ElementTables& tables, int elements);
+  /// Lists the places of the Hessian's entries; before that rows() and columns() are empty, and only
+  /// gradients may be evaluated. False, and nothing is listed, if the deadline passes before.
+  bool list_entries(const Deadline& deadline = {});
 
   int unknowns() const { return unknowns_; }
   /// Those of nodes and ends, which are numbered first.
@@ -76,7 +79,7 @@ class Equations {
   };
   std::span<const Share> shares(int element, int local) const;
   void number_ends();
-  void list_entries();
+  void list_entries_of(int element);
   void list_entries_of_costs(std::span<const EndCost> costs);
   void spread(std::vector<double>& to, int first, int last, const double* batch) const;
 
@@ -89,6 +92,7 @@ class Equations {
   std::vector<int> rows_, columns_;
   std::vector<int> source_start_;  ///< of each element
   std::vector<Source> sources_;
+  std::span<const EndCost> costs_;   ///< of the problem
   std::vector<double> end_entries_;  ///< of the costs of the ends
   std::vector<double> gradient_, by_duration_;
   double corner_ = 0, slope_ = 0;

@@ -38,6 +38,8 @@ class NewtonIteration {
   void reset(const Problem& problem, const ElementTables& tables, int elements,
              const ElementTables* low = nullptr);
   void set_scale(double scale) { scale_ = scale; }
+  /// From now on steps end without a result when the deadline passes: as singular, or not finite.
+  void end_at(const Deadline& deadline) { action_.end_at(deadline); }
 
   /// Assembles at `path`, factors and takes a damped step; then, where the simplified step that tested it
   /// is much smaller, takes that as well. `norm` becomes the size of the last correction, `contraction` its

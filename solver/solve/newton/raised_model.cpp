@@ -59,6 +59,7 @@ void RaisedModel::reset(const Problem& problem, const ElementTables& tables, int
 bool RaisedModel::evaluate(DiscreteAction& action, const Path& path, const ClosingEquation* closing) {
   low_.set_phases(phases_);
   low_path_.interpolate_from(path, low_tables_, down_);
+  low_action_.end_at(action.deadline());
   const bool factored = low_.evaluate(low_action_, low_path_, closing);
   evaluate_gradient(action, path);
   return factored && action.finite();

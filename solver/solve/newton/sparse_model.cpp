@@ -8,14 +8,22 @@ namespace extremal {
 
 void SparseModel::reset(const Problem& problem, const ElementTables& tables, int elements) {
   equations_.reset(problem, tables, elements);
+  phases_ = nullptr;
+  ordered_ = false;
+}
+
+/// At the first factorisation: the entries may be too many to be listed before the deadline. False if it
+/// passes.
+bool SparseModel::set_pattern(const Deadline& deadline) {
+  if (ordered_) return true;
+  if (!equations_.list_entries(deadline)) return false;
   std::vector<int> rows = equations_.rows(), columns = equations_.columns();
   // For the unit vectors of the border.
   for (std::vector<int>* places : {&rows, &columns}) {
     places->resize(places->size() + equations_.nodal());
     std::iota(places->end() - equations_.nodal(), places->end(), 0);
   }
-  matrix_.pattern(equations_.unknowns(), rows, columns);
-  phases_ = nullptr;
+  return ordered_ = matrix_.pattern(equations_.unknowns(), rows, columns, deadline);
 }
 
 void SparseModel::hold_phases() {
@@ -27,6 +35,10 @@ void SparseModel::hold_phases() {
 }
 
 bool SparseModel::evaluate(DiscreteAction& action, const Path& path, const ClosingEquation*) {
+  if (!set_pattern(action.deadline())) {
+    evaluate_gradient(action, path);
+    return false;
+  }
   const std::span<double> entries(matrix_.values(), equations_.rows().size());
   equations_.evaluate(action, path, entries);
   if (!action.finite()) return false;
@@ -36,7 +48,7 @@ bool SparseModel::evaluate(DiscreteAction& action, const Path& path, const Closi
   double* const pins = matrix_.values() + entries.size();
   std::fill_n(pins, equations_.nodal(), 0.0);
   for (const int u : border_.pinned()) pins[u] += largest;
-  if (!matrix_.factor()) return false;
+  if (!matrix_.factor(action.deadline())) return false;
   border_.factor(matrix_, largest, equations_.by_duration());
   return true;
 }

@@ -26,12 +26,14 @@ class SparseModel final : public SecondVariationModel {
   Equations& equations() { return equations_; }
 
  private:
+  bool set_pattern(const Deadline& deadline);
   void hold_phases();
 
   Equations equations_;
   SparseSymmetric matrix_;
   SparseBorder border_;
   std::vector<double> row_, right_;
+  bool ordered_ = false;  ///< the pattern, since reset()
 };
 
 }  // namespace extremal

@@ -40,7 +40,8 @@ Search::GuessKind Search::begin() {
     start(mesh_, bend_);
     measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
     if (w_.frequency.finite()) break;
-    if (guess_->guess.given() || seed == most_bends) return GuessKind::undefined;
+    if (guess_->guess.given() || seed == most_bends || options_.deadline.passed())
+      return GuessKind::undefined;
   }
   int elements = first_elements(w_.frequency);
   const double floor = guess_->guess.given() ? guess_floor : 1.0;

@@ -166,6 +166,7 @@ bool Search::through_weaker_forces() {
 
 /// A guess that asks for more elements than there may be would ask again.
 bool Search::from_finer_elements() {
+  if (refinement_.exhausted()) return false;
   const std::vector<double> finer = halved(mesh_);
   if (finer.size() > most_first_elements + 1) return false;
   start(finer, bend_);
@@ -306,6 +307,7 @@ void Search::renew(double share) { refinement_.allow(static_cast<int>(share * al
 
 /// Cheapest first; but where the user has given a guess, paths near it before noise.
 bool Search::from_other_guesses(GuessKind guess) {
+  if (options_.deadline.passed()) return false;
   if (guess == GuessKind::colliding && from_noise(collision_noises)) return true;
   if (problem_.guess.given() && !problem_.guess.motion() && resolve_guess() &&
       found("newton from the guess on finer elements"))
@@ -336,8 +338,18 @@ Search::GuessKind Search::prepare() {
   return guess;
 }
 
+/// Where it is the budget that has ended the search.
+const Outcome& Search::unless_spent() {
+  if (outcome_.status == Status::converged || !options_.deadline.passed()) return outcome_;
+  outcome_.status = Status::iteration_limit;
+  outcome_.message = fmt::format("{} (solve.budget) is spent, in Newton steps: {}; raise it, or try {}",
+                                 options_.deadline.budget_text(), outcome_.iterations,
+                                 others_to_try(problem_, "a better guess", "a shorter duration"));
+  return outcome_;
+}
+
 const Outcome& Search::run_near_guess() {
-  if (prepare() == GuessKind::undefined) return outcome_;
+  if (prepare() == GuessKind::undefined) return unless_spent();
   // Between fixed ends a path may well be at rest.
   if (problem_.ends.free > 0) outcome_.first_range = scales(path_, refinement_.tables()).range;
   auto [result, doubtful] = pursue_guess(from_guess);
@@ -352,7 +364,7 @@ const Outcome& Search::run_near_guess() {
 
 const Outcome& Search::run(Acceptance* acceptance) {
   const GuessKind guess = prepare();
-  if (guess == GuessKind::undefined) return outcome_;
+  if (guess == GuessKind::undefined) return unless_spent();
   acceptance_ = acceptance;
   auto [result, doubtful] = pursue_guess(from_guess);
   if (result != Refinement::Result::converged && on_family(false)) {
@@ -415,14 +427,8 @@ const Outcome& Search::run(Acceptance* acceptance) {
         "remains that no step removes: what drives the motion is in resonance, and there is neither an orbit "
         "of this period nor a family of them near; change the duration or the force";
   }
-  if (outcome_.status != Status::converged && options_.deadline.passed()) {
-    outcome_.status = Status::iteration_limit;
-    outcome_.message = fmt::format("{} (solve.budget) is spent, in Newton steps: {}; raise it, or try {}",
-                                   options_.deadline.budget_text(), outcome_.iterations,
-                                   others_to_try(problem_, "a better guess", "a shorter duration"));
-  }
   acceptance_ = nullptr;
-  return outcome_;
+  return unless_spent();
 }
 
 }  // namespace extremal

@@ -80,6 +80,7 @@ class Search {
   void start(const std::vector<double>& mesh, const Bend& bend, int degree = Refinement::first_degree);
   GuessKind prepare();
   GuessKind begin();
+  const Outcome& unless_spent();
   bool mesh_of_motion();
   void put_on_motion(std::size_t elements);
   bool search_on_steps_of_motion();
