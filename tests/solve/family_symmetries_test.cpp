@@ -179,5 +179,24 @@ TEST(Isochronous, OrbitsOfTwiceThePeriod) {
   EXPECT_GT(found.branches[1].points, 5);
 }
 
+/// Orbits whose y turns twice a period begin at the x-axis and end at the y-axis, on an orbit run through
+/// twice: beyond are the same ones half a period later.
+TEST(HalfPeriods, EndAFamilyThatTurnsBackThere) {
+  const FollowedBranch found = follow(
+      study_of("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - x^4/4 - y^2 - "
+               "0.3*x^2*y^2\"\n[boundary]\nperiodic = true\nduration = \"free\"\nenergy = 0.12\n"
+               "[guess]\nx = \"0.83*cos(2*pi*t/T)\"\nduration = 9\n[continuation]\nparameter = \"energy\"\n"
+               "to = 1.7\npoints = 40\nswitch = true\n"));
+  int crossing = 0;
+  for (std::size_t k = 1; k < found.branches.size(); ++k) {
+    const BranchRecord& record = found.branches[k];
+    if (found.points[*record.origin].kind != PointKind::branch) continue;
+    ++crossing;
+    EXPECT_EQ(record.end, BranchEnd::closed) << record.message;
+    EXPECT_LT(record.points, 20);
+  }
+  EXPECT_EQ(crossing, 2);
+}
+
 }  // namespace
 }  // namespace extremal::laws
