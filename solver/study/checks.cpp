@@ -8,6 +8,7 @@
 
 #include "machine/simd.hpp"
 #include "problem/nearby.hpp"
+#include "solve/bordered/limits.hpp"
 #include "solve/guess/starting_ends.hpp"
 
 namespace extremal {
@@ -154,6 +155,28 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
                   "move this end",
                   energy, end ? "end" : "start", point_text(problem, q), least));
   }
+}
+
+bool where_determines(const Problem& problem) {
+  const std::size_t n = problem.coordinates();
+  const std::vector<double> first = starting_ends(problem);
+  std::vector<double> gradient(2 * n);
+  unsigned seed = 0;
+  int known = 0;
+  for (const double distance : limits::bordered::state_distances) {
+    const std::vector<double> ends = moved_ends(problem, first, distance, seed++);
+    const double value = problem.duration.where({ends.data(), n}, {ends.data() + n, n}, gradient);
+    if (!std::isfinite(value)) continue;
+    ++known;
+    std::vector<double> change(problem.ends.free, 0), terms(problem.ends.free, 0);
+    for (const Triplet& z : problem.ends.z) {
+      change[z.column] += z.value * gradient[z.row];
+      terms[z.column] += std::abs(z.value * gradient[z.row]);
+    }
+    for (std::size_t j = 0; j < change.size(); ++j)
+      if (!(std::abs(change[j]) <= limits::bordered::structural * terms[j])) return true;
+  }
+  return known < 2;
 }
 
 void check_free_steps(const Problem& problem, const Location& at) {

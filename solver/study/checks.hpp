@@ -19,6 +19,10 @@ bool is_finite_on_guess(const Problem& problem);
 /// where L is convex in the velocities, E = q'·∂L/∂q' − L is least at rest, −L(q, 0).
 void check_energy_at_ends(const Problem& problem, const Location& at);
 
+/// Whether 'where' changes with what the relation leaves free of the ends, somewhere about the guess: else it
+/// follows from them, or contradicts them.
+bool where_determines(const Problem& problem);
+
 /// Throws SceneError at `at` where the times of the nodes cannot be unknowns: all elements have one energy,
 /// so L must not depend on t, and a free duration is closed by that energy.
 void check_free_steps(const Problem& problem, const Location& at);

@@ -230,6 +230,11 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
     throw SceneError(position(*scene.boundary.where, 0),
                      "'where' names ends that are fixed, so it does not determine the duration; give the "
                      "duration, or 'energy' instead of 'where'");
+  if (problem.duration.where && !where_determines(problem))
+    throw SceneError(position(*scene.boundary.where, 0),
+                     fmt::format("the condition '{}' follows from what else is given at the ends, or "
+                                 "contradicts it; give the duration, or 'energy' instead of 'where'",
+                                 scene.boundary.where->value));
   if (scene.boundary.energy && !problem.extension) check_energy_at_ends(problem, scene.boundary.energy->at);
   put_inequalities(scene, system, problem);
   return problem;

@@ -53,6 +53,26 @@ TEST_F(Scenes, ConditionsThatSelectNoUnknown) {
   EXPECT_EQ(refused("a = 0.3", "\"x(T) = 0.7\""), "");
 }
 
+/// A condition that closes a duration, and that all paths between the ends meet, or none.
+TEST_F(Scenes, ConditionsThatDetermineNoDuration) {
+  const auto refused = [&](const std::string& form, const std::string& where) {
+    return message(
+        "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - (x^4 + y^2)/2\"\n"
+        "[boundary]\n" +
+        form + "\nduration = \"free\"\nwhere = \"" + where + "\"\n" +
+        "[guess]\nx = \"cos(2*pi*t/T)\"\ny = \"sin(2*pi*t/T)\"\nduration = 6\n");
+  };
+  const std::string closed = "periodic = true", turned = "periodic = true\nmap = { x = \"-x\" }";
+  expect_start(refused(closed, "x(0) = x(T)"),
+               "scene.toml:7:10: the condition 'x(0) = x(T)' follows from what else is given at the ends, or "
+               "contradicts it; give the duration, or 'energy' instead of 'where'");
+  expect_start(refused(closed, "x(0)*y(T) - y(0)*x(T) = 1"), "scene.toml:7:10: the condition ");
+  expect_start(refused(turned, "x(0) + x(T) = 0"), "scene.toml:8:10: the condition ");
+  EXPECT_EQ(refused(turned, "x(0) - x(T) = 1"), "");
+  EXPECT_EQ(refused(closed, "x(0) = 0.5"), "");
+  EXPECT_EQ(refused("conditions = [\"y(0) = 0\"]", "x(T) = 0.5"), "");
+}
+
 /// One combination of constants: a + b², and a constant with the multiplier of an integral. Of L = … + a cos
 /// t no equation contains a.
 TEST_F(Scenes, UnknownsThatNothingDetermines) {
