@@ -7,6 +7,7 @@
 #include "linear/dense.hpp"
 #include "problem/manifold.hpp"
 #include "study/constraints.hpp"
+#include "study/contradiction.hpp"
 #include "study/limits.hpp"
 
 namespace extremal {
@@ -28,6 +29,7 @@ class ConstrainedGuess {
     const Guess given = problem_.guess;
     const std::size_t failed = project(problem_.guess);
     if (failed == problem_.guess.tau.size()) return;
+    check_contradictions(scene_, problem_, given.q);
     const double t = time(given.tau[failed]);
     const VectorXd g = manifold_.at({given.q.data() + failed * n_, n_}, t).g;
     Index worst = 0;
@@ -52,6 +54,7 @@ class ConstrainedGuess {
       problem_.guess = std::move(guess);
       return;
     }
+    check_contradictions(scene_, problem_, lines.q);
     throw SceneError(
         scene_.boundary.at,
         waypoints.empty()

@@ -82,6 +82,18 @@ inline constexpr double bends[] = {0, 0.1, -0.1, 0.3, -0.3, 1, -1, 3, -3};
 
 }  // namespace extremal::limits::constraints
 
+namespace extremal::limits::contradiction {
+
+/// Equal parts of a guess at whose ends constraints are tried, at so many points about each, the first one
+/// itself.
+inline constexpr int parts = 4, tries = 3;
+/// Steps onto the constraints before one; steps toward it along them, down to this part of Newton's, as long
+/// as what it is missed by falls by this part.
+inline constexpr int most_corrections = 50, most_approaches = 200;
+inline constexpr double least_part = 1e-9, least_fall = 1e-9;
+
+}  // namespace extremal::limits::contradiction
+
 namespace extremal::limits::polar {
 
 /// Points beside the path at which second derivatives of constraints and rotations are compared.

@@ -301,6 +301,29 @@ TEST_F(Scenes, ConstraintsThatDependOnEachOther) {
       "by constraints with independent gradients");
 }
 
+/// The sphere and a plane beside it; a plane through it that misses what is given at the start.
+TEST_F(Scenes, ConstraintsThatContradict) {
+  const auto sphere = [&](const std::string& constraints) {
+    return message(
+        "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\n"
+        "constraints = [" +
+        constraints + "]\n[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 0, y = 1 }\nduration = 1\n");
+  };
+  const std::string unit = "\"x^2 + y^2 + z^2 = 1\"";
+  EXPECT_EQ(sphere(unit + ", \"z = 2\""),
+            "scene.toml:4:40: the constraint 'z = 2' contradicts the ones before it near the guess: left − "
+            "right = -1 is the least there; correct it, or give a guess near points where all constraints "
+            "hold");
+  EXPECT_EQ(sphere("\"z = 2\", " + unit),
+            "scene.toml:4:26: the constraint 'x^2 + y^2 + z^2 = 1' contradicts the ones before it near the "
+            "guess: left − right = 3 is the least there; correct it, or give a guess near points where all "
+            "constraints hold");
+  EXPECT_EQ(
+      sphere(unit + ", \"z = 0.9\""),
+      "scene.toml:6:11: no point near the guess satisfies both the constraints and what is given at the "
+      "start: of 'z = 0.9' left − right = 0.1 remains; give other values");
+}
+
 TEST_F(Scenes, InequalitiesAreNoConstraintsOfASystem) {
   EXPECT_EQ(message("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n"
                     "constraints = [\"x^2 + y^2 >= 1\"]\n[boundary]\nstart = { x = 1, y = 0 }\n"
