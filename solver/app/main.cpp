@@ -6,6 +6,7 @@
 #include "app/command_line.hpp"
 #include "app/commands.hpp"
 #include "app/terminal.hpp"
+#include "study/memory.hpp"
 
 int main(int argc, char** argv) {
   using namespace extremal::app;
@@ -18,6 +19,8 @@ int main(int argc, char** argv) {
   } catch (const UsageError& e) {
     print_error(e.what());
     print_help(e.help);
+  } catch (const extremal::OutOfMemory& e) {
+    print_error(e.what());
   } catch (const std::bad_alloc&) {
     print_error("there is not enough memory");
   } catch (const std::exception& e) {

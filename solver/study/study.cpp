@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "machine/simd.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
@@ -15,6 +16,7 @@
 #include "problem/recurrence.hpp"
 #include "scene/scene.hpp"
 #include "solution/extension_values.hpp"
+#include "solve/adapt/refinement.hpp"
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
 #include "study/constraints.hpp"
@@ -278,10 +280,12 @@ void read_fitted_law(Scene scene, Purpose purpose, Study& study) {
       purpose, study);
 }
 
-/// Refuses what would not fit into memory. Without a scheme, the least that a solve begins with.
+/// Refuses what would not fit into memory. Without a scheme, the elements that a search begins with.
 void check_memory(const Scene& scene, const Study& study) {
-  const int n = study.problem.coordinates(), elements = std::max(study.options.elements, 1);
-  const int degree = study.options.scheme ? study.options.scheme->degree : 2;
+  const bool adaptive = !study.options.scheme;
+  const int n = study.problem.coordinates();
+  const int elements = std::max(study.options.elements, adaptive && !study.problem.initial ? most_lanes : 1);
+  const int degree = adaptive ? Refinement::first_degree : study.options.scheme->degree;
   const double needed = study.problem.initial
                             ? march_bytes(n, elements, degree)
                             : solve_bytes(study.problem.motion().structure(), elements, degree);
@@ -289,8 +293,9 @@ void check_memory(const Scene& scene, const Study& study) {
   if (needed > available)
     throw SceneError(
         scene.solve.elements ? scene.solve.elements->at : scene.system.at,
-        fmt::format("{} coordinates and {} elements of degree {} need {} of memory; {} are available", n,
-                    elements, degree, byte_text(needed), byte_text(available)));
+        fmt::format("{} coordinates and {} elements of degree {} need {} of memory; {} are available; {}", n,
+                    elements, degree, byte_text(needed), byte_text(available),
+                    scene.solve.elements ? "lower 'elements'" : "take, or couple, fewer coordinates"));
 }
 
 /// What forces exclude: several extremals are told apart, and interior points found, by the action.
@@ -365,12 +370,30 @@ Study make_study(const Scene& scene, Purpose purpose) {
   return study;
 }
 
+/// work(); OutOfMemory where there is not enough of it for the `subject`.
+template <class Work>
+auto within_memory(const std::string& scene, const std::string& subject, const Work& work) {
+  try {
+    return work();
+  } catch (const OutOfMemory&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory(
+        fmt::format("{}: {} needs more memory than the {} that are available; take, or couple, fewer "
+                    "coordinates, or take "
+                    "fewer elements",
+                    scene, subject, byte_text(available_bytes())));
+  }
+}
+
 /// Of a path or a text.
 template <class Where>
 Study load_checked(const Where& where, const std::vector<std::string>& sets, Purpose purpose) {
   const Scene scene = with_unknowns(read_scene(where, sets));
   try {
-    return with_parameters_used(scene, [&] { return make_study(scene, purpose); });
+    return within_memory(scene.path, "the system", [&] {
+      return with_parameters_used(scene, [&] { return make_study(scene, purpose); });
+    });
   } catch (const FormulaError& e) {  // of a definition that an end, a duration or a guess names
     throw at_its_place(scene.system, e);
   }
@@ -382,6 +405,10 @@ Study load_timed(const Where& where, const std::vector<std::string>& sets, Purpo
   Study study = with_suggestion([&] { return load_checked(where, sets, purpose); });
   study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
   return study;
+}
+
+std::string path_of(const Study& study) {
+  return fmt::format("a path of {} coordinates", study.problem.coordinates());
 }
 
 /// What solve() returns the last time, with the medians of the times it took.
@@ -460,17 +487,21 @@ Study load(const std::shared_ptr<const Source>& text, const std::vector<std::str
 
 Solution run(const Study& study, int repeat) {
   Solver solver;
-  return repeated(study, repeat,
-                  [&](const SolveOptions& options) {
-                    return std::vector<Solution>{solver.solve(study.problem, options)};
-                  })
-      .front();
+  return within_memory(study.scene, path_of(study), [&] {
+    return repeated(study, repeat,
+                    [&](const SolveOptions& options) {
+                      return std::vector<Solution>{solver.solve(study.problem, options)};
+                    })
+        .front();
+  });
 }
 
 std::vector<Solution> run_all(const Study& study, int repeat) {
   Solver solver;
-  return repeated(study, repeat, [&](const SolveOptions& options) {
-    return solver.solve_all(study.problem, options, study.solutions);
+  return within_memory(study.scene, path_of(study), [&] {
+    return repeated(study, repeat, [&](const SolveOptions& options) {
+      return solver.solve_all(study.problem, options, study.solutions);
+    });
   });
 }
 

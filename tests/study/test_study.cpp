@@ -182,7 +182,7 @@ TEST_F(Scenes, WhatDoesNotFitIntoMemoryIsRefusedWhenItIsRead) {
   EXPECT_GT(needed, 1e15);
   EXPECT_EQ(message(chain + "elements = 100000000\n"),
             "scene.toml:8:12: 1000 coordinates and 100000000 elements of degree 8 need " + byte_text(needed) +
-                " of memory; " + byte_text(available_bytes()) + " are available");
+                " of memory; " + byte_text(available_bytes()) + " are available; lower 'elements'");
 }
 
 TEST_F(Scenes, DifferencesFollowFunctionsOfAnyScale) {
@@ -219,6 +219,24 @@ TEST_F(Scenes, TheBudgetIsPositiveAndEndsWhatDoesNotConverge) {
   EXPECT_EQ(solution.status, Status::iteration_limit);
   EXPECT_EQ(solution.message.rfind("the budget of 0 s (solve.budget) is spent, in Newton steps: ", 0), 0u)
       << solution.message;
+}
+
+/// So many coupled coordinates that the factors are those of one sparse matrix: asked before and within.
+TEST_F(Scenes, TheBudgetIsKeptByManyCoupledCoordinates) {
+  Study s = study(
+      "[system]\ncoordinates = [\"q[180]\"]\nlagrangian = \"sum(i, 1, 180, q[i]'^2/2) - sum(i, 1, 180, "
+      "sum(j, 1, 180, (q[j] - q[i])^2/360))\"\n[boundary]\nstart = { q = \"sin(i)\" }\n"
+      "end = { q = \"cos(i)\" }\nduration = 1\n");
+  for (int last : {0, 3, 20, 100}) {
+    s.options.deadline =
+        Deadline().or_stopped([](void* left) { return --*static_cast<int*>(left) < 0; }, &last);
+    const Solution solution = run(s);
+    EXPECT_EQ(solution.status, Status::iteration_limit) << solution.message;
+    EXPECT_NE(solution.message.find("(solve.budget) is spent"), std::string::npos) << solution.message;
+  }
+  s.options.deadline = {};
+  const Solution whole = run(s);
+  EXPECT_TRUE(whole.converged()) << whole.message;
 }
 
 TEST_F(Scenes, KnowTheFilesThatTheyWereReadFrom) {
