@@ -88,7 +88,7 @@ TEST_F(Scenes, GuessFromAResult) {
   EXPECT_NEAR(guessed(s, 0.75, 0), 2.25, 1e-14);  // a parabola through three samples
   write("r.json", "{\"status\": \"converged\"}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
-            "r.json: this result has no samples; solve with --samples to write some");
+            "r.json: the file has no samples; write it with --samples 201 to have some");
   write("r.json", "{\"samples\": {\"t\": [0, 1], \"x\": [0, null]}}");
   EXPECT_EQ(message(masses + ends + "[guess]\nfile = \"r.json\"\n"),
             "r.json: 'x' of the samples is not a list of finite numbers");
@@ -113,9 +113,9 @@ TEST_F(Scenes, GuessFilesThatAreWrong) {
   EXPECT_EQ(csv("x,t,q[1],q[2],q[3]\n# none\n"), "g.csv:1:1: found 0 samples; need at least 2");
   EXPECT_EQ(csv("# none\n"), "g.csv: the file has no columns; write a column t and one for each coordinate");
   EXPECT_EQ(csv("t,x,q[1],q[2],q[3]\n0,0,0,0,0\n0,0,0,0,0\n"),
-            "g.csv:3:1: the times must increase; found 0 after 0");
+            "g.csv:3:1: the times must increase; found 0 after 0; order the rows by t, one path a file");
   EXPECT_EQ(csv("x,t,q[1],q[2],q[3]\n0,0,0,0,0\n0,2,0,0,0\n\n0,1,0,0,0\n"),
-            "g.csv:5:3: the times must increase; found 1 after 2");
+            "g.csv:5:3: the times must increase; found 1 after 2; order the rows by t, one path a file");
   EXPECT_EQ(csv("time,x,q[1],q[2],q[3]\n0,0,0,0,0\n1,1,1,1,1\n"),  // without velocities: a path
             "g.csv:1:1: the file has no column 't'; it has time, x, q[1], q[2], q[3]");
   EXPECT_EQ(csv("time,x,x',q[1],q[2],q[3]\n0,0,0,0,0,0\n"),  // a state
@@ -230,8 +230,8 @@ TEST_F(Scenes, GuessFromAStateNeedsARegularMass) {
 }
 
 TEST_F(Scenes, GuessFilesOfListsAreNoCsv) {
-  for (const auto& [text, said] :
-       {std::pair("[[[[", "from here on this is not JSON"), std::pair("[1, 2]", "guess.json: this ")}) {
+  for (const auto& [text, said] : {std::pair("[[[[", "from here on this is not JSON"),
+                                   std::pair("[1, 2]", "guess.json: the file has no samples")}) {
     write("guess.json", text);
     const std::string what = message(masses + ends + "[guess]\nfile = \"guess.json\"\n");
     EXPECT_EQ(what.find("column"), std::string::npos) << what;

@@ -78,6 +78,41 @@ TEST_F(Scenes, GuessFromAnOrbitOfJplInJson) {
             "scene.toml:10:8: this file does not tell a duration; give 'duration' in [guess]");
 }
 
+/// Of a search and of a branch, as they are written.
+TEST_F(Scenes, GuessFromOneOfSeveralPaths) {
+  const std::string scene =
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[boundary]\nstart = { x = 0 }\nend = { x = "
+      "0 "
+      "}\nduration = 2\n[guess]\nfile = \"paths.";
+  const auto expect_rows = [&](const std::string& ending) {
+    EXPECT_EQ(guessed(study(scene + ending + "\"\norbit = 1\n"), 0.5, 0), 1);
+    EXPECT_EQ(guessed(study(scene + ending + "\"\norbit = 2\n"), 0.5, 0), -3);
+    for (const std::string orbit : {"0", "3", "99"})
+      EXPECT_EQ(message(scene + ending + "\"\norbit = " + orbit + "\n"),
+                "scene.toml:10:9: orbit = " + orbit + "; 'paths." + ending + "' has the orbits 1 to 2");
+  };
+  const std::string first = R"("samples": {"t": [0, 1, 2], "x": [0, 1, 0]})",
+                    second = R"("samples": {"t": [0, 1, 2], "x": [0, -3, 0]})";
+  write("paths.json", "{" + first + ", \"solutions\": [{" + first + "}, {" + second + "}]}");
+  expect_rows("json");
+  EXPECT_EQ(guessed(study(scene + "json\"\n"), 0.5, 0), 1);  // the file is the result of its first solution
+  write("paths.csv", "solution,t,x\n1,0,0\n1,1,1\n1,2,0\n2,0,0\n2,1,-3\n2,2,0\n");
+  expect_rows("csv");
+  EXPECT_EQ(message(scene + "csv\"\n"),
+            "paths.csv: the file has 2 orbits; say which in [guess], as orbit = 1");
+  write("paths.json", "{\"points\": [{" + first + "}, {" + second + "}]}");
+  expect_rows("json");
+  EXPECT_EQ(message(scene + "json\"\n"),
+            "paths.json: the file has 2 orbits; say which in [guess], as orbit = 1");
+  write("paths.json", "{\"points\": [{\"start\": {\"x\": 0}}]}");
+  EXPECT_EQ(message(scene + "json\"\n"),
+            "paths.json: the file has no samples; write it with --samples 201 to have some");
+  write("paths.csv", "t,x\n0,0\n1,1\n2,0\n");
+  EXPECT_EQ(guessed(study(scene + "csv\"\norbit = 1\n"), 0.5, 0), 1);
+  EXPECT_EQ(message(scene + "csv\"\norbit = 2\n"),
+            "scene.toml:10:9: orbit = 2; 'paths.csv' has one orbit; leave 'orbit' out");
+}
+
 TEST_F(Scenes, GuessFromARowOfATable) {
   write("orbits.csv",
         "Id ,x0 (LU),y0 (LU),z0 (LU),vx0 (LU/TU),vy0 (LU/TU),vz0 (LU/TU),\"Jacobi constant (LU2/TU2)\","
@@ -139,7 +174,8 @@ TEST_F(Scenes, GuessFromAutosSolutions) {
   EXPECT_NE(message(oscillator).find("ends within a solution"), std::string::npos) << message(oscillator);
   std::string standing = solution(3, 6.25);
   write("fort.8", standing.replace(standing.find("2.5000000000E-01"), 16, "0.0000000000E+00"));
-  EXPECT_EQ(message(oscillator), "fort.8:1:1: the times must increase; found 0 after 0");
+  EXPECT_EQ(message(oscillator),
+            "fort.8:1:1: the times must increase; found 0 after 0; order the rows by t, one path a file");
   write("fort.8", "1 1 1 1 1 1 -5 3 4 5 6\n");
   EXPECT_EQ(message(oscillator), "fort.8:1:1: the numbers of points, columns and lines cannot be negative");
   write("fort.8", "1 1 1 1 1 1 5 1 4 5 6\n");

@@ -46,6 +46,21 @@ class Columns {
   std::vector<std::vector<double>> columns_;
 };
 
+/// Rows of one path; those of a search are numbered from 1 in a first column.
+std::vector<const std::vector<CsvCell>*> rows_of_path(const CsvFile& file, const SourcePointer& source,
+                                                      const std::vector<std::string>& names,
+                                                      const std::optional<Number>& orbit) {
+  std::vector<const std::vector<CsvCell>*> rows;
+  const bool numbered = file.header.front().text == "solution" && !std::ranges::count(names, "solution");
+  std::size_t count = 1;
+  for (const std::vector<CsvCell>& row : file.rows)
+    if (numbered) count = std::max(count, static_cast<std::size_t>(std::max(1.0, number_in(row.front()))));
+  const std::size_t chosen = chosen_row(count, orbit, source);
+  for (const std::vector<CsvCell>& row : file.rows)
+    if (!numbered || number_in(row.front()) == static_cast<double>(chosen + 1)) rows.push_back(&row);
+  return rows;
+}
+
 GuessFile read_csv_guess(const SourcePointer& source, const std::vector<std::string>& names,
                          const std::optional<Number>& orbit) {
   const CsvFile file = read_csv(source);
@@ -64,22 +79,36 @@ GuessFile read_csv_guess(const SourcePointer& source, const std::vector<std::str
     if (find(name) == file.header.end()) throw missing_column(file, name);
     columns.push_back(find(name) - file.header.begin());
   }
-  for (const std::vector<CsvCell>& row : file.rows) {
-    path.t.push_back(number_in(row[columns[0]]));
-    for (std::size_t a = 1; a < columns.size(); ++a) path.q.push_back(number_in(row[columns[a]]));
+  const std::vector<const std::vector<CsvCell>*> rows = rows_of_path(file, source, names, orbit);
+  for (const std::vector<CsvCell>* row : rows) {
+    path.t.push_back(number_in((*row)[columns[0]]));
+    for (std::size_t a = 1; a < columns.size(); ++a) path.q.push_back(number_in((*row)[columns[a]]));
   }
   check_times(path.t, [&](std::size_t k) {
-    return file.rows.empty() ? file.header.front().at : file.rows[k][columns[0]].at;
+    return rows.empty() ? file.header.front().at : (*rows[k])[columns[0]].at;
   });
   return path;
 }
 
-GuessFile read_result(const SourcePointer& source, const std::vector<std::string>& names) {
+/// Of a result the first solution is the result itself; of a branch each point is one.
+const Json& chosen_solution(const Json& root, const std::optional<Number>& orbit,
+                            const SourcePointer& source) {
+  const auto solutions = root.find("solutions"), points = root.find("points");
+  if (points != root.end() && points->is_array()) return (*points)[chosen_row(points->size(), orbit, source)];
+  if (!orbit) return root;
+  const bool several = solutions != root.end() && solutions->is_array();
+  const std::size_t row = chosen_row(several ? solutions->size() : 1, orbit, source);
+  return several ? (*solutions)[row] : root;
+}
+
+GuessFile read_result(const SourcePointer& source, const std::vector<std::string>& names,
+                      const std::optional<Number>& orbit) {
   const Location whole{source, 0, 0};
   const Json root = parse_json(source, "write the file with solve --output, or as CSV with a line of names");
-  const auto found = root.is_object() ? root.find("samples") : root.end();
-  if (!root.is_object() || found == root.end() || !found->is_object())
-    throw SceneError(whole, "this result has no samples; solve with --samples to write some");
+  const Json& solution = root.is_object() ? chosen_solution(root, orbit, source) : root;
+  const auto found = solution.is_object() ? solution.find("samples") : solution.end();
+  if (!solution.is_object() || found == solution.end() || !found->is_object())
+    throw SceneError(whole, "the file has no samples; write it with --samples 201 to have some");
   Columns columns(whole);
   for (const std::string& name : names) {
     const auto column = found->find(name);
@@ -122,13 +151,14 @@ GuessFile read_any(const std::string& path, const std::vector<std::string>& name
   const std::string ending = std::filesystem::path(path).extension().string();
   if (ending == ".npz" || ending == ".npy") {
     source = std::make_shared<Source>(Source{path, ""});
+    chosen_row(1, orbit, source);
     return ending == ".npz" ? read_arrays(path, wanted) : read_loops(path, names);
   }
   source = read_source(path);
   const std::size_t first = source->text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && (source->text[first] == '{' || source->text[first] == '[')) {
     std::optional<GuessFile> table = read_json_table(source, names, orbit);
-    return table ? *table : read_result(source, wanted);
+    return table ? *table : read_result(source, wanted, orbit);
   }
   return is_auto_file(source->text) ? read_auto_file(source, names, orbit)
                                     : read_csv_guess(source, wanted, orbit);
@@ -142,7 +172,10 @@ void check_times(std::span<const double> t, const std::function<Location(std::si
                      fmt::format("found {} sample{}; need at least 2", t.size(), t.empty() ? "s" : ""));
   for (std::size_t k = 1; k < t.size(); ++k)
     if (!(t[k] > t[k - 1]))
-      throw SceneError(place(k), fmt::format("the times must increase; found {} after {}", t[k], t[k - 1]));
+      throw SceneError(
+          place(k),
+          fmt::format("the times must increase; found {} after {}; order the rows by t, one path a file",
+                      t[k], t[k - 1]));
 }
 
 GuessFile read_guess_file(const std::string& path, const std::vector<std::string>& names,

@@ -91,6 +91,9 @@ std::size_t chosen_row(std::size_t count, const std::optional<Number>& orbit, co
   if (!orbit)
     throw SceneError({source, 0, 0},
                      fmt::format("the file has {} orbits; say which in [guess], as orbit = 1", count));
+  if (count == 1 && orbit->value != 1)
+    throw SceneError(orbit->at, fmt::format("orbit = {}; '{}' has one orbit; leave 'orbit' out", orbit->value,
+                                            source->name));
   if (!(orbit->value >= 1 && orbit->value <= static_cast<double>(count)))
     throw SceneError(
         orbit->at, fmt::format("orbit = {}; '{}' has the orbits 1 to {}", orbit->value, source->name, count));
