@@ -127,7 +127,7 @@ struct Figure {
   std::vector<Panel> panels = {};
 };
 
-/// Width of a text in pixels, within some 10 %.
+/// Width of a text in pixels in DejaVu Sans, the widest of the usual fonts, within some 10 %.
 double text_width(const std::string& text);
 
 /// In the legend of a figure: room for the sample, and all of an entry.

@@ -56,6 +56,12 @@ std::optional<Picture> flattened(const Picture& picture, const Bodies& bodies) {
   if (kept.size() == picture.names.size()) return std::nullopt;
   flat.samples = selected(picture.samples, kept);
   for (Samples& other : flat.others) other = selected(other, kept);
+  for (std::vector<WaypointImpulse>& waypoints : flat.waypoints)
+    for (WaypointImpulse& waypoint : waypoints) {
+      std::erase_if(waypoint.impulse, [&](const auto& jump) { return across[jump.first]; });
+      for (auto& [a, jump] : waypoint.impulse)
+        a = static_cast<int>(std::ranges::find(kept, static_cast<std::size_t>(a)) - kept.begin());
+    }
   flat.annotation.centres.clear();
   const std::vector<Family> groups = families(picture.names);
   for (const Centre& centre : picture.annotation.centres) {

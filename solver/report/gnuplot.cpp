@@ -102,6 +102,7 @@ class Script {
         sizes_(sizes_of(format)) {
     terminal(format);
     add("set encoding utf8\nset key off\nset multiplot\n");
+    add("set clip two\n");  // lines whose ends are both outside are drawn as well
     add("set cbrange [0:1]\n");
     header();
     for (const Panel& panel : figure.panels) draw(panel);

@@ -7,7 +7,26 @@
 
 namespace extremal {
 
-std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies) {
+namespace {
+
+bool is_fixed(const WaypointImpulse& waypoint, std::size_t coordinate) {
+  return std::ranges::any_of(
+      waypoint.impulse, [&](const auto& jump) { return static_cast<std::size_t>(jump.first) == coordinate; });
+}
+
+/// Those of one solution that fix a coordinate, on its curve.
+void mark_waypoints(const std::vector<WaypointImpulse>& waypoints, const Samples& samples, std::size_t a,
+                    Colour colour, TimePanel& panel) {
+  for (const WaypointImpulse& waypoint : waypoints)
+    if (is_fixed(waypoint, a))
+      panel.marks.push_back(
+          {waypoint.time, value_at(samples.t, samples.q[a], waypoint.time), colour, Shape::square});
+}
+
+}  // namespace
+
+std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies,
+                                 const std::vector<WaypointImpulse>& waypoints) {
   const std::vector<Colour> colours = distinct_colours(bodies.places.size());
   std::vector<BodyPath> paths;
   for (std::size_t i = 0; i < bodies.places.size(); ++i) {
@@ -16,6 +35,12 @@ std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies) {
                      .colour = colours[i],
                      .t = &samples.t});
     for (const std::size_t a : bodies.places[i]) paths.back().axes.push_back(&samples.q[a]);
+    for (const WaypointImpulse& waypoint : waypoints) {
+      BodyWaypoint passed{waypoint.time, {}};
+      for (std::size_t axis = 0; axis < bodies.places[i].size(); ++axis)
+        if (is_fixed(waypoint, bodies.places[i][axis])) passed.axes.push_back(axis);
+      if (!passed.axes.empty()) paths.back().waypoints.push_back(std::move(passed));
+    }
   }
   return paths;
 }
@@ -54,6 +79,8 @@ TimePanel coordinate_panel(const Picture& picture, std::size_t a, const Solution
   TimePanel panel{
       .label = axis_name(picture.annotation, picture.names[a]), .columns = {}, .colours = key.colours};
   for (const Samples* samples : solutions_of(picture)) {
+    const std::size_t k = panel.columns.size();
+    mark_waypoints(waypoints_of(picture, k), *samples, a, key.colours[k], panel);
     panel.columns.push_back(&samples->q[a]);
     panel.times.push_back(&samples->t);
   }
@@ -89,7 +116,9 @@ Figure time_figure(const Picture& picture, const std::vector<Family>& groups) {
   for (const Family& family : groups) {
     TimePanel panel{.label = axis_name(picture.annotation, family.name), .columns = {}};
     for (const std::size_t a : family.members) panel.columns.push_back(&picture.samples.q[a]);
-    if (panel.columns.size() == 1) panel.colours = {first_colour};
+    panel.colours = distinct_colours(panel.columns.size());
+    for (std::size_t k = 0; k < family.members.size(); ++k)
+      mark_waypoints(waypoints_of(picture, 0), picture.samples, family.members[k], panel.colours[k], panel);
     if (groups.size() == 1 && panel.label.unit.empty()) panel.label.name.clear();
     for (const std::string& index : family.indices) panel.names.push_back(family.name + "[" + index + "]");
     contents.push_back(std::move(panel));
@@ -104,10 +133,13 @@ std::vector<LegendEntry> path_legend(const std::vector<BodyPath>& paths, bool cl
   std::vector<LegendEntry> entries;
   if (paths.size() > 1 && paths.size() <= longest_legend)
     for (const BodyPath& path : paths) entries.push_back({path.name, path.colour});
-  if (closed) return entries;
   const Colour colour = paths.size() == 1 ? paths[0].colour : 0x5A606B;
-  entries.push_back({"start", colour, Shape::ring});
-  entries.push_back({"end", colour, Shape::disc});
+  if (!closed) {
+    entries.push_back({"start", colour, Shape::ring});
+    entries.push_back({"end", colour, Shape::disc});
+  }
+  if (std::ranges::any_of(paths, [](const BodyPath& path) { return !path.waypoints.empty(); }))
+    entries.push_back({"waypoint", colour, Shape::square});
   return entries;
 }
 
@@ -118,7 +150,7 @@ Figure cells_figure(const Picture& picture, const Bodies& bodies, bool closed) {
   const std::vector<const Samples*> all = solutions_of(picture);
   std::vector<PathCell> cells;
   for (std::size_t k = 0; k < std::min(all.size(), most_solutions); ++k) {
-    cells.push_back({texts[k], body_paths(*all[k], bodies)});
+    cells.push_back({texts[k], body_paths(*all[k], bodies, waypoints_of(picture, k))});
     if (bodies.places.size() == 1) cells.back().paths[0].colour = key.colours[k];
   }
   std::vector<std::string> remarks = picture.remarks;
@@ -144,11 +176,11 @@ Figure path_figure(const Picture& picture, const Bodies& bodies) {
       std::all_of(all.begin(), all.end(), [&](const Samples* each) { return returns(*each, bodies); });
   if (all.size() > 1 && (closed || !one_body)) return cells_figure(picture, bodies, closed);
   const SolutionColours key = solution_colours(picture);
-  std::vector<BodyPath> paths = body_paths(*all[0], bodies);
+  std::vector<BodyPath> paths = body_paths(*all[0], bodies, waypoints_of(picture, 0));
   std::vector<LegendEntry> legend = path_legend(paths, closed);
   legend.insert(legend.begin(), key.legend.begin(), key.legend.end());
   for (std::size_t k = 0; k < all.size() && one_body; ++k) {
-    if (k > 0) paths.push_back(body_paths(*all[k], bodies)[0]);
+    if (k > 0) paths.push_back(body_paths(*all[k], bodies, waypoints_of(picture, k))[0]);
     paths[k].colour = key.colours[k];
   }
   Figure figure = headed_figure(picture.title, legend, picture.remarks);

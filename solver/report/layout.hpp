@@ -88,10 +88,17 @@ struct TimePanel {
   std::vector<Colour> colours = {};       ///< of each; empty: distinct ones
   std::vector<std::string> names = {};    ///< for the legend; empty: none
   std::vector<const Column*> times = {};  ///< of each column, where they differ
+  std::vector<Mark> marks = {};           ///< at waypoints
 };
 /// Panels that share the time axis, within a box that includes the gaps between them.
 std::vector<Panel> time_panels(const AxisName& time, const Column& t, const std::vector<TimePanel>& contents,
                                Box box);
+
+/// A waypoint of a body, and the axes of the coordinates that are fixed there.
+struct BodyWaypoint {
+  double t = 0;
+  std::vector<std::size_t> axes;
+};
 
 /// The path of one body, two or three columns.
 struct BodyPath {
@@ -100,7 +107,11 @@ struct BodyPath {
   Colour colour = 0;
   const Column* t = nullptr;
   bool marked = true;  ///< at its ends
+  std::vector<BodyWaypoint> waypoints = {};
 };
+
+/// A column at a time, linear between its values.
+double value_at(const Column& t, const Column& values, double time);
 
 /// Axes of paths, and the centres of force between which they run.
 struct Surroundings {

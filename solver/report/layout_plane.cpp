@@ -45,6 +45,10 @@ Figure plane_figure(Figure figure, const std::vector<BodyPath>& paths, const Sur
         contents[axis].columns.push_back(path.axes[axis]);
         contents[axis].times.push_back(path.t);
         contents[axis].colours.push_back(path.colour);
+        for (const BodyWaypoint& waypoint : path.waypoints)
+          if (std::ranges::count(waypoint.axes, axis) > 0)
+            contents[axis].marks.push_back(
+                {waypoint.t, value_at(*path.t, *path.axes[axis], waypoint.t), path.colour, Shape::square});
       }
     }
     const Box box{right + 14, top, 430, height};

@@ -66,6 +66,10 @@ Panel space_panel(const std::vector<BodyPath>& paths, const std::vector<Extent>&
     const Column &xs = *path.axes[0], &ys = *path.axes[1], &zs = *path.axes[2];
     if (!closed(path, ranges)) mark(xs.front(), ys.front(), zs.front(), path.colour, Shape::ring);
     mark(xs.back(), ys.back(), zs.back(), path.colour, Shape::disc);
+    for (const BodyWaypoint& waypoint : path.waypoints) {
+      const auto at = [&](const Column& values) { return value_at(*path.t, values, waypoint.t); };
+      mark(at(xs), at(ys), at(zs), path.colour, Shape::square);
+    }
   }
   const auto note = [&](double nx, double ny, double nz, const std::string& text, bool beside = false) {
     const Mark at = view.at(nx, ny, nz);

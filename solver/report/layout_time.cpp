@@ -56,11 +56,22 @@ AxisName axis_name(const Annotation& annotation, const std::string& name) {
     const auto found = annotation.units.find(of);
     return found == annotation.units.end() ? std::string() : found->second;
   };
-  const bool velocity = name.ends_with("'");
-  const std::string length = unit(name.substr(0, name.find_first_of("['")));
+  // Of a formula nothing is known, but that of an end value: x(0), x[1]'(T).
+  std::string plain = name;
+  if (plain.ends_with("(0)") || plain.ends_with("(T)")) plain.resize(plain.size() - 3);
+  const bool velocity = plain.ends_with("'");
+  if (velocity) plain.pop_back();
+  if (plain.ends_with("]") && plain.find(']') + 1 == plain.size()) plain.resize(plain.find('['));
+  const std::string length = unit(plain);
   if (!velocity) return {name, length};
   const std::string time = unit("t");
   return {name, length.empty() || time.empty() ? "" : length + "/" + time};
+}
+
+double value_at(const Column& t, const Column& values, double time) {
+  const auto after = std::upper_bound(t.begin() + 1, t.end() - 1, time) - t.begin();
+  const double part = std::clamp((time - t[after - 1]) / (t[after] - t[after - 1]), 0.0, 1.0);
+  return values[after - 1] + part * (values[after] - values[after - 1]);
 }
 
 std::vector<Panel> time_panels(const AxisName& time, const Column& t, const std::vector<TimePanel>& contents,
@@ -85,6 +96,7 @@ std::vector<Panel> time_panels(const AxisName& time, const Column& t, const std:
           {content.times.empty() ? t : *content.times[k], *content.columns[k], colours[k]});
       if (curves > 1 && k < content.names.size()) panel.legend.push_back({content.names[k], colours[k]});
     }
+    panel.marks = content.marks;
     widest = std::max(widest, number_width(panel.y));
     panels.push_back(std::move(panel));
   }

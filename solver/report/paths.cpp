@@ -91,6 +91,9 @@ void add_paths(Panel& panel, const std::vector<BodyPath>& paths, std::size_t acr
     const Column &x = *path.axes[across], &y = *path.axes[up];
     if (!closed(path, ranges)) panel.marks.push_back({x.front(), y.front(), path.colour, Shape::ring});
     panel.marks.push_back({x.back(), y.back(), path.colour, Shape::disc});
+    for (const BodyWaypoint& waypoint : path.waypoints)
+      panel.marks.push_back(
+          {value_at(*path.t, x, waypoint.t), value_at(*path.t, y, waypoint.t), path.colour, Shape::square});
   }
 }
 

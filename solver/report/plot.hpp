@@ -5,6 +5,7 @@
 
 #include "report/file.hpp"
 #include "report/result.hpp"
+#include "solution/extension_values.hpp"
 #include "solution/path_contacts.hpp"
 #include "study/annotation.hpp"
 #include "study/obstacles.hpp"
@@ -26,6 +27,7 @@ struct Picture {
   /// What inequalities along the path forbid, in the first panel, and when they are equalities.
   std::vector<PlaneCurve> obstacles = {};
   std::vector<Contact> contacts = {};
+  std::vector<std::vector<WaypointImpulse>> waypoints = {};  ///< of each solution; empty: none has any
 };
 
 /// Refuses a path that does not end in .svg, .png, .pdf or .html with std::invalid_argument, and .html in a
@@ -44,9 +46,9 @@ void check_picture(const Picture& picture);
 ///  - x[n], y[n] (and z[n]), or x1, y1, x2, y2: the paths of n bodies;
 ///  - one long array: a map, time across and index upwards;
 ///  - all else: each coordinate or array against time.
-/// Several solutions are drawn over each other, coloured by their actions; orbits, several bodies and maps in
-/// a panel for each solution. Throws std::invalid_argument for columns that do not fit the names,
-/// std::runtime_error if gnuplot is missing or fails.
+/// Squares mark waypoints. Several solutions are drawn over each other, coloured by their actions; orbits,
+/// several bodies and maps in a panel for each solution. Throws std::invalid_argument for columns that do not
+/// fit the names, std::runtime_error if gnuplot is missing or fails.
 std::string plot_image(const std::string& path, const Picture& picture);
 
 /// The lines of a result that has a spectrum; throws in the same way, and std::invalid_argument without any.

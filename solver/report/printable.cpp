@@ -95,10 +95,12 @@ std::string visible(const std::string& text, bool lines) {
 }
 
 double text_width(const std::string& text) {
+  const auto among = [](std::string_view some, char c) { return some.find(c) != std::string_view::npos; };
   double width = 0;
   for (const char c : text) {
     if (continues(c)) continue;
-    width += std::string_view("., '[]()fijlrt").find(c) == std::string_view::npos ? 7.2 : 3.8;
+    const bool sign = among("=+<>~%@mwMW", c) || static_cast<unsigned char>(c) >= 0x80;
+    width += among(" .,:;'|ijlI", c) ? 4.2 : among("[]()/frt-", c) ? 5.2 : sign ? 10.9 : 8.2;
   }
   return width;
 }

@@ -151,8 +151,16 @@ Picture picture_of(const Problem& problem, const Result& result, const Annotatio
     picture.contacts = result.solution.contacts->contacts;
     picture.obstacles = obstacle_boundaries(problem, result.solution.trajectory, beside_path);
   }
-  if (!result.solutions || result.solutions->size() < 2) return picture;
+  const auto add_waypoints = [&](const Solution& solution) {
+    if (!solution.extension || solution.extension->waypoints.empty()) return;
+    picture.waypoints.push_back(solution.extension->waypoints);
+  };
+  if (!result.solutions || result.solutions->size() < 2) {
+    add_waypoints(result.solution);
+    return picture;
+  }
   for (const Result& each : *result.solutions) {
+    add_waypoints(each.solution);
     picture.actions.push_back(each.solution.action);
     if (picture.actions.size() > 1) picture.others.push_back(drawn(problem, each, saved));
   }

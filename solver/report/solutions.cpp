@@ -13,6 +13,11 @@ std::vector<const Samples*> solutions_of(const Picture& picture) {
   return all;
 }
 
+const std::vector<WaypointImpulse>& waypoints_of(const Picture& picture, std::size_t solution) {
+  static const std::vector<WaypointImpulse> none;
+  return solution < picture.waypoints.size() ? picture.waypoints[solution] : none;
+}
+
 namespace {
 
 /// With the sign that axes have.

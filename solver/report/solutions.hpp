@@ -13,8 +13,12 @@ namespace extremal {
 /// All solutions, the first one first.
 std::vector<const Samples*> solutions_of(const Picture& picture);
 
+/// The waypoints of a solution, counted from 0.
+const std::vector<WaypointImpulse>& waypoints_of(const Picture& picture, std::size_t solution);
+
 /// The paths of the bodies of one solution, in distinct colours.
-std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies);
+std::vector<BodyPath> body_paths(const Samples& samples, const Bodies& bodies,
+                                 const std::vector<WaypointImpulse>& waypoints = {});
 /// Whether every body ends where it began.
 bool returns(const Samples& samples, const Bodies& bodies);
 

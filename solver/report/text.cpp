@@ -205,7 +205,7 @@ std::string summary(const Result& result) {
   lines.add("status", name(solution.status));
   if (solution.converged()) lines.add("message", printable(solution.message, 2000));
   lines.add("strategy", printable(solution.strategy, 200));
-  if (result.natural_conditions > 0)
+  if (result.natural_conditions > 0 && !result.fit)  // of a fit open ends are unknowns
     lines.add("boundary", counted(result.natural_conditions, "natural condition"));
   if (trajectory.elements() > 0) {
     lines.add_number("duration", solution.duration());

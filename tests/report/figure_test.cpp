@@ -361,6 +361,53 @@ TEST(Layout, AnOpenPathMarksItsStartAndAClosedOneOnlyItsEnd) {
   EXPECT_EQ(shapes(), (std::vector<Shape>{Shape::disc}));
 }
 
+TEST(Layout, SquaresMarkWaypoints) {
+  Picture picture = waves({"x", "y"});
+  picture.waypoints = {{{.time = 1.005, .impulse = {{1, 0.5}}}}};  // y is fixed there
+  const double x = std::cos(1.005), y = 2 * std::cos(2.005);
+  const Figure figure = layout(picture);
+  const auto expect_square = [](const Panel& panel, double across, double up) {
+    ASSERT_FALSE(panel.marks.empty());
+    EXPECT_EQ(panel.marks.back().shape, Shape::square);
+    EXPECT_NEAR(panel.marks.back().x, across, 1e-3);
+    EXPECT_NEAR(panel.marks.back().y, up, 1e-3);
+  };
+  ASSERT_EQ(figure.panels.size(), 3u);
+  expect_square(figure.panels[0], x, y);
+  EXPECT_TRUE(figure.panels[1].marks.empty());
+  expect_square(figure.panels[2], 1.005, y);
+  EXPECT_EQ(figure.legend.back().text, "waypoint");
+  Picture lone = waves({"x"});
+  lone.waypoints = {{{.time = 1.005, .impulse = {{0, 0.5}}}}};
+  expect_square(layout(lone).panels[0], 1.005, x);
+  Picture space = waves({"x", "y", "z"});
+  space.waypoints = picture.waypoints;
+  const Figure views = layout(space);
+  ASSERT_EQ(views.panels.size(), 4u);
+  for (const Panel& panel : views.panels) EXPECT_EQ(panel.marks.back().shape, Shape::square);
+  expect_square(views.panels[0], x, y);
+}
+
+TEST(AxisNames, HaveTheUnitsOfEndValuesAndNoneOfFormulas) {
+  const Annotation annotation{.units = {{"theta", "rad"}, {"q", "m"}, {"t", "s"}}, .centres = {}};
+  const auto unit = [&](const std::string& name) { return axis_name(annotation, name).unit; };
+  EXPECT_EQ(unit("theta"), "rad");
+  EXPECT_EQ(unit("theta'"), "rad/s");
+  EXPECT_EQ(unit("theta(0)"), "rad");
+  EXPECT_EQ(unit("theta'(T)"), "rad/s");
+  EXPECT_EQ(unit("q[2]"), "m");
+  EXPECT_EQ(unit("q[2]'(0)"), "m/s");
+  EXPECT_EQ(unit("theta'(0)*l"), "");
+  EXPECT_EQ(unit("theta(0) - theta(T)"), "");
+  EXPECT_EQ(unit("q[1](0) - q[2](0)"), "");
+}
+
+/// In DejaVu Sans at 13 pixels, by the advances of its glyphs.
+TEST(Texts, AreNoWiderThanTheirRoom) {
+  EXPECT_GT(text_width("w2 = 2.28898 ± 0.042"), 0.97 * 147);
+  EXPECT_GT(text_width("c = 0.184989 ± 0.014"), 0.97 * 145);
+}
+
 TEST(Layout, AMapHasTheValuesAtTheirPlaces) {
   const Panel panel = layout(waves(elements("q", 16))).panels[0];
   const ColourMap& map = panel.maps.at(0);

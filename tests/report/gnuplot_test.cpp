@@ -58,5 +58,12 @@ TEST(Gnuplot, CurvesAreExactToATwentiethOfAPixel) {
     EXPECT_LE(distance(polygon, {side * k / 800, side * wave(k / 800.0)}), pixel / 20 + rounding);
 }
 
+/// A line whose points are all outside crosses the panel nevertheless.
+TEST(Gnuplot, DrawsLinesThatCrossThePanel) {
+  const Panel panel{.box = {0, 0, 400, 400}, .x = make_axis({"x"}, 0, 1, 5), .y = make_axis({"y"}, 0, 1, 5)};
+  const Figure figure{.width = 400, .height = 400, .title = "", .panels = {panel}};
+  EXPECT_NE(gnuplot_script(figure, Format::png).find("set clip two\n"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace extremal

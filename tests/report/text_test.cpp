@@ -27,6 +27,14 @@ TEST(Summary, OfAConvergedResult) {
             "time            read 100 µs, solve 40.0 µs, analyse 10.0 µs\n");
 }
 
+TEST(Summary, OpenEndsOfAFitHaveNoNaturalConditions) {
+  Result result = transfer_result();
+  result.natural_conditions = 2;
+  EXPECT_NE(summary(result).find("2 natural conditions"), std::string::npos);
+  result.fit = Fitted{};
+  EXPECT_EQ(summary(result).find("natural condition"), std::string::npos);
+}
+
 TEST(Summary, OfSeveralSolutions) {
   Result result = transfer_result(), other = transfer_result();
   other.solution.action = 5.5;
