@@ -39,10 +39,8 @@ class SchemeSolve {
       Solution found = attempt(*guided, {});
       if (found.converged()) return told(std::move(found), guide.strategy + ", then the scheme from there");
     }
-    if (options_.elements == 0 || !PinnedSolve::has_homotopy(problem_, options_)) {
-      first.iterations = iterations_ + of_guide_;
-      return first;
-    }
+    if (options_.elements == 0 || !PinnedSolve::has_homotopy(problem_, options_))
+      return unsolved(std::move(first), guide);
     // Times that are free ask for a path whose residual is small.
     std::vector<const Problem*> bases;
     if (guided) bases.push_back(&*guided);
@@ -83,6 +81,19 @@ class SchemeSolve {
                   "the residual, lead to no path that solves the equations of {} on {} elements ({}): "
                   "they may have no solution; try more elements, another scheme or another guess",
                   first.iterations, options_.scheme->name, options_.elements, first.message);
+    return first;
+  }
+  /// Where there is no homotopy.
+  Solution unsolved(Solution first, const Solution& guide) const {
+    first.iterations = iterations_ + of_guide_;
+    if (first.status != Status::not_converged || options_.deadline.passed()) return first;
+    if (first.message == guide.message) return first;
+    first.message = fmt::format(
+        "{} Newton steps from the guess{} lead to no path that solves the equations of {} ({}); {}",
+        iterations_, guide.converged() ? " and from an extremal without the scheme" : "",
+        options_.scheme->name, first.message,
+        guide.converged() ? "leave the scheme out, or try another scheme or guess"
+                          : "without the scheme: " + guide.message);
     return first;
   }
   Solution told(Solution solution, std::string strategy) const {

@@ -115,6 +115,20 @@ TEST_F(SchemesOf, OrbitsAreFoundFromAPoorGuess) {
   }
 }
 
+/// The path bends outwards after half a second: few elements step over the bend, more of them end in it.
+TEST_F(SchemesOf, MoreElementsMayMissWhatFewFind) {
+  const std::string bent =
+      "[system]\ncoordinates = [\"x\", \"y\"]\ndefinitions = { r = \"sqrt(x^2 + y^2)\", "
+      "W = \"40*max(0, r - 1)^2/2\" }\nlagrangian = \"(x'^2 + y'^2)/2 - W + 0.5*(x*y' - y*x')\"\n"
+      "[boundary]\nstart = { x = 0.2, y = 0 }\nend = { x = -0.3, y = 0.4 }\nduration = 2.4\n"
+      "[guess]\nx = \"0.2 - 0.5*t/T + 1.2*step(t - 0.5)*max(0, min(t - 0.5, T - t))\"\ny = \"0.4*t/T\"\n";
+  for (const char* scheme : {"midpoint", "trapezoid", "gauss(2)"}) {
+    const Solution found = run(study(bent + solve_table(scheme, "tolerance = 1e-5")));
+    ASSERT_TRUE(found.converged()) << scheme << ": " << found.message;
+    EXPECT_NEAR(found.action, 0.07984990586, 1e-5) << scheme;
+  }
+}
+
 /// The swing begins at a turning point, so that half the period and the period are conjugate to its start.
 TEST_F(SchemesOf, TheEndIsNoConjugateTime) {
   for (const char* scheme : {"", "midpoint", "trapezoid", "gauss(2)", "lobatto(3)", "gauss(4)"}) {
@@ -135,4 +149,5 @@ TEST_F(SchemesOf, StepsInsideElementsTakeTheOrder) {
                 solve_table("gauss(3)", "")));
   EXPECT_FALSE(found.converged());
   EXPECT_NE(found.message.find("needs more than 1048576 elements"), std::string::npos) << found.message;
+  EXPECT_TRUE(found.message.ends_with("; loosen it, or leave the scheme out")) << found.message;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solve/adapt/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 
@@ -47,8 +48,8 @@ bool ElementCount::grow(double excess, const Scales& size, Trials so_far) {
                         needed(tried, before, goal) > most_;
   if (hopeless || now_ * (regular ? growth : std::min(growth, most_growth)) > most_) {
     failure_ =
-        fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it or use lobatto",
-                    scheme_.name, most_, tolerance_);
+        fmt::format("{} needs more than {} elements for the tolerance {:.0e}; loosen it{}", scheme_.name,
+                    most_, tolerance_, tolerance_ < unit_roundoff ? "" : ", or leave the scheme out");
     return false;
   }
   const double factor = std::clamp(growth, 1.1, most_growth);

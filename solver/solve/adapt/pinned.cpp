@@ -344,7 +344,7 @@ Outcome PinnedSolve::run() {
   }
   if (outcome_.status == Status::not_converged && outcome_.path.elements() > 0)
     if (const auto jump = momentum_jump(problem_, path_)) outcome_.message = describe(*jump);
-  outcome_.astray = outcome_.status == Status::not_converged && !count.any();
+  outcome_.astray = outcome_.status == Status::not_converged && count.failure().empty();
   return std::move(outcome_);
 }
 
