@@ -45,6 +45,7 @@ class CommandLine {
 
   [[noreturn]] void refuse_first_word(int argc, char** argv) const;
   std::string complaint(const CLI::ParseError& error) const;
+  std::string owner(const std::string& option, const std::string& suggested) const;
   const CLI::App* find(const std::string& name) const;  ///< null where there is no such command
   std::vector<std::string> names() const;
   ProgramRecord record() const;
@@ -340,6 +341,13 @@ void CommandLine::refuse_first_word(int argc, char** argv) const {
   throw OptionError(fmt::format("'{}' is not a command; write: {}", word, meant));
 }
 
+/// The command that has an option, else what is suggested.
+std::string CommandLine::owner(const std::string& option, const std::string& suggested) const {
+  for (const CLI::App* command : app_.get_subcommands(nullptr))
+    if (command->get_option_no_throw(option)) return fmt::format("; '{}' has it", command->get_name());
+  return suggested;
+}
+
 /// What is wrong with the arguments: a word that nothing takes is named before what is missing.
 std::string CommandLine::complaint(const CLI::ParseError& error) const {
   const std::vector<CLI::App*> given = app_.get_subcommands();
@@ -350,7 +358,7 @@ std::string CommandLine::complaint(const CLI::ParseError& error) const {
     std::vector<std::string> known;
     for (const OptionRecord& option : options_of(command)) known.push_back(option.name);
     const std::string name = word.substr(0, word.find('='));
-    return fmt::format("there is no option '{}'{}", name, suggestion(name, known));
+    return fmt::format("there is no option '{}'{}", name, owner(name, suggestion(name, known)));
   }
   const std::string text = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error))

@@ -68,6 +68,45 @@ bool single(Kind kind, const toml::node& node) {
   return false;
 }
 
+/// What a key is called elsewhere.
+struct OtherWord {
+  std::string_view table, word, key;
+};
+
+constexpr OtherWord other_words[] = {
+    {"system", "L", "lagrangian"},
+    {"system", "H", "hamiltonian"},
+    {"system", "coords", "coordinates"},
+    {"system", "params", "parameters"},
+    {"system", "forces", "force"},
+    {"boundary", "T", "duration"},
+    {"boundary", "time", "duration"},
+    {"boundary", "period", "duration"},
+    {"boundary", "initial", "start"},
+    {"boundary", "begin", "start"},
+    {"boundary", "final", "end"},
+    {"boundary", "finish", "end"},
+    {"boundary", "stop", "end"},
+    {"solve", "n", "elements"},
+    {"solve", "N", "elements"},
+    {"solve", "timeout", "budget"},
+    {"solve", "time", "budget"},
+    {"search", "n", "solutions"},
+    {"search", "count", "solutions"},
+    {"search", "number", "solutions"},
+    {"continuation", "end", "to"},
+    {"continuation", "until", "to"},
+    {"continuation", "steps", "points"},
+    {"continuation", "n", "points"},
+    {"fit", "file", "data"},
+    {"fit", "params", "parameters"},
+};
+
+/// For a table or a list, of which a file has another value.
+std::string as_in(const KeyRecord& record) {
+  return record.example.empty() ? "" : fmt::format("; write it as in {}", record.example);
+}
+
 struct Checker {
   const Document& document;
 
@@ -110,14 +149,20 @@ struct Checker {
     check_finite(node, label, choices);
   }
 
-  /// A key outside every table may belong to one of them.
-  [[noreturn]] static void refuse_key(const Location& at, const std::string& key, std::string_view table,
-                                      const std::string& within) {
+  /// A key outside every table may belong to one of them, or be a parameter.
+  [[noreturn]] void refuse_key(const Location& at, const std::string& key, std::string_view table,
+                               const std::string& within) const {
     std::vector<std::string> known = keys_of(table);
     std::string message = fmt::format("unknown key '{}'{}", key, within);
+    const auto suggest = [&](const std::string& meant) {
+      throw SceneError(at, fmt::format("{}; did you mean '{}'?", message, meant));
+    };
     for (const std::string& other : table.empty() ? known : std::vector<std::string>{})
       if (const KeyRecord* record = find_key(other, key); record && record->key == key)
-        throw SceneError(at, fmt::format("{}; did you mean '{}.{}'?", message, other, key));
+        suggest(fmt::format("{}.{}", other, key));
+    if (table.empty() && document.root["system"]["parameters"][key]) suggest("system.parameters." + key);
+    for (const OtherWord& word : other_words)
+      if (word.table == table && word.word == key) suggest(std::string(word.key));
     throw UnknownChoice(at, message, key, std::move(known));
   }
 
@@ -132,7 +177,8 @@ struct Checker {
                                     : fmt::format("'{}'{}", key->str(), within);
       const bool has_keys = record->by_name || record->kind == Kind::table;
       if (has_keys && !value->is_table())
-        refuse(*value, fmt::format("{} must be a table, found {}", label, type_name(*value)));
+        refuse(*value,
+               fmt::format("{} must be a table, found {}{}", label, type_name(*value), as_in(*record)));
       if (record->kind == Kind::table)
         check_table(*value->as_table(), key->str());
       else if (record->kind == Kind::tables)
@@ -147,6 +193,9 @@ struct Checker {
 
   void check_one(const toml::node& node, const KeyRecord& record, const std::string& label) const {
     const std::vector<std::string> choices(record.choices.begin(), record.choices.end());
+    if (record.kind == Kind::texts && !node.is_array())
+      refuse(node, fmt::format("{} must be {}, found {}{}", label, description(record.kind), type_name(node),
+                               as_in(record)));
     check_value(node, record.kind, label, choices);
     if (record.kind == Kind::text && !choices.empty()) check_choice(node, record.key, choices);
   }

@@ -47,9 +47,8 @@ bool is_value(const std::string& text) {
   }
 }
 
-/// The value at an error of the parser that is a text or a formula without quotes, and where it begins; empty
-/// if it is none.
-std::pair<std::string, Location> unquoted(const Location& at) {
+/// The line of a place, without its end; empty where there is none.
+std::string_view line_at(const Location& at) {
   if (!at.source || at.line < 1) return {};
   std::string_view text = at.source->text;
   for (int line = 1; line < at.line; ++line) {
@@ -57,7 +56,13 @@ std::pair<std::string, Location> unquoted(const Location& at) {
     if (end == text.npos) return {};
     text.remove_prefix(end + 1);
   }
-  text = text.substr(0, text.find_first_of("\r\n"));
+  return text.substr(0, text.find_first_of("\r\n"));
+}
+
+/// The value at an error of the parser that is a text or a formula without quotes, and where it begins; empty
+/// if it is none.
+std::pair<std::string, Location> unquoted(const Location& at) {
+  const std::string_view text = line_at(at);
   // Columns count characters; before the value there are hardly others than ASCII.
   std::size_t begin = std::min<std::size_t>(std::max(at.column - 1, 0), text.size());
   while (begin > 0 && !std::strchr("=,[", text[begin - 1])) --begin;
@@ -69,7 +74,8 @@ std::pair<std::string, Location> unquoted(const Location& at) {
     if (depth <= 0 && std::strchr(",]}", text[end])) break;
   }
   while (end > begin && std::strchr(" \t", text[end - 1])) --end;
-  const std::string value(text.substr(begin, end - begin));
+  std::string value(text.substr(begin, end - begin));
+  if (value.find('"') == value.size() - 1) value.pop_back();  // the quote at its beginning is missing
   if (value.find_first_of("=\"") != value.npos || is_value(value)) return {};
   return {value, {at.source, at.line, static_cast<int>(begin) + 1}};
 }
@@ -81,6 +87,11 @@ std::pair<std::string, Location> unquoted(const Location& at) {
     if (error == std::errc::result_out_of_range)
       throw SceneError(
           begin, fmt::format("{} is out of the range of numbers, whose size is 2.3e-308 to 1.8e308", value));
+    const auto blank = value.find(' ');
+    const bool first = line_at(begin).find_first_not_of(" \t") + 1 == static_cast<std::size_t>(begin.column);
+    if (first && blank != value.npos && is_value(value.substr(blank)))
+      throw SceneError(begin, fmt::format("'=' is missing between a key and its value; write {} = {}",
+                                          value.substr(0, blank), value.substr(blank + 1)));
     throw SceneError(begin, fmt::format("texts and formulas are written in quotes: \"{}\"", value));
   }
   throw SceneError(at, readable(description));

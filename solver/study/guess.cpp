@@ -73,6 +73,17 @@ std::vector<char> given_momenta(const GuessTable& table, const System& system) {
   return given;
 }
 
+/// Names and velocities differ by the prime alone.
+void refuse_velocity(const Assignment& a, const System& system) {
+  if (!a.name.ends_with("'")) return;
+  const std::string name = a.name.substr(0, a.name.size() - 1), stem = name.substr(0, name.find('['));
+  if (std::ranges::none_of(system.coordinates, [&](const Coordinate& c) { return c.name == stem; })) return;
+  throw SceneError(
+      a.name_at, fmt::format("\"{0}\" is a velocity, which follows from {1}: give {1} as a formula of t, or "
+                             "a motion by its initial state: state = {{ {1} = …, \"{0}\" = … }}",
+                             a.name, name));
+}
+
 void tabulate_formulas(const GuessTable& table, const System& system, Problem& problem) {
   const int n = problem.coordinates();
   Guess& guess = problem.guess;
@@ -81,6 +92,7 @@ void tabulate_formulas(const GuessTable& table, const System& system, Problem& p
   fill_default(problem.ends, guess);
   for (const Assignment& a : table.formulas) {
     if (!system.hamiltonian && is_momentum(a.name, system)) continue;
+    refuse_velocity(a, system);
     const Range range = range_of(a.name, a.name_at, system, keys_of("guess"));
     for_each_value(a, range, [&](int coordinate, const Quantity& q, int index) {
       fill_formula(q, coordinate, index, system, problem.duration.value, guess);

@@ -63,6 +63,8 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
   for (const Assignment& a : values) {
     const bool velocity = !a.name.empty() && a.name.back() == '\'';
     const std::string name = velocity ? a.name.substr(0, a.name.size() - 1) : a.name;
+    if (name.ends_with('\''))
+      throw SceneError(a.name_at, "a second \"'\"; a state has coordinates and velocities");
     for_each_value(a, range_of(name, a.name_at, system), [&](int coordinate, const Quantity& q, int index) {
       (velocity ? state.v : state.q)[coordinate] = evaluate(q, system, index);
     });

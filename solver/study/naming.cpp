@@ -70,6 +70,15 @@ Range range_of(const std::string& name, const Location& at, const System& system
     throw SceneError(at, fmt::format("unknown coordinate '{}'; velocities are written \"{}'\", and only "
                                      "'state' in [guess] holds them",
                                      name, meant));
+  const auto is_coordinate = [&](const std::string& other) {
+    return std::ranges::find(coordinates, other) != coordinates.end();
+  };
+  if (stem.starts_with("p_") && is_coordinate(stem.substr(2)))
+    throw SceneError(at, fmt::format("'{}' is a momentum, and a coordinate stands here; momenta are given in "
+                                     "'start' and 'end' of [boundary]",
+                                     name));
+  if (stem.ends_with("'") && is_coordinate(stem.substr(0, stem.size() - 1)))
+    throw SceneError(at, fmt::format("\"{}\" is a velocity, and a coordinate stands here", name));
   keys.insert(keys.end(), coordinates.begin(), coordinates.end());
   constexpr std::size_t most_shown = 12;
   const std::string known =

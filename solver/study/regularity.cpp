@@ -133,7 +133,14 @@ bool is_length(const Problem& problem) {
 }
 
 [[noreturn]] void refuse_irregular(const Problem& problem, int coordinate, const Location& at) {
-  if (is_length(problem))
+  const bool length = is_length(problem);
+  if (length && !problem.lagrangian->structure().autonomous)
+    throw SceneError(
+        at,
+        "the Lagrangian is homogeneous of degree one in the velocities, so its energy is zero; it depends on "
+        "t, so the energy changes along an extremal; write it without t, or for a graph: sqrt(1 + x'^2) is "
+        "the length of x(t)");
+  if (length)
     throw SceneError(
         at,
         "the Lagrangian is homogeneous of degree one in the velocities: it determines the path, but "

@@ -28,6 +28,23 @@ std::string printable(std::string_view text) {
   return whole ? std::string(text.substr(0, length)) : fmt::format("\\x{:02x}", byte);
 }
 
+/// Characters that stand for what is written otherwise.
+struct OtherCharacter {
+  std::string_view character, written;
+};
+
+constexpr OtherCharacter other_characters[] = {
+    {"·", "*"},  {"×", "*"},  {"⋅", "*"}, {"∗", "*"}, {"÷", "/"},  {"−", "-"},       {"–", "-"},
+    {"²", "^2"}, {"³", "^3"}, {"′", "'"}, {"’", "'"}, {"π", "pi"}, {"√", "sqrt(u)"}, {"|", "abs(u) for |u|"},
+    {"{", "("},  {"}", ")"},
+};
+
+std::string mend_of(const std::string& character) {
+  for (const OtherCharacter& other : other_characters)
+    if (other.character == character) return fmt::format("write {}", other.written);
+  return "names are made of the letters a-z and A-Z, digits and _";
+}
+
 }  // namespace
 
 bool is_name(std::string_view text) {
@@ -48,9 +65,8 @@ Token Lexer::next() {
                     c),
         where_, at_);
   if (symbols.find(c) == std::string_view::npos)
-    throw FormulaError(fmt::format("unexpected character '{}'; names are made of the letters a-z and A-Z, "
-                                   "digits and _",
-                                   printable(text_.substr(at_))),
+    throw FormulaError(fmt::format("unexpected character '{}'; {}", printable(text_.substr(at_)),
+                                   mend_of(printable(text_.substr(at_)))),
                        where_, at_);
   return {TokenKind::symbol, text_.substr(at_++, 1), at_ - 1};
 }

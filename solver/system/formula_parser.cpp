@@ -44,7 +44,7 @@ class Parser {
   }
 
  private:
-  static constexpr std::size_t largest_text = 16u << 20;
+  static constexpr std::size_t largest_text = 16u << 20, most_shown = 24;
 
   static std::uint32_t narrow(std::size_t offset) { return static_cast<std::uint32_t>(offset); }
 
@@ -67,6 +67,10 @@ class Parser {
       mend = fmt::format("; write {}(…)", previous_.text);
     if (token_.is(')')) mend = "; no '(' is open";
     if (token_.is('=')) mend = "; a formula has no '='";
+    const std::size_t after = token_.offset + 1;
+    if (token_.is(',') && previous_.kind == TokenKind::number && after < formula_.text.size() &&
+        formula_.text[after] >= '0' && formula_.text[after] <= '9')
+      mend = "; decimals are written with a point";
     if (token_.is('*') && formula_.text[token_.offset - (token_.offset > 0)] == '*')
       mend = "; a power is written '^'";
     stop(token_.offset, fmt::format("unexpected '{}'{}", token_.text.substr(0, 40), mend));
@@ -76,8 +80,10 @@ class Parser {
     if (!token_.is(symbol)) {
       if (token_.kind != TokenKind::end && !token_.is(',') && !token_.is(')') && !token_.is(']'))
         unexpected();
-      stop(token_.offset,
-           fmt::format("'{}' is missing for the '{}' at offset {}", symbol, opening.text, opening.offset));
+      const std::string_view open =
+          std::string_view(formula_.text).substr(opening.offset, token_.offset - opening.offset);
+      stop(token_.offset, fmt::format("'{}' is missing for the '{}' of {}{}", symbol, opening.text,
+                                      open.substr(0, most_shown), open.size() > most_shown ? "…" : ""));
     }
     advance();
   }
@@ -156,6 +162,7 @@ class Parser {
       return inner;
     }
     if (token.kind != TokenKind::name) {
+      if (token.is('=') && previous_.is('=')) stop(token.offset, "a second '='; an equation has one");
       if (token.is(')') || token.is(']') || token.is(',') || token.is('='))
         stop(token.offset, fmt::format("a value is missing before '{}'", token.text));
       unexpected();

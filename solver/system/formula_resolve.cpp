@@ -118,7 +118,8 @@ class Resolver {
         stop(node, fmt::format("write {0}(0) or {0}(T): a quantity of a point is a formula of end values",
                                spelled(name, known.array)));
       if (kind_ == Kind::number || kind_ == Kind::guess)
-        stop(node, fmt::format("'{}' is a coordinate; only parameters can stand here", name));
+        stop(node, fmt::format("'{}' is a coordinate; only {}parameters can stand here", name,
+                               kind_ == Kind::guess ? "t, T and " : ""));
       if (node.velocity && kind_ == Kind::map)
         stop(node, fmt::format("\"{}'\" is a velocity; a map is made of coordinates", name));
     } else if (known.meaning == Meaning::definition) {
@@ -202,7 +203,10 @@ class Resolver {
                              kind_of(index ? Meaning::index : known->meaning),
                              index ? name : spelled(name, known->array)));
     if (node.velocity && kind_ == Kind::condition)
-      stop(node, fmt::format("\"{}'\" is a velocity; conditions hold between coordinates", name));
+      stop(node,
+           fmt::format("\"{0}'\" is a velocity; conditions hold between coordinates; a momentum is given "
+                       "with 'start' and 'end' in place of 'conditions': start = {{ p_{0} = … }}",
+                       name));
     if (node.indexed) visit(formula_.children(node)[0].node);
     check_index(node, name, *known);
     const Syntax& when = argument;

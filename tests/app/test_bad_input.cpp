@@ -54,6 +54,12 @@ std::vector<Case> cases() {
        "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 1, y = 1 }\nduration = 1\n",
        "scene.toml:3:14: the Lagrangian is homogeneous of degree one in the velocities: it determines the "
        "path, but not the speed along it; take L^2/2, whose extremals are the same curves\n"},
+      {"LengthWithTime",
+       "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(1 + t)*sqrt(x'^2 + y'^2)\"\n"
+       "[boundary]\nstart = { x = 0, y = 0 }\nend = { x = 1, y = 1 }\nduration = 1\n",
+       "scene.toml:3:14: the Lagrangian is homogeneous of degree one in the velocities, so its energy is "
+       "zero; it depends on t, so the energy changes along an extremal; write it without t, or for a graph: "
+       "sqrt(1 + x'^2) is the length of x(t)\n"},
       {"EnergyBelowThatOfAnEnd",
        "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\n"
        "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = \"free\"\nenergy = 0.1\n[guess]\nduration "

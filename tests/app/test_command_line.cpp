@@ -58,6 +58,8 @@ TEST_F(CommandLine, MisspeltCommandsAndOptions) {
           "there is no option '--outptu'; did you mean '--output'? (see extremal help solve)"});
   expect({{"solve", "--quite"},
           "there is no option '--quite'; did you mean '--quiet'? (see extremal help solve)"});
+  expect({{"solve", "scene.toml", "--quantity", "x(0)"},
+          "there is no option '--quantity'; 'continue' has it (see extremal help solve)"});
   expect({{"--versoin"}, "there is no option '--versoin'; did you mean '--version'? (see extremal help)"});
 }
 

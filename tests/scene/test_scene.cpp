@@ -26,6 +26,10 @@ TEST_F(SceneFiles, TextsWithoutQuotes) {
             "scene.toml:7:12: texts and formulas are written in quotes: \"sqrt(2)\"");
   EXPECT_EQ(refused("q = 1 }", "q = -pi/2 }"),
             "scene.toml:6:13: texts and formulas are written in quotes: \"-pi/2\"");
+  EXPECT_EQ(refused("duration = 2", "duration 2"),
+            "scene.toml:7:1: '=' is missing between a key and its value; write duration = 2");
+  EXPECT_EQ(refused("\"q'^2/2 + cos(q)\"", "q'^2/2 + cos(q)\""),
+            "scene.toml:3:14: texts and formulas are written in quotes: \"q'^2/2 + cos(q)\"");
   EXPECT_EQ(refused("[\"q\"]", "[q]"), "scene.toml:2:16: texts and formulas are written in quotes: \"q\"");
 }
 
@@ -87,9 +91,19 @@ TEST_F(SceneFiles, UnknownKeys) {
   }
 }
 
+TEST_F(SceneFiles, KeysThatAreCalledOtherwise) {
+  EXPECT_EQ(message(with("duration", "period")),
+            "scene.toml:7:1: unknown key 'period' in [boundary]; did you mean 'duration'?");
+  EXPECT_EQ(message(with("end", "finish")),
+            "scene.toml:6:1: unknown key 'finish' in [boundary]; did you mean 'end'?");
+  EXPECT_EQ(message(with("lagrangian", "L")),
+            "scene.toml:3:1: unknown key 'L' in [system]; did you mean 'lagrangian'?");
+}
+
 TEST_F(SceneFiles, WrongTypes) {
   EXPECT_EQ(message(with("[\"q\"]", "\"q\"")),
-            "scene.toml:2:15: 'coordinates' in [system] must be a list of strings, found a string");
+            "scene.toml:2:15: 'coordinates' in [system] must be a list of strings, found a string; write it "
+            "as in coordinates = [\"r\", \"q[3]\"]");
   EXPECT_EQ(message(with("[\"q\"]", "[\"q\", 2]")),
             "scene.toml:2:21: element 2 of 'coordinates' in [system] must be a string, found an integer");
   EXPECT_EQ(message(with("= 2", "= [2]")),
@@ -97,12 +111,14 @@ TEST_F(SceneFiles, WrongTypes) {
   EXPECT_EQ(message(with("= 2", "= nan")),
             "scene.toml:7:12: 'duration' in [boundary] must be finite, found nan");
   EXPECT_EQ(message(with("{ q = 1 }", "1")),
-            "scene.toml:6:7: 'end' in [boundary] must be a table, found an integer");
+            "scene.toml:6:7: 'end' in [boundary] must be a table, found an integer; write it as in "
+            "end = { x = \"-mu\", \"q[2]\" = 0.5 }");
   EXPECT_EQ(message(with("q = 1", "q = true")),
             "scene.toml:6:13: 'q' in [boundary.end] must be a number, a formula or a list of them, found a "
             "boolean");
   EXPECT_EQ(message("boundary = 1\n" + pendulum.substr(0, pendulum.find("[boundary]"))),
-            "scene.toml:1:12: [boundary] must be a table, found an integer");
+            "scene.toml:1:12: [boundary] must be a table, found an integer; write it as in boundary.duration "
+            "= 2.5");
   EXPECT_EQ(message(pendulum + "[solve]\nscheme = \"midpoint\"\nelements = 6.5\n"),
             "scene.toml:10:12: 'elements' in [solve] must be an integer, found a number");
 }

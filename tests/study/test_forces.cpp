@@ -41,7 +41,7 @@ TEST_F(Scenes, ForcesOfCoordinatesArraysAndElements) {
 TEST_F(Scenes, ForcesThatAreWrong) {
   const auto force = [&](const std::string& text) { return message(damped(text, both_ends)); };
   EXPECT_EQ(force("z = \"-c\""), "scene.toml:5:11: unknown coordinate 'z'; the system has x, q");
-  EXPECT_EQ(force("\"x'\" = \"-c\"").substr(0, 40), "scene.toml:5:11: unknown coordinate 'x''");
+  EXPECT_EQ(force("\"x'\" = \"-c\""), "scene.toml:5:11: \"x'\" is a velocity, and a coordinate stands here");
   EXPECT_EQ(force("x = \"-c*w\"").substr(0, 36), "scene.toml:5:19: unknown name 'w'; i");
   EXPECT_EQ(force("q = [\"-c\", \"2\"]"), "scene.toml:5:15: 'q' has 3 elements; found 2 values");
   EXPECT_EQ(force("q = \"-c\", \"q[2]\" = \"-c\""),

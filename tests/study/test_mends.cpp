@@ -35,6 +35,29 @@ TEST_F(Scenes, FreeDurationBetweenEnds) {
   EXPECT_EQ(message(between + "energy = 0.5\n[guess]\nduration = 0.5\n"), "");
 }
 
+/// Names that belong elsewhere.
+TEST_F(Scenes, MomentaAndVelocitiesInOtherPlaces) {
+  const std::string between = law + "[boundary]\nstart = { x = 0 }\nend = { x = 0.5 }\nduration = 2\n";
+  const auto after = [&](const std::string& lines) { return message(between + lines); };
+  const std::string momentum =
+      "'p_x' is a momentum, and a coordinate stands here; momenta are given in 'start' and 'end' of "
+      "[boundary]";
+  EXPECT_EQ(after("[[waypoints]]\nat = 1\np_x = 1\n"), "scene.toml:10:1: " + momentum);
+  EXPECT_EQ(after("[guess]\nstate = { p_x = 1 }\n"), "scene.toml:9:11: " + momentum);
+  EXPECT_EQ(after("[[waypoints]]\nat = 1\n\"x'\" = 1\n"),
+            "scene.toml:10:1: \"x'\" is a velocity, and a coordinate stands here");
+  EXPECT_EQ(after("[guess]\nstate = { \"x''\" = 1 }\n"),
+            "scene.toml:9:11: a second \"'\"; a state has coordinates and velocities");
+  EXPECT_EQ(
+      after("[guess]\n\"x'\" = \"t\"\n"),
+      "scene.toml:9:1: \"x'\" is a velocity, which follows from x: give x as a formula of t, or a motion by "
+      "its initial state: state = { x = …, \"x'\" = … }");
+  EXPECT_EQ(after("[guess]\nstate = { x = 0, \"x'\" = 1 }\n"), "");
+  EXPECT_EQ(message(law + "[boundary]\nstart = { x = 0 }\nend = { x = \"free\" }\nduration = 2\n"),
+            "scene.toml:6:14: unknown name 'free'; a coordinate that is free is left out");
+  EXPECT_EQ(message(law + "[boundary]\nstart = { x = 0 }\nend = {}\nduration = 2\n"), "");
+}
+
 /// Values at nodes are samples at equal times only where steps are equal.
 TEST_F(Scenes, SamplesOfSpectra) {
   const auto with = [](const std::string& elements) {

@@ -86,7 +86,9 @@ TEST_F(Quantities, MayHaveNoValueAtSomePoints) {
 TEST_F(Quantities, ThatAreWrong) {
   EXPECT_EQ(refusal("x"), "0: write x(0) or x(T): a quantity of a point is a formula of end values");
   EXPECT_EQ(refusal("2*x(1)"), "2: write x(0) or x(T) for the value at an end");
-  EXPECT_EQ(refusal("y(0)").substr(0, 22), "0: unknown function 'y");
+  EXPECT_EQ(refusal("y(0)").substr(0, 56), "0: unknown function 'y'; end values are x(0), q[1](0); f");
+  EXPECT_EQ(refusal("p_x(0)"),
+            "0: unknown function 'p_x'; of a point there are coordinates and velocities: x(0), x'(0)");
   EXPECT_EQ(refusal("amplitud"), "0: unknown name 'amplitud'; did you mean 'amplitude'?");
   EXPECT_EQ(refusal("q[2]'(T)"), "accepted");
 }

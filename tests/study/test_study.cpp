@@ -48,9 +48,9 @@ TEST_F(Scenes, ChoicesAreListedWhereNoneIsNear) {
   EXPECT_EQ(message(scene + "[path]\nwithin = []\n"),
             "scene.toml:11:1: unknown key 'within' in [path]; there is 'constraints'");
   std::string begin = scene;
-  begin.replace(begin.find("start"), 5, "begin");
+  begin.replace(begin.find("start"), 5, "depart");
   EXPECT_EQ(message(begin),
-            "scene.toml:7:1: unknown key 'begin' in [boundary]; there are 'start', 'end', 'duration', "
+            "scene.toml:7:1: unknown key 'depart' in [boundary]; there are 'start', 'end', 'duration', "
             "'energy', 'where', 'periodic', 'map', 'conditions', 'integrals', 'unknowns'");
 }
 

@@ -69,7 +69,7 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   };
   EXPECT_EQ(refused("x(0)"), "'=' is missing: write left = right | where | 4");
   EXPECT_EQ(refused("x(0) = 1 = 2"), "a second '='; an equation has one | where | 9");
-  EXPECT_EQ(refused("x(0) == 1"), "a value is missing before '=' | where | 6");
+  EXPECT_EQ(refused("x(0) == 1"), "a second '='; an equation has one | where | 6");
   EXPECT_EQ(refused("x = 1"), "write x(0) or x(T): a condition holds between end values | where | 0");
   EXPECT_EQ(refused("q[1] = 1"),
             "write q[1](0) or q[1](T): a condition holds between end values | where | 0");
@@ -78,7 +78,9 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   EXPECT_EQ(refused("q[3](0) = 1"), "q[3] is out of range: 'q' has 2 elements, counted from 1 | where | 0");
   EXPECT_EQ(refused("x(1) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
   EXPECT_EQ(refused("x(0, T) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
-  EXPECT_EQ(refused("x'(0) = 1"), "\"x'\" is a velocity; conditions hold between coordinates | where | 0");
+  EXPECT_EQ(refused("x'(0) = 1"),
+            "\"x'\" is a velocity; conditions hold between coordinates; a momentum is given with 'start' and "
+            "'end' in place of 'conditions': start = { p_x = … } | where | 0");
   EXPECT_EQ(refused("x(0) = T"),
             "unknown name 'T'; T is the duration only in a guess, and in x(T) in a condition | where | 7");
   EXPECT_EQ(refused("x(0) = t"), "unknown name 't'; the time cannot stand here | where | 7");
@@ -87,8 +89,8 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   EXPECT_EQ(refused("sine(x(0)) = 1"), "unknown function 'sine'; did you mean 'sin'? | where | 0");
   EXPECT_EQ(
       refused("p_x(T) = 1"),
-      "unknown function 'p_x'; conditions hold between coordinates, and a momentum is given at its end: "
-      "start = { p_x = … } or end = { p_x = … } | where | 0");
+      "unknown function 'p_x'; conditions hold between coordinates; a momentum is given with 'start' and "
+      "'end' in place of 'conditions': start = { p_x = … } | where | 0");
 }
 
 TEST(FormulaEnds, MapsAreAffineInTheCoordinates) {

@@ -187,7 +187,7 @@ TEST(FormulaNames, UnusedDefinitionsAreOnlyParsed) {
   SystemText text{.coordinates = {"x"}, .definitions = {{"a", "unknown(x)"}}, .lagrangian = free_particle};
   EXPECT_EQ(error_of(text), "no error");
   text.definitions["a"] = "2*(x";
-  EXPECT_EQ(error_of(text), "')' is missing for the '(' at offset 2 | definitions.a | 4");
+  EXPECT_EQ(error_of(text), "')' is missing for the '(' of (x | definitions.a | 4");
   text.definitions = {{"x", "1"}};
   EXPECT_EQ(error_of(text),
             "'x' is a coordinate already; choose another name for a definition | definitions.x | 0");

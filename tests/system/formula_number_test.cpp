@@ -88,14 +88,17 @@ TEST(FormulaNumber, MalformedFormulasAreRefusedWhereTheyBreak) {
   EXPECT_EQ(refusal("2**3"), "unexpected '*'; a power is written '^' | duration | 2");
   EXPECT_EQ(refusal("1)"), "unexpected ')'; no '(' is open | duration | 1");
   EXPECT_EQ(refusal("a = 1"), "unexpected '='; a formula has no '=' | duration | 2");
-  EXPECT_EQ(refusal("2*(1 + a"), "')' is missing for the '(' at offset 2 | duration | 8");
-  EXPECT_EQ(refusal("m[1"), "']' is missing for the '[' at offset 1 | duration | 3");
+  EXPECT_EQ(refusal("2*(1 + a"), "')' is missing for the '(' of (1 + a | duration | 8");
+  EXPECT_EQ(refusal("m[1"), "']' is missing for the '[' of [1 | duration | 3");
   EXPECT_EQ(refusal("()"), "a value is missing before ')' | duration | 1");
   EXPECT_EQ(refusal("1 + * 2"), "unexpected '*' | duration | 4");
   EXPECT_EQ(refusal("1e999"), "the number 1e999 is beyond the range of double | duration | 0");
   EXPECT_EQ(refusal("2 + a\xce\xb8"),
             "unexpected character '\xce\xb8'; names are made of the letters a-z and "
             "A-Z, digits and _ | duration | 5");
+  EXPECT_EQ(refusal("2·a"), "unexpected character '·'; write * | duration | 1");
+  EXPECT_EQ(refusal("a²"), "unexpected character '²'; write ^2 | duration | 1");
+  EXPECT_EQ(refusal("1,5*a"), "unexpected ','; decimals are written with a point | duration | 1");
   EXPECT_EQ(refusal("1 + \xff"),
             "unexpected character '\\xff'; names are made of the letters a-z and A-Z, "
             "digits and _ | duration | 4");
@@ -114,6 +117,13 @@ TEST(FormulaNumber, UnknownNamesAreMended) {
   EXPECT_EQ(refusal("2*na"), "unknown name 'na'; did you mean 'n*a'? | duration | 2");
   EXPECT_EQ(refusal("npi"), "unknown name 'npi'; did you mean 'n*pi'? | duration | 0");
   EXPECT_EQ(refusal("sqr(a)"), "unknown function 'sqr'; did you mean 'sqrt'? | duration | 0");
+  EXPECT_EQ(refusal("ln(a)"), "unknown function 'ln'; ln(u) is written log(u) | duration | 0");
+  EXPECT_EQ(refusal("pow(a, 2)"), "unknown function 'pow'; pow(u, v) is written u^v | duration | 0");
+  EXPECT_EQ(refusal("cot(a)"), "unknown function 'cot'; cot(u) is written 1/tan(u) | duration | 0");
+  EXPECT_EQ(refusal("sgn(a)"),
+            "unknown function 'sgn'; sgn(u)*u is written abs(u), sgn(u) in a force u/abs(u), and of t and "
+            "parameters 2*step(u) - 1 | duration | 0");
+  EXPECT_EQ(refusal("e^a"), "unknown name 'e'; exp(u) is written for e^u | duration | 0");
   EXPECT_EQ(refusal("q + 1"),
             "unknown name 'q'; is it a parameter that is not declared? Declared: a, m, n | duration | 0");
   EXPECT_EQ(
