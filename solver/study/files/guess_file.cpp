@@ -52,9 +52,10 @@ std::vector<const std::vector<CsvCell>*> rows_of_path(const CsvFile& file, const
                                                       const std::optional<Number>& orbit) {
   std::vector<const std::vector<CsvCell>*> rows;
   const bool numbered = file.header.front().text == "solution" && !std::ranges::count(names, "solution");
-  std::size_t count = 1;
+  double last = 1;
   for (const std::vector<CsvCell>& row : file.rows)
-    if (numbered) count = std::max(count, static_cast<std::size_t>(std::max(1.0, number_in(row.front()))));
+    if (numbered) last = std::max(last, number_in(row.front()));
+  const auto count = static_cast<std::size_t>(std::min(last, static_cast<double>(file.rows.size()) + 1));
   const std::size_t chosen = chosen_row(count, orbit, source);
   for (const std::vector<CsvCell>& row : file.rows)
     if (!numbered || number_in(row.front()) == static_cast<double>(chosen + 1)) rows.push_back(&row);
