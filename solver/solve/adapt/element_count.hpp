@@ -31,6 +31,9 @@ class ElementCount {
   bool grow(double excess, const Scales& size, Trials so_far);
   const std::string& failure() const { return failure_; }  ///< why not
 
+  /// Whether an extremal has been found.
+  bool any() const { return least_.elements > 0; }
+
  private:
   struct Tried {
     int elements = 0;

@@ -31,7 +31,7 @@ struct Outcome {
   /// Null directions of a path that is one of a family between conjugate fixed ends, and the index across it.
   int family = 0, index_across = 0;
   bool hidden = false;  ///< an extremal is near, but roundoff is more than the tolerance
-  bool astray = false;  ///< of a scheme: some number of elements did not lead from the guess to an extremal
+  bool astray = false;  ///< of a scheme: Newton's method failed from the guess, or found no extremal
   /// Where symmetries left a part of an orbit to be found: the part, of which `path` is the whole.
   Path part;
   const Reduction* reduction = nullptr;

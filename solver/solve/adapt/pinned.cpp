@@ -310,7 +310,8 @@ Outcome PinnedSolve::run() {
     }
     if (!solve_discrete(count.now())) {
       if (options_.deadline.passed()) continue;
-      if (!adaptive || count.now() >= 256 || cost_ > most_cost) break;
+      outcome_.astray = !adaptive || count.now() >= 256 || cost_ > most_cost;
+      if (outcome_.astray) break;
       count.multiply(4);
       continue;
     }
@@ -344,7 +345,7 @@ Outcome PinnedSolve::run() {
   }
   if (outcome_.status == Status::not_converged && outcome_.path.elements() > 0)
     if (const auto jump = momentum_jump(problem_, path_)) outcome_.message = describe(*jump);
-  outcome_.astray = outcome_.status == Status::not_converged && count.failure().empty();
+  outcome_.astray = outcome_.status == Status::not_converged && (outcome_.astray || !count.any());
   return std::move(outcome_);
 }
 
