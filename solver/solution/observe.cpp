@@ -122,6 +122,7 @@ class Surveyor {
   void measure() {
     const double* const energy = sums_[energies];
     std::fill(sums_[speeds], sums_[speeds] + 4 * batch, 0.0);
+    double work[batch] = {};  // p·q'
     for (std::size_t a = 0; a < n_; ++a) {
       const double *v = v_ + a * batch, *p = p_ + a * batch, *force = force_ + a * batch,
                    *inertial = inertial_ + a * batch;
@@ -134,12 +135,13 @@ class Surveyor {
         sums_[momenta][i] += terms;
         sums_[forces][i] += std::abs(force[i]);
         sums_[products][i] += terms * std::abs(v[i]);
+        work[i] += p[i] * v[i];
       }
     }
     if (std::exchange(first_, false)) found_.energy = energy[0];
     for (int i = 0; i < count_; ++i) {
       if (end_[i]) sums_[forces][i] = 0;
-      sums_[products][i] += std::abs(energy[i] - sums_[products][i]);
+      sums_[products][i] += std::abs(energy[i] - work[i]);
       found_.finite = found_.finite && std::isfinite(energy[i]);
       found_.energy_drift = std::max(found_.energy_drift, std::abs(energy[i] - found_.energy));
     }

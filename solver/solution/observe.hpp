@@ -16,8 +16,8 @@ struct Survey {
   double energy = 0;            ///< p·q' − L at t = 0
   double energy_drift = 0;      ///< largest |E(t) − E(0)|
   std::vector<double> q, v, p;  ///< range (max − min) of each coordinate, velocity, canonical momentum
-  /// Largest sums over coordinates of |q'|, |p| and, between the ends, where a layer that no point sees may
-  /// begin, |∂L/∂q|; and of |p·q'| terms and |L|, which energy is left of.
+  /// Largest sums over coordinates of |q'|, of the terms of p and, between the ends, where a layer that no
+  /// point sees may begin, of |∂L/∂q|; and of the terms of p·q' and |L|, which energy is left of.
   double speed = 0, momentum = 0, force = 0, terms = 0;
 };
 

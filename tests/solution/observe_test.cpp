@@ -47,11 +47,12 @@ TEST(Observe, ChargeOnItsCircle) {
   // v = −2 (sin 2t, cos 2t) and (−y, x) = (sin 2t, cos 2t).
   EXPECT_NEAR(found.p[0], 2, 1e-3);
   EXPECT_NEAR(found.p[1], 2, 1e-3);
-  // |sin| + |cos| is √2 at most; p = −(sin 2t, cos 2t), ∂L/∂q = (v1, −v0), p·v = 2, L = 0.
+  // |sin| + |cos| is √2 at most; terms of p: v and (−y, x), three times that; ∂L/∂q = (v1, −v0); terms of
+  // p·v: 6; L = 0.
   EXPECT_NEAR(found.speed, 2 * std::numbers::sqrt2, 1e-3);
-  EXPECT_NEAR(found.momentum, std::numbers::sqrt2, 1e-3);
+  EXPECT_NEAR(found.momentum, 3 * std::numbers::sqrt2, 1e-3);
   EXPECT_NEAR(found.force, 2 * std::numbers::sqrt2, 1e-3);
-  EXPECT_NEAR(found.terms, 2, 1e-11);
+  EXPECT_NEAR(found.terms, 6, 1e-11);
 }
 
 TEST(Observe, DriftIsTheLargestDeparture) {

@@ -163,7 +163,7 @@ TEST(FreeTimes, WhereTheEnergyErrorChangesItsSign) {
 /// A search that has not found them when its steps are spent names the node at which it ends.
 TEST(FreeTimes, WhereNoneAreFound) {
   SolveOptions options = free_steps(scheme("gauss(3)"), 12);
-  options.max_iterations = 3000;
+  options.max_iterations = 6000;
   Solver solver;
   const Solution s = solver.solve(fixed_ends(quartic_and_coupled(), {0, 1}, {2, 0.1}, 1.5), options);
   EXPECT_EQ(s.status, Status::not_converged);

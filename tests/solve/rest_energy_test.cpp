@@ -168,7 +168,9 @@ TEST(RestEnergy, SlowMotionsOfNoEnergyHoldNothing) {
     const Solution s = solve(fixed_ends(drift, {-1, -0.5}, {1, 0.5}, T), within(1e-9));
     EXPECT_TRUE(s.converged()) << T << ": " << s.message;
     EXPECT_NEAR(s.action, 0.481466957407, 1e-11) << T;
-    if (T >= 40) EXPECT_EQ(s.nullity, 2) << T;
+    if (T >= 40) {
+      EXPECT_EQ(s.nullity, 2) << T;
+    }
     double before = 0, after = T / 2;
     for (int k = 0; k < 60 && s.converged(); ++k) {
       const double t = 0.5 * (before + after);

@@ -72,9 +72,9 @@ bool within_momenta(const Problem& problem, const Survey& survey, double toleran
 double jump_of_momenta(const Survey& survey, double tolerance, const Scales& size,
                        const DiscreteAction& action) {
   const double range = *std::max_element(survey.p.begin(), survey.p.end()), jump = action.residual();
-  const bool moves = size.range == size.q && range > momentum_roundoff * action.momentum_scale();
-  const double allowed = std::max(jump_margin * momentum_tolerances * tolerance * range,
-                                  momentum_roundoff * action.momentum_scale());
+  const double roundoff = momentum_roundoff * std::max(survey.momentum, action.momentum_scale());
+  const bool moves = size.range == size.q && range > roundoff;
+  const double allowed = std::max(jump_margin * momentum_tolerances * tolerance * range, roundoff);
   return moves && jump > allowed ? jump / range : 0;
 }
 

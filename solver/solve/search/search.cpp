@@ -316,11 +316,12 @@ bool Search::from_other_guesses(GuessKind guess) {
   if (from_settled_motion()) return true;
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line() || through_other_ends()) return true;
-  if (through_weaker_forces()) return true;
   begin();
   if (from_noise(most_noises)) return true;
   begin();
-  return from_motions();
+  if (from_motions()) return true;
+  // What it finds may be far.
+  return through_weaker_forces();
 }
 
 /// Puts the guess on elements, and bounds the effort.
@@ -394,10 +395,10 @@ const Outcome& Search::run(Acceptance* acceptance) {
       outcome_.message = fmt::format(
           "{} Newton steps from the guess ({}){}{}{}{}{} found no extremal; try {}", outcome_.iterations,
           failure, met_.contains(Met::other_durations) ? ", through other durations" : "",
-          met_.contains(Met::weaker_forces) ? ", through weaker forces" : "",
           met_.contains(Met::other_ends) ? ", through other ends" : "",
           met_.contains(Met::noise) ? ", from smooth noise" : "",
           met_.contains(Met::motions) ? ", from motions that miss the end" : "",
+          met_.contains(Met::weaker_forces) ? ", through weaker forces" : "",
           others_to_try(problem_, "a better guess", "a shorter duration"));
       if (met_.contains(Met::equilibrium)) {
         outcome_.status = Status::no_solution_near;
