@@ -126,8 +126,11 @@ TEST(Search, SaysWhatWasTriedWhereNothingIsFound) {
   Solver solver;
   const Solution solution = solver.solve(fixed_ends(systems::bratu(4), {0}, {0}, 1), counted(options));
   EXPECT_EQ(solution.status, Status::iteration_limit);
-  EXPECT_EQ(solution.iterations, 600);
-  for (const char* words : {"600 Newton steps from the guess (", "smooth noise", "try a better guess"})
+  // A part is kept for the last way, which may need less.
+  EXPECT_LE(solution.iterations, 600);
+  EXPECT_GE(solution.iterations, 450);
+  const std::string steps = std::to_string(solution.iterations) + " Newton steps from the guess (";
+  for (const std::string& words : {steps, std::string("smooth noise"), std::string("try a better guess")})
     EXPECT_NE(solution.message.find(words), std::string::npos) << solution.message;
   EXPECT_TRUE(solution.trajectory.nodes.empty());
 }

@@ -37,6 +37,8 @@ class Refinement {
     most_steps_ = std::max(most_steps_, outcome_.attempts + steps);
     share_ = std::max(share_, cost_ / most_cost_ + share);
   }
+  /// Keeps so many of them for what comes after.
+  void keep(int steps) { most_steps_ -= steps; }
   int steps_left() const { return most_steps_ - outcome_.attempts; }
   bool exhausted() const {
     return outcome_.attempts >= most_steps_ || cost_ >= affordable() || options_.deadline.passed();

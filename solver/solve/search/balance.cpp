@@ -153,9 +153,8 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
   if (!found) return std::nullopt;
   Rest rest{.tails = *found, .slow = {}, .cost = equilibrium.cost()};
   if (accuracy == Accuracy::extrapolated)
-    rest.tails.energy =
-        extrapolate(equilibrium, speeds, slowest, std::min(fastest_tail * tail, moving * speeds.fastest),
-                    least, *found);
+    rest.tails.energy = extrapolate(equilibrium, speeds, slowest,
+                                    std::min(fastest_tail * tail, moving * speeds.fastest), least, *found);
   rest.tails.energy = rest.tails.energy.known();
   if (!std::isfinite(rest.value().log)) return std::nullopt;
   std::size_t before = slowest, after = slowest;

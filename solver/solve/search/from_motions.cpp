@@ -97,7 +97,7 @@ bool Search::from_motions() {
   const Duration& given = problem_.duration;
   if (problem_.periodic || problem_.ends.free > 0 || (given.free && !given.energy)) return false;
   if (problem_.paired || !Flow::suits(*problem_.lagrangian)) return false;
-  refinement_.allow(std::min(allowance_, options_.max_iterations - outcome_.attempts));
+  refinement_.allow(std::min(allowance_, options_.max_iterations - outcome_.attempts - kept_for_forces()));
   const std::size_t n = problem_.coordinates();
   const double frequency = std::max(1.0, w_.frequency.phase()) / given.value;
   const std::vector<double> extent = extents(path_, negligible_extent[0]);

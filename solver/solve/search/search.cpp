@@ -24,7 +24,7 @@ using namespace limits::search;
 namespace {
 
 constexpr const char* from_guess = "newton from the guess";
-/// Of the effort, for weaker forces where the routes before have spent all.
+/// Of the effort, kept for weaker forces.
 constexpr double share_of_forces = 0.25;
 
 }  // namespace
@@ -143,12 +143,18 @@ bool Search::through_other_durations() {
   return false;
 }
 
+/// Steps kept for weaker forces; 0 where they are not tried.
+int Search::kept_for_forces() const {
+  const bool suits = !problem_.duration.free && !problem_.paired && !problem_.infinite && !problem_.phase &&
+                     !problem_.manifold && problem_.has_ends() && !problem_.lagrangian->kinks();
+  return suits ? static_cast<int>(share_of_forces * allowance_) : 0;
+}
+
 /// From the extremal of a quadratic Lagrangian, through those of weaker nonlinear forces.
 bool Search::through_weaker_forces() {
-  if (problem_.duration.free || problem_.paired || problem_.infinite || problem_.phase || problem_.manifold ||
-      !problem_.has_ends() || problem_.lagrangian->kinks() || options_.deadline.passed())
-    return false;
-  if (refinement_.exhausted()) renew(share_of_forces);
+  const int kept = kept_for_forces();
+  if (kept == 0) return false;
+  refinement_.allow(std::min(kept, options_.max_iterations - outcome_.attempts), share_of_forces);
   const auto count = [this] { return refinement_.count_step(); };
   for (const double spread : force_spreads) {
     const auto weakened = WeakenedLagrangian::about(*guess_, spread);
@@ -317,6 +323,7 @@ bool Search::from_other_guesses(GuessKind guess) {
   if (!problem_.guess.given() && from_noise(first_noises)) return true;
   if (through_other_durations() || from_line() || through_other_ends()) return true;
   begin();
+  refinement_.keep(kept_for_forces());
   if (from_noise(most_noises)) return true;
   begin();
   if (from_motions()) return true;

@@ -94,6 +94,7 @@ class Search {
   bool found(const char* strategy);
   bool from_other_guesses(GuessKind guess);
   bool through_other_durations();
+  int kept_for_forces() const;
   bool through_weaker_forces();
   bool through_other_ends();
   bool refine_from(const Path& other, const char* strategy);
