@@ -316,9 +316,11 @@ bool Continuation::retry(double length) {
   return step();
 }
 
-/// Orbits that differ by less from themselves half a period later have half the period.
+/// Orbits that differ by less from themselves half a period later have half the period. Where the equations
+/// are nearly singular the error is overestimated.
 double Continuation::half_distance() const {
-  return std::max(half_period * from_.units.extent, half_period_errors * tracker_.error());
+  const double extent = from_.units.extent;
+  return std::clamp(half_period_errors * tracker_.error(), half_period * extent, nearly_half_period * extent);
 }
 
 /// Whether the last step led from an orbit onto one of half the period: these are another branch.
@@ -330,16 +332,19 @@ bool Continuation::halves_period() {
 }
 
 /// Where orbits meet those of half their period, run through twice, beyond are the same ones half a period
-/// later: what is left of them less themselves half a period later passes zero there.
+/// later: what is left of them less themselves half a period later passes zero there. The point may be found
+/// a little beyond the step.
 void Continuation::end_at_half_period(StepEvents& events) {
   const Trajectory from = trajectory_of(from_.path), to = trajectory_of(tracker_.state.path);
   const double before = alternation(family_, from_.varied, from, from).value_or(0);
-  if (before <= std::pow(half_distance(), 2) || *alternation(family_, from_.varied, from, to) >= 0) return;
+  if (before <= std::pow(half_distance(), 2)) return;
+  const bool passes = *alternation(family_, from_.varied, from, to) < 0;
   const double most = nearly_half_period * std::sqrt(before);
   const auto met = std::ranges::find_if(events.points, [&](const FoundPoint& found) {
-    return found.point.kind == PointKind::branch ||
-           (found.point.kind == PointKind::fold &&
-            has_half_period(family_, found.point.parameter, found.point.solution.trajectory, most));
+    const BranchPoint& point = found.point;
+    if (point.kind == PointKind::branch && passes) return true;
+    return (point.kind == PointKind::branch || point.kind == PointKind::fold) &&
+           has_half_period(family_, point.parameter, point.solution.trajectory, most);
   });
   if (met == events.points.end()) return;
   const double parameter = met->point.parameter;

@@ -121,8 +121,8 @@ inline constexpr double half_as_far = 0.75;
 /// Of its size, and of its error: an orbit that differs by less from itself half a period later has half the
 /// period.
 inline constexpr double half_period = 1e-6, half_period_errors = 10;
-/// A fold is where orbits meet those of half their period if it alternates by no more than this share of what
-/// the state before it does.
+/// A point is where orbits meet those of half their period if it alternates by no more than this share of
+/// what the state before it does; of the size, no error is larger.
 inline constexpr double nearly_half_period = 1e-2;
 /// Of the size of the guess: a path smaller than this is at rest.
 inline constexpr double rest = 1e-9;
