@@ -156,7 +156,7 @@ TEST(ForceHomotopy, DerivativesAreThoseOfTheValue) {
     EXPECT_NEAR((values(0.3 + h).dq[b] - values(0.3 - h).dq[b]) / (2 * h), values(0.3).qq[b], 1e-8) << b;
 }
 
-/// The start by shooting. The straight line is far from it.
+/// The straight line is far from every extremal.
 TEST(ForceHomotopy, FindsWhatOtherGuessesDoNot) {
   const Solution solution = solve(chain_of_pendulums(5), within(1e-10));
   ASSERT_TRUE(solution.converged()) << solution.message;

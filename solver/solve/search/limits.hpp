@@ -351,6 +351,8 @@ inline constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 
 /// Points about the guess that tell linear forces from bounded ones: their distance by its extent.
 inline constexpr double force_spreads[] = {8, 1};
+/// Of the effort, kept for weaker forces.
+inline constexpr double share_of_forces = 0.25;
 
 }  // namespace search
 

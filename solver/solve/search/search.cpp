@@ -24,8 +24,6 @@ using namespace limits::search;
 namespace {
 
 constexpr const char* from_guess = "newton from the guess";
-/// Of the effort, kept for weaker forces.
-constexpr double share_of_forces = 0.25;
 
 }  // namespace
 
