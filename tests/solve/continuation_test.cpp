@@ -320,6 +320,25 @@ TEST(Continuation, PointsMeetTheTolerance) {
   }
 }
 
+/// Elements of half a period move while their ends hardly do: x = A sin(ω t + φ) over four periods.
+TEST(Continuation, ElementsOfHalfAPeriod) {
+  const double omega = 0.5668702589175848, first = 0.47716577761206347, last = 0.040722748193568886;
+  const auto oscillator =
+      trace(1, [=](auto q, auto v, auto) { return (v[0] * v[0] - omega * omega * q[0] * q[0]) / 2; });
+  const double tolerance = 1.6e-6;
+  const double from = 44.79060741239736, to = 50.71882131675967;
+  Continuation branch({fixed_ends(oscillator, {first}, {last}, from), Varied::duration, from, to, {}},
+                      {within(tolerance), 9});
+  for (const BranchPoint& point : follow(branch)) {
+    const double angle = omega * point.parameter;
+    const double sine = (last - first * std::cos(angle)) / std::sin(angle);
+    for (int k = 0; k <= 40; ++k) {
+      const double t = k / 40.0 * point.parameter, exact = first * std::cos(omega * t) + sine * std::sin(omega * t);
+      EXPECT_NEAR(at(point.solution.trajectory, t).q[0], exact, tolerance * std::hypot(first, sine)) << angle;
+    }
+  }
+}
+
 /// There is no extremal where the parameter is negative.
 TEST(Continuation, EndsWhereThereIsNoProblem) {
   const auto at = [](double p) -> std::optional<Problem> {

@@ -395,6 +395,7 @@ double Branch::dot(const Move& a, const Move& b) const {
 double Branch::largest(const Move& move) const {
   double most = 0;
   for (const double x : move.step.nodes) most = std::max(most, std::abs(x));
+  for (const double x : move.step.inner) most = std::max(most, std::abs(x));
   const double unit = by_duration() ? units_.duration : unit_;
   return std::max({most / units_.extent, std::abs(move.step.duration) / units_.duration,
                    std::abs(move.parameter) / unit});

@@ -122,7 +122,8 @@ class Branch : public ExtremalCurve {
   /// Mean over τ, by the nodes, relative to an extent of the path; durations relative to another, parameters
   /// to the distance wanted.
   double dot(const Move& a, const Move& b) const override;
-  /// The most that a node is moved, which short elements hide in the mean.
+  /// The most that a node is moved, which short elements hide in the mean; inner nodes, too, as those of an
+  /// element of half a period move far while its ends hardly do.
   double largest(const Move& move) const;
   struct Units {
     double extent = 1, duration = 1;
