@@ -320,7 +320,8 @@ TEST(Continuation, PointsMeetTheTolerance) {
   }
 }
 
-/// Elements of half a period move while their ends hardly do: x = A sin(ω t + φ) over four periods.
+/// Elements of half a period move while their ends hardly do, and near ω T = 9 π the amplitude grows without
+/// bound: x = A sin(ω t + φ) over four periods.
 TEST(Continuation, ElementsOfHalfAPeriod) {
   const double omega = 0.5668702589175848, first = 0.47716577761206347, last = 0.040722748193568886;
   const auto oscillator =
@@ -328,14 +329,45 @@ TEST(Continuation, ElementsOfHalfAPeriod) {
   const double tolerance = 1.6e-6;
   const double from = 44.79060741239736, to = 50.71882131675967;
   Continuation branch({fixed_ends(oscillator, {first}, {last}, from), Varied::duration, from, to, {}},
-                      {within(tolerance), 9});
+                      {within(tolerance), 40});
   for (const BranchPoint& point : follow(branch)) {
     const double angle = omega * point.parameter;
     const double sine = (last - first * std::cos(angle)) / std::sin(angle);
     for (int k = 0; k <= 40; ++k) {
-      const double t = k / 40.0 * point.parameter, exact = first * std::cos(omega * t) + sine * std::sin(omega * t);
+      const double t = k / 40.0 * point.parameter,
+                   exact = first * std::cos(omega * t) + sine * std::sin(omega * t);
       EXPECT_NEAR(at(point.solution.trajectory, t).q[0], exact, tolerance * std::hypot(first, sine)) << angle;
     }
+  }
+}
+
+/// Where orbits grow while their period hardly does, points are orbits of their own period: distant
+/// retrograde orbits of Hill's problem, whose periods tend to 2π.
+TEST(Continuation, OrbitsOfTheirOwnPeriod) {
+  const auto hill = trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1]) / 2 + q[0] * v[1] - q[1] * v[0] + 1.5 * q[0] * q[0] +
+           1 / sqrt(q[0] * q[0] + q[1] * q[1]);
+  });
+  const Problem first = guessed(periodic(hill, 5.9), [](double tau) {
+    return Values{2 * std::cos(2 * pi * tau), -4 * std::sin(2 * pi * tau)};
+  });
+  const auto farthest = [](const Trajectory& path) {
+    double most = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const Values q = at(path, k / 4000.0 * path.duration()).q;
+      most = std::max(most, std::hypot(q[0], q[1]));
+    }
+    return most;
+  };
+  const double tolerance = 1e-5;
+  Continuation branch({first, Varied::duration, 5.9, 6.5, {}}, {within(tolerance), 16});
+  for (const BranchPoint& point : follow(branch)) {
+    const Trajectory& path = point.solution.trajectory;
+    const Solution again = solve(guessed(periodic(hill, path.duration()),
+                                         [&](double tau) { return at(path, tau * path.duration()).q; }),
+                                 within(1e-10));
+    ASSERT_TRUE(again.converged()) << path.duration();
+    EXPECT_NEAR(farthest(path) / farthest(again.trajectory), 1, 3 * tolerance) << path.duration();
   }
 }
 

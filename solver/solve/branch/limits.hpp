@@ -194,6 +194,8 @@ namespace tracker {
 
 /// Corrections are carried on to this share of the tolerance, and no further than this.
 inline constexpr double unfinished = 0.01, least_goal = 10 * least_correction;
+/// A path nearer to the extremal of its own value than this share of the tolerance is not corrected further.
+inline constexpr double settled = 0.1;
 inline constexpr int most_resolutions = 4;
 /// A path that another quadrature moves by more than this share of what it did before elements were halved is
 /// moved by roundoff.

@@ -98,7 +98,22 @@ bool Tracker::reach(const BranchState& from, double length, bool same_elements, 
     if (fit == Fit::fine) break;
     if (!correct(std::abs(length), landing)) return false;
   }
-  return update_tangent() && (same_elements || resolve_forces(std::abs(length), landing));
+  return update_tangent() && (same_elements || (resolve_forces(std::abs(length), landing) && settle()));
+}
+
+/// Where the value hardly varies while the branch runs on, a path that is near the branch is farther from the
+/// extremal of its own value: by the slope of the branch over the value.
+bool Tracker::settle() {
+  if (!(left_at_value() > settled * tolerance_)) return true;
+  const double share = std::min(std::abs(state.rate / branch_.varied_unit()), 1.0);
+  return correct(1, nullptr, share) && update_tangent();
+}
+
+/// How far the path is from the extremal of its value, to first order.
+double Tracker::left_at_value() const {
+  Move left = branch_.correction;
+  left.add(branch_.direction, -branch_.change(false) / branch_.change(true));
+  return branch_.largest(left);
 }
 
 /// Forces between the points of the quadrature show in another one. Elements are halved as long as it moves
@@ -146,10 +161,12 @@ bool Tracker::turns_one_way(const BranchState& from) {
 
 bool Tracker::land(double value) { return correct(1, &value) && update_tangent(); }
 
-/// Newton's method across the tangent; or to where the number that varies has the value `landing`.
-bool Tracker::correct(double length, const double* landing) {
+/// Newton's method across the tangent, to a share of what is enough; or to where the number that varies has
+/// the value `landing`.
+bool Tracker::correct(double length, const double* landing, double share) {
   const double enough = std::max(unfinished * tolerance_, least_goal);
-  ChordSteps policy(branch_, tangent_, length, landing ? least_goal : enough, enough);
+  ChordSteps policy(branch_, tangent_, length, landing ? least_goal : std::max(share * enough, least_goal),
+                    enough);
   const CurveBorder border{.tangent = &tangent_, .value = landing};
   const Progress progress = newton_loop(BorderedSteps{branch_, border}, policy);
   factorisations_ = policy.factorisations();

@@ -120,7 +120,9 @@ class Tracker {
  private:
   static constexpr double sharpest_turn = 0.9;
   enum class Fit { fine, changed, too_many };
-  bool correct(double length, const double* landing);
+  bool correct(double length, const double* landing, double share = 1);
+  bool settle();
+  double left_at_value() const;
   bool update_tangent(bool first = false);
   double crossing_test();
   bool resolve_forces(double length, const double* landing);
