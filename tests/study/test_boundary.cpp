@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "rivals/shooting.hpp"
 #include "scenes.hpp"
 
 using namespace extremal;
@@ -372,6 +375,25 @@ TEST_F(Scenes, OrbitsOfAFamilyThatIsDriven) {
   double q = 0, v = 0;
   found.trajectory.at(1, {&q, 1}, {&v, 1});
   EXPECT_NEAR(q, std::sin(1.0) / 3 + 0.2 * std::cos(2.0), 1e-8);
+}
+
+/// A drive of a third of their frequency hardly holds the phase of large oscillations: orbits are isolated
+/// though their second variation is nearly singular, and no path between them is one.
+TEST_F(Scenes, NoFamilyWhereAPhaseIsHardlyHeld) {
+  for (const auto& [frequency, slope] : {std::pair{1.5, -8.4956}, {2.0, -15.4187}}) {
+    const Study driven = study(fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nparameters = {{ w = {} }}\nlagrangian = \"x'^2/2 - x^2/2 - x^4/4 + "
+        "0.3*x*cos(w*t)\"\n[boundary]\nperiodic = true\nduration = \"2*pi/w\"\n[guess]\nstate = {{ x = -0.2, "
+        "\"x'\" = {} }}\n[solve]\ntolerance = 1e-12\n",
+        frequency, slope));
+    const Solution found = run(driven);
+    EXPECT_EQ(found.message.find("family of orbits of"), std::string::npos) << found.message;
+    if (!found.converged()) continue;
+    std::vector<double> q(1), v(1);
+    found.trajectory.at(0, q, v);
+    const Flight flight = fly(*driven.problem.lagrangian, q, v, std::vector<double>{found.duration()});
+    EXPECT_NEAR(flight.q[0], q[0], 1e-11) << frequency;
+  }
 }
 
 /// q'' = −q + sin t has no orbit of the period 2π: sin t does work on the motions without it.

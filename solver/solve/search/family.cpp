@@ -141,8 +141,9 @@ bool ExtremalFamily::converge(Path& path, bool to_guess) {
 double ExtremalFamily::force(const Path& path) {
   action_.evaluate_plain(path);
   // A path at rest has no momenta: there it is the force that another direction answers with.
+  const double other = stiffness_ * unit_of(path, *tables_) * path.duration();
   const double momentum =
-      std::max(action_.momentum_scale(), stiffness_ * unit_of(path, *tables_) * path.duration());
+      action_.momentum_scale() > roundoff_of_guess * other ? action_.momentum_scale() : other;
   hold();
   if (!model_->evaluate(action_, path, nullptr)) return INFINITY;
   const std::size_t n = n_;

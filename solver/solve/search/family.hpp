@@ -48,8 +48,8 @@ class ExtremalFamily {
   double slide(Path& path);
   /// Steps until they are roundoff.
   bool converge(Path& path, bool to_guess);
-  /// The force along the null directions, relative to the largest momentum or to that which holds the path
-  /// across them: zero on a family.
+  /// The force along the null directions, relative to the largest momentum; at rest to the force that holds
+  /// the path across them. Zero on a family.
   double force(const Path& path);
   /// Whether members of the family are on both sides. `closer` becomes the one of these that is nearest to
   /// the guess, if it is nearer than the path.

@@ -282,9 +282,10 @@ inline constexpr double near_extremal = 1e-3;
 /// Steps of roundoff, relative to the range; and steps so small that they may be, if they no longer fall.
 inline constexpr double arrived = 1e-14, nearly = 1e-10;
 /// Other members of the family are looked for at this part of the range to both sides. There, the force along
-/// the null directions, relative to the largest momentum, is at most this: roundoff; and at most that part of
-/// what the ends make of it, unless that is less than roundoff of a gradient.
-inline constexpr double aside = 0.05, largest_no_force = 1e-10, part_of_force = 1e-4;
+/// the null directions, relative to the largest momentum, is at most this: roundoff of a sum over as many
+/// nodes as there may be; and at most that part of what the ends make of it, unless that is less than roundoff
+/// of a gradient.
+inline constexpr double aside = 0.05, largest_no_force = 1e-12, part_of_force = 1e-4;
 inline constexpr double roundoff_of_force = 1e-15;
 /// Members at that distance are nearer to the guess if the square of their distance is less by this part of
 /// the square of the range: more than roundoff. Steps along the family to the nearest, and how often it is

@@ -429,9 +429,10 @@ const Outcome& Search::run(Acceptance* acceptance) {
   if (result != Refinement::Result::converged && no_family_ && problem_.periodic) {
     outcome_.status = Status::no_solution_near;
     outcome_.message =
-        "the second variation is singular along a path near the guess, and a force along its null directions "
-        "remains that no step removes: what drives the motion is in resonance, and there is neither an orbit "
-        "of this period nor a family of them near; change the duration or the force";
+        "the second variation is singular, or nearly so, along a path near the guess, and a force along its "
+        "null directions remains: what drives the motion is in resonance, and no orbit of this period is "
+        "found "
+        "near, nor a family of them; change the duration or the force, or try a better guess";
   }
   acceptance_ = nullptr;
   return unless_spent();
