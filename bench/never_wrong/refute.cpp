@@ -83,6 +83,7 @@ class Refutation {
         verify(problem_, trajectory_,
                {.tolerance = integrated,
                 .margin = std::numeric_limits<double>::max(),
+                .ends = pieces(),
                 .max_steps = integrated > tolerance_ ? patience : usual_steps});
     if (!found.verified) {
       const bool slow = found.message.find("steps of the integrator") != std::string::npos;
@@ -109,6 +110,12 @@ class Refutation {
       return {"velocity", fmt::format("a defect of {:.3g} times what is allowed in q' at t = {:.6g}", fast,
                                       found.worst_time)};
     return solution_.conjugate_times_known ? judge_index(found.orientation) : Fault{};
+  }
+
+  /// Steps across kinks of L cost the integrator its last digits: pieces end where elements do, also there.
+  std::vector<double> pieces() const {
+    if (!problem_.lagrangian->kinks()) return {};
+    return {trajectory_.times.begin() + 1, trajectory_.times.end()};
   }
 
   /// Fields along the path begin with its velocities, which are less exact than it is, and may turn round
