@@ -265,18 +265,40 @@ bool Branch::linearise_parameter() {
     else if (tables_->unknowns() <= most_dense_unknowns)
       free_.energy = energy_change(direction) / (energy_unit_ * length);
   }
-  Move before;
-  const double by = small * unit_;
-  const double after_action = solve_beside(by, direction), before_action = solve_beside(-by, before);
-  defined_ = std::isfinite(after_action) && std::isfinite(before_action);
-  if (!defined_) return false;
-  direction.add(before, -1);
-  direction.scale(1 / (2 * by));
-  direction.parameter = 1;
-  action_slope_ = (after_action - before_action) / (2 * by);
+  if (!respond_to_parameter()) return false;
   action_slope_ += work_of_momenta(direction);
   if (problem_.duration.free) action_slope_ -= energy_ * direction.step.duration;
   return true;
+}
+
+/// The step per parameter, and the slope of the action.
+bool Branch::respond_to_parameter() {
+  const auto quotient = [this](double by, Move& change, double& slope) {
+    Move before;
+    const double after_action = solve_beside(by, change), before_action = solve_beside(-by, before);
+    if (!std::isfinite(after_action) || !std::isfinite(before_action)) return false;
+    change.add(before, -1);
+    change.scale(1 / (2 * by));
+    slope = (after_action - before_action) / (2 * by);
+    return std::isfinite(dot(change, change));
+  };
+  Move wider;
+  double slope = 0, wider_slope = 0;
+  const double by = wide * unit_;
+  defined_ = true;
+  if (quotient(by, direction, slope) && quotient(2 * by, wider, wider_slope)) {
+    wider.add(direction, -1);
+    if (dot(wider, wider) <= most_curved * most_curved * dot(direction, direction)) {
+      // The error of both grows with the square of the change (Richardson).
+      direction.add(wider, -1.0 / 3);
+      direction.parameter = 1;
+      action_slope_ = slope - (wider_slope - slope) / 3;
+      return true;
+    }
+  }
+  defined_ = quotient(narrow * unit_, direction, action_slope_);
+  direction.parameter = 1;
+  return defined_;
 }
 
 /// p(T)·δq(T) − p(0)·δq(0) of momenta that are given: S is not stationary in these ends.

@@ -134,6 +134,7 @@ class Branch : public ExtremalCurve {
   bool by_duration() const { return family_.varied != Varied::parameter; }
   bool linearise_duration(Factors factors);
   bool linearise_parameter();
+  bool respond_to_parameter();
   bool evaluate(const ClosingEquation* closing, Factors factors);
   void hold_along(const Move& direction);
   void negate_second(std::vector<double>& nodes) const;

@@ -1,5 +1,6 @@
 #include "solve/branch/chord_steps.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "solve/branch/limits.hpp"
@@ -19,7 +20,8 @@ Progress ChordSteps::take(bool solved, int k) {
   const double way = std::sqrt(branch_.dot(move, move)), size = branch_.largest(move);
   const double rate = k > 0 ? size / before_ : 1;
   factorisations_ += anew_;
-  const bool noise = anew_ && size < amplified_roundoff && rate > stagnation;
+  roundoff_ = anew_ && size < largest_roundoff && rate > stagnation;
+  const bool noise = roundoff_ && size < std::max(amplified_roundoff, negligible * enough_);
   // Old factors may hide corrections: growth is measured against the last correction of new ones.
   const double growth = way / (anew_ ? std::exchange(way_of_newton_, way) : way_before_);
   const double fastest = way > small_correction * length_ ? contraction : slowest;

@@ -27,6 +27,8 @@ class ChordSteps {
   double along() const { return along_; }
   /// Whether they failed where there is no problem.
   bool left_problem() const { return left_problem_; }
+  /// Whether the last ones were roundoff, that equations which are nearly singular amplify.
+  bool roundoff() const { return roundoff_; }
 
  private:
   Branch& branch_;
@@ -37,7 +39,7 @@ class ChordSteps {
   double before_ = INFINITY, way_before_ = INFINITY, way_of_newton_ = INFINITY, curvature_ = INFINITY;
   double along_ = 0;
   int factorisations_ = 0;
-  bool left_problem_ = false;
+  bool left_problem_ = false, roundoff_ = false;
 };
 
 }  // namespace extremal

@@ -394,9 +394,13 @@ bool Continuation::give_up(const BranchState& from) {
     return stop(BranchEnd::budget, fmt::format("at {:.8g} {} (solve.budget) is spent; raise it", varied,
                                                deadline.budget_text()));
   StepFailure failure = tracker_.failure();
-  if (failure == StepFailure::rough && graded > singular_grading) failure = StepFailure::crowded;
+  const bool unresolved = failure == StepFailure::rough || failure == StepFailure::hidden;
+  if (unresolved && graded > singular_grading) failure = StepFailure::crowded;
   switch (failure) {
     case StepFailure::crowded:
+      if (graded < mild_grading)
+        return stop(BranchEnd::too_short,
+                    fmt::format("at {:.8g} no number of elements meets the tolerance; loosen it", varied));
       return stop(
           BranchEnd::collision,
           fmt::format("at {:.8g} the path, whose shortest element is {:.0e} of its longest, needs ever "
@@ -407,6 +411,12 @@ bool Continuation::give_up(const BranchState& from) {
                   fmt::format("at {:.8g} the branch cannot be followed: beyond, there is no such problem, or "
                               "L is not finite",
                               varied));
+    case StepFailure::hidden:
+      return stop(
+          BranchEnd::too_short,
+          fmt::format("at {:.8g} roundoff hides the branch: its equations are nearly singular; loosen "
+                      "the tolerance",
+                      varied));
     default:
       return stop(
           BranchEnd::too_short,

@@ -10,8 +10,9 @@ namespace extremal::limits {
 
 namespace branch {
 
-/// A change of the parameter for difference quotients, in its unit.
-inline constexpr double small = 1e-5;
+/// Changes of the parameter for difference quotients, in its unit: of four points, whose roundoff is small
+/// also where equations are nearly singular, unless those of two differ by more than this share: then of two.
+inline constexpr double wide = 1e-3, most_curved = 1e-4, narrow = 1e-5;
 
 }  // namespace branch
 
@@ -90,6 +91,8 @@ inline constexpr double contraction = 0.5, longest_correction = 0.5;
 inline constexpr double small_correction = 0.05, slowest = 4;
 /// Roundoff shrinks less than this from one correction to the next.
 inline constexpr double stagnation = 0.3;
+/// Corrections that are longer are none of roundoff. Those of so many times what is enough will do.
+inline constexpr double largest_roundoff = 1e-6, negligible = 10;
 
 }  // namespace chord_steps
 
@@ -137,7 +140,8 @@ inline constexpr double slow = 0.03, mostly = 0.25, lasting = 5;
 /// Of the distance wanted: where steps fail so near to the limit it is the end.
 inline constexpr double hardly = 1e-6;
 /// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
-inline constexpr double singular_grading = 100;
+/// Where they differ by less than this, there is none.
+inline constexpr double singular_grading = 100, mild_grading = 3;
 
 }  // namespace continuation
 

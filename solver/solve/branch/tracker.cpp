@@ -171,7 +171,9 @@ bool Tracker::correct(double length, const double* landing, double share) {
   const Progress progress = newton_loop(BorderedSteps{branch_, border}, policy);
   factorisations_ = policy.factorisations();
   if (landing) landed_ += policy.along();
-  failure_ = policy.left_problem() ? StepFailure::no_problem : StepFailure::rough;
+  failure_ = policy.left_problem() ? StepFailure::no_problem
+             : policy.roundoff()   ? StepFailure::hidden
+                                   : StepFailure::rough;
   return progress == Progress::arrived;
 }
 

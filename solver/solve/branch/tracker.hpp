@@ -17,6 +17,7 @@ enum class StepFailure {
   no_problem,  ///< there is no such problem, or L is not finite
   crowded,     ///< the path needs too many elements
   rough,       ///< corrections do not shrink, or the branch turns too much
+  hidden,      ///< corrections are roundoff, and longer than the tolerance allows
 };
 
 /// Steps of pseudo-arclength (Keller 1977): along the cubic that the last tangents predict, then Newton's
