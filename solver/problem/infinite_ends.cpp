@@ -51,7 +51,7 @@ double late(const Lagrangian& lagrangian, std::span<const double> q) {
   double t = 1;
   for (int k = 0; k < most_doublings; ++k, t *= 2) {
     const RestPoint rest = rest_point(lagrangian, q, t);
-    if (rest.hyperbolic && t * rest.slowest >= decays) break;
+    if (rest.hyperbolic && t * rest.slowest_in >= decays) break;
   }
   return t;
 }
@@ -228,12 +228,12 @@ Guess default_guess(const Problem& problem, const InfiniteEnds& infinite) {
   double a = 0, b = 0;
   if (from) {
     const RestPoint rest = rest_point_of(*problem.lagrangian, infinite, false, T);
-    a = rest.slowest;
+    a = rest.slowest_out;
     if (!to) meet_momenta(problem, rest, true, end);
   }
   if (to) {
     const RestPoint rest = rest_point_of(*problem.lagrangian, infinite, true, T);
-    b = rest.slowest;
+    b = rest.slowest_in;
     if (!from) meet_momenta(problem, rest, false, start);
   }
   double way = 0, size = 0;
@@ -287,8 +287,10 @@ RestPoint rest_point_of(const Lagrangian& lagrangian, const InfiniteEnds& infini
 
 double approach_time(const Lagrangian& lagrangian, const InfiniteEnds& infinite) {
   double time = 0;
-  for (const std::vector<double>* q : {&infinite.start, &infinite.end})
-    if (!q->empty()) time += decays / rest_point(lagrangian, *q, late(lagrangian, *q)).slowest;
+  for (const bool at_end : {false, true}) {
+    const std::vector<double>& q = at_end ? infinite.end : infinite.start;
+    if (!q.empty()) time += decays / rest_point(lagrangian, q, late(lagrangian, q)).decay(at_end);
+  }
   return time;
 }
 

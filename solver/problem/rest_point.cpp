@@ -14,6 +14,8 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
+/// For difference quotients in time, in units of the time since zero.
+constexpr double time_step = 1e-6;
 constexpr int most_newton_steps = 30;
 constexpr double newton_goal = 1e-14;
 /// Exponents whose real part is smaller, relative to the largest exponent, are imaginary: a double zero
@@ -33,11 +35,14 @@ Matrix square(const std::vector<double>& rows, Eigen::Index n) {
 class AtRest {
  public:
   AtRest(const Lagrangian& lagrangian, double t) : lagrangian_(lagrangian), t_(t) {}
-  PointValues operator()(const Eigen::VectorXd& q) {
+  PointValues operator()(const Eigen::VectorXd& q) { return later(q, 0); }
+  /// By so many units of time.
+  PointValues later(const Eigen::VectorXd& q, double by) {
     const std::vector<double> rest(q.size(), 0);
-    return evaluate_at(lagrangian_, {q.data(), static_cast<std::size_t>(q.size())}, rest, t_, Order::hessian,
-                       scratch_);
+    return evaluate_at(lagrangian_, {q.data(), static_cast<std::size_t>(q.size())}, rest,
+                       t_ + by * time_unit(), Order::hessian, scratch_);
   }
+  double time_unit() const { return t_ != 0 ? std::abs(t_) : 1; }
 
  private:
   const Lagrangian& lagrangian_;
@@ -77,6 +82,38 @@ Matrix graph(const Matrix& sign, double side) {
   return 0.5 * (p + p.transpose());
 }
 
+/// What masses and gyroscopic terms that change in time add to linear_motion(): with η'' they are
+/// Mη'' + (Ṁ + C − Cᵀ)η' + (Ċ − K)η = 0, so that exp(ct) L has the rates of damped motions. π, too, is then
+/// that of the mass at this time.
+Matrix drift(AtRest& at, const Eigen::VectorXd& q, const PointValues& values) {
+  const Eigen::Index n = q.size();
+  const PointValues after = at.later(q, time_step), before = at.later(q, -time_step);
+  const double lapse = 2 * time_step * at.time_unit();
+  const Matrix mass_rate = (square(after.vv, n) - square(before.vv, n)) / lapse,
+               mixed_rate = (square(after.vq, n) - square(before.vq, n)) / lapse,
+               damping = mass_rate * solved(square(values.vv, n), Matrix::Identity(n, n));
+  Matrix added = Matrix::Zero(2 * n, 2 * n);
+  added.bottomRows(n) << damping * square(values.vq, n) - mixed_rate, -damping;
+  return added;
+}
+
+/// A power of two.
+double unit_of_mass(const PointValues& values) {
+  const Eigen::Map<const Eigen::ArrayXd> masses(values.vv.data(), std::ssize(values.vv));
+  return std::exp2(std::round(std::log2(masses.abs().maxCoeff())));
+}
+
+/// linear_motion() with what changes in time, momenta in units of the mass, which may be of any size.
+Matrix motion_about(const Lagrangian& lagrangian, AtRest& at, const Eigen::VectorXd& q,
+                    const PointValues& values) {
+  const Eigen::Index n = q.size();
+  Matrix a = linear_motion(values, n);
+  if (!lagrangian.structure().autonomous) a += drift(at, q, values);
+  a.topRightCorner(n, n) *= unit_of_mass(values);
+  a.bottomLeftCorner(n, n) /= unit_of_mass(values);
+  return a;
+}
+
 double least_real_part(const Eigen::VectorXcd& exponents) { return exponents.real().cwiseAbs().minCoeff(); }
 
 }  // namespace
@@ -90,8 +127,9 @@ Matrix linear_motion(const PointValues& values, Eigen::Index n) {
 }
 
 double slowest_rate(const Lagrangian& lagrangian, std::span<const double> q, double t) {
-  const auto n = static_cast<Eigen::Index>(q.size());
-  const Matrix a = linear_motion(AtRest(lagrangian, t)(Eigen::Map<const Eigen::VectorXd>(q.data(), n)), n);
+  const Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(q.data(), std::ssize(q));
+  AtRest at(lagrangian, t);
+  const Matrix a = motion_about(lagrangian, at, point, at(point));
   return a.allFinite() ? least_real_part(general_eigenvalues(a)) : NAN;
 }
 
@@ -130,16 +168,21 @@ RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near,
   rest.momentum = values.dv;
   rest.value = values.value;
   rest.stiffness = square(values.qq, n).cwiseAbs().maxCoeff();
-  const Matrix a = linear_motion(values, n);
+  const Matrix a = motion_about(lagrangian, at, q, values);
   if (!a.allFinite()) throw std::invalid_argument("the mass matrix ∂²L/∂q'∂q' is singular at rest there");
   rest.exponents = general_eigenvalues(a);
   rest.slowest = least_real_part(rest.exponents);
+  rest.slowest_in = rest.slowest_out = INFINITY;
+  for (const std::complex<double>& x : rest.exponents) {
+    double& slowest = x.real() < 0 ? rest.slowest_in : rest.slowest_out;
+    slowest = std::min(slowest, std::abs(x.real()));
+  }
   rest.hyperbolic = rest.slowest > imaginary * rest.exponents.cwiseAbs().maxCoeff();
   if (!rest.hyperbolic) return rest;
   const Matrix sign = matrix_sign(a);
   if (sign.size() == 0) return rest;
-  rest.stable = graph(sign, 1);
-  rest.unstable = graph(sign, -1);
+  rest.stable = unit_of_mass(values) * graph(sign, 1);
+  rest.unstable = unit_of_mass(values) * graph(sign, -1);
   return rest;
 }
 

@@ -12,7 +12,8 @@
 
 namespace extremal {
 
-/// The point q, q' = 0 at which ∂L/∂q = 0 at time t, and the linear equations of motion there, t held.
+/// The point q, q' = 0 at which ∂L/∂q = 0 at time t, and the linear equations of motion there, with the
+/// coefficients that they have at t.
 struct RestPoint {
   std::vector<double> q, momentum;  ///< and ∂L/∂q' there, n each
   double force = 0;                 ///< largest |∂L/∂q| at the point that was given
@@ -21,10 +22,14 @@ struct RestPoint {
   double stiffness = 0;             ///< largest |∂²L/∂q∂q|
   Eigen::VectorXcd exponents;       ///< 2n, of the linear motions e^{λt}
   double slowest = 0;               ///< least |Re λ|
+  double slowest_in = 0;            ///< the same of motions to the equilibrium
+  double slowest_out = 0;           ///< and of those from it
   bool hyperbolic = false;          ///< no λ is imaginary or zero
   /// p − ∂L/∂q' = S (q − q*) on motions that tend to the equilibrium as t → ∞ and as t → −∞, n × n; empty
   /// where these motions do not have one momentum for each q.
   Eigen::MatrixXd stable, unstable;
+  /// Slowest decay towards an end at infinity, or away from a start.
+  double decay(bool at_end) const { return at_end ? slowest_in : slowest_out; }
 };
 
 /// (η, π)' = A (η, π) for small deviations η of q and π of ∂L/∂q' from a point at rest where L has these

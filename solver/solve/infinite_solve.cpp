@@ -114,7 +114,7 @@ class InfiniteSolve {
     for (const int end : {0, 1}) {
       if (!infinite(end) || decays[end] == 0) continue;
       const RestPoint at = rest(end, path.duration());
-      const double added = decays[end] / at.slowest;
+      const double added = decays[end] / at.decay(end == 1);
       const int count = std::max(1, static_cast<int>(std::ceil(decays[end] * samples_a_decay)));
       std::vector<double> t, q;
       for (int k = 1; k <= count; ++k) {
@@ -122,7 +122,7 @@ class InfiniteSolve {
         const double* from = path.q.data() + (end == 0 ? 0 : path.q.size() - n);
         t.push_back(s);
         for (std::size_t a = 0; a < n; ++a)
-          q.push_back(at.q[a] + (from[a] - at.q[a]) * std::exp(-at.slowest * s));
+          q.push_back(at.q[a] + (from[a] - at.q[a]) * std::exp(-at.decay(end == 1) * s));
       }
       if (end == 1) {
         for (double& x : t) x += result.duration();
@@ -252,7 +252,7 @@ class InfiniteSolve {
     const std::size_t n = problem_.coordinates();
     double length = 0;
     for (const int end : {0, 1})
-      if (infinite(end)) length += decays / rest(end, guess.duration()).slowest;
+      if (infinite(end)) length += decays / rest(end, guess.duration()).decay(end == 1);
     length = std::min(length, guess.duration());
     Problem part = problem_;
     part.infinite.reset();
@@ -297,7 +297,7 @@ class InfiniteSolve {
       for (const double factor : further) {
         if (next.converged()) break;
         for (const int end : {0, 1}) decays[end] *= factor;
-        shift = infinite(0) ? decays[0] / rest(0, 0).slowest : 0;
+        shift = infinite(0) ? decays[0] / rest(0, 0).slowest_out : 0;
         next = solve_(finite(extended(before, decays)), adaptive_, true);
       }
       if (!next.converged()) return next;
@@ -409,12 +409,21 @@ class InfiniteSolve {
     return sum;
   }
 
+  /// The slowest decay as |t| → ∞: in L that depends on t what falls as 1/t is taken off (Richardson).
+  double decay(int end, double duration) const {
+    const auto at = [&](double time) { return rest(end, time).decay(end == 1); };
+    const double here = at(duration);
+    if (problem_.lagrangian->structure().autonomous) return here;
+    const double limit = 2 * at(2 * duration) - here;
+    return std::isfinite(limit) && limit > 0 ? limit : here;
+  }
+
   Solution finished(Solution solution) const {
     const double duration = solution.duration();
     solution.action -= action_of_rest(solution.trajectory);
     solution.rates.emplace();
-    if (infinite(0)) solution.rates->start = rest(0, duration).slowest;
-    if (infinite(1)) solution.rates->end = rest(1, duration).slowest;
+    if (infinite(0)) solution.rates->start = decay(0, duration);
+    if (infinite(1)) solution.rates->end = decay(1, duration);
     solution.message += infinite(0) && infinite(1) ? " on (-∞, ∞)"
                         : infinite(1)              ? " on [0, ∞)"
                                                    : " on (-∞, 0]";

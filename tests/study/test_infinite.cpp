@@ -123,6 +123,20 @@ TEST_F(InfiniteEndsOf, TheActionIsThatBeyondRest) {
   EXPECT_NEAR(*found.energy, -3.5, 1e-10);
 }
 
+/// x'' + c x' = x³ − x: rates (c ± √(c² + 8))/2. The slope at t = 0 for c = 3 by collocation with the exact
+/// stable direction at the end (scipy's solve_bvp, 1e-11).
+TEST_F(InfiniteEndsOf, DampingTurnsRates) {
+  for (const double c : {-0.5, 0.1, 1.0, 3.0}) {
+    const Solution found = solved(
+        scene_of(one, fmt::format("exp({}*t)*({})", c, well), "start = { x = 0.2 }\nend = { x = 1 }\n"));
+    ASSERT_TRUE(found.converged()) << c << ": " << found.message;
+    EXPECT_NEAR(*found.rates->end, (c + std::sqrt(c * c + 8)) / 2, 1e-8) << c;
+    std::vector<double> q(1), v(1);
+    found.trajectory.at(0, q, v);
+    if (c == 3) EXPECT_NEAR(v[0], 2.63448147075, 1e-9);
+  }
+}
+
 TEST_F(InfiniteEndsOf, BouncesInThreeDimensions) {
   // Linde, Nucl. Phys. B 216 (1983) 421: S3 = 4.85/δ² of the potential φ²/2 − δ φ³.
   const Solution found = solved(scene_of("[\"f\"]", "t^2*(f'^2/2 + f^2/2 - f^3/3)", "end = { f = 0 }\n",
