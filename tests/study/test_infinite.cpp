@@ -133,7 +133,9 @@ TEST_F(InfiniteEndsOf, DampingTurnsRates) {
     EXPECT_NEAR(*found.rates->end, (c + std::sqrt(c * c + 8)) / 2, 1e-8) << c;
     std::vector<double> q(1), v(1);
     found.trajectory.at(0, q, v);
-    if (c == 3) EXPECT_NEAR(v[0], 2.63448147075, 1e-9);
+    if (c == 3) {
+      EXPECT_NEAR(v[0], 2.63448147075, 1e-9);
+    }
   }
 }
 
