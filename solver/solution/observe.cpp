@@ -183,6 +183,23 @@ const Basis& survey_basis(int degree) {
 
 }  // namespace
 
+double momentum_of_speed(const Lagrangian& lagrangian, const Trajectory& path) {
+  const std::size_t n = path.coordinates;
+  if (path.slopes.size() < n) return 0;
+  Scratch scratch;
+  const std::vector<double> mass = evaluate_at(lagrangian, {path.nodes.data(), n}, {path.slopes.data(), n},
+                                               path.times.front(), Order::hessian, scratch)
+                                       .vv;
+  double heavy = 0, speed = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    double row = 0;
+    for (std::size_t b = 0; b < n; ++b) row += std::abs(mass[a * n + b]);
+    heavy = std::max(heavy, row);
+  }
+  for (const double v : path.slopes) speed = std::max(speed, std::abs(v));
+  return std::isfinite(heavy * speed) ? heavy * speed : 0;
+}
+
 Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   if (lagrangian.structure().coordinates != trajectory.coordinates)
     throw std::invalid_argument(fmt::format("a trajectory of {} coordinates for a Lagrangian of {}",
@@ -197,7 +214,14 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
       surveyor.take(start + h * basis.points[i], end);
     }
   }
-  return surveyor.finish();
+  Survey found = surveyor.finish();
+  if (lagrangian.structure().mass.empty()) {
+    // All terms of p are formed as one: where they cancel, roundoff is still that of the largest.
+    const double inertial = momentum_of_speed(lagrangian, trajectory);
+    found.momentum = std::max(found.momentum, inertial);
+    found.terms = std::max(found.terms, inertial * found.speed);
+  }
+  return found;
 }
 
 std::optional<Survey> observe_energy(const Lagrangian& lagrangian, Solution& solution) {

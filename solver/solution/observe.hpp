@@ -21,6 +21,10 @@ struct Survey {
   double speed = 0, momentum = 0, force = 0, terms = 0;
 };
 
+/// |∂²L/∂q'²| at the start times the largest speed, of which roundoff of momenta is a part: they vanish along
+/// a motion that constraints alone drive, or drift alone. Zero where L is not finite there.
+double momentum_of_speed(const Lagrangian& lagrangian, const Trajectory& path);
+
 /// Throws std::invalid_argument if the two differ in their coordinates.
 Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory);
 

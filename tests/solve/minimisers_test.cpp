@@ -106,6 +106,27 @@ TEST(Minimisers, MonotonePathsHaveNoConjugateTime) {
   }
 }
 
+/// Where the drift alone leads, Freidlin and Wentzell's momenta vanish, and energies: what roundoff leaves of
+/// them is that of terms of size one. Forwards and backwards.
+TEST(Minimisers, PathsOfTheDriftAlone) {
+  const auto leaving = trace(1, [](auto q, auto v, auto) { return (v[0] - q[0]) * (v[0] - q[0]) / 2.0; });
+  const auto settling = trace(1, [](auto q, auto v, auto) { return (v[0] + q[0]) * (v[0] + q[0]) / 2.0; });
+  const auto across = trace(1, [](auto q, auto v, auto) {
+    const auto noise = v[0] - q[0] + q[0] * q[0] * q[0];
+    return noise * noise / 2.0;
+  });
+  for (const double T : {10.0, 25.0, 100.0}) {
+    const Solution away = solve(fixed_ends(leaving, {0}, {1}, T), within(1e-9));
+    const Solution back = solve(fixed_ends(settling, {1}, {0}, T), within(1e-9));
+    expect_minimum(away, 1 / std::expm1(2 * T), 1e-15);
+    expect_minimum(back, 1 / std::expm1(2 * T), 1e-15);
+    const double t = T - 2, exact = std::sinh(t) / std::sinh(T);
+    EXPECT_NEAR(at(away.trajectory, t).q[0], exact, 1e-9) << T;
+    EXPECT_NEAR(at(back.trajectory, T - t).q[0], exact, 1e-9) << T;
+    if (T > 20) expect_minimum(solve(fixed_ends(across, {0}, {1}, T), within(1e-9)), 0, 1e-13);
+  }
+}
+
 /// All of a chain at once: each coordinate has the action of the kink.
 TEST(Minimisers, KinksOfManyCoordinates) {
   constexpr int n = 50;

@@ -25,7 +25,7 @@ namespace {
 
 /// Where atoms overlap, forces are so strong that steps are roundoff while δS is not.
 bool balanced(const Solution& solution, const Path& path, const NewtonIteration& newton) {
-  const double roundoff = strong_force_roundoff * newton.stiffness() * size_at_start(path);
+  const double roundoff = strong_force_roundoff * newton.stiffness() * largest_coordinate(path);
   return solution.residual <= largest_residual || newton.residual() <= roundoff;
 }
 

@@ -173,7 +173,7 @@ void Branch::note_action() {
   action_ = action.action();
   energy_ = -action.slope_duration();
   // At rest there are no momenta, but forces that cancel leave roundoff.
-  const double roundoff = force_roundoff * w_.iteration.stiffness() * size_at_start(path_);
+  const double roundoff = force_roundoff * w_.iteration.stiffness() * largest_coordinate(path_);
   residual_ = action.residual() > roundoff ? action.residual() / action.momentum_scale() : 0;
   momenta_.assign(action.start_gradient().begin(), action.start_gradient().end());
   for (double& p : momenta_) p = -p;

@@ -26,10 +26,9 @@ std::vector<double> magnitudes(const Path& path) {
 
 }  // namespace
 
-double size_at_start(const Path& path) {
+double largest_coordinate(const Path& path) {
   double largest = 0;
-  for (std::size_t a = 0; a < static_cast<std::size_t>(path.coordinates()); ++a)
-    largest = std::max(largest, std::abs(path.node(0)[a]));
+  for (const double q : path.nodes()) largest = std::max(largest, std::abs(q));
   return largest;
 }
 
@@ -64,7 +63,7 @@ bool ResidualTest::passed(const Problem& problem, const NewtonIteration& newton,
                part = std::max(least, allowed) * momentum;
   share_ = left / momentum;
   return natural_residual(problem, newton.action(), path) <= part &&
-         left <= std::max(part, force_roundoff * newton.stiffness() * size_at_start(path));
+         left <= std::max(part, force_roundoff * newton.stiffness() * largest_coordinate(path));
 }
 
 std::string ResidualTest::message() const {

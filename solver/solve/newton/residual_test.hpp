@@ -12,8 +12,8 @@ namespace extremal {
 double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path,
                         double displacement = 0);
 
-/// Largest |q(0)|: what NewtonIteration::stiffness(), measured there, makes roundoff of.
-double size_at_start(const Path& path);
+/// Largest |q|: what NewtonIteration::stiffness() makes roundoff of.
+double largest_coordinate(const Path& path);
 
 /// Where the ends are not fixed, a second variation that is nearly singular lets steps become short although
 /// δS does not vanish against the momenta.
