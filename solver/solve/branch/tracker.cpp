@@ -106,7 +106,8 @@ bool Tracker::reach(const BranchState& from, double length, bool same_elements, 
 bool Tracker::settle() {
   if (!(left_at_value() > settled * tolerance_)) return true;
   const double share = std::min(std::abs(state.rate / branch_.varied_unit()), 1.0);
-  return correct(1, nullptr, share) && update_tangent();
+  correct(1, nullptr, share);  // what roundoff hides is left as it is
+  return update_tangent();
 }
 
 /// How far the path is from the extremal of its value, to first order.
