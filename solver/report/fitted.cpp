@@ -10,7 +10,7 @@ Fitted fitted_of(const FitRequest& request, const FitResult& fit) {
                 .covariance = {},
                 .scaled = fit.scaled,
                 .chi_squared = fit.chi_squared,
-                .freedom = data.count() - static_cast<int>(request.task.unknowns.size()),
+                .freedom = fit.freedom,
                 .t = data.t,
                 .columns = {}};
   for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i)

@@ -70,7 +70,6 @@ FittedScene::FittedScene(const Scene& scene, const System& system, const Problem
     : scene_(scene),
       load_(std::move(load)),
       made_anew_(problem.extension || (problem.manifold && problem.manifold->parts().only_minimal)),
-      phase_open_(problem.periodic && problem.motion().structure().autonomous && !made_anew_),
       fit_(*scene.fit),
       table_(scene.system),
       boundary_(scene.boundary),
@@ -347,14 +346,18 @@ Scene FittedScene::scene_at(std::span<const double> values) const {
 }
 
 Problem FittedScene::problem(std::span<const double> values, const Guess& guess, double duration) const {
-  if (made_anew_) return load_(scene_at(values), guess, duration);
+  if (made_anew_) {
+    Problem problem = load_(scene_at(values), guess, duration);
+    problem.reduction = nullptr;
+    return problem;
+  }
   Problem problem = inner_problem(numbers(values), table_at(values), {});
   problem.guess = guess;
   if (problem.duration.free) problem.duration.value = duration;
   if (problem.manifold) project_guess(scene_, near_, problem);
   problem = make_problem(std::move(problem));
-  // Paths with a symmetry have a phase of their own.
-  if (phase_open_) problem.reduction = nullptr;
+  // Data may be those of another member of the family than one with a symmetry.
+  problem.reduction = nullptr;
   return problem;
 }
 
@@ -376,11 +379,6 @@ ProblemChange FittedScene::change(std::span<const double> values, const Problem&
                                   std::size_t unknown) const {
   ProblemChange result;
   result.parameters.assign(active_.size(), 0);
-  if (unknown >= parameters_.size() + open_.size()) {
-    result.ends.assign(2 * inner.coordinates() * inner.motion_copies(), 0);
-    result.shift = true;
-    return result;
-  }
   BoundaryRelation by = inner.boundary;
   std::ranges::fill(by.value, 0.0);
   std::ranges::fill(by.momenta, 0.0);

@@ -37,11 +37,7 @@ class FittedScene {
   /// for all values.
   bool made_anew() const { return made_anew_; }
 
-  /// Whether time may begin anywhere on a closed orbit.
-  bool phase_open() const { return phase_open_; }
-
-  /// Values: those of the parameters, then of the ends, then the phase where it is open. Throw SceneError, or
-  /// FormulaError of a definition.
+  /// Values: those of the parameters, then of the ends. Throw SceneError, or FormulaError of a definition.
   FittedProblem at(std::span<const double> values) const;
   Problem problem(std::span<const double> values, const Guess& guess, double duration) const;
   ObservedFormulas formulas(std::span<const double> values) const { return formulas(table_at(values)); }
@@ -73,7 +69,7 @@ class FittedScene {
 
   Scene scene_;
   ProblemOf load_;
-  bool made_anew_, phase_open_;
+  bool made_anew_;
   FitTable fit_;
   SystemTable table_;
   BoundaryTable boundary_;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -153,6 +152,7 @@ std::shared_ptr<FitRequest> read_fit(const Scene& scene, const Study& study, con
   task.guess = problem.guess.given() ? problem.guess : guess_of(task.data, problem);
   task.duration = problem.duration.value;
   task.coordinates = problem.coordinates();
+  task.closed = problem.periodic && !problem.duration.free;
   request->parameters = fitted->parameters();
   const std::vector<double> start = fitted->start();
   for (std::size_t j = 0; j < start.size(); ++j)
@@ -165,11 +165,6 @@ std::shared_ptr<FitRequest> read_fit(const Scene& scene, const Study& study, con
     throw SceneError(
         table.at,
         "there is nothing to be found; name parameters, or leave end coordinates out of [boundary]");
-  if (fitted->phase_open()) {
-    FitUnknown phase{"the phase", 0, problem.duration.value / (2 * std::numbers::pi)};
-    phase.phase = true;
-    task.unknowns.push_back(phase);
-  }
   const int count = task.data.count();
   if (count < static_cast<int>(task.unknowns.size()))
     throw SceneError(position(table.data, 0),

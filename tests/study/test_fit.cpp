@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -110,11 +111,13 @@ class Fits : public Scenes {
     path.take(solution, values);
     ASSERT_TRUE(path.converge_on_elements());
     const std::vector<double> at = path.coordinates();
-    const std::size_t rows = task.data.count(), count = values.size();
+    const std::size_t rows = task.data.count(), count = at.size();
     std::vector<double> residuals(rows), jacobian(rows * count);
     ASSERT_TRUE(path.evaluate(at, residuals, jacobian));
     for (std::size_t j = 0; j < count; ++j) {
-      const double step = 1e-4 * task.unknowns[j].size;
+      const bool known = j < values.size();
+      const double step = 1e-4 * (known ? task.unknowns[j].size : 1);
+      const std::string name = known ? task.unknowns[j].name : "a member of the family";
       std::vector<std::vector<double>> beside;
       for (const double place : {-2.0, -1.0, 1.0, 2.0}) {
         std::vector<double> moved = at;
@@ -129,8 +132,8 @@ class Fits : public Scenes {
         largest = std::max(largest, std::abs(slope));
         worst = std::max(worst, std::abs(slope - jacobian[i * count + j]));
       }
-      EXPECT_LE(worst, 1e-7 * largest) << task.unknowns[j].name;
-      EXPECT_GT(largest, 0) << task.unknowns[j].name;
+      EXPECT_LE(worst, 1e-7 * largest) << name;
+      EXPECT_GT(largest, 0) << name;
     }
   }
 
@@ -518,6 +521,17 @@ TEST_F(Fits, DerivativesOfALimitCycle) {
       "x = \"cos(2*pi*t/T + 0.3)\"\n[fit]\ndata = \"data.csv\"\nparameters = [\"e\", \"w\"]\n");
 }
 
+/// Where time begins later, what closes the duration asks for a larger orbit.
+TEST_F(Fits, DerivativesAlongAFamilyOfOrbits) {
+  write("data.csv", "t,x,y\n0.0,0.9,0.1\n0.9,0.5,-0.6\n1.7,-0.4,-0.9\n2.6,-0.8,0.2\n3.7,0.1,1\n");
+  expect_derivatives(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { k = 1.1 }\n"
+      "lagrangian = \"(x'^2 + y'^2)/2 - k*(x^2 + y^2)^2/4\"\n"
+      "[boundary]\nperiodic = true\nduration = \"free\"\nwhere = \"x(0) = 0.8\"\n[guess]\nduration = 6.0\n"
+      "x = \"cos(2*pi*t/T + 0.4)\"\ny = \"0.3*cos(2*pi*t/T + 0.4)\"\n"
+      "[fit]\ndata = \"data.csv\"\nparameters = [\"k\"]\n");
+}
+
 /// A limit cycle of Rayleigh. Its phase is that of the data, wherever the guess begins.
 TEST_F(Fits, FindTheParametersOfALimitCycleAndItsPhase) {
   const auto cycle = [](const std::string& phase) {
@@ -555,6 +569,66 @@ TEST_F(Fits, FindTheParametersOfALimitCycleAndItsPhase) {
       }
     }
   }
+}
+
+/// Data of the orbit that a scene's own guess leads to, and a fit from another guess.
+TEST_F(Fits, ChooseAmongTheMembersOfAFamilyOfOrbits) {
+  const auto orbit = [](const std::string& parameters, const std::string& rest, const std::string& x,
+                        const std::string& y) {
+    return "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { " + parameters + " }\n" + rest +
+           "[guess]\nx = \"" + x + "\"\ny = \"" + y + "\"\n";
+  };
+  struct Case {
+    std::string name, rest;
+    std::array<std::string, 2> made, guess;
+    std::size_t members;
+  };
+  const std::string quartic =
+                        "lagrangian = \"(x'^2 + y'^2)/2 - k*(x^2 + y^2)^2/4\"\n[boundary]\nperiodic = true\n",
+                    rotor =
+                        "lagrangian = \"(x'^2 + y'^2)/2 + k*cos(x)\"\n[boundary]\nperiodic = true\n"
+                        "map = { x = \"x + 2*pi\", y = \"y + 1\" }\n";
+  const std::array<std::string, 2> turned{"cos(0.7)*cos(2*pi*t/T + 0.3)", "sin(0.7)*cos(2*pi*t/T + 0.3)"};
+  for (const Case& each :
+       {Case{"turned", quartic + "duration = 6.0\n", turned, {"1.2*cos(2*pi*t/T)", "0"}, 2},
+        Case{"shifted",
+             rotor + "duration = 3.8\n",
+             {"2*pi*t/T", "t/T + 0.4"},
+             {"2*pi*t/T - 0.2", "t/T"},
+             2}}) {
+    SCOPED_TRACE(each.name);
+    const auto rows = samples(orbit("k = 1.1", each.rest, each.made[0], each.made[1]), 31);
+    std::string text = "t,x,y\n";
+    for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+      text += fmt::format("{:.17g},{:.17g},{:.17g}\n", rows[k][0], rows[k][1], rows[k][2]);
+    write("data.csv", text);
+    const FitResult result = fitted(orbit("k = 1.0", each.rest, each.guess[0], each.guess[1]) +
+                                    "[fit]\ndata = \"data.csv\"\nparameters = [\"k\"]\n");
+    ASSERT_EQ(result.values.size(), 1u);
+    EXPECT_NEAR(result.values[0], 1.1, 1e-7);
+    EXPECT_LT(result.chi_squared, 1e-12);
+    EXPECT_EQ(result.freedom, 59 - static_cast<int>(each.members));
+  }
+}
+
+/// One of a continuum of orbits of all sizes: a scale changes what is observed as another size does.
+TEST_F(Fits, NameWhatAnotherOrbitOfAContinuumExplains) {
+  std::string text = "t,u,y\n";
+  for (int k = 0; k < 25; ++k)
+    text += fmt::format("{:.17g},{:.17g},{:.17g}\n", k / 4.0, 1.5 * std::cos(k / 4.0 + 0.3),
+                        0.4 * std::sin(k / 4.0 + 0.3));
+  write("data.csv", text);
+  const auto fit = [](const std::string& parameter, const std::string& observed) {
+    return "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { c = " + parameter +
+           " }\nlagrangian = \"(x'^2 + y'^2 - x^2 - y^2)/2\"\n[boundary]\nperiodic = true\n"
+           "duration = \"2*pi\"\n[guess]\nx = \"cos(t)\"\ny = \"0.6*sin(t)\"\n[fit]\ndata = \"data.csv\"\n"
+           "parameters = [\"c\"]\nobserve = { u = \"" +
+           observed + "\" }\n";
+  };
+  const FitResult none = run_fit(study(fit("1.0", "c*x")));
+  EXPECT_FALSE(none.solution.converged());
+  EXPECT_NE(none.solution.message.find("'c'"), std::string::npos) << none.solution.message;
+  EXPECT_NEAR(fitted(fit("0.2", "x + c")).values[0], 0, 1e-9);
 }
 
 TEST_F(Fits, KeepTheElementsOfAScheme) {

@@ -16,15 +16,14 @@ namespace extremal {
 
 using namespace limits::fit;
 
-Guess guess_of_elements(const Trajectory& trajectory, double after) {
+Guess guess_of_elements(const Trajectory& trajectory) {
   Guess guess;
   std::vector<double> q(trajectory.coordinates), v(q.size());
   const std::vector<double>& places = lobatto_barycentric(trajectory.degree).nodes;
   for (int k = 0; k < trajectory.elements(); ++k)
     for (int j = k == 0 ? 0 : 1; j <= trajectory.degree; ++j) {
-      const double length = trajectory.times[k + 1] - trajectory.times[k];
-      trajectory.in_element(k, places[j] + after / length, q, v);
-      const double t = trajectory.times[k] + places[j] * length;
+      trajectory.in_element(k, places[j], q, v);
+      const double t = trajectory.times[k] + places[j] * (trajectory.times[k + 1] - trajectory.times[k]);
       guess.tau.push_back(t / trajectory.duration());
       guess.q.insert(guess.q.end(), q.begin(), q.end());
     }
@@ -55,7 +54,7 @@ class Fit {
       const Trajectory fitted = first_copy(trajectory_of(path_->path()), task_.coordinates);
       result_.solution = solve_again(fitted);
       if (!result_.solution.converged()) return std::move(result_);
-      if (agrees(fitted)) return covers_data() ? finished(before) : std::move(result_);
+      if (agrees(fitted)) return covers_data() && knows_family() ? finished(before) : std::move(result_);
     }
     fail(fmt::format("the elements still move the fit by more than the tolerance after {} choices of them",
                      most_rounds));
@@ -97,40 +96,76 @@ class Fit {
     return none;
   }
 
-  bool phase_unknown() const { return task_.unknowns.back().phase; }
-
-  /// On elements of its own. Coarse ones, with which a solve begins, shift a closed orbit in time by as much
-  /// as they err: then the guess is shifted back.
+  /// On elements of its own. Coarse ones, with which a solve begins, move a member of a family to others by
+  /// as much as they err: then the guess is moved back.
   Solution solve_again(const Trajectory& fitted) {
-    double after = 0;
+    const Eigen::Index count = members();
+    Eigen::VectorXd back = Eigen::VectorXd::Zero(count);
+    Eigen::MatrixXd guesses(count, 0), offs(count, 0);
     for (int k = 0;; ++k) {
-      Solution solution = solve(guess_of_elements(fitted, after), fitted.duration());
-      if (!solution.converged() || !phase_unknown() || k == most_shifts) return solution;
-      const double late = shift_between(fitted, solution.trajectory);
-      if (std::abs(late) <= least_shift * options_.tolerance * fitted.duration()) return solution;
-      after -= late;
+      Solution solution = solve(guess_of_elements(moved(back)), fitted.duration());
+      if (!solution.converged() || count == 0) return solution;
+      const Eigen::VectorXd off = moved_by(solution.trajectory, fitted);
+      if (off.lpNorm<Eigen::Infinity>() <= least_shift * options_.tolerance || k == most_shifts + count)
+        return solution;
+      back = next_guess(back, off, guesses, offs);
     }
   }
 
-  /// By how much the times of one trajectory are those of another.
-  static double shift_between(const Trajectory& fitted, const Trajectory& other) {
-    std::vector<double> q(fitted.coordinates), v(q), there(q), unused(q);
-    double along = 0, squares = 0;
-    for (int k = 0; k < fitted.elements(); ++k) {
-      const double length = fitted.times[k + 1] - fitted.times[k];
-      fitted.in_element(k, 0.5, q, v);
-      other.at(std::min(fitted.times[k] + length / 2, other.duration()), there, unused);
-      for (std::size_t a = 0; a < q.size(); ++a) {
-        along += length * v[a] * (there[a] - q[a]);
-        squares += length * v[a] * v[a];
-      }
+  /// By the secants of all guesses before; across these as if a guess moved its solution by as much.
+  static Eigen::VectorXd next_guess(const Eigen::VectorXd& guess, const Eigen::VectorXd& off,
+                                    Eigen::MatrixXd& guesses, Eigen::MatrixXd& offs) {
+    const Eigen::Index before = guesses.cols();
+    guesses.conservativeResize(Eigen::NoChange, before + 1);
+    offs.conservativeResize(Eigen::NoChange, before + 1);
+    guesses.col(before) = guess;
+    offs.col(before) = off;
+    if (before == 0) return guess - off;
+    const Eigen::MatrixXd moved = guesses.leftCols(before).colwise() - guess,
+                          answers = offs.leftCols(before).colwise() - off;
+    const Eigen::VectorXd parts = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(answers).solve(off);
+    return guess - moved * parts - (off - answers * parts);
+  }
+
+  /// The fitted path, along its family.
+  Trajectory moved(const Eigen::VectorXd& by) const {
+    Path path = path_->path();
+    double duration = path.duration();
+    for (Eigen::Index j = 0; j < by.size(); ++j) {
+      const Step& member = path_->members()[j];
+      path.add(member.nodes, member.inner, by[j]);
+      duration += by[j] * member.duration;
     }
-    return squares > 0 ? along / squares : 0;
+    path.set_duration(duration);
+    path.load_ends();
+    return first_copy(trajectory_of(path), task_.coordinates);
+  }
+
+  /// Along which members a trajectory differs from the fitted one, by least squares.
+  Eigen::VectorXd moved_by(const Trajectory& other, const Trajectory& fitted) const {
+    const Eigen::Index n = fitted.coordinates, rows = fitted.elements() * n, count = members();
+    std::vector<double> q(n), v(n), there(n);
+    Eigen::MatrixXd fields(rows, count);
+    Eigen::VectorXd away(rows);
+    const auto put = [&](const auto& at, auto&& to) {
+      for (int k = 0; k < fitted.elements(); ++k) {
+        const double length = fitted.times[k + 1] - fitted.times[k];
+        fitted.in_element(k, 0.5, q, v);
+        at(fitted.times[k] + length / 2);
+        for (Eigen::Index a = 0; a < n; ++a) to[k * n + a] = std::sqrt(length) * (there[a] - q[a]);
+      }
+    };
+    put([&](double t) { other.at(std::min(t, other.duration()), there, v); }, away);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const Trajectory beside = moved(small_move * Eigen::VectorXd::Unit(count, j));
+      put([&](double t) { beside.at(std::min(t, beside.duration()), there, v); }, fields.col(j));
+    }
+    return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fields / small_move).solve(away);
   }
 
   std::string values_text() const {
     std::vector<std::string> texts;
-    for (std::size_t j = 0; j < result_.values.size() - phase_unknown(); ++j)
+    for (std::size_t j = 0; j < result_.values.size(); ++j)
       texts.push_back(fmt::format("{} = {:.12g}", task_.unknowns[j].name, result_.values[j]));
     return fmt::format("{}", fmt::join(texts, ", "));
   }
@@ -140,16 +175,21 @@ class Fit {
     result_.solution.message = std::move(why);
   }
 
+  Eigen::Index members() const { return std::ssize(path_->members()); }
+
+  /// Of an unknown; steps along members are of the size of the path.
+  double size(std::size_t j) const { return j < task_.unknowns.size() ? task_.unknowns[j].size : 1; }
+
   std::vector<double> unscaled(std::span<const double> x) const {
     std::vector<double> values(x.begin(), x.end());
-    for (std::size_t j = 0; j < values.size(); ++j) values[j] *= task_.unknowns[j].size;
+    for (std::size_t j = 0; j < values.size(); ++j) values[j] *= size(j);
     return values;
   }
 
   bool evaluate(std::span<const double> x, std::span<double> residuals, std::span<double> jacobian) {
     if (!path_->evaluate(unscaled(x), residuals, jacobian)) return false;
     const std::size_t count = x.size();
-    for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= task_.unknowns[i % count].size;
+    for (std::size_t i = 0; i < jacobian.size(); ++i) jacobian[i] *= size(i % count);
     return true;
   }
 
@@ -180,7 +220,7 @@ class Fit {
       return false;
     }
     std::vector<double> x = path_->coordinates();
-    for (std::size_t j = 0; j < x.size(); ++j) x[j] /= task_.unknowns[j].size;
+    for (std::size_t j = 0; j < x.size(); ++j) x[j] /= size(j);
     const CurveFitReport report = minimise(fit, x, options_.deadline);
     if (report.converged) polish(x);
     // The path of a step that was not taken is left for that of the minimum.
@@ -220,8 +260,7 @@ class Fit {
   };
   Weighted weighted(std::span<const double> residuals, std::span<const double> entries) {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const auto rows = static_cast<Eigen::Index>(residuals.size()),
-               count = static_cast<Eigen::Index>(task_.unknowns.size());
+    const auto rows = std::ssize(residuals), count = std::ssize(entries) / rows;
     Weighted result{Eigen::Map<const Eigen::VectorXd>(residuals.data(), rows),
                     Eigen::Map<const RowMajor>(entries.data(), rows, count)};
     for (Eigen::Index i = 0; i < rows; ++i) {
@@ -234,8 +273,8 @@ class Fit {
 
   /// Residuals, χ² and covariance at the minimum. False where some unknown is not determined.
   bool determined() {
-    const int rows = task_.data.count(), count = static_cast<int>(task_.unknowns.size());
-    std::vector<double> residuals(rows), entries(static_cast<std::size_t>(rows) * count);
+    const std::size_t rows = task_.data.count(), count = task_.unknowns.size() + path_->members().size();
+    std::vector<double> residuals(rows), entries(rows * count);
     if (!path_->evaluate_by_values(residuals, entries)) {
       fail(fmt::format("at {} the second variation is singular", values_text()));
       return false;
@@ -269,8 +308,9 @@ class Fit {
     }
   }
 
-  bool invert(Eigen::MatrixXd jacobian) {
-    const Eigen::Index count = jacobian.cols();
+  bool invert(const Eigen::MatrixXd& all) {
+    const auto count = std::ssize(task_.unknowns);
+    Eigen::MatrixXd jacobian = all.leftCols(count);
     Eigen::VectorXd effects(count), lengths(count);
     for (Eigen::Index j = 0; j < count; ++j) {
       lengths[j] = jacobian.col(j).norm();
@@ -283,21 +323,35 @@ class Fit {
       if (!(effects[j] > without_effect * largest)) names.push_back(task_.unknowns[j].name);
     if (!names.empty()) return undetermined_names(names);
     for (Eigen::Index j = 0; j < count; ++j) jacobian.col(j) /= lengths[j];
+    const double least = members() > 0 ? std::max(undetermined_beside, options_.tolerance) : undetermined;
+    const Eigen::Index along = leave_out(all.rightCols(all.cols() - count), jacobian);
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);
     const Eigen::VectorXd& s = svd.singularValues();
     Eigen::VectorXd parts = Eigen::VectorXd::Zero(count);
     for (Eigen::Index k = 0; k < s.size(); ++k)
-      if (!(s[k] > undetermined * s[0])) parts = parts.cwiseMax(svd.matrixV().col(k).cwiseAbs());
+      if (!(s[k] > least * std::max(s[0], 1.0))) parts = parts.cwiseMax(svd.matrixV().col(k).cwiseAbs());
     for (Eigen::Index j = 0; j < count; ++j)
       if (parts[j] > named * parts.maxCoeff()) names.push_back(task_.unknowns[j].name);
     if (!names.empty()) return undetermined_names(names);
     const Eigen::MatrixXd half =
         lengths.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
     result_.covariance = half * half.transpose();
-    const Eigen::Index freedom = jacobian.rows() - count;
-    result_.scaled = !task_.data.sigmas && freedom > 0;
-    if (result_.scaled) result_.covariance *= result_.chi_squared / static_cast<double>(freedom);
+    result_.freedom = static_cast<int>(jacobian.rows() - count - along);
+    result_.scaled = !task_.data.sigmas && result_.freedom > 0;
+    if (result_.scaled) result_.covariance *= result_.chi_squared / result_.freedom;
     return true;
+  }
+
+  /// Derivatives of what is not explained by another member of the family. Returns how many of these the data
+  /// tell apart.
+  static Eigen::Index leave_out(const Eigen::MatrixXd& members, Eigen::MatrixXd& jacobian) {
+    if (members.cols() == 0) return 0;
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(members.rows(), members.cols());
+    qr.setThreshold(undetermined);
+    qr.compute(members);
+    const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(members.rows(), qr.rank());
+    for (int pass = 0; pass < 2; ++pass) jacobian -= basis * (basis.transpose() * jacobian).eval();
+    return qr.rank();
   }
 
   bool undetermined_names(const std::vector<std::string>& names) {
@@ -317,7 +371,7 @@ class Fit {
   /// Whether the trajectory of the fit is the solution to the tolerance, at its nodes and between. A scheme
   /// that was asked for with its elements has no other.
   bool agrees(const Trajectory& fitted) const {
-    if (options_.elements > 0) return true;
+    if (options_.elements > 0 && members() == 0) return true;
     const Trajectory& other = result_.solution.trajectory;
     std::vector<double> low(task_.coordinates, INFINITY), high(task_.coordinates, -INFINITY),
         q(task_.coordinates), v(q), p(q);
@@ -351,6 +405,18 @@ class Fit {
     return false;
   }
 
+  /// Of closed orbits beside the fitted one the data choose, and not the guess. Their directions are among
+  /// those in which the action does not change.
+  bool knows_family() {
+    const Solution& solution = result_.solution;
+    if (!task_.closed || !solution.nullity || *solution.nullity <= members()) return true;
+    fail(fmt::format(
+        "at {} orbits beside this one close as well, in {} directions, of which the fit varies {}: "
+        "the data may be those of another one; leave 'periodic' out, so that the ends are found",
+        values_text(), *solution.nullity, members()));
+    return false;
+  }
+
   FitResult finished(int before) {
     Solution& solution = result_.solution;
     solution.iterations += before + path_->iterations();
@@ -364,7 +430,7 @@ class Fit {
   /// χ² of ν degrees of freedom has the mean ν and the variance 2ν where the data scatter by their standard
   /// deviations.
   void explain_misfit() {
-    const double freedom = task_.data.count() - static_cast<double>(task_.unknowns.size());
+    const double freedom = result_.freedom;
     if (!task_.data.sigmas || !(freedom > 0)) return;
     if (!(result_.chi_squared > freedom + most_deviations * std::sqrt(2 * freedom))) return;
     result_.solution.message += fmt::format(
@@ -385,12 +451,7 @@ class Fit {
 
 FitResult fit(const FitTask& task, const SolveOptions& options,
               const std::function<void(const FitStep&)>& progress) {
-  FitResult result = Fit(task, options, progress).run();
-  if (!task.unknowns.back().phase) return result;
-  result.values.pop_back();
-  const auto count = static_cast<Eigen::Index>(result.values.size());
-  if (result.covariance.size() > 0) result.covariance.conservativeResize(count, count);
-  return result;
+  return Fit(task, options, progress).run();
 }
 
 }  // namespace extremal

@@ -21,8 +21,6 @@ struct FitUnknown {
   double start = 0;
   double size = 1;  ///< its order of magnitude
   int last = -1;    ///< of an end at t = T its coordinate
-  /// Where on a closed orbit time begins, relative to the first path; the last unknown, and no result.
-  bool phase = false;
 };
 
 /// What values of the unknowns make of the problem.
@@ -50,6 +48,7 @@ struct FitTask {
   Guess guess;
   double duration = 0;  ///< or its guess, where it is free
   int coordinates = 0;  ///< of one copy
+  bool closed = false;  ///< orbits of a period that is given
   Observations data;
   Loss loss = Loss::squared;
 };
@@ -62,17 +61,19 @@ struct FitStep {
 
 struct FitResult {
   Solution solution;           ///< that fits; else says why there is none
-  std::vector<double> values;  ///< of the unknowns, without a phase
+  std::vector<double> values;  ///< of the unknowns
   /// Of the unknowns: (JᵀWJ)⁻¹ with J the derivatives of (observed − computed)/σ and W = ρ'. Where no σ is
-  /// given, times Σ ρ/(values − unknowns): the scatter of the residuals then tells their σ.
+  /// given, times Σ ρ/(values − unknowns): the scatter of the residuals then tells their σ. Which member of a
+  /// family an extremal is, as where on a closed orbit time begins, is unknown as well, but no result.
   Eigen::MatrixXd covariance;
   bool scaled = false;                         ///< by that
+  int freedom = 0;                             ///< values less unknowns
   double chi_squared = 0;                      ///< Σ ρ
   std::vector<std::vector<double>> residuals;  ///< observed − computed, of each column
 };
 
-/// A trajectory at the nodes of its elements, or by a little after them.
-Guess guess_of_elements(const Trajectory& trajectory, double after = 0);
+/// A trajectory at the nodes of its elements.
+Guess guess_of_elements(const Trajectory& trajectory);
 
 /// Fits by Ceres around extremals on elements that are kept while it iterates. They are then chosen anew for
 /// the extremal that was found, until they meet the tolerance along it. Where observations do not determine

@@ -5,7 +5,7 @@
 
 #include "solve/fit/fit.hpp"
 
-/// \file What a fit moves: an extremal, by values of its unknowns.
+/// \file What a fit moves: an extremal, by values of its unknowns and along the family of others for these.
 
 namespace extremal {
 
@@ -15,6 +15,10 @@ class FittedExtremal {
 
   /// Takes an extremal that was found for these values, on its mesh.
   virtual void take(const Solution& solution, std::span<const double> values) = 0;
+
+  /// Unit steps along which `path()` moves to other extremals for the same values. Where each begins is
+  /// nothing that is known: their coordinates follow those of the values, and only their changes tell.
+  virtual const std::vector<Step>& members() const = 0;
 
   /// (observed − computed)/σ and, unless `jacobian` is empty, the derivatives by rows. False where there is
   /// no extremal near, or one is not finite. Coordinates stand for values where these are bad unknowns.

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "solve/fit/limits.hpp"
+#include "solve/fit/members.hpp"
 #include "solve/mesh/resolution.hpp"
 #include "solve/newton/converge.hpp"
 #include "solve/newton/ends.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
 
@@ -17,7 +19,7 @@ FittedPath::FittedPath(const FitTask& task, const SolveOptions& options)
 
 /// The problem at these values, and tables bound to it; the path stays.
 bool FittedPath::bind(std::span<const double> values) {
-  std::optional<FittedProblem> next = task_.at(values);
+  std::optional<FittedProblem> next = task_.at(values.first(task_.unknowns.size()));
   if (!next) return false;
   at_ = std::move(next);
   tables_.bind(*scheme_, *at_->problem.lagrangian);
@@ -31,6 +33,8 @@ void FittedPath::take(const Solution& solution, std::span<const double> values) 
   steps_.clear();
   converged_ = false;
   ends_.clear();
+  members_.clear();
+  held_ = {};
   path_ = {};
   if (!bind(values)) return;
   put_trajectory(solution.trajectory, tables_, path_);
@@ -43,7 +47,11 @@ std::vector<double> FittedPath::coordinates() const {
   return result;
 }
 
-std::vector<double> FittedPath::values() const { return values_at(values_); }
+std::vector<double> FittedPath::values() const {
+  std::vector<double> result = values_at(values_);
+  result.resize(task_.unknowns.size());
+  return result;
+}
 
 bool FittedPath::converge_on_elements() {
   if (!scheme_ || path_.elements() == 0) return false;
@@ -52,7 +60,50 @@ bool FittedPath::converge_on_elements() {
   if (!converge_here(values_)) return false;
   converged_ = true;
   choose_node();
+  if (!find_members(0)) return false;
+  values_.resize(task_.unknowns.size() + members_.size());
   asked_ = coordinates();
+  return true;
+}
+
+/// The moves to other extremals for the same values: those of symmetries, and where elements are condensed
+/// all null directions of the second variation beside these. At least so many, if there are.
+bool FittedPath::find_members(std::size_t at_least) {
+  members_ = moves_of_closed_path(at_->problem, path_, tables_);
+  held_ = {};
+  for (Step& member : members_)
+    if (!close(member)) return false;
+  if (at_->problem.paired || !ends_.empty()) return true;
+  const double null = null_eigenvalue_of_branch(1, options_.tolerance, path_);
+  while (members_.size() < 2 * static_cast<std::size_t>(path_.coordinates())) {
+    std::optional<SoftStep> soft = softest_step(newton_, path_, tables_, members_);
+    if (!soft || (std::abs(soft->eigenvalue) > null && members_.size() >= at_least)) break;
+    held_.add(direction_of(soft->step.nodes, path_));
+    members_.push_back(std::move(soft->step));
+  }
+  return true;
+}
+
+/// Whether no force holds the path along directions that are null: farther away, or for other values, the
+/// family may end.
+bool FittedPath::within_family() { return held_.count == 0 || newton_.residual_at(path_) <= largest_force; }
+
+/// What closes a duration may ask for another orbit of the family where time begins later.
+bool FittedPath::close(Step& member) {
+  const ClosingEquation* const closing = newton_.closing(path_);
+  if (!closing || closing->row.empty()) return true;
+  const std::size_t n = path_.coordinates(), last = member.nodes.size() - n;
+  double moved = 0;
+  for (std::size_t a = 0; a < n; ++a)
+    moved += closing->row[a] * member.nodes[a] + closing->row[n + a] * member.nodes[last + a];
+  ProblemChange back;
+  back.parameters.resize(at_->problem.lagrangian->structure().parameters);
+  back.ends.resize(2 * n);
+  back.where = [moved](auto, auto) { return moved; };
+  if (!response_.factor(newton_, at_->problem, path_, tables_, {&back, 1})) return false;
+  Step step;
+  response_.to(back, step);
+  add(member, step, 1);
   return true;
 }
 
@@ -143,6 +194,7 @@ bool FittedPath::correct_end(std::span<const double> coordinates) {
 bool FittedPath::converge_here(std::span<const double> coordinates) {
   if (!at_->problem.duration.free) path_.set_duration(at_->problem.duration.value);
   newton_.reset(at_->problem, tables_, path_.elements());
+  newton_.hold(held_);
   newton_.forget();
   if (node_ < path_.elements()) {
     if (at_->curved) meet_ends(at_->problem, path_);
@@ -205,7 +257,8 @@ bool FittedPath::evaluate(std::span<const double> coordinates, std::span<double>
                           std::span<double> jacobian) {
   if (!converged_ || !std::ranges::equal(coordinates, asked_)) {
     converged_ = false;
-    if (!move_to(coordinates) || !bind(values_at(coordinates)) || !converge_here(coordinates)) {
+    if (!move_to(coordinates) || !bind(values_at(coordinates)) || !converge_here(coordinates) ||
+        !within_family()) {
       if (!steps_.empty()) path_ = base_;
       return false;
     }
@@ -242,17 +295,19 @@ void FittedPath::combine_fields() {
 }
 
 bool FittedPath::differentiate(bool by_values, std::span<double> jacobian) {
-  const std::size_t count = task_.unknowns.size();
-  steps_.resize(count);
-  if (!response_.factor(newton_, at_->problem, path_, tables_, at_->changes)) {
-    steps_.clear();
-    return false;
-  }
-  for (std::size_t j = 0; j < count; ++j) response_.to(at_->changes[j], steps_[j]);
+  const std::size_t unknowns = task_.unknowns.size(), count = values_.size();
+  steps_.clear();
+  if (!find_members(count - unknowns) || unknowns + members_.size() != count) return false;
+  newton_.hold(held_);
+  if (!response_.factor(newton_, at_->problem, path_, tables_, at_->changes)) return false;
+  steps_.resize(unknowns);
+  for (std::size_t j = 0; j < unknowns; ++j) response_.to(at_->changes[j], steps_[j]);
   if (!by_values && node_ < path_.elements()) combine_fields();
+  steps_.insert(steps_.end(), members_.begin(), members_.end());
+  const ProblemChange nothing;
   for (std::size_t j = 0; j < count; ++j)
-    observer_.derivatives(path_, tables_, at_->formulas, steps_[j], at_->changes[j], jacobian.data() + j,
-                          static_cast<std::ptrdiff_t>(count));
+    observer_.derivatives(path_, tables_, at_->formulas, steps_[j], j < unknowns ? at_->changes[j] : nothing,
+                          jacobian.data() + j, static_cast<std::ptrdiff_t>(count));
   base_ = path_;
   base_values_ = coordinates();
   if (by_values) steps_.clear();

@@ -18,6 +18,10 @@ namespace extremal {
 /// Jacobi fields that vanish at 0 are far from vanishing again. Paths are then solved for with that value
 /// given, by the same factors: what is left free is a combination of the fields that q(T) moves. Values in
 /// this form are called coordinates of a path.
+///
+/// Closed orbits are members of families: nothing but data tells where on an orbit time begins, how it is
+/// turned where L can be turned, and which of a continuum of orbits it is. Steps along the family have
+/// coordinates as well; Newton's method keeps them to first order.
 class FittedPath final : public FittedExtremal {
  public:
   /// From an extremal of task.at(values), on elements of its own. `task` must outlive it.
@@ -30,6 +34,7 @@ class FittedPath final : public FittedExtremal {
   bool converge_on_elements() override;
   std::vector<double> coordinates() const override;
   std::vector<double> values() const override;
+  const std::vector<Step>& members() const override { return members_; }
   const Path& path() const override { return path_; }
   int iterations() const override { return iterations_; }
 
@@ -42,6 +47,9 @@ class FittedPath final : public FittedExtremal {
   bool correct(std::span<const double> coordinates);
   bool hold_node(std::span<const double> coordinates, std::span<const ProblemChange> changes, Step& step);
   bool differentiate(bool by_values, std::span<double> jacobian);
+  bool find_members(std::size_t at_least);
+  bool close(Step& member);
+  bool within_family();
   void choose_node();
   Eigen::MatrixXd fields_at(int node) const;
   void combine_fields();
@@ -56,9 +64,11 @@ class FittedPath final : public FittedExtremal {
   ExtremalResponse response_;
   Path path_, base_;                 ///< at the last values; where derivatives are known
   std::vector<double> asked_;        ///< coordinates that led to `path_`
-  std::vector<double> values_;       ///< of `path_`, but for those of ends_
+  std::vector<double> values_;       ///< of `path_`, but for those of ends_, then of members
   std::vector<double> base_values_;  ///< coordinates of `base_`
-  std::vector<Step> steps_;          ///< derivatives of `base_` by the unknowns; or none
+  std::vector<Step> steps_;          ///< derivatives of `base_` by the unknowns, then members; or none
+  std::vector<Step> members_;        ///< at `path_`, or where it came from
+  PhaseConditions held_;             ///< those that Newton's method does not know
   std::vector<std::size_t> ends_;    ///< unknowns that are q(T)
   std::vector<Step> fields_;         ///< what each of them moves
   int node_ = 0;                     ///< at which q stands for them; N: at T itself

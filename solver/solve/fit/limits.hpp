@@ -20,6 +20,8 @@ inline constexpr double first_radii[] = {1e4, 0.1};
 /// Singular values of the derivatives, each column of length one, that are smaller relative to the largest
 /// belong to what observations do not determine: ten digits of the derivatives are known at least.
 inline constexpr double undetermined = 1e-9;
+/// The same beside a family, whose directions are known to fewer digits.
+inline constexpr double undetermined_beside = 1e-7;
 /// An unknown that changes the residuals by less than this, in σ, when it changes by its size, is alone not
 /// determined, relative to the largest such change or to what was observed.
 inline constexpr double without_effect = 1e-12;
@@ -34,10 +36,20 @@ inline constexpr double quotients_apart = 0.1;
 /// residuals.
 inline constexpr int most_last_steps = 6;
 inline constexpr double first_last_step = 0.02;
-/// A closed orbit is solved for again at most so often, until it begins within this part of the tolerance
-/// where the fit has it.
+/// A member of a family is solved for again until it is the one that the fit has, within this part of the
+/// tolerance; at most so often beside once for each direction of the family.
 inline constexpr int most_shifts = 6;
 inline constexpr double least_shift = 0.01;
+/// Of a unit step along a family, so that the duration hardly changes.
+inline constexpr double small_move = 1e-6;
+/// Moves to other members of a family that differ by less, relative, are the same: on a circle a rotation is
+/// a shift in time.
+inline constexpr double dependent_moves = 1e-5;
+/// That holds a path along a null direction, relative to its largest momentum: what elements err by.
+inline constexpr double largest_force = 1e-5;
+/// Relative to the path: so far beside it a second variation that is singular to the last digit is not. Null
+/// eigenvalues are less than the second there.
+inline constexpr double beside = 1e-8, largest_beside = 1e-6;
 /// χ² above its mean by so many of its standard deviations is no scatter of the data.
 inline constexpr double most_deviations = 10;
 /// A node stands for q(T) where Jacobi fields that vanish at 0 have fallen, behind it, to less than this part

@@ -30,7 +30,7 @@ bool ExtremalResponse::factor(NewtonIteration& newton, const Problem& problem, c
   tables_ = &tables;
   n_ = problem.coordinates();
   DiscreteAction& action = newton.action();
-  if (!newton.model().evaluate(action, path, newton.closing(path)) || !action.finite()) return false;
+  if (!newton.factor_quickly(path)) return false;
   mixed_.resize(problem.lagrangian->structure().parameters);
   for (std::size_t p = 0; p < mixed_.size(); ++p)
     if (active(changes, p))
@@ -109,26 +109,6 @@ double ExtremalResponse::closing_value(const ProblemChange& change, const Closin
   return value;
 }
 
-/// q' at the nodes.
-void ExtremalResponse::shift(Step& step) const {
-  const Trajectory trajectory = trajectory_of(*path_);
-  const std::vector<double>& places = lobatto_barycentric(path_->degree()).nodes;
-  const std::size_t n = n_;
-  Path slopes;
-  slopes.reset(*tables_, path_->mesh(), path_->duration(), path_->lengths());
-  std::vector<double> q(n), v(n * places.size());
-  for (int k = 0; k < path_->elements(); ++k) {
-    // An element begins with the slope in which the one before ends.
-    std::copy(v.end() - n_, v.end(), v.begin());
-    for (std::size_t j = k == 0 ? 0 : 1; j < places.size(); ++j)
-      trajectory.in_element(k, places[j], q, {v.data() + j * n, n});
-    slopes.set_element(k, v.data());
-  }
-  step.nodes.assign(slopes.nodes().begin(), slopes.nodes().end());
-  step.inner.assign(slopes.x(0), slopes.x(slopes.batches()));
-  step.duration = 0;
-}
-
 /// The adjoint fields, which are their difference, are known to fewer digits than the path.
 void ExtremalResponse::move_copies_alike(Step& step) const {
   const std::size_t n = n_ / 2, lanes = lanes_;
@@ -140,7 +120,6 @@ void ExtremalResponse::move_copies_alike(Step& step) const {
 }
 
 void ExtremalResponse::to(const ProblemChange& change, Step& step) {
-  if (change.shift) return shift(step);
   const std::size_t batch = static_cast<std::size_t>(tables_->unknowns()) * lanes_;
   load_.assign(path_->batches() * batch, 0);
   on_duration_ = 0;

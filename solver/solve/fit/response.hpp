@@ -17,7 +17,6 @@ struct ProblemChange {
   std::vector<double> momenta;     ///< of BoundaryRelation::momenta, 2n; or empty
   double duration = 0;             ///< of a fixed duration
   double energy = 0;               ///< of the energy that closes a free duration
-  bool shift = false;              ///< time begins later on a closed path; nothing else changes
   /// Of the function that closes it, at given ends; or empty.
   std::function<double(std::span<const double> start, std::span<const double> end)> where = {};
 };
@@ -42,7 +41,6 @@ class ExtremalResponse {
     AlignedDoubles load;     ///< ∂²S/∂x∂p over the local unknowns of the elements
     double on_duration = 0;  ///< ∂²S/∂T∂p
   };
-  void shift(Step& step) const;
   void move_copies_alike(Step& step) const;
   void keep_columns();
   void add_parameters(const ProblemChange& change);

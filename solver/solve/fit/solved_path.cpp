@@ -5,6 +5,7 @@
 #include <array>
 
 #include "solve/fit/limits.hpp"
+#include "solve/fit/members.hpp"
 
 namespace extremal {
 
@@ -15,34 +16,42 @@ SolvedPath::SolvedPath(const FitTask& task, const SolveOptions& options)
 
 void SolvedPath::take(const Solution& solution, std::span<const double> values) {
   std::vector<double> residuals(task_.data.count());
+  members_.clear();
   if (!put(solution, values, residuals)) path_ = {};
+  values_.resize(task_.unknowns.size() + members_.size());
 }
 
-/// The extremal for these values, from the one there is.
+/// The extremal for these values, from the one there is, moved to the member that is asked for.
 bool SolvedPath::solve(std::span<const double> values, Solution& solution) {
-  const std::optional<Problem> problem =
-      task_.problem(values, guess_of_elements(solution_.trajectory), solution_.duration());
+  Path from = path_;
+  const std::size_t unknowns = task_.unknowns.size();
+  for (std::size_t j = 0; j < members_.size(); ++j)
+    from.add(members_[j].nodes, members_[j].inner, values[unknowns + j] - values_[unknowns + j]);
+  from.load_ends();
+  std::optional<Problem> problem = task_.problem(
+      values.first(unknowns), guess_of_elements(first_copy(trajectory_of(from), task_.coordinates)),
+      solution_.duration());
   if (!problem || options_.deadline.passed()) return false;
-  lagrangian_ = problem->lagrangian;
-  solution = task_.solve(*problem, options_);
+  problem_ = std::move(problem);
+  solution = task_.solve(*problem_, options_);
   iterations_ += solution.iterations;
   return solution.converged();
 }
 
 /// What is computed along an extremal. False where it is not finite.
 bool SolvedPath::put(const Solution& solution, std::span<const double> values, std::span<double> residuals) {
-  if (!lagrangian_) {
-    const std::optional<Problem> problem =
-        task_.problem(values, guess_of_elements(solution.trajectory), solution.duration());
-    if (!problem) return false;
-    lagrangian_ = problem->lagrangian;
+  const std::span<const double> known = values.first(task_.unknowns.size());
+  if (!problem_) {
+    problem_ = task_.problem(known, guess_of_elements(solution.trajectory), solution.duration());
+    if (!problem_) return false;
   }
   scheme_ = std::make_unique<SchemeTables>(scheme_of(solution.trajectory, options_), exact_points);
-  tables_.bind(*scheme_, *lagrangian_);
+  tables_.bind(*scheme_, *problem_->lagrangian);
   put_trajectory(solution.trajectory, tables_, path_);
   if (&solution != &solution_) solution_ = solution;
   values_.assign(values.begin(), values.end());
-  return observer_.residuals(path_, task_.formulas(values), residuals);
+  members_ = moves_of_closed_path(*problem_, path_, tables_);
+  return observer_.residuals(path_, task_.formulas(known), residuals);
 }
 
 bool SolvedPath::evaluate(std::span<const double> values, std::span<double> residuals,
@@ -54,8 +63,13 @@ bool SolvedPath::evaluate(std::span<const double> values, std::span<double> resi
     return false;
   }
   if (jacobian.empty()) return true;
-  for (std::size_t j = 0; j < values.size(); ++j)
-    if (!differentiate(j, values.size(), jacobian)) return false;
+  const std::size_t count = values.size(), unknowns = task_.unknowns.size();
+  if (unknowns + members_.size() != count) return false;
+  for (std::size_t j = 0; j < unknowns; ++j)
+    if (!differentiate(j, count, jacobian)) return false;
+  for (std::size_t j = unknowns; j < count; ++j)
+    observer_.derivatives(path_, tables_, task_.formulas(values.first(unknowns)), members_[j - unknowns], {},
+                          jacobian.data() + j, static_cast<std::ptrdiff_t>(count));
   return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "solve/fit/fitted_extremal.hpp"
@@ -9,7 +10,8 @@
 
 namespace extremal {
 
-/// Each is solved for by itself, from the one before. Derivatives are differences of extremals.
+/// Each is solved for by itself, from the one before or beside it along its family. Derivatives by values are
+/// differences of extremals.
 class SolvedPath final : public FittedExtremal {
  public:
   /// `task` must outlive it.
@@ -21,7 +23,10 @@ class SolvedPath final : public FittedExtremal {
   bool evaluate_by_values(std::span<double> residuals, std::span<double> jacobian) override;
   bool converge_on_elements() override { return path_.elements() > 0; }
   std::vector<double> coordinates() const override { return values_; }
-  std::vector<double> values() const override { return values_; }
+  std::vector<double> values() const override {
+    return {values_.begin(), values_.begin() + std::ssize(task_.unknowns)};
+  }
+  const std::vector<Step>& members() const override { return members_; }
   const Path& path() const override { return path_; }
   int iterations() const override { return iterations_; }
 
@@ -33,12 +38,13 @@ class SolvedPath final : public FittedExtremal {
   const FitTask& task_;
   const SolveOptions& options_;
   Observer observer_;
-  std::shared_ptr<const Lagrangian> lagrangian_;  ///< to which the tables are bound
+  std::optional<Problem> problem_;  ///< to which the tables are bound
   std::unique_ptr<SchemeTables> scheme_;
   ElementTables tables_;
   Path path_;
   Solution solution_;           ///< of `path_`
-  std::vector<double> values_;  ///< likewise
+  std::vector<Step> members_;   ///< likewise
+  std::vector<double> values_;  ///< likewise, then coordinates along members
   int iterations_ = 0;
 };
 

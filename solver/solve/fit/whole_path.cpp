@@ -6,6 +6,7 @@
 #include "problem/copies.hpp"
 #include "solve/fit/fitted_path.hpp"
 #include "solve/fit/limits.hpp"
+#include "solve/fit/members.hpp"
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/mesh/frequency.hpp"
@@ -93,8 +94,9 @@ class WholePath {
     newton_.reset(problem, at.tables, at.path.elements());
     if (!response_.factor(newton_, problem, at.path, at.tables, at.at.changes)) return false;
     newton_.model().solve(newton_.action(), newton_.closing(at.path), at.step);
-    const auto count = static_cast<Eigen::Index>(task_.unknowns.size()),
-               rows = Eigen::Index{observer_.count()};
+    const std::vector<Step> members = moves_of_closed_path(problem, at.path, at.tables);
+    const auto unknowns = static_cast<Eigen::Index>(task_.unknowns.size()),
+               count = unknowns + std::ssize(members), rows = Eigen::Index{observer_.count()};
     Eigen::VectorXd residuals(rows), by_step(rows);
     Eigen::MatrixXd jacobian(rows, count);
     if (!observer_.residuals(at.path, at.at.formulas, {residuals.data(), static_cast<std::size_t>(rows)}))
@@ -103,22 +105,25 @@ class WholePath {
       observer_.derivatives(at.path, at.tables, at.at.formulas, step, change, to, 1);
     };
     differentiate(at.step, {}, by_step.data());
-    std::vector<Step> responses(count);
-    for (Eigen::Index j = 0; j < count; ++j) {
+    std::vector<Step> responses(unknowns);
+    for (Eigen::Index j = 0; j < unknowns; ++j) {
       response_.to(at.at.changes[j], responses[j]);
       differentiate(responses[j], at.at.changes[j], jacobian.col(j).data());
       jacobian.col(j) *= task_.unknowns[j].size;
     }
+    for (Eigen::Index j = unknowns; j < count; ++j)
+      differentiate(members[j - unknowns], {}, jacobian.col(j).data());
     if (!jacobian.allFinite() || !by_step.allFinite()) return false;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least(jacobian.rows(), count);
     least.setThreshold(undetermined);
     const Eigen::VectorXd y = least.compute(jacobian).solve(-(residuals + by_step));
-    at.changes.resize(count);
+    at.changes.resize(unknowns);
     at.length = 0;
-    for (Eigen::Index j = 0; j < count; ++j) {
+    for (Eigen::Index j = 0; j < unknowns; ++j) {
       at.changes[j] = y[j] * task_.unknowns[j].size;
       add(at.step, responses[j], at.changes[j]);
     }
+    for (Eigen::Index j = unknowns; j < count; ++j) add(at.step, members[j - unknowns], y[j]);
     return measure(at);
   }
 

@@ -69,7 +69,7 @@ void NewtonIteration::reset(const Problem& problem, const ElementTables& tables,
   damping_ = predicted_ = 1;
   count_ = 0;
   phase_free_ = shifts_held_ = nodes_move_ = false;
-  held_.clear();
+  held_ = {};
   if (!sparse) {
     use_dense();
   } else if (low && tables.scheme().degree >= low->scheme().degree && RaisedModel::suits(tables)) {
@@ -181,7 +181,7 @@ void NewtonIteration::restore(Path& path) {
 bool NewtonIteration::factor_quickly(const Path& path) {
   measure_phases(*problem_, path, tables_->scheme(), !phase_free_, phases_);
   if (shifts_held_) add_soft_shifts(*problem_, path, tables_->scheme(), phases_);
-  if (!held_.empty()) phases_.add(held_);
+  for (int j = 0; j < held_.count; ++j) phases_.add(held_.direction(j));
   model_->set_phases(phases_.count > 0 ? &phases_ : nullptr);
   return model_->evaluate(action_, path, closing(path)) && action_.finite();
 }
@@ -306,29 +306,21 @@ StepResult NewtonIteration::end_in_noise(Path& path, double step) {
 /// Inverse iteration from the step, which has most of that direction already.
 bool NewtonIteration::hold_softest(const Path& path) {
   if (model_ != condensed_.get() || problem_->paired) return false;
-  held_.clear();
+  held_ = {};
   if (!factor(path) || std::isnan(solve_for_step(path, step_))) return false;
-  const std::size_t n = path.coordinates(), elements = path.elements();
-  const std::span<const double> mesh = path.mesh();
-  const auto weigh = [&](std::vector<double> x) {
-    for (std::size_t k = 0; k <= elements; ++k)
-      for (std::size_t a = 0; a < n; ++a)
-        x[k * n + a] *= 0.5 * (mesh[std::min(k + 1, elements)] - mesh[std::max<std::size_t>(k, 1) - 1]);
-    return x;
-  };
-  action_.nodes.gradient = weigh(step_.nodes);
+  action_.nodes.gradient = direction_of(step_.nodes, path);
   action_.nodes.border_gradient = action_.nodes.border_part = 0;
   action_.nodes.end_parts.clear();
   ClosingEquation closed;
   if (const ClosingEquation* equation = closing(path)) closed.row = equation->row;
   model_->solve(action_, problem_->duration.free ? &closed : nullptr, step_);
-  held_ = weigh(step_.nodes);
+  held_.add(direction_of(step_.nodes, path));
   predicted_ = 1;
-  return std::isfinite(largest(held_));
+  return std::isfinite(largest(held_.directions));
 }
 
 void NewtonIteration::release() {
-  held_.clear();
+  held_ = {};
   predicted_ = 1;
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "action/discrete_action.hpp"
@@ -69,6 +70,8 @@ class NewtonIteration {
   /// From now until release() steps leave out the direction in which the path last factored is softest. False
   /// where that cannot be done.
   bool hold_softest(const Path& path);
+  /// The same with given directions, as PhaseConditions has them; until release() or reset().
+  void hold(PhaseConditions directions) { held_ = std::move(directions); }
   void release();
 
   /// Assembles at `path` and factors, without a step; false if that is singular to working precision.
@@ -177,7 +180,7 @@ class NewtonIteration {
   PhaseConditions phases_;
   bool phase_free_ = false, shifts_held_ = false, nodes_move_ = false, extended_ = false, refined_ = false,
        doubling_ = false;
-  std::vector<double> held_;  ///< (N + 1) × n, or empty
+  PhaseConditions held_;
   Path saved_;
   ClosingMap closed_;  ///< of a periodic problem with kinks
   std::vector<Corner> saved_corners_;

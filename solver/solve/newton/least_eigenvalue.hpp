@@ -14,5 +14,8 @@ namespace extremal {
 ///
 /// Pivots do not show κ: of what rests hold in time, each part is held by its ends.
 std::optional<double> least_eigenvalue(NewtonIteration& newton, const Path& path);
+/// The same with its direction. Of several that are as soft, another for each number `draw`.
+std::optional<double> least_eigenvalue(NewtonIteration& newton, const Path& path, Step& direction,
+                                       unsigned draw = 1);
 
 }  // namespace extremal

@@ -27,6 +27,15 @@ void add_shift_of_time(const Path& path, const SchemeTables& scheme, double* dir
     }
 }
 
+std::vector<double> direction_of(std::vector<double> nodes, const Path& path) {
+  const std::size_t n = path.coordinates(), elements = path.elements();
+  const std::span<const double> mesh = path.mesh();
+  for (std::size_t k = 0; k <= elements; ++k)
+    for (std::size_t a = 0; a < n; ++a)
+      nodes[k * n + a] *= 0.5 * (mesh[std::min(k + 1, elements)] - mesh[std::max<std::size_t>(k, 1) - 1]);
+  return nodes;
+}
+
 namespace {
 
 /// Whether the generator moves the path, by more than roundoff of what it is summed of: a rotation leaves a

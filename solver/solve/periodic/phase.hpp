@@ -28,6 +28,9 @@ struct PhaseConditions {
   }
 };
 
+/// The direction of a step of the nodes, (N + 1) × n: its values times the times around them.
+std::vector<double> direction_of(std::vector<double> nodes, const Path& path);
+
 /// Those of `problem` at `path`, with or without the shift of time; none unless it is periodic, or goes from
 /// equilibrium to equilibrium.
 void measure_phases(const Problem& problem, const Path& path, const SchemeTables& scheme, bool with_time,
