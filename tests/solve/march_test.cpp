@@ -430,6 +430,25 @@ TEST(MarchedMotion, LatticesOfManyCoordinates) {
             2e-2);
 }
 
+/// Displacements far below roundoff of others are those of roundoff, in the first element too: a chain whose
+/// pulse falls to 1e-200 at its pulled and damped end.
+TEST(MarchedMotion, TailsBelowAllRoundoffStopNothing) {
+  const int n = 48;
+  const auto chain =
+      compile({.coordinates = {"q[n]"},
+               .parameters = {{"n", {.value = {double(n)}}}},
+               .lagrangian = "sum(i, 1, n, q[i]'^2/2 - q[i]^2/3) - sum(i, 1, n - 1, (q[i+1] - q[i])^2/2)"
+                             " + 0.2*sin(3*t + 1)*q[1] - 0.1*q[1]*q[2]'"})
+          .lagrangian;
+  Values q(n), p(n);
+  for (int i = 0; i < n; ++i) q[i] = 0.4 * std::exp(-std::pow((i + 1 - 24) / 1.08, 2));
+  const Solution s = solve(from(chain, q, p, 3), within(1e-9));
+  EXPECT_LE(s.trajectory.elements(), 40);
+  EXPECT_LT(
+      largest_difference(fly(*chain, q, p, Values{3}, 1e-13).q, node(s.trajectory, s.trajectory.elements())),
+      1e-9);
+}
+
 /// Where a motion has no element the message names the place and the reason, and comes soon.
 TEST(MarchedMotion, TellsWhatStopsIt) {
   const auto message = [](const Problem& problem) {

@@ -162,18 +162,21 @@ void ElementSolver::correct() {
 ElementSolver::Step ElementSolver::measure() {
   const int s = shape_.s;
   Step step;
-  double widest = 0, largest = 0;  // extent and change
   for (int a = 0; a < shape_.n; ++a) {
-    double extent = 0, change = 0;
+    extent_[a] = 0;
     for (int k = a * s; k < (a + 1) * s; ++k) {
       x_[k] += correction_[k];
-      extent = std::max(extent, std::abs(x_[k]));
-      change = std::max(change, std::abs(correction_[k]));
+      extent_[a] = std::max(extent_[a], std::abs(x_[k]));
     }
-    extent_[a] = extent;
-    extent = std::max({extent, least_extent * largest_[a], negligible_extent * widest_});
+  }
+  const double widest = *std::ranges::max_element(extent_),
+               negligible = negligible_extent * std::max(widest, widest_);
+  double largest = 0;
+  for (int a = 0; a < shape_.n; ++a) {
+    double change = 0;
+    for (int k = a * s; k < (a + 1) * s; ++k) change = std::max(change, std::abs(correction_[k]));
+    const double extent = std::max({extent_[a], least_extent * largest_[a], negligible});
     if (!std::isfinite(change) || !std::isfinite(extent)) return {INFINITY, INFINITY};
-    widest = std::max(widest, extent_[a]);
     largest = std::max(largest, change);
     if (change == 0) continue;
     step.by_extent = std::max(step.by_extent, change / extent);
