@@ -187,6 +187,22 @@ ElementSolver::Step ElementSolver::measure() {
   return step;
 }
 
+/// Whether the correction is what roundings of momenta and forces make it. A force at the end of the element,
+/// which the equations of its start are without, is the difference of its sums.
+bool ElementSolver::within_roundings(const MotionState& state) {
+  const int s = shape_.s;
+  const AlignedDoubles correction = correction_, residuals = residuals_;
+  for (int a = 0; a < shape_.n; ++a)
+    std::fill_n(&residuals_[a * s], s, unit_roundoff * (std::abs(state.p[a].high) + std::abs(force_[a])));
+  correct();
+  bool within = true;
+  for (int k = 0; k < size_ && within; ++k)
+    within = std::abs(correction[k]) <= roundings_of_step * std::abs(correction_[k]);
+  correction_ = correction;
+  residuals_ = residuals;
+  return within;
+}
+
 ElementSolver::Result ElementSolver::solve(const MotionState& state, double h) {
   if (!kinetic_) return iterate(state, h);
   const std::vector<double> guess = x_;
@@ -221,8 +237,8 @@ ElementSolver::Result ElementSolver::iterate(const MotionState& state, double h)
       factored_ = false;
       return Result::not_finite;
     }
-    const bool small = step <= small_step || by_value <= roundings;
-    if (step <= negligible || (small && step >= stagnant_at * before)) {
+    const bool small = step <= small_step || by_value <= roundings, stagnant = step >= stagnant_at * before;
+    if (step <= negligible || (small && stagnant) || (stagnant && within_roundings(state))) {
       residual_ = 0;
       for (int k = 0; k < size_; ++k) residual_ = std::max(residual_, std::abs(residuals_[k]));
       double force = 0, momentum = 0;

@@ -79,6 +79,7 @@ class ElementSolver {
     double by_extent = 0, by_value = 0;
   };
   Step measure();
+  bool within_roundings(const MotionState& state);
 
   const StepTables& tables_;
   const StepShape& shape_;

@@ -15,6 +15,8 @@ inline constexpr int most_steps = 40;
 /// have.
 inline constexpr double negligible_step = 2 * unit_roundoff, small_step = 1e-12, stagnation = 0.25,
                         roundings = 16 * unit_roundoff;
+/// A step that shrinks no more is roundoff if it is at most so many times what roundings of forces make.
+inline constexpr double roundings_of_step = 4;
 /// Where the force of an element changes the momentum by no more than this part, steps so many times larger
 /// are: what they change the force by is smaller still.
 inline constexpr double weak_force = 0.25, weak_factor = 4;
