@@ -49,6 +49,19 @@ TEST(FreeTimes, AllElementsHaveOneEnergy) {
   }
 }
 
+/// Fine elements have almost one energy at equal times, and these are no solution yet.
+TEST(FreeTimes, EnergiesThatDifferLittleAreNotEqual) {
+  const Problem problem = fixed_ends(unit_pendulum(), {-2.0}, {2.9}, 3.0);
+  for (const int elements : {6, 24, 28}) {
+    Solver solver;
+    const Solution free = solver.solve(problem, free_steps(scheme("gauss(4)"), elements));
+    if (free.converged())
+      EXPECT_LT(spread(free.element_energies), 5e-14) << elements;
+    else
+      EXPECT_NE(free.message.find("node times"), std::string::npos) << free.message;
+  }
+}
+
 /// For V the potential, one element of the midpoint rule has the modified energy
 /// H − h²/24 (q'ᵀV''q' + |V'|²), and E_k = −∂L_d/∂h is H + 3 h² H₂ with H₂ = −(q'ᵀV''q' + |V'|²)/24 (backward
 /// error analysis). One energy in all elements asks for h ∝ |H₂|^(−1/3).

@@ -66,7 +66,9 @@ inline constexpr double most_stretch = 3;
 namespace residual_homotopy {
 
 /// Equations hold to this, relative to the largest momentum, and of times to that times the largest velocity.
-inline constexpr double solved = 1e-12;
+/// Where times are free, energies that differ little on fine elements are not equal yet: equations hold to
+/// the second part of what is left at first, or to roundoff.
+inline constexpr double solved = 1e-12, part_of_first = 1e-3, roundoff = 4e-15;
 /// Of Newton's method, and what may be left after one of its steps.
 inline constexpr int most_newton_steps = 12;
 inline constexpr double worst_residual = 1;

@@ -41,12 +41,12 @@ bool ResidualHomotopy::converge(Path& path, double mu) {
     trial = path;
     const bool moved = equations_.apply(trial, correction_, 1);
     const double after = moved ? equations_.size(equations_.evaluate(trial) - mu * first_, trial) : INFINITY;
-    if (before <= solved && !(after < before)) return true;
+    if (before <= enough_ && !(after < before)) return true;
     if (!(after < worst_residual)) return false;
     before = after;
     std::swap(path, trial);
   }
-  return before <= solved;
+  return before <= enough_;
 }
 
 /// Newton's method for values of μ that fall to 0 as fast as it converges.
@@ -155,7 +155,9 @@ bool ResidualHomotopy::trace(Path path, double mu, double sense, Path& found) {
 ResidualHomotopy::Report ResidualHomotopy::find(Path& path) {
   first_ = equations_.evaluate(path);
   if (!first_.allFinite()) return {false, "the action is not finite along the path"};
-  if (equations_.size(first_, path) <= solved) return {true, {}};
+  const double size_at_first = equations_.size(first_, path);
+  enough_ = free_times_ ? std::clamp(part_of_first * size_at_first, roundoff, solved) : solved;
+  if (size_at_first <= (free_times_ ? roundoff : solved)) return {true, {}};
   const Scales size = scales(path, tables_);
   extent_ = std::max(size.q, size.magnitude);
   nearest_ = path;

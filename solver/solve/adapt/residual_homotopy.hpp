@@ -49,8 +49,9 @@ class ResidualHomotopy {
   SchemeEquations::Vector first_;                   ///< F(x_0)
   SchemeEquations::Vector correction_, direction_;  ///< at fixed μ, and by μ
   double extent_ = 0;
-  int left_ = 0;  ///< linearisations that a curve may still have
-  Path nearest_;  ///< on the curves, where μ was least
+  double enough_ = 0;  ///< of the residual, where equations are solved
+  int left_ = 0;       ///< linearisations that a curve may still have
+  Path nearest_;       ///< on the curves, where μ was least
   double least_ = 0;
 };
 
