@@ -30,6 +30,7 @@ class BorderedNewton {
     }
     const BorderedEquations::Matrix matrix = equations_.matrix();
     // Zeros are kept as entries, but for those of conditions, of which the gradient may vanish by chance.
+    lu_.setPivotThreshold(least_pivot);
     if (matrix.nonZeros() != analysed_) lu_.analyzePattern(matrix);
     analysed_ = matrix.nonZeros();
     lu_.factorize(matrix);

@@ -21,6 +21,9 @@ inline constexpr int most_null_directions = 6;
 /// in so many unknowns at most.
 inline constexpr double soft_direction = 0.02, near_family = 1e-3;
 inline constexpr int most_dense = 400;
+/// A pivot on the diagonal serves if it is at least this part of the largest of its column: the row of an
+/// integral, which has entries of all unknowns, fills all rows below where it becomes a pivot early.
+inline constexpr double least_pivot = 0.01;
 
 /// A step along a null direction, by the size of the path, and what the solution beside it may lie off, by
 /// the step: of a family that is its curvature.
