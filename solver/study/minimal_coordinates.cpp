@@ -36,7 +36,7 @@ Chart chart_of(const Frame& frame) {
   return chart;
 }
 
-/// The guess, or the point from which a motion starts.
+/// The guess between the ends, in whose place fixed ones come, or the point from which a motion starts.
 PathPoints points_of(const Problem& problem) {
   PathPoints path;
   const Index n = problem.coordinates();
@@ -49,6 +49,13 @@ PathPoints points_of(const Problem& problem) {
   for (std::size_t k = 0; k < guess.tau.size(); ++k) {
     path.q.emplace_back(Eigen::Map<const VectorXd>(guess.q.data() + k * n, n));
     path.times.push_back(guess.tau[k] * problem.duration.value);
+  }
+  for (const bool at_end : {false, true}) {
+    const auto first = at_end ? static_cast<std::ptrdiff_t>(n) : 0;
+    const auto from = problem.ends.fixed.begin() + first;
+    if (std::all_of(from, from + n, [](char fixed) { return fixed; }))
+      (at_end ? path.q.back() : path.q.front()) =
+          Eigen::Map<const VectorXd>(problem.ends.offset.data() + first, n);
   }
   return path;
 }
