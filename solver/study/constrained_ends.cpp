@@ -327,9 +327,10 @@ void refuse_partly_free(const Scene& scene, const Problem& problem) {
   const int n = problem.coordinates();
   throw SceneError(
       place_of(scene.boundary, !std::ranges::any_of(problem.ends.home, [&](int e) { return e < n; })),
-      "this end is fixed in part, and constraints link what is fixed with what is free; near the guess no "
-      "coordinates of the motion include what is fixed, or more than a solution near the guess is asked for: "
-      "give all coordinates of the end, or none, or another guess");
+      "this end is fixed in part, and constraints link what is fixed with what is free: families, "
+      "comparisons, other methods than Newton's and an L with kinks do not have such ends, and forces only "
+      "where coordinates of the motion near the guess include what is fixed; give all coordinates of the "
+      "end, or none");
 }
 
 }  // namespace extremal

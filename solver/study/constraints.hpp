@@ -66,7 +66,8 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
 /// coordinates have these.
 bool complete_ends(const Scene& scene, EndPoints& near, Problem& problem);
 
-/// Throws SceneError: an end is fixed in part, and there are no minimal coordinates for it.
+/// Throws SceneError: an end is fixed in part, and there are neither minimal coordinates for it nor may it
+/// be a condition.
 [[noreturn]] void refuse_partly_free(const Scene& scene, const Problem& problem);
 
 /// Moves the guess onto the manifold. The line between the ends, which is the default, is bent aside where

@@ -201,7 +201,7 @@ void check_extended_forces(const Scene& scene, const std::string& asks) {
 
 }  // namespace
 
-ExtendedScene split(const Scene& scene, const System& system) {
+ExtendedScene split(const Scene& scene, const System& system, bool extended) {
   ExtendedScene parts;
   parts.linear = scene.boundary;
   const Dependents dependents = dependents_of(scene);
@@ -215,7 +215,7 @@ ExtendedScene split(const Scene& scene, const System& system) {
     if (!linear) parts.conditions.push_back(text);
     return !linear;
   });
-  parts.extended = !scene.boundary.unknowns.empty() || !scene.boundary.integrals.empty() ||
+  parts.extended = extended || !scene.boundary.unknowns.empty() || !scene.boundary.integrals.empty() ||
                    !scene.waypoints.empty() || !parts.conditions.empty();
   if (!parts.extended) return parts;
   parts.where = scene.boundary.where_list;
@@ -260,6 +260,15 @@ void check_extended(const Scene& scene, Purpose purpose) {
     throw SceneError(scene.solve.elements->at,
                      fmt::format("elements = {}; need at least {}, one for each leg between waypoints",
                                  scene.solve.elements->value, legs));
+}
+
+bool may_be_extended(const Scene& scene, Purpose purpose) {
+  try {
+    check_extended(scene, purpose);
+    return true;
+  } catch (const SceneError&) {
+    return false;
+  }
 }
 
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene) {

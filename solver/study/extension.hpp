@@ -21,10 +21,14 @@ struct ExtendedScene {
   std::vector<Text> momenta;     ///< given by unknowns: "p·q(0) = 0" at the start, "-p·q(T) = 0" at the end
   std::vector<Text> where;
 };
-ExtendedScene split(const Scene& scene, const System& system);
+/// `extended`: also where the scene asks for nothing of that.
+ExtendedScene split(const Scene& scene, const System& system, bool extended = false);
 
 /// Throws SceneError where such a problem cannot be solved for this purpose or in this way.
 void check_extended(const Scene& scene, Purpose purpose);
+
+/// Whether it can, as far as the scene alone tells.
+bool may_be_extended(const Scene& scene, Purpose purpose);
 
 /// L + Σ g, with the unknowns at their guesses: what stands for L until the multipliers are known.
 std::shared_ptr<const Lagrangian> extended_lagrangian(const Scene& scene);

@@ -167,16 +167,17 @@ bool read_constrained_guess(const Scene& scene, const ExtendedScene& parts, cons
   return suited;
 }
 
-/// Nothing where a Hamiltonian needs phase space and `system` is its Legendre transform.
+/// Nothing where a Hamiltonian needs phase space and `system` is its Legendre transform. `extended` as
+/// split().
 std::optional<Problem> read_problem(const Scene& scene, const System& system, const PutGuess& put_guess,
-                                    Purpose purpose) {
+                                    Purpose purpose, bool extended = false) {
   Problem problem;
   problem.lagrangian = system.lagrangian;
   problem.copies = system.copies;
   problem.names = system.names;
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
-  const ExtendedScene parts = split(scene, system);
+  const ExtendedScene parts = split(scene, system, extended);
   set_relation(parts.linear, system, problem);
   if (problem.initial)
     check_initial_data(scene, purpose);
@@ -218,9 +219,12 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   } catch (const std::invalid_argument& e) {
     throw SceneError(scene.boundary.at, e.what());
   }
-  if (!suited && !only_near_guess(scene, purpose)) refuse_partly_free(scene, problem);
-  if (!parts.extended) put_minimal_coordinates(scene.system, system, !suited, problem);
-  if (!suited && !problem.manifold->parts().minimal) refuse_partly_free(scene, problem);
+  if (!parts.extended && (suited || only_near_guess(scene, purpose)))
+    put_minimal_coordinates(scene.system, system, !suited, problem);
+  if (!suited && !problem.manifold->parts().minimal) {
+    if (system.lagrangian->kinks() || !may_be_extended(scene, purpose)) refuse_partly_free(scene, problem);
+    return read_problem(scene, system, put_guess, purpose, true);
+  }
   if (!problem.manifold || !has_regular_chart(problem)) {
     problem.lagrangian = as_made(std::move(problem.lagrangian));
     problem.copies = as_made(std::move(problem.copies));
