@@ -213,3 +213,30 @@ TEST_F(Scenes, ForcesOfAHamiltonian) {
   EXPECT_NE(message(scene("hamiltonian = \"cosh(p_x) + p_y^2/2\"", ends)).find("quadratic forms"),
             std::string::npos);
 }
+
+/// Dry friction has no value at rest. Let go, a mass on a spring moves if the spring is stronger, by half
+/// turns about ±c; else it stays.
+TEST_F(Scenes, DryFrictionFromRest) {
+  const auto scene = [](double x, double duration) {
+    return fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2\"\nforce = {{ x = "
+        "\"-0.2*x'/abs(x')\" }}\n"
+        "[boundary]\nstart = {{ x = {}, p_x = 0 }}\nduration = {}\n",
+        x, duration);
+  };
+  for (const double side : {1.0, -1.0}) {
+    const Solution found = run(study(scene(1.5 * side, 8)));
+    ASSERT_TRUE(found.converged()) << found.message;
+    std::vector<double> q(1), v(1);
+    found.trajectory.at(2, q, v);
+    EXPECT_NEAR(q[0], side * (0.2 + 1.3 * std::cos(2.0)), 1e-8);
+    found.trajectory.at(8, q, v);
+    EXPECT_NEAR(q[0], side * (0.2 + 0.5 * std::cos(8.0)), 1e-8);
+  }
+  for (const double x : {0.12, -0.19, 0.0}) {
+    const Solution found = run(study(scene(x, 8)));
+    EXPECT_FALSE(found.converged());
+    EXPECT_NE(found.message.find("it stays on a kink of abs, min or max"), std::string::npos)
+        << found.message;
+  }
+}

@@ -391,6 +391,8 @@ class InitialMotion {
     const auto finite = [](const std::vector<double>& x) {
       return std::ranges::all_of(x, [](double value) { return std::isfinite(value); });
     };
+    const bool stays = march.stays_on_kink || on_kink(q, v, march.reached, speed);
+    if (!std::isfinite(at.value) && stays) return stays_at(place);
     const char* const what = problem_.paired ? "L or a force" : "L";
     if (!std::isfinite(at.value)) return fmt::format("{} is not finite at {}", what, place);
     if (!finite(at.dq) || !finite(at.dv))
@@ -398,9 +400,12 @@ class InitialMotion {
     if (!finite(at.qq) || !finite(at.vq) || !finite(at.vv))
       return fmt::format("second derivatives of {} are not finite at {}", what, place);
     if (!found) return fmt::format("Newton's method finds no velocity with these momenta at {}", positions);
-    if (on_kink(q, v, march.reached, speed))
-      return fmt::format("from {} on it stays on a kink of abs, min or max", place);
+    if (stays) return stays_at(place);
     return fmt::format("{}, at {}", reason(march.reason), place);
+  }
+
+  static std::string stays_at(const std::string& place) {
+    return fmt::format("from {} on it stays on a kink of abs, min or max", place);
   }
 
   /// The velocities that have these momenta at t = 0. False if they are not found where L is finite.

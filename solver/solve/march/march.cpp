@@ -124,6 +124,7 @@ class AdaptiveMarch {
       if (h < least_length * duration_ || stays_on_kink_ || creeping_ > most_creeping ||
           record_.state().time + h == record_.state().time) {
         record_.march().wanted = h;
+        record_.march().stays_on_kink = stays_on_kink_;
         return record_.finish(March::End::no_element);
       }
       try_element(h, last);
@@ -179,6 +180,9 @@ class AdaptiveMarch {
     if (last) time_ = {duration_, 0};
     kink_tries_ = 0;
     creeping_ = h < creeping * duration_ ? creeping_ + 1 : 0;
+    // Elements grow where a force holds a motion at rest, but not where it points to a kink from both sides.
+    still_ = kinks_.active() && rests() ? still_ + 1 : 0;
+    stays_on_kink_ = stays_on_kink_ || still_ > most_creeping;
     if (kinks_.active() && kinks_.accept()) count_kink();
     const double most = tail_.size == 0 || excess < 1e-6 ? fast_growth : most_growth;
     cheap_cuts_ = 0;
@@ -192,6 +196,14 @@ class AdaptiveMarch {
     crowd_from_ = time_.high;
   }
 
+  /// Whether the last element moves no coordinate by more than roundoff.
+  bool rests() const { return tail_.extent <= roundings * magnitude(); }
+  double magnitude() const {
+    double largest = 0;
+    for (const LongSum& q : record_.state().q) largest = std::max(largest, std::abs(q.high));
+    return largest;
+  }
+
   /// Whether a motion that goes on as it began takes far more elements than can be kept.
   bool hopeless() {
     const double numbers = static_cast<double>(record_.march().trajectory.nodes.size());
@@ -202,9 +214,7 @@ class AdaptiveMarch {
   /// The truncation error of the element relative to what is allowed: the first coefficient that the output
   /// leaves out of q, and its derivative at the ends of the element.
   double excess(double h) {
-    double magnitude = 0;
-    for (const LongSum& q : record_.state().q) magnitude = std::max(magnitude, std::abs(q.high));
-    tail_ = continuation_.tail(solver_.x(), magnitude);
+    tail_ = continuation_.tail(solver_.x(), magnitude());
     if (tail_.size == 0) return 0;
     const int order = tables_.degree() + 1 + record_.gain();
     const double error = tail_.size * std::pow(tail_.fall, 1 + record_.gain());
@@ -240,7 +250,7 @@ class AdaptiveMarch {
   MarchRecord record_;
   ElementSolver solver_;
   KinkWatch kinks_;
-  int kink_tries_ = 0, met_ = 0, creeping_ = 0;
+  int kink_tries_ = 0, met_ = 0, creeping_ = 0, still_ = 0;
   double crowd_from_ = -INFINITY;
   bool stays_on_kink_ = false;
   UniformMotion uniform_;

@@ -21,8 +21,9 @@ struct March {
     memory,  ///< it takes more elements than can be kept
   };
   End end = End::no_element;
-  double reached = 0;  ///< the time up to which there are elements
-  double wanted = 0;   ///< length of the element that is missing
+  double reached = 0;          ///< the time up to which there are elements
+  double wanted = 0;           ///< length of the element that is missing
+  bool stays_on_kink = false;  ///< why it is
   ElementSolver::Result reason = ElementSolver::Result::solved;
   Trajectory trajectory;
   MotionState last;  ///< at `reached`

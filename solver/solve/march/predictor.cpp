@@ -26,7 +26,8 @@ void UniformMotion::predict(const MotionState& state, double h, std::span<double
     q_[a] = state.q[a].high;
     p_[a] = state.p[a].high;
   }
-  if (!flow_ || !flow_->velocity(q_, p_, state.time, v_)) return;
+  if (!flow_) return;
+  if (!flow_->velocity(q_, p_, state.time, v_)) std::ranges::fill(v_, nearly_at_rest);
   for (std::size_t a = 0; a < v_.size(); ++a)
     for (int copy = 0; copy < copies_; ++copy) x[(copy * v_.size() + a) * degree_ + degree_ - 1] = v_[a] * h;
 }

@@ -12,9 +12,9 @@
 
 namespace extremal {
 
-/// Uniform motion with the velocity that the momentum has, for the first element: rest where the velocities
-/// are not found, and where L is quadratic in them, for which Newton's method begins anywhere. Others may not
-/// be differentiable at rest.
+/// Uniform motion with the velocity that the momentum has, for the first element: rest where L is quadratic
+/// in velocities, for which Newton's method begins anywhere. Nearly rest where they are not found: dry
+/// friction has no value at rest, and the first step goes to the side that the other forces push to.
 class UniformMotion {
  public:
   /// `paired`: of two copies of the coordinates.
