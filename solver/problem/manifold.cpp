@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -19,6 +21,9 @@ constexpr double least_factor = 1e-3;
 constexpr double last_step = 4 * std::numeric_limits<double>::epsilon();
 /// Where g cannot be made smaller, so long a step was one of roundoff.
 constexpr double roundoff = 1e3 * last_step;
+
+/// Singular values of gradients of unit length that depend on each other.
+constexpr double dependence = 1e-9;
 
 /// A point with t, and multipliers zero but for one.
 std::vector<double> extended(std::span<const double> q, double t, int further, int one = -1) {
@@ -71,6 +76,13 @@ VectorXd Manifold::step_onto(std::span<const double> q, const ConstraintValues& 
   const double digits = roundoff * values.slopes.norm() * vector(q).norm();
   if (left <= std::max(0.5 * values.g.norm(), digits)) return step;
   return VectorXd::Constant(step.size(), INFINITY);
+}
+
+bool Manifold::regular(std::span<const double> q, double t) const {
+  MatrixXd slopes = at(q, t).slopes;
+  for (auto row : slopes.rowwise()) row.normalize();  // leaves zero as it is
+  const VectorXd values = singular_values(slopes);
+  return values[constraints() - 1] > dependence * values[0];
 }
 
 bool Manifold::project(std::span<double> q, double t) const {

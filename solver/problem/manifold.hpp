@@ -48,6 +48,9 @@ class Manifold {
 
   ConstraintValues at(std::span<const double> q, double t) const;
 
+  /// Whether the gradients of the constraints at a point are independent.
+  bool regular(std::span<const double> q, double t) const;
+
   /// Moves a point along W Gᵀ onto the manifold, to roundoff. False, and the point is anywhere, if the
   /// iteration does not converge.
   bool project(std::span<double> q, double t) const;

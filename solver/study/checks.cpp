@@ -5,8 +5,10 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "machine/simd.hpp"
+#include "problem/manifold.hpp"
 #include "problem/nearby.hpp"
 #include "solve/bordered/limits.hpp"
 #include "solve/guess/starting_ends.hpp"
@@ -113,6 +115,14 @@ void check_guess_finite(const Problem& given, const Location& at, bool by_moment
   const Guess& guess = problem.guess;
   const int k = first_not_finite(problem);
   if (k < 0) return;
+  const std::size_t n = problem.coordinates();
+  const std::span<const double> q(guess.q.data() + k * n, n);
+  const double t = guess.tau[k] * problem.duration.value;
+  if (problem.manifold && !problem.manifold->regular(q, t))
+    throw SceneError(at,
+                     fmt::format("the gradients of the constraints vanish, or depend on each other, on the "
+                                 "guess at t = {:.6g}: {}; give one that goes past",
+                                 t, point_text(problem, q.data())));
   // The Lagrangian of a Hamiltonian has the velocities in the range of H_p alone.
   std::string velocities;
   if (by_momenta)
@@ -120,9 +130,8 @@ void check_guess_finite(const Problem& given, const Location& at, bool by_moment
       velocities += fmt::format(", {}' = {:.6g}", problem.names[a], velocity_at(problem, k, a));
   throw SceneError(
       at,
-      fmt::format("L is not finite on the guess at t = {:.6g}: {}{}{}", guess.tau[k] * problem.duration.value,
-                  point_text(problem, guess.q.data() + std::size_t(k) * problem.coordinates()), velocities,
-                  velocities.empty() ? "" : "; momenta may not reach these velocities, ∂H/∂p"));
+      fmt::format("L is not finite on the guess at t = {:.6g}: {}{}{}", t, point_text(problem, q.data()),
+                  velocities, velocities.empty() ? "" : "; momenta may not reach these velocities, ∂H/∂p"));
 }
 
 void check_energy_at_ends(const Problem& problem, const Location& at) {

@@ -78,6 +78,7 @@ class ConstrainedEnds {
     const bool found = manifold_.project(moved, t);
     const double distance = found ? (vector(moved) - vector(q)).norm() : INFINITY;
     if (!(distance <= end_distance * std::max(size, least_size()))) refuse_missed(at_end);
+    if (!manifold_.regular(moved, t)) refuse_singular(at_end);
     for (const Triplet& entry : problem_.boundary.matrix)
       if ((entry.column >= n_) == at_end)
         problem_.boundary.value[entry.row] += entry.value * (moved[entry.column % n_] - q[entry.column % n_]);
@@ -108,6 +109,14 @@ class ConstrainedEnds {
         fmt::format("the {} does not satisfy the constraint '{}': left − right = {:.6g} there; give values "
                     "that do, or leave out coordinates that follow from the others",
                     at_end ? "end" : "start", scene_.system.constraints[worst].value, values.g[worst]));
+  }
+
+  [[noreturn]] void refuse_singular(bool at_end) {
+    throw SceneError(
+        place_of(scene_.boundary, at_end),
+        fmt::format("the gradients of the constraints vanish, or depend on each other, at the {}; "
+                    "move this end",
+                    at_end ? "end" : "start"));
   }
 
   [[noreturn]] void refuse_unmet(bool at_end) {

@@ -30,19 +30,45 @@ bool meet_first(const Manifold& manifold, Index count, double t, std::vector<dou
   return false;
 }
 
+/// Whether the gradient of a constraint vanishes where it holds near q, as that of a square does: Newton's
+/// method beside there takes the same part of the way in each step.
+bool has_no_gradient(const Manifold& manifold, Index k, double t, std::vector<double> q) {
+  constexpr int most_steps = 60;
+  constexpr double near = 1e-5, least_part_left = 0.4;
+  Eigen::Map<VectorXd> point(q.data(), std::ssize(q));
+  const double size = point.norm() > 0 ? point.norm() : 1;
+  for (Index a = 0; a < point.size(); ++a) point[a] += aside_part * size * std::cos(1.0 + double(a));
+  double before = INFINITY;
+  for (int step = 0; step < most_steps; ++step) {
+    const ConstraintValues values = manifold.at(q, t);
+    const VectorXd slope = values.slopes.row(k);
+    const double length = std::abs(values.g[k]) / slope.norm();
+    if (!std::isfinite(length)) return false;
+    if (before <= near * size) return length > least_part_left * before;
+    point -= values.g[k] / slope.squaredNorm() * slope;
+    before = length;
+  }
+  return false;
+}
+
 /// Which constraints have gradients that are made of those before them, as points are looked at.
 class Dependence {
  public:
   explicit Dependence(const Manifold& manifold)
       : manifold_(manifold),
         found_(manifold.constraints(), 1),
+        flat_(manifold.constraints(), 1),
         missed_(manifold.constraints(), INFINITY),
         differences_(manifold.constraints(), 0) {}
 
   /// At a point, on the manifold if it can be moved there.
   void look_near(const std::vector<double>& q, double t) {
     std::vector<double> moved = q;
-    look(manifold_.project(moved, t) ? moved : q, t);
+    for (std::size_t k = 0; k < flat_.size(); ++k)
+      flat_[k] &= has_no_gradient(manifold_, static_cast<Index>(k), t, q);
+    const bool met = manifold_.project(moved, t);
+    if (!met) moved = q;
+    look(met || meet_first(manifold_, manifold_.constraints(), t, moved) ? moved : q, t);
     points_.push_back(std::move(moved));
     times_.push_back(t);
   }
@@ -51,6 +77,11 @@ class Dependence {
   int first() const {
     const auto found = std::ranges::find(found_, 1);
     return found == found_.end() ? -1 : static_cast<int>(found - found_.begin());
+  }
+  /// The first whose own gradient vanishes at all points where it holds, or -1.
+  int flat() const {
+    const auto found = std::ranges::find(flat_, 1);
+    return found == flat_.end() ? -1 : static_cast<int>(found - flat_.begin());
   }
   /// By how much it is missed at the least where those before it hold, to first order, in units of q.
   double missed(int k) const { return missed_[k]; }
@@ -104,7 +135,7 @@ class Dependence {
   }
 
   const Manifold& manifold_;
-  std::vector<char> found_;
+  std::vector<char> found_, flat_;
   std::vector<double> missed_;       ///< distances from the surfaces
   std::vector<double> differences_;  ///< of both sides there
   std::vector<std::vector<double>> points_;
@@ -122,6 +153,14 @@ void check_independent(const Scene& scene, const EndPoints& ends, const Problem&
     for (std::size_t a = 0; a < q.size(); ++a) q[a] = (1 - tau) * ends.start[a] + tau * ends.end[a];
     if (problem.guess.given()) problem.guess.at(tau, q);
     dependence.look_near(q, tau * problem.duration.value);
+  }
+  if (const int k = dependence.flat(); k >= 0) {
+    const Text& text = scene.system.constraints[k];
+    throw SceneError(
+        position(text, 0),
+        fmt::format("the gradient of the constraint '{}' vanishes where it holds, near the guess, "
+                    "as that of a square does; write it without a power",
+                    text.value));
   }
   const int k = dependence.first();
   if (k < 0) return;

@@ -301,6 +301,39 @@ TEST_F(Scenes, ConstraintsThatDependOnEachOther) {
       "by constraints with independent gradients");
 }
 
+/// A power of a constraint, also multiplied out, and a product with one that holds; cones at their tips.
+TEST_F(Scenes, ConstraintsWithoutAGradient) {
+  const auto on = [&](const std::string& constraints, const std::string& start, const std::string& end,
+                      const std::string& guess = "") {
+    return message(
+        "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\n"
+        "constraints = [" +
+        constraints + "]\n[boundary]\nstart = " + start + "\nend = " + end + "\nduration = 1\n" + guess);
+  };
+  const std::string start = "{ x = 2, y = 0, z = 0.5 }", end = "{ x = 0, y = 2, z = 1 }";
+  for (const char* power :
+       {"(x^2 + y^2 - 4)^2 = 0", "(x^2 + y^2 - 4)^3 = 0", "(x^2 + y^2)^2 + 16 = 8*(x^2 + y^2)"})
+    EXPECT_EQ(
+        on(fmt::format("\"{}\"", power), start, end),
+        fmt::format("scene.toml:4:17: the gradient of the constraint '{}' vanishes where it holds, near the "
+                    "guess, as that of a square does; write it without a power",
+                    power));
+  EXPECT_EQ(
+      on("\"x^2 + y^2 = 4\", \"z*(x^2 + y^2 - 4) = 0\"", start, end),
+      "scene.toml:4:34: the constraint 'z*(x^2 + y^2 - 4) = 0' follows from the ones before it; leave it "
+      "out");
+  const std::string cone = "\"x^2 + y^2 = 2*z^2\"";
+  EXPECT_EQ(
+      on(cone, "{ x = 0, y = 0, z = 0 }", "{ x = 1, y = 1, z = 1 }"),
+      "scene.toml:6:11: the gradients of the constraints vanish, or depend on each other, at the start; "
+      "move this end");
+  const std::string through = "[guess]\nx = \"1 - 2*t\"\ny = \"1 - 2*t\"\nz = \"1 - 2*t\"\n";
+  EXPECT_EQ(
+      on(cone, "{ x = 1, y = 1, z = 1 }", "{ x = -1, y = -1, z = -1 }", through),
+      "scene.toml:9:1: the gradients of the constraints vanish, or depend on each other, on the guess at t "
+      "= 0.5: x = 0, y = 0, z = 0; give one that goes past");
+}
+
 /// The sphere and a plane beside it; a plane through it that misses what is given at the start.
 TEST_F(Scenes, ConstraintsThatContradict) {
   const auto sphere = [&](const std::string& constraints) {
