@@ -288,6 +288,26 @@ TEST_F(PathConstraints, NoMinimiserIsReportedWhereThereIsNone) {
   EXPECT_NE(found.message.find("window"), std::string::npos) << found.message;
 }
 
+/// Two half planes apart, and two curves that cross for a while; a disc beside a line that it does not reach.
+TEST_F(PathConstraints, InequalitiesThatContradictEachOtherAreNamed) {
+  const auto between = [&](const std::string& inequalities) {
+    const Solution found = run(study(
+        "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n[path]\nconstraints = [" +
+        inequalities + "]\n[boundary]\nstart = { x = 0 }\nend = { x = 2 }\nduration = 4\n"));
+    EXPECT_EQ(found.status, Status::no_solution_near) << found.message;
+    return found.message;
+  };
+  EXPECT_EQ(
+      between("\"y >= 2\", \"x + y <= 9\", \"y <= -1\""),
+      "no point near the guess keeps 'y >= 2' and 'y <= -1' at t = 0: one of them is missed there by 1.5 at "
+      "the least; correct them, or give a guess near points that are allowed");
+  EXPECT_NE(between("\"y >= t\", \"y <= 2 + 0.1*(t - 3)^2\"")
+                .find("'y >= t' and 'y <= 2 + 0.1*(t - 3)^2' at t = 4"),
+            std::string::npos);
+  EXPECT_NE(between("\"x^2 + y^2 <= 1\", \"y >= 1.5\"").find("keeps 'x^2 + y^2 <= 1' and 'y >= 1.5' at"),
+            std::string::npos);
+}
+
 TEST_F(PathConstraints, RefusesWhatItCannotSolve) {
   const std::string start = "x = -2.0, y = 0.0", end = "x = 2.0, y = 0.0";
   const auto refused = [&](const std::string& scene, const std::string& what) {

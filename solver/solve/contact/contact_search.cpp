@@ -14,6 +14,7 @@
 #include "solve/contact/coarse_action.hpp"
 #include "solve/contact/coarse_minimum.hpp"
 #include "solve/contact/found_values.hpp"
+#include "solve/contact/incompatible.hpp"
 #include "solve/contact/intervals.hpp"
 #include "solve/contact/joined_path.hpp"
 #include "solve/contact/limits.hpp"
@@ -145,6 +146,11 @@ Solution ContactSearch::run(std::vector<double> z) {
     const MinimumReport& report = minimum.report;
     const std::string& reason = minimum.reason;
     if (!report.converged) {
+      if (const std::string contradiction = incompatible_inequalities(problem_, guess_);
+          !contradiction.empty()) {
+        refuse(Status::no_solution_near, contradiction);
+        break;
+      }
       refuse(
           report.unbounded || !reason.empty() ? Status::no_solution_near : Status::not_converged,
           !reason.empty() ? reason + "; give another value, or another guess"

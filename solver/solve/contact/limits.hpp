@@ -11,6 +11,10 @@ namespace extremal::limits::contact {
 inline constexpr int coarse_elements[] = {96, 384, 1152};
 /// Elements on which a path that passes a corner holds both sides of it, at most.
 inline constexpr double corner_elements = 2.5;
+/// Whether inequalities contradict each other is looked for at so many times, from so many points about the
+/// guess at each; most steps, the least part of one, and what is missed only by roundoff.
+inline constexpr int compared_times = 32, compared_starts = 3, most_approaches = 100;
+inline constexpr double least_approach = 1e-6, negligible_miss = 1e-7;
 /// A free duration, or an unknown constant, of a coarse path: ratio of the first two, largest ratio of two
 /// in succession, halvings on the way to one where there is a minimum, steps; it is found where a step is
 /// smaller than this part of it.
