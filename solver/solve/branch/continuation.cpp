@@ -369,7 +369,8 @@ void Continuation::count_index(StepEvents& events, BranchPoint& next) {
     if (!known) forget(found.point);
   if (to_.index_resolved || (events.index_known && to_.index == index_)) return;
   forget(next);
-  ++unknown_indices_;
+  // With forces and in phase space there is none to know.
+  if (!family_.problem.paired && !family_.problem.phase) ++unknown_indices_;
 }
 
 /// Where the way that is left to the limit is no longer than `error`.
