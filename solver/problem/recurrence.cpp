@@ -145,12 +145,31 @@ std::string change_text(const Problem& problem, const ClosingChange& change) {
   return fmt::format("{} changes by {:.3g}, where it is up to {:.3g}", of, change.change, change.size);
 }
 
+Problem without_map(Problem problem) {
+  const int n = problem.coordinates();
+  problem.boundary = {};
+  problem.boundary.coordinates = n;
+  for (int a = 0; a < n; ++a) {
+    const int row = problem.boundary.add_row(0);
+    problem.boundary.add(row, n + a, 1);
+    problem.boundary.add(row, a, -1);
+  }
+  problem.ends = solve_relation(problem.boundary);
+  return problem;
+}
+
 std::string mend_text(const Problem& problem) {
   const Structure& s = problem.lagrangian->structure();
   if (const std::optional<double> period = recurrence_time(problem))
     // With a map it repeats after a multiple only if the map is the same as so many.
     return fmt::format("; L repeats after {:.15g}: give that duration{}", *period,
                        sparse_closing(problem).identity ? ", or a multiple of it" : "");
+  if (!sparse_closing(problem).identity)
+    if (const std::optional<double> period = recurrence_time(without_map(problem)))
+      return fmt::format(
+          "; L repeats after {:.15g}, but the map changes it: leave the map out and give that "
+          "duration, or a map that leaves L unchanged",
+          *period);
   if (!s.harmonic)
     return "; t stands in L outside of sin, cos and tan, and no period is known: give both ends instead of "
            "'periodic', or an L that repeats";

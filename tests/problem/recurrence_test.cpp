@@ -53,6 +53,15 @@ auto oscillator(const Term& term) {
       1, [term](auto q, auto v, auto t) { return v[0] * v[0] / 2 - 2 * q[0] * q[0] + term(q[0], v[0], t); });
 }
 
+/// x² cos t repeats after 2π; no time makes x³ what it is at −x.
+TEST(Recurrence, MapsThatChangeLAtAllTimesAreToldFromDurations) {
+  const auto driven = oscillator([](auto x, auto, auto t) { return x * x * x / 5 + x * x * cos(t); });
+  const std::string refused = refused_with(oscillation(driven, pi, -1));
+  EXPECT_NE(refused.find("; L repeats after 6.28318530717959, but the map changes it: leave the map out"),
+            std::string::npos)
+      << refused;
+}
+
 TEST(Recurrence, DrivesOfAnotherPeriodAreRefused) {
   const auto driven = oscillator([](auto x, auto, auto t) { return 0.5 * x * cos(1.4 * pi * t); });
   const std::string refused = refused_with(oscillation(driven, 1));
