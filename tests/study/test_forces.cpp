@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cmath>
 
 #include "rivals/shooting.hpp"
 #include "rivals/verify.hpp"
 #include "scenes.hpp"
 #include "study/compare.hpp"
+#include "study/continued.hpp"
 #include "study/inspection.hpp"
 
 using namespace extremal;
@@ -239,4 +241,35 @@ TEST_F(Scenes, DryFrictionFromRest) {
     EXPECT_NE(found.message.find("it stays on a kink of abs, min or max"), std::string::npos)
         << found.message;
   }
+}
+
+/// Along the family to a Hopf point no index is missed: with forces there is none.
+TEST_F(Scenes, FamiliesWithForcesHaveNoIndexToMiss) {
+  const FollowedBranch family = follow(study(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { m = 0.4 }\nlagrangian = \"x'^2/2 - x^2/2 - x^4/8\"\n"
+      "force = { x = \"m*x' - x'^3/2\" }\n[boundary]\nperiodic = true\nduration = \"free\"\n[guess]\n"
+      "x = \"cos(2*pi*t/T)\"\nduration = 5.5\n[continuation]\nparameter = \"m\"\nto = -0.1\npoints = 60\n"));
+  ASSERT_EQ(family.branches.size(), 1u);
+  EXPECT_NE(family.branches[0].message.find("the orbits shrink onto an equilibrium"), std::string::npos);
+  EXPECT_EQ(family.branches[0].message.find("Morse"), std::string::npos) << family.branches[0].message;
+}
+
+/// A softening oscillator under a drive: orbits of twice the period double again, which is told.
+TEST_F(Scenes, WhatBifurcatesFromOtherBranchesIsTold) {
+  const FollowedBranch family = follow(study(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { F = 0.08 }\n"
+      "lagrangian = \"x'^2/2 + x^2/4 - x^4/8 + F*cos(0.8*t)*x\"\nforce = { x = \"-0.125*x'\" }\n[boundary]\n"
+      "periodic = true\nduration = \"2*pi/0.8\"\n[guess]\nx = \"1 - 0.35*cos(0.8*t)\"\n[continuation]\n"
+      "parameter = \"F\"\nto = 0.1\npoints = 60\nswitch = true\n"));
+  ASSERT_EQ(family.branches.size(), 2u);
+  const auto doublings = [&](int branch) {
+    return std::ranges::count_if(family.points, [&](const BranchPoint& point) {
+      return point.branch == branch && point.kind == PointKind::period_doubling;
+    });
+  };
+  EXPECT_EQ(doublings(0), 1);
+  EXPECT_EQ(doublings(1), 1);
+  const std::string told = "what begins at its own branch points and period doublings is not followed";
+  EXPECT_EQ(family.branches[0].message.find(told), std::string::npos);
+  EXPECT_NE(family.branches[1].message.find(told), std::string::npos) << family.branches[1].message;
 }

@@ -92,6 +92,9 @@ bool Diagram::advance() {
       point_.branch = static_cast<int>(branches_.size()) - 1;
       ++branches_.back().points;
       if (const std::optional<BranchStart>& start = current_->start()) find_others(*start);
+      const PointKind kind = point_.kind;
+      if (branches_.size() > 1)
+        not_followed_ += kind == PointKind::branch || kind == PointKind::period_doubling;
       ++count_;
       return true;
     }
@@ -135,6 +138,11 @@ void Diagram::note() {
   BranchRecord& record = branches_.back();
   record.end = current_->end();
   record.message = current_->message();
+  if (record.end != BranchEnd::none && not_followed_ > 0)
+    record.message +=
+        "; what begins at its own branch points and period doublings is not followed: begin another family "
+        "with "
+        "one of its points";
   if (with_forces_)
     record.worst_action_slope.reset();
   else
@@ -157,6 +165,7 @@ bool Diagram::begin_next() {
     Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
     BranchRecord& record = branches_.emplace_back();
+    not_followed_ = 0;
     record.origin = next.origin;
     if (deadline.passed()) {
       record.end = BranchEnd::budget;

@@ -23,7 +23,7 @@ struct BranchRecord {
 
 /// The branch of a family, and, if options.other_branches, each that bifurcates from it: where branches meet,
 /// all others one way and the other; where a period doubles, the orbits of twice the period. Each has as many
-/// points as the options allow.
+/// points as the options allow. What bifurcates from those in turn is told, but not followed.
 class Diagram {
  public:
   Diagram(ProblemFamily family, ContinuationOptions options);
@@ -55,7 +55,7 @@ class Diagram {
   std::deque<Waiting> waiting_;
   std::vector<BranchRecord> branches_;
   BranchPoint point_;
-  int count_ = 0;
+  int count_ = 0, not_followed_ = 0;  ///< points in all; points of this branch at which others begin
 };
 
 }  // namespace extremal
