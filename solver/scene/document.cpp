@@ -27,12 +27,14 @@ std::string quoted(std::string_view s) {
   return out;
 }
 
-/// What the parser says, but for a string without its closing quote, where it blames the end of the line, and
-/// for its limits, which it gives by the names of its macros.
+/// What the parser says, but for a string without its closing quote, where it blames the end of the line, for
+/// velocities as keys, and for its limits, which it gives by the names of its macros.
 std::string readable(std::string_view description) {
   const auto has = [&](const char* part) { return description.find(part) != std::string_view::npos; };
   if (has("unescaped control characters"))
     return "this string is not closed on its line, or contains a control character";
+  if (has("expected '=', saw '''"))
+    return "a key with a prime, as a velocity has, is written in quotes: \"x'\" = …";
   if (has("TOML_MAX_NESTED_VALUES"))
     return fmt::format("lists and tables stand more than {} deep in each other", TOML_MAX_NESTED_VALUES);
   return std::string(description);

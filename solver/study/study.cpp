@@ -8,7 +8,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "linear/dense.hpp"
 #include "machine/simd.hpp"
+#include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
@@ -25,6 +27,7 @@
 #include "study/guess.hpp"
 #include "study/independent_conditions.hpp"
 #include "study/infinite.hpp"
+#include "study/limits.hpp"
 #include "study/memory.hpp"
 #include "study/minimal_coordinates.hpp"
 #include "study/modelling.hpp"
@@ -439,6 +442,18 @@ std::vector<Solution> repeated(const Study& study, int repeat, const Solve& solv
   return solutions;
 }
 
+/// How many free directions of the ends leave the constraints, so that no motion has them.
+int normal_directions(const Problem& problem) {
+  const int n = problem.coordinates(), m = problem.manifold->constraints();
+  Eigen::MatrixXd z = Eigen::MatrixXd::Zero(2 * n, problem.ends.free);
+  for (const Triplet& entry : problem.ends.z) z(entry.row, entry.column) += entry.value;
+  const EndPoints near = end_points(problem);
+  Eigen::MatrixXd by_free(2 * m, z.cols());
+  by_free << problem.manifold->at(near.start, 0).slopes * z.topRows(n),
+      problem.manifold->at(near.end, problem.duration.value).slopes * z.bottomRows(n);
+  return numerical_rank(by_free, limits::constraints::rank);
+}
+
 }  // namespace
 
 void use_constants(const Solution& solution, Study& study) {
@@ -467,6 +482,8 @@ int natural_conditions(const Problem& problem) {
   if (problem.infinite)
     for (const std::vector<double>* end : {&problem.infinite->start, &problem.infinite->end})
       if (!end->empty()) free -= problem.coordinates();
+  if (problem.manifold) free -= normal_directions(problem);
+  if (problem.extension) free -= static_cast<int>(problem.extension->conditions.size());
   return free;
 }
 

@@ -168,6 +168,12 @@ TEST_F(Scenes, DefinitionsStandInEveryFormula) {
   EXPECT_DOUBLE_EQ(s.system.parameters.at("g").value[0], 8);
 }
 
+TEST_F(Scenes, VelocitiesAsKeysAreQuoted) {
+  EXPECT_EQ(message("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[boundary]\n"
+                    "start = { x = 0, x' = 1 }\nduration = 1\n"),
+            "scene.toml:5:19: a key with a prime, as a velocity has, is written in quotes: \"x'\" = …");
+}
+
 TEST_F(Scenes, ErrorsOfDefinitionsPointToThem) {
   EXPECT_EQ(
       message("[system]\ncoordinates = [\"x\"]\ndefinitions = { d = \"2*dd\" }\nlagrangian = \"x'^2/2\"\n"
@@ -185,6 +191,23 @@ TEST_F(Scenes, NaturalConditionsAreThoseThatNothingElseGives) {
   EXPECT_EQ(count("x = 0, q = \"0\""), 0);
   EXPECT_EQ(count("x = 0"), 3);
   EXPECT_EQ(count("x = 0, p_q = [1, 0, 2]"), 1);
+}
+
+/// Nonlinear conditions take what is free, as constraints do: on a sphere two of three coordinates at an end.
+TEST_F(Scenes, ConditionsAndConstraintsLeaveFewerNaturalConditions) {
+  const auto count = [&](const std::string& system, const std::string& conditions) {
+    return natural_conditions(
+        study("[system]\ncoordinates = [\"x\", \"y\", \"z\"]\n"
+              "lagrangian = \"(x'^2 + y'^2 + z'^2)/2 - x^2\"\n" +
+              system + "[boundary]\nconditions = [" + conditions +
+              "]\nduration = 1\n[guess]\nx = \"0.6 + 0.1*t\"\ny = 0.1\nz = \"0.8 - 0.1*t\"\n")
+            .problem);
+  };
+  EXPECT_EQ(count("", "\"x(0)^2 = 0.36\", \"x(T) = 0.7\""), 4);
+  EXPECT_EQ(count("", "\"x(0)^2 = 0.36\", \"y(0) = 0.1\", \"z(0) = 0.8\", \"x(T) = 0.7\""), 2);
+  const std::string sphere = "constraints = [\"x^2 + y^2 + z^2 = 1\"]\n";
+  EXPECT_EQ(count(sphere, "\"x(0)*y(0) = 0.06\""), 3);
+  EXPECT_EQ(count(sphere, "\"z(0) = 0.8\", \"0.6*x(T) + 0.8*z(T) = 0.9\""), 2);
 }
 
 TEST_F(Scenes, ParametersThatNothingUses) {
