@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -20,6 +21,7 @@ struct MotionSampling {
   int a_step;                                ///< samples, equally spaced
   double unit;                               ///< of time
   std::function<bool(int steps)> more = {};  ///< whether there may be another step after so many
+  std::array<double, 2> least = {0, 0};      ///< of q and p: smaller ones count as so large
 };
 
 /// After each step: moves y = (q, p) to where the motion is at t, if that is known better. Whether to go on.
@@ -43,6 +45,7 @@ bool sample_motion(AnyFlow&& flow, std::span<const Real> q, std::span<const Real
   IntegrationOptions integration;
   integration.tolerance = options.tolerance;
   integration.block = static_cast<int>(n);
+  integration.least = options.least;
   const auto add = [&](double tau, std::span<const Real> point) {
     samples.tau.push_back(tau);
     for (std::size_t a = 0; a < n; ++a) samples.q.push_back(static_cast<double>(point[a]));

@@ -12,6 +12,7 @@
 
 #include "problem/copies.hpp"
 #include "solution/one_copy.hpp"
+#include "solve/adapt/others_to_try.hpp"
 #include "solve/branch/diagram.hpp"
 #include "solve/solve.hpp"
 #include "system/formula.hpp"
@@ -257,6 +258,31 @@ TEST(Forces, VanDerPolsRelaxationOscillation) {
   ASSERT_TRUE(solution.converged()) << solution.message;
   EXPECT_EQ(solution.strategy, "newton from the motion that the guess tends to");
   EXPECT_NEAR(solution.duration(), 82.50833389, 1e-7);
+}
+
+/// A relay pushes on, and the velocity of a cosine vanishes where its force jumps. From any phase it comes to
+/// the same orbit. Its period is that of Runge's and Kutta's method from turn to turn.
+TEST(Forces, ARelayThatKeepsUpAnOscillation) {
+  for (const double phase : {0.0, 0.3, -1.2, 2.0}) {
+    const Problem problem =
+        closed_problem({{"x"}, "x'^2/2 - x^2/2", {"0.8*x'/abs(x') - 0.3*x'^3"}}, 6.3, true,
+                       [=](double tau) { return 1.5 * std::cos(2 * pi * tau + phase); });
+    const Solution solution = Solver().solve(problem, {.tolerance = 1e-9});
+    ASSERT_TRUE(solution.converged()) << solution.message;
+    EXPECT_NEAR(solution.duration(), 7.019327415, 1e-7);
+  }
+}
+
+/// No other period than that of a drive repeats it.
+TEST(Forces, ADrivesPeriodIsNoneToChoose) {
+  const ForcedSystem driven{{"x"}, "x'^2/2 - x^2/2 + x*cos(t)", {"-x'"}},
+      free{{"x"}, "x'^2/2 - x^2/2", {"-x'"}};
+  const auto swing = [](double tau) { return std::cos(2 * pi * tau); };
+  EXPECT_EQ(
+      others_to_try(closed_problem(driven, 2 * pi, false, swing), "another guess", "a shorter duration"),
+      "another guess");
+  EXPECT_EQ(others_to_try(closed_problem(free, 2 * pi, false, swing), "another guess", "a shorter duration"),
+            "another guess or a shorter duration");
 }
 
 TEST(Forces, VanDerPolsLimitCycle) {

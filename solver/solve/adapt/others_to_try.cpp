@@ -5,7 +5,9 @@
 namespace extremal {
 
 std::string others_to_try(const Problem& problem, std::string_view guess, std::string_view duration) {
-  if (problem.infinite) return std::string(guess);
+  // The period of a drive is none to choose.
+  if (problem.infinite || (problem.periodic && !problem.lagrangian->structure().autonomous))
+    return std::string(guess);
   if (!problem.duration.free) return fmt::format("{} or {}", guess, duration);
   // Two copies close their duration by an energy that is no number of the problem.
   if (!problem.duration.energy || problem.paired)

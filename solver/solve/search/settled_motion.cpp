@@ -48,10 +48,12 @@ bool SettledMotion::begin() {
 
 /// To `end`, as long as on_step(t before the step) allows.
 bool SettledMotion::follow(State& y, double& t, double end, const std::function<bool(double)>& on_step) {
-  const IntegrationOptions options{.tolerance = settling_error, .block = static_cast<int>(n_), .least = {}};
+  IntegrationOptions options{.tolerance = settling_error, .block = static_cast<int>(n_), .least = {}};
   const std::span<double> state(y.data(), static_cast<std::size_t>(y.size()));
   while (t < end) {
     const double before = t;
+    // Where a force jumps as a momentum passes zero, no step has an error that is small beside this momentum.
+    options.least = {size_[0], size_[1]};
     if (!more_() || method_.accept_step(t, state, end, options) != Integrated::done) return false;
     size_[0] = std::max(size_[0], y.head(n_).lpNorm<Eigen::Infinity>());
     size_[1] = std::max(size_[1], y.tail(n_).lpNorm<Eigen::Infinity>());
@@ -139,9 +141,10 @@ bool SettledMotion::sample(const State& start, double duration) {
   const std::span<const double> y(start.data(), 2 * n);
   if (!flow_.velocity(y.first(n), y.subspan(n), 0, v)) return false;
   SampledMotion samples;
-  if (!sample_motion<double>(flow_, q, v, 0, duration,
-                             {settling_error, settling_samples, duration, [this](int) { return more_(); }},
-                             samples))
+  if (!sample_motion<double>(
+          flow_, q, v, 0, duration,
+          {settling_error, settling_samples, duration, [this](int) { return more_(); }, {size_[0], size_[1]}},
+          samples))
     return false;
   double range = 0;
   for (std::size_t a = 0; a < n; ++a) {
