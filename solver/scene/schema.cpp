@@ -171,8 +171,8 @@ constexpr KeyRecord keys[] = {
      "to = 0.1"},
     {"continuation", "points", Kind::integer, "50", "Largest number of points of a branch, 2 to 100000.",
      "points = 100"},
-    {"continuation", "switch", Kind::boolean, "false", "Follow also the branches that bifurcate, but not what bifurcates from these in turn.",
-     "switch = true"},
+    {"continuation", "switch", Kind::boolean, "false",
+     "Follow also the branches that bifurcate, but not what bifurcates from these in turn.", "switch = true"},
 
     {"spectrum", "lines", Kind::integer, "as many as the tolerance asks for, 32 at most",
      "Number of lines of each coordinate, 1 to 1000. Fewer are found where the motion has no more.",
