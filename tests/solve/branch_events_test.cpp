@@ -102,6 +102,19 @@ TEST(BranchEvents, OrbitsThatBeginBesideAKink) {
   EXPECT_NEAR(found.points.back().solution.momentum_start[0], 2.6196183977, 1e-8);
 }
 
+/// Odd about the time at which they cross the kink, 1.6e-6 of the period from where they begin.
+TEST(BranchEvents, SlopesOfOrbitsThatCrossAKinkAtOnce) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { F = 1.0 }\nlagrangian = \"x'^2/2 - 0.4*x^2/2 - "
+      "0.3*abs(x) + F*x*sin(1.5*t + 1e-5)\"\n[boundary]\nperiodic = true\nduration = \"2*pi/1.5\"\n"
+      "[guess]\nx = \"-0.5*sin(2*pi*t/T)\"\n[continuation]\nparameter = \"F\"\nto = 1.5\npoints = 40\n"));
+  ASSERT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  for (const BranchPoint& point : found.points) {
+    EXPECT_LT(point.momentum_difference, 1e-9) << point.parameter;
+    EXPECT_TRUE(point.solution.floquet.has_value()) << point.parameter;
+  }
+}
+
 /// Great circles of a sphere in the family of equators of spheroids, along z'' = −(2π/c)² z of the period 1:
 /// the index is 1, and for c < 1 it is 3. One step ends at c = 1 itself.
 TEST(BranchEvents, AStepThatEndsWhereBranchesCross) {

@@ -106,8 +106,6 @@ inline constexpr double coarse_cut = 4;
 inline constexpr int coarse_steps = 25, fine_steps = 12;
 /// Times that a path may cross other kinks, or cross them elsewhere, after Newton's method.
 inline constexpr int most_realignments = 12;
-/// The shortest element beside T has this times s², over the tolerance, of T: its slopes err by ε s²/h.
-inline constexpr double slope_roundoff = 3e-18;
 /// Times that elements are planned before all are halved.
 inline constexpr int most_plans = 6;
 /// An undamped step longer than this, relative to the path, casts doubt on the equations.

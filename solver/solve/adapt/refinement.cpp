@@ -198,11 +198,9 @@ void Refinement::move_to(const ElementTables& tables, std::span<const double> me
 }
 
 /// Once a closed path is known it no longer crosses kinks now before and now after T: from then on elements
-/// end also where it crosses them beside T. Not where it does so at T itself, or where roundings of q in so
-/// short an element would hide q'.
+/// end also where it crosses them beside T.
 void Refinement::end_beside_closing() {
-  const double hidden = slope_roundoff * path_.degree() * path_.degree() / options_.tolerance;
-  beside_ = std::max({options_.tolerance, limits::kinks::least_misplacement, hidden});
+  beside_ = least_beside_closing(path_.degree(), options_.tolerance);
 }
 
 /// Whether a closed path crosses no kink beside t = 0, unless it does so at t = 0 itself.

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include "solve/branch/limits.hpp"
 #include "solve/branch/tracker.hpp"
@@ -67,11 +66,9 @@ void Tracker::adopt(const Plan& plan) {
   change_elements(plan.degree, times.empty() ? plan.mesh : with_nodes(plan.mesh, times));
 }
 
-/// Forces beyond a kink, of the size of others, bend a path by (2π t/T)²/2 of its range: nearer to T than t
-/// that is within the tolerance.
 std::optional<std::vector<double>> Tracker::mesh_beside_closing() const {
-  const double beside = std::sqrt(2 * tolerance_) / (2 * std::numbers::pi);
-  return mesh_to_kinks(branch_.tables(), path_, true, tolerance_, beside);
+  return mesh_to_kinks(branch_.tables(), path_, true, tolerance_,
+                       least_beside_closing(path_.degree(), tolerance_));
 }
 
 bool Tracker::move_to(const std::vector<double>& mesh, bool across) {

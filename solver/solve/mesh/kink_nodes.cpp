@@ -49,6 +49,11 @@ std::vector<double> kink_times(const ElementTables& tables, const Path& path, bo
   return crossed_by(tables, path, closed, beside).times;
 }
 
+double least_beside_closing(int degree, double tolerance) {
+  using namespace limits::kinks;
+  return std::max({tolerance, least_misplacement, slope_roundoff * degree * degree / tolerance});
+}
+
 std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,
                                                  double tolerance, double beside) {
   if (!tables.kinks()) return std::nullopt;

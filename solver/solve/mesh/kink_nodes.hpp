@@ -20,4 +20,8 @@ std::vector<double> kink_times(const ElementTables& tables, const Path& path, bo
 std::optional<std::vector<double>> mesh_to_kinks(const ElementTables& tables, const Path& path, bool closed,
                                                  double tolerance, double beside = 1);
 
+/// How far from T, in t/T, elements of a closed path that is known can end at crossings: not where it crosses
+/// at T itself, or where roundings of q in so short an element would hide q'.
+double least_beside_closing(int degree, double tolerance);
+
 }  // namespace extremal

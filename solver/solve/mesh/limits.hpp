@@ -50,6 +50,8 @@ namespace kinks {
 inline constexpr double least_misplacement = 1e-13;
 /// Of the shorter element beside a node: a crossing nearer than this is that at the node.
 inline constexpr double at_node = 0.1;
+/// The shortest element beside T has this times s², over the tolerance, of T: its slopes err by ε s²/h.
+inline constexpr double slope_roundoff = 3e-18;
 
 }  // namespace kinks
 
