@@ -115,6 +115,31 @@ TEST(BranchEvents, SlopesOfOrbitsThatCrossAKinkAtOnce) {
   }
 }
 
+/// x'' = −x, and −x − 1 beyond a kink: orbits begin on it, or it comes to where they do.
+TEST(BranchEvents, OrbitsBeginOffKinks) {
+  const double kink = 0.5;
+  for (const double phase : {2.2, 0.6}) {
+    const FollowedBranch found = extremal::follow(study_of(fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - x^2/2 - max(x - {}, 0)\"\n[boundary]\n"
+        "periodic = true\nduration = \"free\"\nenergy = 0.5\n[guess]\nx = \"0.9*sin(2*pi*t/T + {})\"\n"
+        "duration = 6\n[continuation]\nparameter = \"energy\"\nto = 10\npoints = 60\n",
+        kink, phase)));
+    ASSERT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+    EXPECT_LT(found.points.size(), 30u);
+    for (const BranchPoint& point : found.points) {
+      const double square = 2 * point.parameter, beyond = square + 2 * kink + 1;
+      const double period =
+          2 * (pi / 2 + std::asin(kink / std::sqrt(square))) + 2 * std::acos((kink + 1) / std::sqrt(beyond));
+      EXPECT_NEAR(point.solution.duration(), period, 1e-8) << point.parameter;
+    }
+  }
+  const FollowedBranch turning = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - abs(cos(x))\"\n[boundary]\nperiodic = true\n"
+      "map = { x = \"x + pi\" }\nduration = \"free\"\nenergy = 2.0\n[guess]\nx = \"pi/2 + pi*t/T\"\n"
+      "duration = 2.0\n[continuation]\nparameter = \"energy\"\nto = 1.5\npoints = 25\n"));
+  EXPECT_EQ(turning.branches[0].end, BranchEnd::target) << turning.branches[0].message;
+}
+
 /// Great circles of a sphere in the family of equators of spheroids, along z'' = −(2π/c)² z of the period 1:
 /// the index is 1, and for c < 1 it is 3. One step ends at c = 1 itself.
 TEST(BranchEvents, AStepThatEndsWhereBranchesCross) {

@@ -260,6 +260,7 @@ bool Continuation::begin_from_state() {
 /// is to lead to is passed and not found.
 bool Continuation::step() {
   BranchState& state = tracker_.state;
+  tracker_.begin_off_kinks();
   std::swap(state, from_);
   for (;; length_ *= shortening) {
     if (length_ < least_length || options_.solve.deadline.passed()) return give_up(from_);

@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <cmath>
 
+#include "action/corners.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/branch/tracker.hpp"
 #include "solve/mesh/kink_nodes.hpp"
+#include "solve/mesh/mesh.hpp"
 #include "solve/mesh/roundoff.hpp"
+#include "solve/periodic/later_orbit.hpp"
 
 /// \file Elements along a branch.
 
@@ -76,6 +80,69 @@ bool Tracker::move_to(const std::vector<double>& mesh, bool across) {
   tangent_ = state.tangent;
   change_elements(path_.degree(), mesh);
   return correct(1, across ? nullptr : &value) && update_tangent();
+}
+
+/// Of an orbit that can be shifted in time and begins beside a kink of L: the node farthest from its
+/// crossings. Steps move the orbit a little along itself, or its crossings, and elements between T and a
+/// crossing would be shortened to nothing.
+std::optional<int> Tracker::node_off_kinks() const {
+  const Problem& problem = branch_.problem();
+  const ElementTables& tables = branch_.tables();
+  if (!tables.kinks() || !problem.periodic || !problem.shifts_in_time()) return std::nullopt;
+  const ClosingMap closed = closing_map(problem);
+  std::vector<double> times = crossings(*tables.kinks(), path_);
+  for (const Corner& corner : corners_of(*tables.kinks(), path_, &closed))
+    if (corner.node == path_.elements()) times.push_back(1);
+  const auto away = [&](int node) {
+    double least = 1;
+    for (const double t : times) {
+      const double apart = std::abs(t - path_.mesh()[node]);
+      least = std::min({least, apart, 1 - apart});
+    }
+    return least;
+  };
+  const double longest = *std::ranges::max_element(path_.lengths());
+  if (away(0) > 0.5 * tables.scheme().node[0] * longest) return std::nullopt;
+  int farthest = 0;
+  for (int k = 1; k < path_.elements(); ++k)
+    if (away(k) > away(farthest)) farthest = k;
+  return farthest > 0 ? std::optional(farthest) : std::nullopt;
+}
+
+/// The path, the tangent and what is held begin at a node.
+void Tracker::begin_at_node(int node) {
+  const ElementTables& tables = branch_.tables();
+  const ClosingMap closed = closing_map(branch_.problem());
+  const Path before = path_;
+  begin_at(closed, before, tables, node, path_);
+  branch_.bind();
+  const auto turn = [&](Move& move) {
+    if (move.step.nodes.empty()) return;
+    Path whole, later;
+    whole.reset(tables, before.mesh(), before.duration(), before.lengths());
+    whole.add(move.step.nodes, move.step.inner, 1);
+    whole.load_ends();
+    begin_at({closed.r, 0 * closed.c}, whole, tables, node, later);
+    const double duration = move.step.duration;
+    move.step = values_of(later);
+    move.step.duration = duration;
+  };
+  turn(tangent_);
+  std::vector<Move> family = branch_.held_family();
+  for (Move& direction : family) turn(direction);
+  branch_.hold_family(std::move(family));
+  std::vector<double> mesh{path_.mesh().begin(), path_.mesh().end()};
+  mesh.erase(mesh.end() - 1 - node);  // where T was, beside a crossing
+  change_elements(path_.degree(), with_nodes(mesh, crossings(*tables.kinks(), path_)));
+}
+
+/// Responses to loads before are those of another beginning.
+void Tracker::begin_off_kinks() {
+  const std::optional<int> node = node_off_kinks();
+  if (!node) return;
+  tangent_ = state.tangent;
+  begin_at_node(*node);
+  if (correct(1, nullptr) && update_tangent()) state.earlier.clear();
 }
 
 /// The path, the tangent and what is held on other elements.

@@ -13,14 +13,6 @@ using namespace limits::predictor;
 
 namespace {
 
-/// The values of a path as a step from zero.
-Step values_of(const Path& path) {
-  Step step;
-  step.nodes.assign(path.nodes().begin(), path.nodes().end());
-  step.inner.assign(path.x(0), path.x(path.batches()));
-  return step;
-}
-
 bool same_elements(const Path& a, const Path& b) {
   return a.degree() == b.degree() && std::ranges::equal(a.mesh(), b.mesh());
 }
@@ -35,6 +27,13 @@ bool followed_kinks(const Path& a, const Path& b) {
 }
 
 }  // namespace
+
+Step values_of(const Path& path) {
+  Step step;
+  step.nodes.assign(path.nodes().begin(), path.nodes().end());
+  step.inner.assign(path.x(0), path.x(path.batches()));
+  return step;
+}
 
 Move BranchState::predicted(double length) const {
   Move move = tangent;

@@ -26,7 +26,9 @@ bool Tracker::begin(Path path, double coordinate, double rest) {
   rest_ = rest;
   branch_.ask_regular();
   std::swap(path_, path);
-  return branch_.set_coordinate(coordinate) && fit_elements() != Fit::too_many && update_tangent(true);
+  if (!branch_.set_coordinate(coordinate)) return false;
+  if (const auto node = node_off_kinks()) begin_at_node(*node);
+  return fit_elements() != Fit::too_many && update_tangent(true);
 }
 
 bool Tracker::begin(const Path& path, double coordinate, const Branch::Units& units, double rest) {

@@ -67,6 +67,9 @@ class Tracker {
   /// it fails.
   bool move_to(const std::vector<double>& mesh, bool across);
 
+  /// The state begins elsewhere on its orbit where that begins beside a kink.
+  void begin_off_kinks();
+
   /// The predictor of the state, from the state before, so far back.
   void predict(const BranchState& before, double length);
   /// How far the tangent is predicted to turn by no more than a step may.
@@ -127,6 +130,8 @@ class Tracker {
   bool update_tangent(bool first = false);
   double crossing_test();
   bool resolve_forces(double length, const double* landing);
+  std::optional<int> node_off_kinks() const;
+  void begin_at_node(int node);
   Fit fit_elements();
   Plan plan_for(const Scales& size);
   void adopt(const Plan& plan);
