@@ -140,6 +140,30 @@ TEST(BranchEvents, OrbitsBeginOffKinks) {
   EXPECT_EQ(turning.branches[0].end, BranchEnd::target) << turning.branches[0].message;
 }
 
+/// Two coupled pendulums that pass the top in turn. Branch points lie next to folds, and branches of the
+/// other symmetry turn there; numbers from the eigenvalues of dense second variations on 300 and 800
+/// elements, in the order of events.
+TEST(BranchEvents, IndexOfBranchPointsNextToFolds) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { K = 1.5 }\nlagrangian = \"(x'^2+y'^2)/2 + "
+      "K*(cos(x)+cos(y)) - (x-y)^2/2\"\n[boundary]\nperiodic = true\nmap = { x = \"y\", y = \"x\" }\n"
+      "duration = 2.0\n[guess]\nx = \"0.9*cos(pi*t/T)\"\ny = \"-0.9*cos(pi*t/T)\"\n[continuation]\n"
+      "parameter = \"duration\"\nto = 4.0\npoints = 36\nswitch = true\n"));
+  const auto near = [](double a, double b) { return std::abs(a - b) < 1e-6; };
+  for (const BranchPoint& point : found.points) {
+    if (point.kind == PointKind::regular) continue;
+    ASSERT_TRUE(point.solution.morse_index.has_value()) << point.parameter;
+    EXPECT_EQ(point.solution.nullity, 2) << point.parameter;
+    for (const double with_index_one : {2.33611033, 2.25564877, 2.23917806}) {
+      if (near(point.parameter, with_index_one)) EXPECT_EQ(point.solution.morse_index, 1) << point.branch;
+    }
+    for (const double minimal : {2.25615347, 2.17197489, 2.19905532, 2.20809741}) {
+      if (near(point.parameter, minimal)) EXPECT_EQ(point.solution.morse_index, 0) << point.branch;
+    }
+  }
+  EXPECT_GT(found.branches.size(), 8u);
+}
+
 /// Great circles of a sphere in the family of equators of spheroids, along z'' = −(2π/c)² z of the period 1:
 /// the index is 1, and for c < 1 it is 3. One step ends at c = 1 itself.
 TEST(BranchEvents, AStepThatEndsWhereBranchesCross) {

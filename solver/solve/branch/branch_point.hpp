@@ -83,6 +83,10 @@ Crossings find_branch_points(Tracker& tracker, const EventSearch& search, const 
 /// Points where a period doubles.
 std::vector<Event> find_doublings(Tracker& tracker, const EventSearch& search, const BranchStep& step);
 
+/// Index and nullity of a fold or a branch point, by states next to it on both sides: eigenvalues that pass
+/// zero there are null, however far off it is located.
+void count_null_directions(Solution& at, const BranchState& before, const BranchState& after);
+
 /// Whether there may be any on a step, as its ends show.
 bool may_fold(const BranchStep& step);
 bool may_double(const BranchStep& step);

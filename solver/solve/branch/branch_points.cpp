@@ -1,4 +1,4 @@
-#include <Eigen/Core>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -32,6 +32,41 @@ int passing(const BranchState& a, const BranchState& b) {
   return std::max(std::abs(change - turns), 1);
 }
 
+/// The null directions of the second variation, duration and parameter held, at a branch point: the equations
+/// of the branch are singular along these directions and along its tangent, which change both numbers or not.
+std::vector<Move> null_directions(const Tracker& tracker, const ProblemFamily& family,
+                                  const std::vector<Move>& singular) {
+  const BranchState& state = tracker.state;
+  const bool by_duration = family.varied != Varied::parameter;
+  const double unit = by_duration ? state.units.duration : std::abs(family.to - family.from);
+  std::vector<Move> kernel = singular;
+  kernel.push_back(state.tangent);
+  const Eigen::Index count = std::ssize(kernel);
+  Eigen::MatrixXd changes(2, count);
+  for (Eigen::Index j = 0; j < count; ++j)
+    changes.col(j) << kernel[j].parameter / unit, kernel[j].step.duration / state.units.duration;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(changes, Eigen::ComputeFullV);
+  const auto rank = (svd.singularValues().array() > hardly_changed).count();
+  std::vector<Move> found;
+  for (Eigen::Index k = rank; k < count; ++k) {
+    found.push_back(kernel.front());
+    found.back().scale(svd.matrixV()(0, k));
+    for (Eigen::Index j = 1; j < count; ++j) found.back().add(kernel[j], svd.matrixV()(j, k));
+  }
+  return found;
+}
+
+/// Index and nullity there.
+void count_squares(Tracker& tracker, const ProblemFamily& family, const std::vector<Move>& singular,
+                   Solution& solution) {
+  if (!solution.morse_index) return;
+  tracker.hold(null_directions(tracker, family, singular));
+  if (!tracker.branch().linearise()) return;
+  const Inertia& found = tracker.branch().inertia();
+  solution.morse_index = found.negative;
+  solution.nullity = found.zero;
+}
+
 /// The branch point. Nothing along the singular directions is corrected there: the other equations are
 /// regular. So the predictor must be good along them: it is corrected by the mean of what states as far on
 /// either side differ from it. Where that fails, the nearest point before it that is reached. What is left of
@@ -40,8 +75,8 @@ struct FoundBranchPoint {
   std::optional<BranchPoint> point = {};
   bool balanced = false;
 };
-FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, double at, double length,
-                                 const std::vector<Move>& singular) {
+FoundBranchPoint branch_point_at(Tracker& tracker, const ProblemFamily& family, const BranchState& from,
+                                 double at, double length, const std::vector<Move>& singular) {
   bool reached = false;
   for (const double share : offsets) {
     const double off = share * length;
@@ -56,6 +91,7 @@ FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, doub
   }
   tracker.hold(singular);
   if (!reached) reached = tracker.reach_smoothly(from, at, true);
+  const bool same_elements = reached;
   if (!reached) {
     tracker.hold({});
     reached = std::ranges::any_of(
@@ -66,6 +102,7 @@ FoundBranchPoint branch_point_at(Tracker& tracker, const BranchState& from, doub
     found.balanced = tracker.balanced();
     found.point = read_point(tracker, PointKind::branch);
   }
+  if (same_elements) count_squares(tracker, family, singular, found.point->solution);
   tracker.hold({});
   return found;
 }
@@ -224,14 +261,6 @@ Finer refine(Tracker& tracker, const Move& singular, Span& span) {
   return Finer::found;
 }
 
-/// Eigenvalues that pass zero at a branch point are null there, however far off it is located.
-void count_null_directions(Solution& at, const BranchState& before, const BranchState& after) {
-  if (!at.morse_index || !at.nullity) return;
-  const int passed = std::abs(after.index - before.index);
-  at.nullity = std::max(*at.nullity, std::min(before.nullity, after.nullity) + passed);
-  at.morse_index = std::min({*at.morse_index, before.index, after.index});
-}
-
 /// Points of a span, in their order; `apart`: nearer points are one. False where one is not found.
 bool find_between(Tracker& tracker, const EventSearch& search, Span span, double apart, Crossings& found) {
   const auto reach = [&](double at) {
@@ -258,7 +287,8 @@ bool find_between(Tracker& tracker, const EventSearch& search, Span span, double
       point = find_branch_point(tracker, search.family, span, Narrowing::by_halves);
       if (!std::isfinite(point.at)) return false;
     }
-    FoundBranchPoint read = branch_point_at(tracker, span.from, point.at, span.high, point.singular);
+    FoundBranchPoint read =
+        branch_point_at(tracker, search.family, span.from, point.at, span.high, point.singular);
     if (!read.point) return false;
     if (!read.balanced) {
       found.leaps = true;
@@ -270,8 +300,9 @@ bool find_between(Tracker& tracker, const EventSearch& search, Span span, double
           {point.at,
            {*std::move(read.point), branch_start(tracker, search, PointKind::branch, span.from, point.at,
                                                  static_cast<int>(point.singular.size()))}});
+    const BranchState before = reach(point.at - apart) ? tracker.state : span.before;
     if (!reach(point.at + apart)) return false;
-    if (crosses) count_null_directions(found.events.back().found.point.solution, span.before, tracker.state);
+    if (crosses) count_null_directions(found.events.back().found.point.solution, before, tracker.state);
     span.before = tracker.state;
     span.low = point.at + apart;
   }
@@ -301,6 +332,14 @@ std::vector<Move> singular_directions(Tracker& tracker, const Move& response, in
   }
   tracker.hold({});
   return found;
+}
+
+void count_null_directions(Solution& at, const BranchState& before, const BranchState& after) {
+  if (!at.morse_index || !at.nullity) return;
+  const int not_positive =
+      std::max({*at.morse_index + *at.nullity, before.index + before.nullity, after.index + after.nullity});
+  at.morse_index = std::min({*at.morse_index, before.index, after.index});
+  at.nullity = not_positive - *at.morse_index;
 }
 
 bool branches_cross(const BranchState& a, const BranchState& b) {

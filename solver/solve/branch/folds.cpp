@@ -10,6 +10,9 @@ namespace extremal {
 
 namespace {
 
+/// Of a step: so far from a fold its sides are told apart.
+constexpr double beside_it = 1e-4;
+
 /// Of the derivative of the number that varies, as the parabola has it whose values at both ends of the step
 /// and whose integral are known: its extremum between, and its value in the middle.
 struct Rates {
@@ -56,6 +59,10 @@ std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const
   std::vector<Event> found;
   find_roots(tracker, search.family, from, samples, middle, rate, [&](double at) {
     found.push_back({at, {read_point(tracker, PointKind::fold)}});
+    Solution& solution = found.back().found.point.solution;
+    if (!tracker.reach(from, at - beside_it * length)) return;
+    const BranchState before = tracker.state;
+    if (tracker.reach(from, at + beside_it * length)) count_null_directions(solution, before, tracker.state);
   });
   return found;
 }

@@ -41,6 +41,8 @@ inline constexpr double momentum_tolerances = 10, least_momentum = 1e-8;
 inline constexpr double left_out = 0.5;
 /// A second direction is singular if its response is so many times the one far from the branch point.
 inline constexpr double grown = 10;
+/// A direction of length one that changes duration and parameter by less than this, relative, leaves them.
+inline constexpr double hardly_changed = 1e-6;
 /// Changes of momenta, relative to their terms, that are none of motions in phase space: well above errors.
 inline constexpr double beside_motion = 1e-4;
 
