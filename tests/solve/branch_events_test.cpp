@@ -164,6 +164,21 @@ TEST(BranchEvents, IndexOfBranchPointsNextToFolds) {
   EXPECT_GT(found.branches.size(), 8u);
 }
 
+/// A turning pendulum that a wave drives: without it orbits can be shifted in time, which is no direction of
+/// those beside. Dense second variations have one negative eigenvalue from F = 0.2 to the end.
+TEST(BranchEvents, AFirstMemberThatCanBeShiftedInTime) {
+  const FollowedBranch found = extremal::follow(study_of(
+      "[system]\ncoordinates = [\"a\"]\nparameters = { F = 0.0, w = 2.0 }\nlagrangian = \"a'^2/2 + cos(a) + "
+      "F*cos(a - w*t)\"\n[boundary]\nperiodic = true\nmap = { a = \"a + 2*pi\" }\nduration = \"2*pi/w\"\n"
+      "[guess]\na = \"w*t + 0.3*sin(w*t)\"\n[continuation]\nparameter = \"F\"\nto = 1.5\npoints = 60\n"));
+  ASSERT_EQ(found.branches[0].end, BranchEnd::target) << found.branches[0].message;
+  ASSERT_EQ(values(found.points, PointKind::period_doubling).size(), 1u);
+  EXPECT_EQ(found.points[0].solution.morse_index, 0);
+  EXPECT_EQ(found.points[0].solution.nullity, 1);
+  for (std::size_t k = 1; k < found.points.size(); ++k)
+    EXPECT_EQ(found.points[k].solution.morse_index, 1) << found.points[k].parameter;
+}
+
 /// Great circles of a sphere in the family of equators of spheroids, along z'' = −(2π/c)² z of the period 1:
 /// the index is 1, and for c < 1 it is 3. One step ends at c = 1 itself.
 TEST(BranchEvents, AStepThatEndsWhereBranchesCross) {

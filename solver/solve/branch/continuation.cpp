@@ -72,6 +72,12 @@ bool rests(const Path& path) {
   return largest_range(path.nodes(), path.coordinates()) <= rest * size;
 }
 
+/// Whether members of a family beside its first can be shifted in time, where there are any.
+bool shifts_in_time_beside(const ProblemFamily& family) {
+  const std::optional<Problem> beside = family.at(family.from + beside_first * (family.to - family.from));
+  return !beside || beside->shifts_in_time();
+}
+
 /// Of a period, while the path hardly moves.
 double share_at_rest(const Path& path) {
   const std::size_t n = path.coordinates();
@@ -182,7 +188,8 @@ bool Continuation::begin_from_solve() {
   const bool by_parameter = family_.varied == Varied::parameter;
   const double coordinate = by_parameter ? family_.from : outcome.path.duration();
   const std::optional<Problem> first = by_parameter ? family_.at(coordinate) : std::nullopt;
-  const bool alone = first && first->symmetries.size() < family_.problem.symmetries.size();
+  const bool alone = first && (first->symmetries.size() < family_.problem.symmetries.size() ||
+                               (first->shifts_in_time() && !shifts_in_time_beside(family_)));
   const auto begin = [&] { return !alone && tracker_.begin(search.path(), coordinate, at_rest); };
   const bool begins =
       begin() && (begin_across_family(at_rest) || !by_parameter || tracker_.branch().regular());
