@@ -13,6 +13,10 @@ namespace {
 
 /// Parts this much larger than the solution they add up to cost digits that refinement brings back.
 constexpr double cancellation = 4;
+/// Smaller singular values are roundoff.
+constexpr double least_value = 64 * machine_epsilon;
+/// A right side that has no more than this part along a left null vector is met.
+constexpr double met = 1e-6;
 
 }  // namespace
 
@@ -148,8 +152,7 @@ int Border::solve_least_norm(const Chain& a, double* x, int columns, double thre
   if (extended_ == 0) return a.solve(x, columns), 0;
   const SingularValues svd = singular_value_decomposition(schur_);
   const Eigen::VectorXd& values = svd.values;
-  const int rank = int((values.array() > std::max(threshold, 64 * machine_epsilon)).count()),
-            null = extended_ - rank;
+  const int rank = int((values.array() > std::max(threshold, least_value)).count()), null = extended_ - rank;
   // Null vectors of the whole: x = −A'⁻¹ [C E] y for y in the null space of S; on the left likewise.
   const auto whole = [&](const RowMatrix& w, const Eigen::MatrixXd& vectors) {
     const Eigen::MatrixXd y = unit_.cwiseInverse().asDiagonal() * vectors.rightCols(null);
@@ -170,6 +173,12 @@ int Border::solve_least_norm(const Chain& a, double* x, int columns, double thre
   const auto project = [](auto&& vectors, const Eigen::MatrixXd& out) {
     vectors -= out * (out.transpose() * vectors).eval();
   };
+  if (threshold == 0 && null == 1 && (left.transpose() * solution).norm() > met * solution.norm()) {
+    eliminate(a, x, columns, [&](const RowMatrix& b, RowMatrix& y) {
+      y = svd.v * (values.cwiseMax(least_value).cwiseInverse().asDiagonal() * (svd.u.transpose() * b));
+    });
+    return 0;
+  }
   project(solution, left);
   RowMatrix b = solution;
   eliminate(a, x, columns, with_svd);

@@ -47,7 +47,9 @@ class Border {
   void solve(const Chain& a, double* x, int columns) const;
 
   /// X := the least-squares solution of minimum norm, where singular values of S at most `threshold` count as
-  /// zero. Returns how many did. Throws std::logic_error if the last factor() met what is not finite.
+  /// zero. Returns how many did. With a threshold of zero one null direction is not left out if X has a part
+  /// along it on the left: roundoff in place of its singular value makes it the largest part of the solution.
+  /// Throws std::logic_error if the last factor() met what is not finite.
   int solve_least_norm(const Chain& a, double* x, int columns, double threshold) const;
 
   /// Of the whole symmetric system: that of A' and of S, less that of Σ⁻¹ (Haynsworth).

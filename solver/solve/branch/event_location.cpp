@@ -99,6 +99,22 @@ bool is_first(const BranchState& state, const BranchState& first, bool paired) {
                  : equal(state.action, first.action));
 }
 
+/// Along a branch whose members have one value, as shifts in time of an orbit beside which they are none, the
+/// first member tells alone where it closes.
+double find_first(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
+  const BranchState& first = search.first;
+  const double least = located * std::abs(search.family.to - search.family.from);
+  for (const BranchState* state : {&step.from, &step.to})
+    if (std::abs(state->varied - first.varied) > least) return NAN;
+  const double before = tracker.way(first, step.from).along, after = tracker.way(first, step.to).along;
+  if (!(before < -same && after >= 0)) return NAN;
+  const double at = root(
+      tracker, step.from, {0, before}, {step.length, after}, std::nullopt,
+      [&] { return tracker.way(first, BranchState(tracker.state)).along; },
+      [](double off, double) { return std::abs(off) <= same; });
+  return std::isfinite(at) && tracker.way(first, BranchState(tracker.state)).length <= first_error ? at : NAN;
+}
+
 /// Folds, branch points and period doublings on a step, and the number that varies at its ends and where it
 /// turns back.
 struct SpecialPoints {
@@ -167,6 +183,11 @@ End find_end(Tracker& tracker, const EventSearch& search, const BranchStep& step
           find(search.first.varied, [&] { return is_first(state, search.first, family.problem.paired); });
       std::isfinite(at))
     return {at, BranchEnd::closed, "the branch is closed: it came back to its first point"};
+  if (const double at = find_first(tracker, search, step); std::isfinite(at))
+    return {
+        at, BranchEnd::closed,
+        fmt::format("the branch is closed: it came back to its first point, and {} is {:.8g} all along it",
+                    family.name, state.varied)};
   if (const double at = find_rest(tracker, step.from, step.to, step.length); std::isfinite(at))
     return {at, BranchEnd::rest,
             fmt::format("at {:.8g} the orbits shrink onto an equilibrium, with the period {:.8g}",

@@ -169,6 +169,8 @@ namespace event_location {
 inline constexpr double near_value = 1e-3, at_value = 1e-13;
 /// Two points of a closed branch differ by no more than this, relative.
 inline constexpr double same = 1e-6;
+/// So near its first member a branch of one value closes: along it errors add up.
+inline constexpr double first_error = 1e-5;
 /// A fold within this share of a step of a branch point is the same event.
 inline constexpr double one = 1e-2;
 /// An orbit this small against the one before the step is next to rest; to this share of it.

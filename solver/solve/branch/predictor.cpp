@@ -137,6 +137,14 @@ Move Tracker::transferred(const Move& move, const Path& from) {
   return result;
 }
 
+Tracker::Way Tracker::way(const BranchState& from, const BranchState& to) {
+  path_ = from.path;
+  branch_.set_units(from.units);
+  if (!branch_.set_coordinate(from.coordinate)) return {INFINITY, NAN};
+  const Move all = difference_to(to);
+  return {std::sqrt(branch_.dot(all, all)), branch_.dot(from.tangent, all)};
+}
+
 Move Tracker::difference_to(const BranchState& to) {
   w_.other = to.path;
   if (!same_elements(to.path, path_)) w_.other.resample_from(to.path, branch_.tables(), path_.mesh());

@@ -94,6 +94,11 @@ class Tracker {
   void let_family_go(const BranchState& at, double rest);
   /// From the path to that of another state, on the elements of the path.
   Move difference_to(const BranchState& to);
+  /// From a state to another one: how far in all, and along its tangent.
+  struct Way {
+    double length, along;
+  };
+  Way way(const BranchState& from, const BranchState& to);
   /// The response of the equations at the path, with what is held; see Branch::respond. False where they
   /// cannot be solved.
   bool respond(Move& response, int which = 0);
