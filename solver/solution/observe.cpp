@@ -183,23 +183,6 @@ const Basis& survey_basis(int degree) {
 
 }  // namespace
 
-double momentum_of_speed(const Lagrangian& lagrangian, const Trajectory& path) {
-  const std::size_t n = path.coordinates;
-  if (path.slopes.size() < n) return 0;
-  Scratch scratch;
-  const std::vector<double> mass = evaluate_at(lagrangian, {path.nodes.data(), n}, {path.slopes.data(), n},
-                                               path.times.front(), Order::hessian, scratch)
-                                       .vv;
-  double heavy = 0, speed = 0;
-  for (std::size_t a = 0; a < n; ++a) {
-    double row = 0;
-    for (std::size_t b = 0; b < n; ++b) row += std::abs(mass[a * n + b]);
-    heavy = std::max(heavy, row);
-  }
-  for (const double v : path.slopes) speed = std::max(speed, std::abs(v));
-  return std::isfinite(heavy * speed) ? heavy * speed : 0;
-}
-
 Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   if (lagrangian.structure().coordinates != trajectory.coordinates)
     throw std::invalid_argument(fmt::format("a trajectory of {} coordinates for a Lagrangian of {}",
@@ -214,12 +197,26 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
       surveyor.take(start + h * basis.points[i], end);
     }
   }
-  Survey found = surveyor.finish();
-  if (lagrangian.structure().mass.empty()) {
-    // All terms of p are formed as one: where they cancel, roundoff is still that of the largest.
-    const double inertial = momentum_of_speed(lagrangian, trajectory);
-    found.momentum = std::max(found.momentum, inertial);
-    found.terms = std::max(found.terms, inertial * found.speed);
+  return surveyor.finish();
+}
+
+Survey with_inertia(Survey found, const Lagrangian& lagrangian, const Trajectory& trajectory) {
+  const std::size_t n = trajectory.coordinates;
+  std::vector<double> q(n), v(n);
+  Scratch scratch;
+  for (int k = 0; k < 2 * trajectory.elements(); ++k) {
+    trajectory.in_element(k / 2, k % 2 == 0 ? 0 : 0.5, q, v);
+    const std::vector<double> mass = evaluate_at(lagrangian, q, v, 0, Order::hessian, scratch).vv;
+    double momenta = 0, products = 0;
+    for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t b = 0; b < n; ++b) {
+        const double term = std::abs(mass[a * n + b] * v[b]);
+        momenta += term;
+        products += term * std::abs(v[a]);
+      }
+    if (!std::isfinite(products)) continue;
+    found.momentum = std::max(found.momentum, momenta);
+    found.terms = std::max(found.terms, products);
   }
   return found;
 }

@@ -21,12 +21,12 @@ struct Survey {
   double speed = 0, momentum = 0, force = 0, terms = 0;
 };
 
-/// |∂²L/∂q'²| at the start times the largest speed, of which roundoff of momenta is a part: they vanish along
-/// a motion that constraints alone drive, or drift alone. Zero where L is not finite there.
-double momentum_of_speed(const Lagrangian& lagrangian, const Trajectory& path);
-
 /// Throws std::invalid_argument if the two differ in their coordinates.
 Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory);
+
+/// A survey whose terms include M q' and q'ᵀM q', M = ∂²L/∂q'², at the nodes of the mesh and between them. L
+/// may form all terms of p as one: where they cancel, as along a drift, their roundoff is still that of these.
+Survey with_inertia(Survey found, const Lagrangian& lagrangian, const Trajectory& trajectory);
 
 /// Sets energy and drift of a solution, from the survey that is returned; leaves all absent where L depends
 /// on t or the energy is not finite.

@@ -113,11 +113,14 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
   const int nullity = problem.periodic ? solution.nullity.value_or(0)
                                        : std::max(0, solution.nullity.value_or(0) - problem.shifts_in_time() -
                                                          static_cast<int>(problem.symmetries.size()));
-  if (found) solution.error_estimate = error_behind_drift(*found, solution.trajectory, estimate);
-  const bool raised = solution.error_estimate > estimate;
-  const bool conserved =
-      !found || options.scheme || conserves_energy(*found, solution.trajectory, options.tolerance);
-  if (!conserved || (raised && options.elements == 0 && solution.error_estimate > outcome.tolerance))
+  const auto drifts = [&](const Survey& by) {
+    solution.error_estimate = error_behind_drift(by, solution.trajectory, estimate);
+    const bool raised = solution.error_estimate > estimate,
+               conserved = options.scheme || conserves_energy(by, solution.trajectory, options.tolerance);
+    return !conserved || (raised && options.elements == 0 && solution.error_estimate > outcome.tolerance);
+  };
+  const auto inertial = [&] { return with_inertia(*found, *problem.lagrangian, solution.trajectory); };
+  if (found && drifts(*found) && drifts(inertial()))
     return energy_drifts(*solution.energy_drift, options.tolerance);
   if (found && problem.ends.free > 0 && !options.scheme &&
       !within_momenta(problem, *found, options.tolerance, nullity, path, action))
@@ -137,7 +140,10 @@ std::optional<Refusal> elements_fail(const Problem& problem, const SolveOptions&
         "conjugate, or forces vanish along the path; move an end, change the duration, or try a better "
         "guess"};
   if (!found || options.scheme) return std::nullopt;
-  if (const double jump = jump_of_momenta(*found, options.tolerance, scales(path, *outcome.tables), action))
+  const auto jump_by = [&](const Survey& by) {
+    return jump_of_momenta(by, options.tolerance, scales(path, *outcome.tables), action);
+  };
+  if (const double jump = jump_by(*found) > 0 ? jump_by(inertial()) : 0; jump > 0)
     return Refusal{Status::not_converged,
                    fmt::format("momenta jump by {:.1e} of their range from element to element, more than the "
                                "tolerance {:.1e} allows: roundoff hides them; try another tolerance",

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "solution/observe.hpp"
 #include "solve/accept/limits.hpp"
 #include "solve/accept/symmetries.hpp"
 #include "solve/mesh/conservation.hpp"
@@ -22,6 +21,26 @@ using namespace limits::quadrature_check;
 
 namespace {
 
+/// |∂²L/∂q'²| at the start times the largest speed, of which roundoff of momenta is a part: they vanish along
+/// a motion that constraints alone drive. Zero where L is not finite there.
+double momentum_of_speed(const Lagrangian& lagrangian, const Solution& solution) {
+  const Trajectory& path = solution.trajectory;
+  const std::size_t n = path.coordinates;
+  if (path.slopes.size() < n) return 0;
+  Scratch scratch;
+  const std::vector<double> mass = evaluate_at(lagrangian, {path.nodes.data(), n}, {path.slopes.data(), n},
+                                               path.times.front(), Order::hessian, scratch)
+                                       .vv;
+  double heavy = 0, speed = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    double row = 0;
+    for (std::size_t b = 0; b < n; ++b) row += std::abs(mass[a * n + b]);
+    heavy = std::max(heavy, row);
+  }
+  for (const double v : path.slopes) speed = std::max(speed, std::abs(v));
+  return std::isfinite(heavy * speed) ? heavy * speed : 0;
+}
+
 /// By how much momenta at the ends of a solution are others where the action was evaluated last.
 double kick(const DiscreteAction& action, const Lagrangian& lagrangian, const Solution& solution) {
   double largest = 0;
@@ -33,7 +52,7 @@ double kick(const DiscreteAction& action, const Lagrangian& lagrangian, const So
       largest = std::max(largest, std::abs(action.end_gradient()[a] - solution.momentum_end[a]));
   }
   if (!(largest > momentum_roundoff * action.momentum_scale())) return 0;
-  return largest > momentum_roundoff * momentum_of_speed(lagrangian, solution.trajectory) ? largest : 0;
+  return largest > momentum_roundoff * momentum_of_speed(lagrangian, solution) ? largest : 0;
 }
 
 void refuse(Solution& solution, Status status, std::string message) {

@@ -20,7 +20,8 @@ struct Rates {
 };
 
 Rates rates_on(const BranchStep& step) {
-  const auto& [from, to, length] = step;
+  const BranchState &from = step.from, &to = step.to;
+  const double length = step.length;
   const double first = from.rate, last = to.rate * to.back / length;
   const double mean = (to.varied - from.varied) / length;
   const double slope = 6 * mean - 4 * first - 2 * last, bend = 3 * (first + last - 2 * mean);
@@ -48,7 +49,7 @@ std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const
   if (from.rate * to.rate > 0 && from.rate * extremum.value < 0) {
     std::size_t left = most_samples;
     resolve_doubts(samples, {{0, extremum.at, length}}, least_interval * length, [&](double at) {
-      return left > 0 && left-- && tracker.reach_smoothly(step.from, at) ? rate() : NAN;
+      return left > 0 && left-- && tracker.reach_smoothly(from, at) ? rate() : NAN;
     });
   }
   const double error = std::max(from.varied_error, to.varied_error);

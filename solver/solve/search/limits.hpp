@@ -283,8 +283,8 @@ inline constexpr double near_extremal = 1e-3;
 inline constexpr double arrived = 1e-14, nearly = 1e-10;
 /// Other members of the family are looked for at this part of the range to both sides. There, the force along
 /// the null directions, relative to the largest momentum, is at most this: roundoff of a sum over as many
-/// nodes as there may be; and at most that part of what the ends make of it, unless that is less than roundoff
-/// of a gradient.
+/// nodes as there may be; and at most that part of what the ends make of it, unless that is less than
+/// roundoff of a gradient.
 inline constexpr double aside = 0.05, largest_no_force = 1e-12, part_of_force = 1e-4;
 inline constexpr double roundoff_of_force = 1e-15;
 /// Members at that distance are nearer to the guess if the square of their distance is less by this part of
