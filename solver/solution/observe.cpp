@@ -202,11 +202,12 @@ Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory) {
 
 Survey with_inertia(Survey found, const Lagrangian& lagrangian, const Trajectory& trajectory) {
   const std::size_t n = trajectory.coordinates;
+  const std::vector<double> rest(n);
   std::vector<double> q(n), v(n);
   Scratch scratch;
   for (int k = 0; k < 2 * trajectory.elements(); ++k) {
     trajectory.in_element(k / 2, k % 2 == 0 ? 0 : 0.5, q, v);
-    const std::vector<double> mass = evaluate_at(lagrangian, q, v, 0, Order::hessian, scratch).vv;
+    const std::vector<double> mass = evaluate_at(lagrangian, q, rest, 0, Order::hessian, scratch).vv;
     double momenta = 0, products = 0;
     for (std::size_t a = 0; a < n; ++a)
       for (std::size_t b = 0; b < n; ++b) {

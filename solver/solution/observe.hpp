@@ -24,8 +24,9 @@ struct Survey {
 /// Throws std::invalid_argument if the two differ in their coordinates.
 Survey survey(const Lagrangian& lagrangian, const Trajectory& trajectory);
 
-/// A survey whose terms include M q' and q'ᵀM q', M = ∂²L/∂q'², at the nodes of the mesh and between them. L
-/// may form all terms of p as one: where they cancel, as along a drift, their roundoff is still that of these.
+/// A survey whose terms include M q' and q'ᵀM q', M = ∂²L/∂q'² at q' = 0, at the nodes of the mesh and
+/// between them. L may form all terms of p as one: where they cancel, as along a drift, their roundoff is
+/// that of these.
 Survey with_inertia(Survey found, const Lagrangian& lagrangian, const Trajectory& trajectory);
 
 /// Sets energy and drift of a solution, from the survey that is returned; leaves all absent where L depends

@@ -199,9 +199,7 @@ void Refinement::move_to(const ElementTables& tables, std::span<const double> me
 
 /// Once a closed path is known it no longer crosses kinks now before and now after T: from then on elements
 /// end also where it crosses them beside T.
-void Refinement::end_beside_closing() {
-  beside_ = least_beside_closing(path_.degree(), options_.tolerance);
-}
+void Refinement::end_beside_closing() { beside_ = least_beside_closing(path_.degree(), options_.tolerance); }
 
 /// Whether a closed path crosses no kink beside t = 0, unless it does so at t = 0 itself.
 bool Refinement::closes_beside_kinks() const {
