@@ -42,7 +42,8 @@ bool may_fold(const BranchStep& step) {
 /// the derivative, r and s at the distance ℓ, the number rises above its chord by |r − s|ℓ/8: a smaller
 /// extremum than the error of the number is none.
 std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
-  const auto& [from, to, length] = step;
+  const BranchState &from = step.from, &to = step.to;
+  const double length = step.length;
   std::vector<Sample> samples = {{0, from.rate}, {length, to.rate * to.back / length}};
   const auto rate = [&] { return tracker.state.rate; };
   const auto [extremum, middle] = rates_on(step);
