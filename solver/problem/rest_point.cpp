@@ -83,8 +83,8 @@ Matrix graph(const Matrix& sign, double side) {
 }
 
 /// What masses and gyroscopic terms that change in time add to linear_motion(): with η'' they are
-/// Mη'' + (Ṁ + C − Cᵀ)η' + (Ċ − K)η = 0, so that exp(ct) L has the rates of damped motions. π, too, is then
-/// that of the mass at this time.
+/// Mη'' + (Ṁ + C − Cᵀ)η' + (Ċ − K)η = 0, so that exp(ct) L has the rates of damped motions. π is Mη' + Cη
+/// with M and C of this time.
 Matrix drift(AtRest& at, const Eigen::VectorXd& q, const PointValues& values) {
   const Eigen::Index n = q.size();
   const PointValues after = at.later(q, time_step), before = at.later(q, -time_step);

@@ -47,9 +47,6 @@ struct BranchState {
   Move predicted(double length) const;
 };
 
-/// The values of a path as a step from zero.
-Step values_of(const Path& path);
-
 /// A step that succeeded.
 struct BranchStep {
   const BranchState &from, &to;

@@ -20,8 +20,7 @@ struct Rates {
 };
 
 Rates rates_on(const BranchStep& step) {
-  const BranchState &from = step.from, &to = step.to;
-  const double length = step.length;
+  const auto& [from, to, length] = step;
   const double first = from.rate, last = to.rate * to.back / length;
   const double mean = (to.varied - from.varied) / length;
   const double slope = 6 * mean - 4 * first - 2 * last, bend = 3 * (first + last - 2 * mean);

@@ -28,13 +28,6 @@ bool followed_kinks(const Path& a, const Path& b) {
 
 }  // namespace
 
-Step values_of(const Path& path) {
-  Step step;
-  step.nodes.assign(path.nodes().begin(), path.nodes().end());
-  step.inner.assign(path.x(0), path.x(path.batches()));
-  return step;
-}
-
 Move BranchState::predicted(double length) const {
   Move move = tangent;
   move.scale(length);

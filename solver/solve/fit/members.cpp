@@ -9,6 +9,7 @@
 #include "solve/fit/limits.hpp"
 #include "solve/mesh/resolution.hpp"
 #include "solve/newton/least_eigenvalue.hpp"
+#include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
 
@@ -35,10 +36,7 @@ Step step_of(const Field& field, const Trajectory& trajectory, const Path& path,
     }
     moves.set_element(k, element.data());
   }
-  Step step;
-  step.nodes.assign(moves.nodes().begin(), moves.nodes().end());
-  step.inner.assign(moves.x(0), moves.x(moves.batches()));
-  return step;
+  return values_of(moves);
 }
 
 Eigen::Map<const Eigen::VectorXd> nodes_of(const Step& step) {
@@ -49,18 +47,6 @@ void scale(Step& step, double factor) {
   for (double& x : step.nodes) x *= factor;
   for (double& x : step.inner) x *= factor;
   step.duration *= factor;
-}
-
-/// A little beside a path, and in a little more time: where L is quadratic, all paths are alike.
-Path bumped(const Path& path, const ElementTables& tables) {
-  Path moved = path;
-  const double size = beside * scales(path, tables).q;
-  for (int k = 1; k < path.elements(); ++k)
-    for (int a = 0; a < path.coordinates(); ++a)
-      moved.set_node(k, a, path.node(k)[a] + size * std::sin(k * (a + 1.0) + path.mesh()[k]));
-  moved.load_ends();
-  moved.set_duration(path.duration() * (1 + beside));
-  return moved;
 }
 
 /// As long as the path is wide.
@@ -118,7 +104,7 @@ std::optional<SoftStep> softest_step(NewtonIteration& newton, const Path& path, 
   std::optional<double> eigenvalue = softest(path, result.step);
   // Singular to the last digit, it answers no force along what is null: a little beside the path it does.
   if (eigenvalue && newton.model().left_out() > 0) {
-    eigenvalue = softest(bumped(path, tables), result.step);
+    eigenvalue = softest(bumped(path, beside, scales(path, tables).q), result.step);
     if (eigenvalue && std::abs(*eigenvalue) < largest_beside) eigenvalue = 0;
   }
   newton.model().set_phases(nullptr);

@@ -29,6 +29,14 @@ struct Step {
   double duration = 0;
 };
 
+/// The values of a path as a step from zero.
+inline Step values_of(const Path& path) {
+  Step step;
+  step.nodes.assign(path.nodes().begin(), path.nodes().end());
+  step.inner.assign(path.x(0), path.x(path.batches()));
+  return step;
+}
+
 /// What a second variation is taken by: the path alone, T held, or the duration as well.
 enum class VariedBy { path, path_and_duration };
 

@@ -27,4 +27,14 @@ double largest_null_eigenvalue(double magnitude, double error, const Path& path)
 
 double doubt_of_eigenvalue(double size, double error) { return size > 0 ? change * error / size : INFINITY; }
 
+Path bumped(const Path& path, double by, double size) {
+  Path moved = path;
+  for (int k = 1; k < path.elements(); ++k)
+    for (int a = 0; a < path.coordinates(); ++a)
+      moved.set_node(k, a, path.node(k)[a] + by * size * std::sin(k * (a + 1.0) + path.mesh()[k]));
+  moved.load_ends();
+  moved.set_duration(path.duration() * (1 + by));
+  return moved;
+}
+
 }  // namespace extremal

@@ -26,6 +26,10 @@ double null_eigenvalue_of_branch(double size, double error, const Path& path);
 /// soft, not null.
 double largest_null_eigenvalue(double magnitude, double error, const Path& path);
 
+/// A path moved by this part of its size, with a duration longer by as much: where a second variation is
+/// singular to the last digit, that beside the path is not. Where L is quadratic the duration alone tells.
+Path bumped(const Path& path, double by, double size);
+
 /// By how much the error of a path changes an eigenvalue, relative to the diagonal, at most.
 double doubt_of_eigenvalue(double size, double error);
 

@@ -63,7 +63,7 @@ bool ExtremalFamily::find_null(const Path& path, double apart, int least) {
   model_->set_phases(nullptr);
   model_->set_null_below(0);
   // Singular to the last digit: a little beside the path, or in another time, it is not.
-  if (!answers_all(path) && !answers_all(bumped(path))) return false;
+  if (!answers_all(path) && !answers_all(bumped(path, beside, unit_of(path, *tables_)))) return false;
   // Jacobi fields have 2n constants, n where one end alone tells n conditions.
   const int size = (problem_.ends.free > 0 ? 2 : 1) * n_ + 1;
   std::vector<FamilyDirection> found;
@@ -230,17 +230,6 @@ Eigen::VectorXd ExtremalFamily::values(const Path& path) const {
   Eigen::VectorXd result(size * path.elements());
   for (int k = 0; k < path.elements(); ++k) path.element(k, result.data() + k * size);
   return result;
-}
-
-Path ExtremalFamily::bumped(const Path& path) const {
-  Path moved = path;
-  const double unit = beside * unit_of(path, *tables_);
-  for (int k = 1; k < elements_; ++k)
-    for (int a = 0; a < n_; ++a)
-      moved.set_node(k, a, path.node(k)[a] + unit * std::sin(k * (a + 1.0) + path.mesh()[k]));
-  moved.load_ends();
-  moved.set_duration(path.duration() * (1 + beside));
-  return moved;
 }
 
 Eigen::VectorXd ExtremalFamily::applied(const Path& path, const Step& step, double factor) const {

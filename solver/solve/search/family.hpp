@@ -63,7 +63,6 @@ class ExtremalFamily {
 
  private:
   Eigen::VectorXd values(const Path& path) const;
-  Path bumped(const Path& path) const;
   Eigen::VectorXd applied(const Path& path, const Step& step, double factor) const;
   double product(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
   double distance(const Path& path) const;
