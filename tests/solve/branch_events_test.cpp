@@ -243,5 +243,25 @@ TEST(BranchEvents, ABranchThatBeginsAtOrbitsOfOnePeriod) {
   }
 }
 
+/// A drive that hardly holds the phase of large oscillations: at 1e-9 roundoff hides where it does, which is
+/// told; at 1e-6 the branch is followed to its end.
+TEST(BranchEvents, WhatRoundoffHidesIsTold) {
+  for (const char* tolerance : {"1e-9", "1e-6"}) {
+    const FollowedBranch found = extremal::follow(study_of(
+        std::string("[system]\ncoordinates = [\"x\"]\nparameters = { w = 1.3673546414452946, F = 0.3 }\n"
+                    "lagrangian = \"x'^2/2 - x^2/2 - x^4/4 + F*x*cos(w*t)\"\n[boundary]\nperiodic = true\n"
+                    "duration = \"2*pi/w\"\n[guess]\nstate = { x = -0.014887, \"x'\" = -7.013866 }\n"
+                    "[continuation]\nparameter = \"w\"\nto = 1.5\npoints = 100\n[solve]\ntolerance = ") +
+        tolerance + "\n"));
+    const BranchRecord& branch = found.branches.front();
+    const bool told = branch.message.find("roundoff hides the") != std::string::npos;
+    EXPECT_TRUE(told || branch.end == BranchEnd::target) << tolerance << ": " << branch.message;
+    if (std::string_view(tolerance) == "1e-6") {
+      EXPECT_EQ(branch.end, BranchEnd::target) << branch.message;
+    }
+    EXPECT_LT(*branch.worst_action_slope, 1e-8) << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace extremal::laws

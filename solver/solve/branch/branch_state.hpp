@@ -33,6 +33,7 @@ struct BranchState {
   std::vector<Move> family;  ///< see Branch::hold_family
   double rate = 0;           ///< ∂varied/∂s along the tangent
   double varied_error = 0;   ///< of the number that varies, by the error of the path
+  double left = 0;           ///< what roundoff leaves of the way to the extremal of its own value
   double action_rate = 0;    ///< ∂S/∂s as its derivatives give it
   double energy_time = 0;    ///< |E T|
   int orientation = 1, index = 0, nullity = 0;

@@ -135,6 +135,9 @@ bool Continuation::stop(BranchEnd end, std::string message) {
     message_ +=
         fmt::format("; at {} points the Morse index is not known: no bifurcation was found that changes it",
                     unknown_indices_);
+  if (hidden_points_ > 0)
+    message_ += fmt::format(
+        "; at {} points roundoff hides the extremal by more than the tolerance: loosen it", hidden_points_);
   return false;
 }
 
@@ -274,6 +277,7 @@ bool Continuation::step() {
     if (tracker_.reach_smoothly(from_, length_) && tracker_.turns_one_way(from_) && !halves_period()) break;
   }
   if (ends_on_crossing()) end_beside_crossing();
+  const bool hidden = state.left > options_.solve.tolerance;
   const double length = std::exchange(length_, std::min(longest_, length_ * growth(tracker_)));
   tracker_.measure_anew();
   if (!from_.family.empty()) tracker_.hold_family_anew();
@@ -292,10 +296,12 @@ bool Continuation::step() {
   if (events.missed || (!events.index_known && length > shortest_leap)) return retry(length);
   end_at_half_period(events);
   for (FoundPoint& found : events.points) add(std::move(found));
-  if (events.end != BranchEnd::none)
+  if (events.end != BranchEnd::none) {
     stop(events.end, std::move(events.message));
-  else
+  } else {
     add({std::move(next)});
+    hidden_points_ += hidden;
+  }
   before_ = std::exchange(here_, period_of(family_, state));
   if (end_ == BranchEnd::none) end_where_period_diverges(here_.error);
   return !found_.empty();

@@ -86,7 +86,7 @@ class Continuation {
   std::optional<FirstState> start_;        ///< the branch begins there
   std::optional<FoundPoint> first_point_;  ///< where the branch begins beside it
   BranchState first_;
-  int index_ = 0, unknown_indices_ = 0;
+  int index_ = 0, unknown_indices_ = 0, hidden_points_ = 0;
   PeriodGrowth before_, here_;
   BranchState from_, to_;  ///< of the last step, whose memory the next one uses
   double length_ = 0, longest_ = 0;

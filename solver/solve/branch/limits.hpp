@@ -204,6 +204,8 @@ namespace tracker {
 inline constexpr double unfinished = 0.01, least_goal = 10 * least_correction;
 /// A path nearer to the extremal of its own value than this share of the tolerance is not corrected further.
 inline constexpr double settled = 0.1;
+/// A value that is known to so many roundings is exact, however much the path depends on it.
+inline constexpr double roundings = 100;
 inline constexpr int most_resolutions = 4;
 /// A path that another quadrature moves by more than this share of what it did before elements were halved is
 /// moved by roundoff.

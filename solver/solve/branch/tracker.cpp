@@ -106,10 +106,20 @@ bool Tracker::reach(const BranchState& from, double length, bool same_elements, 
 /// Where the value hardly varies while the branch runs on, a path that is near the branch is farther from the
 /// extremal of its own value: by the slope of the branch over the value.
 bool Tracker::settle() {
+  state.left = 0;
   if (!(left_at_value() > settled * tolerance_)) return true;
   const double share = std::min(std::abs(state.rate / branch_.varied_unit()), 1.0);
-  correct(1, nullptr, share);  // what roundoff hides is left as it is
-  return update_tangent();
+  correct(1, nullptr, share);
+  if (!update_tangent()) return false;
+  if (value_missed() > roundings * unit_roundoff * std::abs(state.varied)) state.left = left_at_value();
+  return true;
+}
+
+/// By how much the value is another than that of the branch where the path is nearest to it.
+double Tracker::value_missed() const {
+  const double along =
+      branch_.dot(branch_.correction, branch_.direction) / branch_.dot(branch_.direction, branch_.direction);
+  return std::abs(branch_.change(false) - along * branch_.change(true));
 }
 
 /// How far the path is from the extremal of its value, to first order.

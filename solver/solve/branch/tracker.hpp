@@ -132,6 +132,7 @@ class Tracker {
   bool correct(double length, const double* landing, double share = 1);
   bool settle();
   double left_at_value() const;
+  double value_missed() const;
   bool update_tangent(bool first = false);
   double crossing_test();
   bool resolve_forces(double length, const double* landing);
