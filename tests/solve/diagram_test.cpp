@@ -249,12 +249,18 @@ TEST(Diagram, TwoDoublingsOnOneStep) {
 /// Two springs shaken at once, one a little stiffer: on one step a pair of each passes −1.
 TEST(Diagram, TwoPairsOnOneStep) {
   const double theta = 0.2, stiffer = 1.001;
-  const auto problem = [=](double a) {
-    const auto lagrangian = trace(2, [=](auto q, auto v, auto t) {
+  const auto lagrangian = [=](double a) {
+    return trace(2, [=](auto q, auto v, auto t) {
       const auto first = a - 2 * theta * cos(2 * t), second = a * stiffer - 2 * theta * cos(2 * t);
       return (v[0] * v[0] + v[1] * v[1] - first * q[0] * q[0] - second * q[1] * q[1]) / 2;
     });
-    return guessed(periodic(lagrangian, pi), [](double) { return Values{0, 0}; });
+  };
+  const auto problem = [=, first = guessed(periodic(lagrangian(0.4), pi), [](double) {
+                             return Values{0, 0};
+                           })](double a) {
+    Problem at = first;
+    at.lagrangian = lagrangian(a);
+    return at;
   };
   const Followed found = follow_branches(varied(problem, 0.4, 2), 1e-10, 60);
   std::vector<double> doublings = found.values(PointKind::period_doubling);

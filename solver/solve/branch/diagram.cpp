@@ -17,7 +17,7 @@ namespace {
 /// The family of the orbits run through twice.
 ProblemFamily doubled(const ProblemFamily& family) {
   ProblemFamily twice = family;
-  twice.problem = doubled(family.problem);
+  twice.problem = make_problem(doubled(family.problem));
   twice.half = [at = family.at, map = closing_map(family.problem)](double value) {
     const std::optional<Problem> problem = at ? at(value) : std::nullopt;
     return problem ? closing_map(*problem) : map;

@@ -106,12 +106,13 @@ bool Tracker::reach(const BranchState& from, double length, bool same_elements, 
 /// Where the value hardly varies while the branch runs on, a path that is near the branch is farther from the
 /// extremal of its own value: by the slope of the branch over the value.
 bool Tracker::settle() {
+  const auto missed = [this] { return value_missed() > roundings * unit_roundoff * std::abs(state.varied); };
   state.left = 0;
-  if (!(left_at_value() > settled * tolerance_)) return true;
+  if (!missed() || !(left_at_value() > settled * tolerance_)) return true;
   const double share = std::min(std::abs(state.rate / branch_.varied_unit()), 1.0);
   correct(1, nullptr, share);
   if (!update_tangent()) return false;
-  if (value_missed() > roundings * unit_roundoff * std::abs(state.varied)) state.left = left_at_value();
+  if (missed()) state.left = left_at_value();
   return true;
 }
 

@@ -58,7 +58,9 @@ Problem doubled(const Problem& problem) {
   twice.duration.value *= 2;
   if (twice.duration.where) twice.duration.where = halfway(std::move(twice.duration.where), map);
   twice.guess = doubled(problem.guess, map);
-  return make_problem(std::move(twice));
+  twice.ends = solve_relation(twice.boundary);
+  twice.reduction = nullptr;
+  return twice;
 }
 
 void double_path(const Problem& problem, const Path& path, const ElementTables& tables, Path& twice) {

@@ -8,7 +8,8 @@
 
 namespace extremal {
 
-/// The problem of twice the period, which every solution of a periodic problem solves, run through twice.
+/// The problem of twice the period, which every solution of a periodic problem solves, run through twice. L
+/// repeats after it as well. Symmetries are those of the problem: there may be more.
 Problem doubled(const Problem& problem);
 
 /// Fills `twice` with a path of the problem run through twice, on elements of `tables`, whose degree is the
