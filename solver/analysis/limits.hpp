@@ -46,10 +46,10 @@ inline constexpr double most_forms = 1 << 27, most_batch = 1 << 28;
 
 namespace windows {
 
-/// Up to so many coordinates all conjugate times are found; for more where their number times the cube of the
-/// coordinates is no more than this: about half a minute.
-inline constexpr int always_found = 128;
-inline constexpr double most_work = 2e11;
+/// Up to so many coordinates all conjugate times are found; for more where their number and that of `forms`
+/// for each element, times the cube of the coordinates, is no more than this: about a second.
+inline constexpr int always_found = 128, forms = 4;
+inline constexpr double most_work = 5e9;
 
 }  // namespace windows
 

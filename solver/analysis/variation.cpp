@@ -54,6 +54,10 @@ int degree_for(int n, int trajectory_degree) {
 void SecondVariation::begin(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory) {
   lagrangian_ = std::move(lagrangian);
   trajectory_ = &trajectory;
+  clear();
+}
+
+void SecondVariation::clear() {
   pieces_.clear();
   forms_.clear();
   switches_.clear();

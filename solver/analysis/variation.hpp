@@ -54,6 +54,8 @@ class SecondVariation {
   /// path; both, and the tables, must outlive it. False where forms are not finite.
   bool assemble_elements(std::shared_ptr<const Lagrangian> lagrangian, const Trajectory& trajectory,
                          const Path& path, const ElementTables& tables, const ClosingMap* closed);
+  /// There are no pieces from now on.
+  void clear();
   bool of_scheme() const { return of_scheme_; }
   /// Whether the form of each piece with fixed ends is positive definite.
   bool definite() const { return action_.nodes.negative == 0; }

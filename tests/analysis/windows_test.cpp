@@ -67,21 +67,48 @@ void expect_normal_modes(int n, double T, const std::vector<double>& omega, cons
   EXPECT_EQ(s.windows.back()[1], T);
 }
 
+Problem line_of_masses(int n, double T) {
+  const auto lagrangian = trace(n, [n](auto q, auto v, auto) {
+    auto l = v[0] * v[0] / 2 - (q[0] * q[0] + q[n - 1] * q[n - 1]) / 2;
+    for (int a = 1; a < n; ++a) l = l + v[a] * v[a] / 2 - (q[a] - q[a - 1]) * (q[a] - q[a - 1]) / 2;
+    return l;
+  });
+  Values start(n), end(n);
+  for (int a = 0; a < n; ++a) start[a] = std::sin(0.1 * a), end[a] = std::cos(0.2 * a);
+  return fixed_ends(lagrangian, start, end, T);
+}
+
+std::vector<double> frequencies_of_line(int n) {
+  std::vector<double> omega(n);
+  for (int a = 0; a < n; ++a) omega[a] = 2 * std::sin((a + 1) * pi / (2 * n + 2));
+  return omega;
+}
+
 TEST(Windows, OfManyCoordinates) {
   constexpr double T = 4;
-  for (const int n : {60, 100, 150}) {
-    const auto lagrangian = trace(n, [n](auto q, auto v, auto) {
-      auto l = v[0] * v[0] / 2 - (q[0] * q[0] + q[n - 1] * q[n - 1]) / 2;
-      for (int a = 1; a < n; ++a) l = l + v[a] * v[a] / 2 - (q[a] - q[a - 1]) * (q[a] - q[a - 1]) / 2;
-      return l;
-    });
-    Values start(n), end(n);
-    std::vector<double> omega(n);
-    for (int a = 0; a < n; ++a) {
-      start[a] = std::sin(0.1 * a), end[a] = std::cos(0.2 * a);
-      omega[a] = 2 * std::sin((a + 1) * pi / (2 * n + 2));
+  for (const int n : {60, 100, 150})
+    expect_normal_modes(n, T, frequencies_of_line(n), line_of_masses(n, T));
+}
+
+/// All conjugate times would take minutes: they are counted, and windows are found without them.
+TEST(Windows, OfVeryManyCoordinates) {
+  constexpr int n = 700;
+  const std::vector<double> omega = frequencies_of_line(n);
+  const double window = pi / omega.back();
+  for (const double T : {1.5, 1.6, 7.0}) {
+    const Solution s = solve(line_of_masses(n, T), within(1e-8));
+    ASSERT_TRUE(s.converged()) << s.message;
+    int times = 0;
+    for (const double w : omega) times += static_cast<int>(T * w / pi);
+    EXPECT_EQ(s.morse_index, times);
+    EXPECT_EQ(s.conjugate_times_known, times == 0);
+    ASSERT_EQ(s.windows.size(), std::ceil(T / window));
+    EXPECT_EQ(s.windows.back()[1], T);
+    for (std::size_t k = 0; k + 1 < s.windows.size(); ++k) {
+      EXPECT_EQ(s.windows[k][1], s.windows[k + 1][0]);
+      EXPECT_LT(s.windows[k][1] - s.windows[k][0], window);
+      EXPECT_GT(s.windows[k][1] - s.windows[k][0], 0.999 * window);
     }
-    expect_normal_modes(n, T, omega, fixed_ends(lagrangian, start, end, T));
   }
 }
 

@@ -113,4 +113,18 @@ inline constexpr int guess_points = 32;
 
 }  // namespace quadrature_check
 
+namespace sparse_windows {
+
+/// Elements of the first trial for the first window; windows are about as long as the one before; none is
+/// shorter than this part of an element.
+inline constexpr double first_trial = 4, like_the_last = 1.25, shortest = 1e-3;
+/// By which a window is shorter than the longest one at most, relative.
+inline constexpr double margin = 1e-3;
+/// Steps of inverse iteration to the field that vanishes at both ends of a window, and its two highest Legendre
+/// coefficients, relative to its largest: the window errs by about their square.
+inline constexpr int inverse_steps = 3;
+inline constexpr double most_tail = 1e-2;
+
+}  // namespace sparse_windows
+
 }  // namespace extremal::limits

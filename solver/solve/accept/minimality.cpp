@@ -1,14 +1,19 @@
 #include "solve/accept/minimality.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "analysis/bounds.hpp"
+#include "analysis/limits.hpp"
 #include "problem/closing.hpp"
 #include "solve/accept/limits.hpp"
+#include "solve/accept/sparse_windows.hpp"
 #include "solve/adapt/finer_elements.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 
@@ -76,10 +81,33 @@ double without_pieces(LegendreCondition legendre, Solution& solution) {
 /// Morse's theorem: with fixed ends the index is the number of conjugate times. These are found on pieces
 /// that resolve Jacobi fields, which elements that resolve the path need not. Of pinned elements it is their
 /// own.
-void count_conjugate_times(const Problem& problem, const SolveOptions& options, Solution& solution) {
+void count_conjugate_times(const Problem& problem, const SolveOptions& options, int count,
+                           Solution& solution) {
   if (problem.ends.free > 0 || options.elements > 0 || solution.nullity != 0) return;
-  solution.morse_index = static_cast<int>(solution.conjugate_times.size());
-  solution.minimizing = solution.morse_index == 0;
+  solution.morse_index = count;
+  solution.minimizing = count == 0;
+}
+
+/// Of many coordinates, few of them coupled: windows alone, where all conjugate times would take too long.
+/// False where they would not, and where windows are not found so.
+bool read_windows_alone(const Problem& problem, const SolveOptions& options, Solution& solution) {
+  using namespace limits::windows;
+  const double n = problem.coordinates(), elements = solution.trajectory.elements();
+  const bool suits = n > always_found && problem.has_ends() && options.elements == 0 && !problem.curvature &&
+                     !problem.lagrangian->kinks();
+  const auto too_many = [&](int times) { return (times + forms * elements) * n * n * n > most_work; };
+  if (!suits || !too_many(solution.morse_index.value_or(0))) return false;
+  std::optional<SparseWindows> found = sparse_windows(problem, solution.trajectory);
+  if (!found || !too_many(found->conjugate_times)) return false;
+  solution.windows = std::move(found->windows);
+  solution.windows.back()[1] = solution.duration();
+  solution.conjugate_times_known = found->conjugate_times == 0;
+  solution.certificate = Certificate::sampled;
+  count_conjugate_times(problem, options, found->conjugate_times, solution);
+  if (found->conjugate_times > 0)
+    solution.message += fmt::format("; the {} conjugate times are not found: they would take too long",
+                                    found->conjugate_times);
+  return true;
 }
 
 bool assemble_own(const Problem& problem, const OwnElements* own, const ClosingMap* closed,
@@ -96,6 +124,8 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   std::optional<ClosingMap> closed;
   if (problem.periodic) closed = closing_map(problem);
   const ClosingMap* map = closed ? &*closed : nullptr;
+  memory.clear();
+  if (read_windows_alone(problem, options, solution)) return INFINITY;
   const bool of_own = assemble_own(problem, own, map, memory);
   const bool assembled = of_own || memory.assemble(problem.lagrangian, solution.trajectory, {}, map);
   if (memory.too_large()) {
@@ -128,7 +158,7 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   solution.conjugate_times_known = found.conjugate_times.has_value();
   if (found.conjugate_times) {
     solution.conjugate_times = *std::move(found.conjugate_times);
-    count_conjugate_times(problem, options, solution);
+    count_conjugate_times(problem, options, static_cast<int>(solution.conjugate_times.size()), solution);
   } else {
     solution.message += "; conjugate times are not found: they would take too long";
   }

@@ -1,0 +1,190 @@
+#include "solve/accept/sparse_windows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "solve/accept/limits.hpp"
+#include "solve/mesh/levels.hpp"
+#include "solve/newton/sparse_model.hpp"
+
+namespace extremal {
+
+namespace {
+
+using namespace limits::sparse_windows;
+
+double absolute(double x) { return std::abs(x); }
+
+/// The problem of a part of a path between given ends: its second variation depends on no more.
+Problem between_ends(const Problem& problem) {
+  Problem fixed;
+  fixed.lagrangian = problem.lagrangian;
+  fixed.boundary.coordinates = problem.coordinates();
+  for (const bool at_end : {false, true})
+    for (int a = 0; a < problem.coordinates(); ++a) fixed.boundary.fix(a, at_end, 0);
+  fixed.ends = solve_relation(fixed.boundary);
+  return fixed;
+}
+
+/// Parts of a path, from place to place: at t_k the place is k, and between nodes it is linear in t.
+class PartsOfPath {
+ public:
+  PartsOfPath(const Problem& problem, const Trajectory& trajectory, Levels& levels)
+      : problem_(between_ends(problem)),
+        trajectory_(trajectory),
+        tables_(levels.at(trajectory.degree)) {}
+
+  double time(double place) const {
+    const int k = std::min(static_cast<int>(place), trajectory_.elements() - 1);
+    return trajectory_.times[k] + (place - k) * (trajectory_.times[k + 1] - trajectory_.times[k]);
+  }
+
+  /// How many times in the part are conjugate to its start; nothing if its end is one of them, to working
+  /// precision. The part is cut into so many elements, evenly in places.
+  std::optional<int> conjugate_times(double from, double to, int elements) {
+    at_ = &of(elements);
+    put_path(from, to, elements);
+    at_->action.reset(*problem_.lagrangian, tables_, elements, false, Condense::nothing);
+    if (!at_->model.evaluate(at_->action, at_->path, nullptr)) return std::nullopt;
+    const Inertia inertia = at_->model.inertia(0, VariedBy::path);
+    if (inertia.zero > 0) return std::nullopt;
+    return inertia.negative;
+  }
+
+  /// The largest share of the two highest Legendre coefficients in the field of the part that the last call
+  /// was for whose eigenvalue is nearest zero.
+  double tail() {
+    const int n = problem_.coordinates(), lanes = simd_lanes();
+    std::vector<double> load(at_->path.nodes().size(), 0.0);
+    for (std::size_t i = n; i + n < load.size(); ++i) load[i] = std::cos(1 + 2.4 * i);
+    Step field;
+    for (int k = 0; k < inverse_steps; ++k) {
+      at_->model.respond(at_->action, nullptr, load, field);
+      const double largest = std::abs(*std::ranges::max_element(field.nodes, {}, absolute));
+      for (std::size_t i = 0; i < load.size(); ++i) load[i] = field.nodes[i] / largest;
+    }
+    const SchemeTables& scheme = tables_.scheme();
+    const int functions = scheme.functions, inner = functions - 2;
+    double largest = 0, highest = 0;
+    std::vector<double> values(functions);
+    for (int k = 0; k < at_->path.elements(); ++k)
+      for (int a = 0; a < n; ++a) {
+        for (int j = 0; j < inner; ++j) {
+          const std::size_t group = (std::size_t(k / lanes) * functions + j) * n + a;
+          values[j] = field.inner[group * lanes + k % lanes];
+        }
+        values[inner] = field.nodes[std::size_t(k) * n + a];
+        values[inner + 1] = field.nodes[std::size_t(k + 1) * n + a];
+        for (int i = 0; i < functions; ++i) {
+          double coefficient = 0;
+          for (int j = 0; j < functions; ++j)
+            coefficient += scheme.legendre[i * functions + j] * values[j];
+          largest = std::max(largest, std::abs(coefficient));
+          if (i >= functions - 2) highest = std::max(highest, std::abs(coefficient));
+        }
+      }
+    return highest / largest;
+  }
+
+ private:
+  /// What so many elements need; the pattern of their matrix is ordered once.
+  struct Elements {
+    SparseModel model;
+    DiscreteAction action;
+    Path path;
+  };
+
+  Elements& of(int elements) {
+    std::unique_ptr<Elements>& made = by_count_[elements];
+    if (!made) {
+      made = std::make_unique<Elements>();
+      made->model.reset(problem_, tables_, elements);
+    }
+    return *made;
+  }
+
+  void put_path(double from, double to, int elements) {
+    const int n = problem_.coordinates();
+    const std::vector<double>& lobatto = tables_.scheme().lobatto;
+    std::vector<double> mesh, values(lobatto.size() * n), v(n);
+    for (int k = 0; k <= elements; ++k) mesh.push_back(time(from + (to - from) * k / elements));
+    at_->path.reset(tables_, mesh, 1);
+    for (int k = 0; k < elements; ++k) {
+      for (std::size_t j = 0; j < lobatto.size(); ++j) {
+        const double t = std::min(mesh[k] + lobatto[j] * (mesh[k + 1] - mesh[k]), trajectory_.duration());
+        trajectory_.at(t, std::span(values).subspan(j * n, n), v);
+      }
+      at_->path.set_element(k, values.data());
+    }
+    at_->path.load_ends();
+  }
+
+  Problem problem_;
+  const Trajectory& trajectory_;
+  const ElementTables& tables_;
+  std::map<int, std::unique_ptr<Elements>> by_count_;
+  Elements* at_ = nullptr;
+};
+
+/// None is longer than those of the path; with two there is a node between them.
+int elements_for(double places) { return std::max(2, static_cast<int>(std::ceil(places))); }
+
+/// What is known of the first time conjugate to the start of a window: the window may end at `free_of`, and
+/// not at `beyond`.
+struct Bracket {
+  double free_of, beyond;
+};
+
+/// From a first trial on, each by a factor farther or nearer than the one before.
+std::optional<Bracket> bracket(PartsOfPath& parts, double from, double last, double first, double factor) {
+  Bracket found{from, INFINITY};
+  double trial = std::min(from + first, last);
+  for (;;) {
+    const std::optional<int> count = parts.conjugate_times(from, trial, elements_for(trial - from));
+    if (!count) return std::nullopt;
+    (*count == 0 ? found.free_of : found.beyond) = trial;
+    if (found.free_of == last) return found;
+    if (found.free_of > from && found.beyond < INFINITY) return found;
+    trial = *count == 0 ? std::min(from + factor * (trial - from), last) : from + (trial - from) / factor;
+    if (trial - from < shortest) return std::nullopt;
+  }
+}
+
+/// By halves, until the window is the longest there is, less a small part. False where its elements do not
+/// resolve the field that vanishes at both ends.
+bool narrow(PartsOfPath& parts, double from, Bracket& found) {
+  while (found.beyond - found.free_of > margin * (found.free_of - from)) {
+    const double middle = (found.free_of + found.beyond) / 2;
+    const std::optional<int> count = parts.conjugate_times(from, middle, elements_for(middle - from));
+    if (!count) return false;
+    (*count == 0 ? found.free_of : found.beyond) = middle;
+  }
+  return parts.tail() <= most_tail;
+}
+
+}  // namespace
+
+std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajectory& trajectory) {
+  Levels levels;
+  levels.bind(problem.lagrangian);
+  PartsOfPath parts(problem, trajectory, levels);
+  const double last = trajectory.elements();
+  const std::optional<int> all = parts.conjugate_times(0, last, elements_for(last));
+  if (!all) return std::nullopt;
+  SparseWindows result{*all, {}};
+  double first = *all == 0 ? last : std::min(first_trial, last), factor = 2;
+  for (double from = 0; from < last;) {
+    std::optional<Bracket> found = bracket(parts, from, last, first, factor);
+    if (!found) return std::nullopt;
+    if (found->free_of < last && !narrow(parts, from, *found)) return std::nullopt;
+    result.windows.push_back({parts.time(from), parts.time(found->free_of)});
+    factor = like_the_last;
+    first = factor * (found->free_of - from);
+    from = found->free_of;
+  }
+  return result;
+}
+
+}  // namespace extremal
