@@ -272,9 +272,11 @@ bool Continuation::step() {
   BranchState& state = tracker_.state;
   tracker_.begin_off_kinks();
   std::swap(state, from_);
-  for (;; length_ *= shortening) {
+  bool tried_over = false;
+  while (!lands()) {
+    if (tracker_.failure() == StepFailure::hidden && !std::exchange(tried_over, true) && step_over()) break;
+    length_ *= shortening;
     if (length_ < least_length || options_.solve.deadline.passed()) return give_up(from_);
-    if (tracker_.reach_smoothly(from_, length_) && tracker_.turns_one_way(from_) && !halves_period()) break;
   }
   if (ends_on_crossing()) end_beside_crossing();
   const bool hidden = state.left > options_.solve.tolerance;
@@ -305,6 +307,22 @@ bool Continuation::step() {
   before_ = std::exchange(here_, period_of(family_, state));
   if (end_ == BranchEnd::none) end_where_period_diverges(here_.error);
   return !found_.empty();
+}
+
+/// Whether the step from the last state leads along the branch.
+bool Continuation::lands() {
+  return tracker_.reach_smoothly(from_, length_) && tracker_.turns_one_way(from_) && !halves_period();
+}
+
+/// Where equations are so nearly singular that roundoff hides where a step ends, shorter ones end no better,
+/// and a longer one may lead over it.
+bool Continuation::step_over() {
+  const double shorter = length_;
+  while ((length_ *= lengthening) <= longest_)
+    if (lands()) return true;
+  length_ = shorter;
+  tracker_.fail(StepFailure::hidden);
+  return false;
 }
 
 /// Whether the last step did: roundoff decides the sign of the crossing, or more directions are open.

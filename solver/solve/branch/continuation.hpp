@@ -67,6 +67,8 @@ class Continuation {
   bool end_at_first();
   bool begin_from_state();
   bool step();
+  bool lands();
+  bool step_over();
   bool ends_on_crossing() const;
   void end_beside_crossing();
   bool retry(double length);
