@@ -111,10 +111,12 @@ void check_duration(const Scene& scene) {
                                              : nullptr;
   const char* name = boundary.energy ? "energy" : "where";
   if (!boundary.free && closing)
-    throw SceneError(*closing, std::string("'") + name +
-                                   "' closes a free duration, but duration is fixed; write "
-                                   "duration = \"free\" or leave '" +
-                                   name + "' out");
+    throw SceneError(*closing,
+                     std::string("'") + name +
+                         "' closes a free duration, but duration is fixed; write "
+                         "duration = \"free\" or leave '" +
+                         name + "' out" +
+                         (boundary.energy ? "" : "; what is to hold at the ends stands in 'conditions'"));
   if (!boundary.free && !boundary.infinite && scene.guess.duration)
     throw SceneError(
         scene.guess.duration->at,

@@ -104,7 +104,10 @@ void check_counts(const SystemTable& table, const System& system) {
   if (m >= n)
     throw SceneError(
         position(table.constraints[std::min(n - 1, m - 1)], 0),
-        fmt::format("{} constraints leave no motion to {} coordinates; fewer than {} can hold", m, n, n));
+        fmt::format(
+            "{} constraints leave no motion to {} coordinates; fewer than {} can hold: leave out those "
+            "that follow from others",
+            m, n, n));
   if (n > most_coordinates)
     throw SceneError(position(table.constraints.front(), 0),
                      fmt::format("constraints of {} coordinates; {} are the most", n, most_coordinates));

@@ -86,8 +86,7 @@ std::vector<double> frequencies_of_line(int n) {
 
 TEST(Windows, OfManyCoordinates) {
   constexpr double T = 4;
-  for (const int n : {60, 100, 150})
-    expect_normal_modes(n, T, frequencies_of_line(n), line_of_masses(n, T));
+  for (const int n : {60, 100, 150}) expect_normal_modes(n, T, frequencies_of_line(n), line_of_masses(n, T));
 }
 
 /// All conjugate times would take minutes: they are counted, and windows are found without them.

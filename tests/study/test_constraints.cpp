@@ -253,8 +253,10 @@ TEST_F(Scenes, ConstraintsThatAreWrong) {
   EXPECT_EQ(constraint("\"x^2 + y^2\""), "scene.toml:5:26: '=' is missing: write left = right");
   EXPECT_EQ(constraint("\"l = 2\""),
             "scene.toml:5:17: the constraint depends on no coordinate; leave it out");
-  EXPECT_EQ(constraint("\"x^2 + y^2 = l^2\", \"x = y\""),
-            "scene.toml:5:36: 2 constraints leave no motion to 2 coordinates; fewer than 2 can hold");
+  EXPECT_EQ(
+      constraint("\"x^2 + y^2 = l^2\", \"x = y\""),
+      "scene.toml:5:36: 2 constraints leave no motion to 2 coordinates; fewer than 2 can hold: leave out "
+      "those that follow from others");
   EXPECT_EQ(message(pendulum("start = { x = 1.2, y = -1.5 }\nduration = 1\n")),
             "scene.toml:7:11: the start does not satisfy the constraint 'x^2 + y^2 = l^2': left − right = "
             "-0.31 there; give values that do, or leave out coordinates that follow from the others");

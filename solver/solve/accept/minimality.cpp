@@ -100,7 +100,6 @@ bool read_windows_alone(const Problem& problem, const SolveOptions& options, Sol
   std::optional<SparseWindows> found = sparse_windows(problem, solution.trajectory);
   if (!found || !too_many(found->conjugate_times)) return false;
   solution.windows = std::move(found->windows);
-  solution.windows.back()[1] = solution.duration();
   solution.conjugate_times_known = found->conjugate_times == 0;
   solution.certificate = Certificate::sampled;
   count_conjugate_times(problem, options, found->conjugate_times, solution);

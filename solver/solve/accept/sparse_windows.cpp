@@ -15,8 +15,6 @@ namespace {
 
 using namespace limits::sparse_windows;
 
-double absolute(double x) { return std::abs(x); }
-
 /// The problem of a part of a path between given ends: its second variation depends on no more.
 Problem between_ends(const Problem& problem) {
   Problem fixed;
@@ -32,9 +30,7 @@ Problem between_ends(const Problem& problem) {
 class PartsOfPath {
  public:
   PartsOfPath(const Problem& problem, const Trajectory& trajectory, Levels& levels)
-      : problem_(between_ends(problem)),
-        trajectory_(trajectory),
-        tables_(levels.at(trajectory.degree)) {}
+      : problem_(between_ends(problem)), trajectory_(trajectory), tables_(levels.at(trajectory.degree)) {}
 
   double time(double place) const {
     const int k = std::min(static_cast<int>(place), trajectory_.elements() - 1);
@@ -62,7 +58,8 @@ class PartsOfPath {
     Step field;
     for (int k = 0; k < inverse_steps; ++k) {
       at_->model.respond(at_->action, nullptr, load, field);
-      const double largest = std::abs(*std::ranges::max_element(field.nodes, {}, absolute));
+      double largest = 0;
+      for (const double x : field.nodes) largest = std::max(largest, std::abs(x));
       for (std::size_t i = 0; i < load.size(); ++i) load[i] = field.nodes[i] / largest;
     }
     const SchemeTables& scheme = tables_.scheme();
@@ -79,8 +76,7 @@ class PartsOfPath {
         values[inner + 1] = field.nodes[std::size_t(k + 1) * n + a];
         for (int i = 0; i < functions; ++i) {
           double coefficient = 0;
-          for (int j = 0; j < functions; ++j)
-            coefficient += scheme.legendre[i * functions + j] * values[j];
+          for (int j = 0; j < functions; ++j) coefficient += scheme.legendre[i * functions + j] * values[j];
           largest = std::max(largest, std::abs(coefficient));
           if (i >= functions - 2) highest = std::max(highest, std::abs(coefficient));
         }
@@ -173,13 +169,18 @@ std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajec
   const double last = trajectory.elements();
   const std::optional<int> all = parts.conjugate_times(0, last, elements_for(last));
   if (!all) return std::nullopt;
+  if (*all == 0) {
+    if (!(parts.tail() <= most_tail)) return std::nullopt;
+    return SparseWindows{0, {{0, trajectory.duration()}}};
+  }
   SparseWindows result{*all, {}};
-  double first = *all == 0 ? last : std::min(first_trial, last), factor = 2;
+  double first = std::min(first_trial, last), factor = 2;
   for (double from = 0; from < last;) {
     std::optional<Bracket> found = bracket(parts, from, last, first, factor);
     if (!found) return std::nullopt;
     if (found->free_of < last && !narrow(parts, from, *found)) return std::nullopt;
-    result.windows.push_back({parts.time(from), parts.time(found->free_of)});
+    const double end = found->free_of < last ? parts.time(found->free_of) : trajectory.duration();
+    result.windows.push_back({parts.time(from), end});
     factor = like_the_last;
     first = factor * (found->free_of - from);
     from = found->free_of;
