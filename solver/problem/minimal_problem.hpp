@@ -23,6 +23,8 @@ struct MinimalProblem {
   BoundaryRelation boundary;
   Duration duration;
   Guess guess;
+  /// The same in another chart, for extremals that leave this one; null: there is none.
+  std::shared_ptr<const MinimalProblem> next = nullptr;
 };
 
 /// Points of q, one after the other.

@@ -129,6 +129,8 @@ inline constexpr double least_quality = 0.2, turned_below = 0.5, better = 1.2;
 /// Angles whose radius is to be found at each point cost more: they are taken where other coordinates are
 /// worse by this factor.
 inline constexpr double worth_of_spatial = 0.5;
+/// Charts beside the best one that are tried where extremals leave it.
+inline constexpr int most_others = 2;
 /// |∂q/∂u| along a guess: with more the path may leave the chart, and u tells less of q. Where there are
 /// several angles it may be so many times larger as these are many.
 inline constexpr double most_stretch = 6;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "linear/dense.hpp"
 #include "problem/manifold.hpp"
@@ -373,25 +374,33 @@ void put_minimal_coordinates(const SystemTable& table, const System& system, boo
   // Extremals between free ends may be a family by a symmetry, which is found where it is affine in u.
   const bool families = problem.ends.free > 0 && !problem.periodic && !problem.initial;
   std::shared_ptr<const MinimalProblem> best;
+  std::vector<std::shared_ptr<const MinimalProblem>> others;
   std::size_t most = 0;
   const auto look = [&](const ChosenChart& chosen, double stretch) {
     auto minimal = minimal_problem(problem, minimal_system(graph, chosen.chart), stretch);
     if (!minimal) return;
     const std::size_t found = families ? continuous_symmetries(minimal->problem).size() : 0;
-    if (best && found <= most) return;
+    if (best && found <= most) return others.push_back(std::move(minimal));
+    if (best) others.push_back(std::move(best));
     best = std::move(minimal);
     most = found;
   };
   for (const ChosenChart& chosen : charts)
-    if (families || !best) look(chosen, most_stretch);
+    if (families || std::ssize(others) < most_others) look(chosen, most_stretch);
   // Angles of rods that hang on each other move all that hangs on them.
   for (const ChosenChart& chosen : charts)
     if (const auto pairs = std::ssize(chosen.chart.polar); !best && pairs > 1)
       look(chosen, most_stretch * static_cast<double>(pairs));
   if (!best) return;
+  others.insert(others.begin(), std::move(best));
+  for (auto after = others.rbegin(), chart = after + 1; chart != others.rend(); after = chart++) {
+    MinimalProblem linked = **chart;
+    linked.next = *after;
+    *chart = std::make_shared<const MinimalProblem>(std::move(linked));
+  }
   Manifold::Parts parts = problem.manifold->parts();
   parts.only_minimal = only;
-  parts.minimal = std::move(best);
+  parts.minimal = others.front();
   problem.manifold = std::make_shared<const Manifold>(std::move(parts));
 }
 

@@ -197,6 +197,26 @@ TEST_F(Scenes, AnEndThatConstraintsLinkWithWhatIsFixed) {
   EXPECT_NE(message(sphere + guess + "[solve]\nmethod = \"ceres\"\n").find(refusal), std::string::npos);
 }
 
+/// It swings up past the middle of the sphere, where x and y are no coordinates.
+TEST_F(Scenes, APathThatLeavesItsChartIsFoundInAnother) {
+  Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - 9.81*z\"\n"
+      "constraints = [\"x^2 + y^2 + z^2 = 1\"]\n[boundary]\nstart = { x = 0.6, y = 0, z = -0.8 }\n"
+      "end = { x = 0.3, y = 0.1, z = \"-sqrt(0.9)\" }\nduration = 1.2\n");
+  Manifold::Parts parts = s.problem.manifold->parts();
+  ASSERT_TRUE(parts.minimal && parts.minimal->next);
+  const Solution in_chart = run(s);
+  parts.minimal = nullptr;
+  s.problem.manifold = std::make_shared<const Manifold>(parts);
+  const Solution in_all = run(s);
+  ASSERT_TRUE(in_chart.converged() && in_all.converged()) << in_chart.message;
+  EXPECT_NEAR(in_chart.action, in_all.action, 1e-10);
+  std::vector<double> q(3), v(3);
+  in_chart.trajectory.at(0.6, q, v);
+  EXPECT_GT(q[2], 0.3);
+  EXPECT_EQ(in_chart.morse_index, in_all.morse_index);
+}
+
 /// The guess ends elsewhere, where x is no coordinate of the sphere.
 TEST_F(Scenes, AChartHasTheFixedEndsInPlaceOfThoseOfTheGuess) {
   const std::string duration = "duration = 0.8\n";
