@@ -205,7 +205,7 @@ TEST_F(Scenes, DifferencesFollowFunctionsOfAnyScale) {
 }
 
 TEST_F(Scenes, TheBudgetIsPositiveAndEndsWhatDoesNotConverge) {
-  EXPECT_EQ(study(masses + ends).budget, 60);
+  EXPECT_EQ(Study{}.budget, 60);
   EXPECT_EQ(study(masses + ends, {"solve.budget=0.5"}).budget, 0.5);
   EXPECT_EQ(message(masses + ends + "[solve]\nbudget = 0\n"),
             "scene.toml:11:10: budget = 0; need more than 0 seconds");
