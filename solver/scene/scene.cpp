@@ -116,7 +116,7 @@ void check_duration(const Scene& scene) {
                          "' closes a free duration, but duration is fixed; write "
                          "duration = \"free\" or leave '" +
                          name + "' out" +
-                         (boundary.energy ? "" : "; what is to hold at the ends stands in 'conditions'"));
+                         (boundary.energy ? "" : "; what the ends are held to stands in 'conditions'"));
   if (!boundary.free && !boundary.infinite && scene.guess.duration)
     throw SceneError(
         scene.guess.duration->at,

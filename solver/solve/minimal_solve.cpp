@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "problem/manifold.hpp"
-#include "problem/minimal_problem.hpp"
 #include "solution/from_minimal.hpp"
 #include "solve/limits.hpp"
 
@@ -13,7 +12,7 @@ namespace extremal {
 
 namespace {
 
-using Solve = std::function<Solution(const Problem&, const SolveOptions&)>;
+using Solve = std::function<Solution(const MinimalProblem&, const SolveOptions&)>;
 
 /// In one chart. Nothing where the path leaves it; `failed` is then what to say.
 std::optional<Solution> solve_in(const MinimalProblem& minimal, const Problem& problem,
@@ -27,9 +26,9 @@ std::optional<Solution> solve_in(const MinimalProblem& minimal, const Problem& p
     SolveOptions coarse = own;
     coarse.tolerance = std::max(own.tolerance, limits::minimal_solve::coarse);
     coarse.progress = nullptr;
-    if (!solve(minimal.problem, coarse).converged()) return std::nullopt;
+    if (!solve(minimal, coarse).converged()) return std::nullopt;
   }
-  Solution solution = solve(minimal.problem, own);
+  Solution solution = solve(minimal, own);
   failed.status = solution.status;
   failed.message = solution.message;
   if (!solution.converged()) return std::nullopt;

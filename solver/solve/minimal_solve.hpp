@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "problem/problem.hpp"
+#include "problem/minimal_problem.hpp"
 #include "solution/solution.hpp"
 #include "solve/adapt/options.hpp"
 
@@ -11,10 +11,11 @@
 
 namespace extremal {
 
-/// The solution that is near the guess in the coordinates of the problem's chart; nothing where it has none,
-/// or where that way does not lead to a solution. `solve` finds one from the guess alone.
+/// The solution that is near the guess in the coordinates of the problem's chart, or of the charts that
+/// follow it; nothing where it has none, or where that way does not lead to a solution. `solve` finds one in
+/// a chart from the guess alone.
 std::optional<Solution> solve_minimal(
     const Problem& problem, const SolveOptions& options,
-    const std::function<Solution(const Problem&, const SolveOptions&)>& solve);
+    const std::function<Solution(const MinimalProblem&, const SolveOptions&)>& solve);
 
 }  // namespace extremal

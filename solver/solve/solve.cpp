@@ -262,8 +262,7 @@ Solution one_of_copies(const Problem& problem, Solution pair, const SolveOptions
 /// Whether minimal coordinates are those of a search too: angles have no limit.
 bool searched_in_chart(const Problem& problem) {
   const Manifold::Parts& parts = problem.manifold->parts();
-  return problem.initial || parts.only_minimal ||
-         (parts.minimal && !parts.minimal->lagrangian->chart().polar.empty());
+  return parts.only_minimal || (parts.minimal && !parts.minimal->lagrangian->chart().polar.empty());
 }
 
 /// On the manifold that the constants of a solution have.
@@ -295,11 +294,14 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
   };
   Workspace& w = memory_->workspace;
   if (problem.manifold && !problem.inequalities) {
-    const bool searched = searched_in_chart(problem);
-    const auto solve_there = [&w, searched](const Problem& there, const SolveOptions& how) {
-      const Problem& solved = there.pair ? *there.pair : there;
-      Solution found = searched ? solve_once(solved, how, w) : solve_near_guess(solved, how, w);
-      return there.pair ? one_of_copies(there, std::move(found), how) : found;
+    // One search is enough.
+    const MinimalProblem* const searched =
+        searched_in_chart(problem) ? problem.manifold->parts().minimal.get() : nullptr;
+    const auto solve_there = [&](const MinimalProblem& in, const SolveOptions& how) {
+      const Problem& solved = in.problem.pair ? *in.problem.pair : in.problem;
+      const bool whole = problem.initial || &in == searched;
+      Solution found = whole ? solve_once(solved, how, w) : solve_near_guess(solved, how, w);
+      return in.problem.pair ? one_of_copies(in.problem, std::move(found), how) : found;
     };
     if (std::optional<Solution> solution = solve_minimal(problem, recording, solve_there)) {
       solution->history = std::move(history);

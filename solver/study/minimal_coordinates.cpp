@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -392,15 +393,18 @@ void put_minimal_coordinates(const SystemTable& table, const System& system, boo
     if (const auto pairs = std::ssize(chosen.chart.polar); !best && pairs > 1)
       look(chosen, most_stretch * static_cast<double>(pairs));
   if (!best) return;
+  // Each with the next ones, the last one first.
+  std::shared_ptr<const MinimalProblem> next;
+  others.resize(std::min<std::size_t>(others.size(), most_others));
   others.insert(others.begin(), std::move(best));
-  for (auto after = others.rbegin(), chart = after + 1; chart != others.rend(); after = chart++) {
-    MinimalProblem linked = **chart;
-    linked.next = *after;
-    *chart = std::make_shared<const MinimalProblem>(std::move(linked));
+  for (const auto& chart : std::views::reverse(others)) {
+    MinimalProblem linked = *chart;
+    linked.next = std::move(next);
+    next = std::make_shared<const MinimalProblem>(std::move(linked));
   }
   Manifold::Parts parts = problem.manifold->parts();
   parts.only_minimal = only;
-  parts.minimal = others.front();
+  parts.minimal = std::move(next);
   problem.manifold = std::make_shared<const Manifold>(std::move(parts));
 }
 

@@ -255,9 +255,8 @@ TEST(Diagram, TwoPairsOnOneStep) {
       return (v[0] * v[0] + v[1] * v[1] - first * q[0] * q[0] - second * q[1] * q[1]) / 2;
     });
   };
-  const auto problem = [=, first = guessed(periodic(lagrangian(0.4), pi), [](double) {
-                             return Values{0, 0};
-                           })](double a) {
+  const Problem first = guessed(periodic(lagrangian(0.4), pi), [](double) { return Values{0, 0}; });
+  const auto problem = [=](double a) {
     Problem at = first;
     at.lagrangian = lagrangian(a);
     return at;

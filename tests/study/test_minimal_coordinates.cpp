@@ -203,18 +203,43 @@ TEST_F(Scenes, APathThatLeavesItsChartIsFoundInAnother) {
       "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - 9.81*z\"\n"
       "constraints = [\"x^2 + y^2 + z^2 = 1\"]\n[boundary]\nstart = { x = 0.6, y = 0, z = -0.8 }\n"
       "end = { x = 0.3, y = 0.1, z = \"-sqrt(0.9)\" }\nduration = 1.2\n");
+  const Manifold::Parts parts = s.problem.manifold->parts();
+  ASSERT_TRUE(parts.minimal && parts.minimal->next);
+  const auto solved_with = [&](std::shared_ptr<const MinimalProblem> minimal) {
+    Manifold::Parts other = parts;
+    other.only_minimal = minimal != nullptr;
+    other.minimal = std::move(minimal);
+    s.problem.manifold = std::make_shared<const Manifold>(std::move(other));
+    return run(s);
+  };
+  MinimalProblem alone = *parts.minimal;
+  alone.next = nullptr;
+  EXPECT_FALSE(solved_with(std::make_shared<const MinimalProblem>(alone)).converged());
+  const Solution in_charts = solved_with(parts.minimal), in_all = solved_with(nullptr);
+  ASSERT_TRUE(in_charts.converged() && in_all.converged()) << in_charts.message;
+  EXPECT_NEAR(in_charts.action, in_all.action, 1e-10);
+  EXPECT_EQ(in_charts.morse_index, in_all.morse_index);
+  std::vector<double> q(3), v(3);
+  in_charts.trajectory.at(0.6, q, v);
+  EXPECT_GT(q[2], 0.3);
+}
+
+/// What begins in a chart and leaves it is marched still, not sought between ends.
+TEST_F(Scenes, AMotionThatLeavesItsChartIsMarched) {
+  Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2 - 9.81*z\"\n"
+      "constraints = [\"x^2 + y^2 + z^2 = 1\"]\n[boundary]\nduration = 0.8\n"
+      "start = { x = 0.6, y = 0, z = -0.8, p_x = 3.2, p_y = 1.5, p_z = 2.4 }\n");
+  const Solution in_charts = run(s);
   Manifold::Parts parts = s.problem.manifold->parts();
   ASSERT_TRUE(parts.minimal && parts.minimal->next);
-  const Solution in_chart = run(s);
   parts.minimal = nullptr;
   s.problem.manifold = std::make_shared<const Manifold>(parts);
   const Solution in_all = run(s);
-  ASSERT_TRUE(in_chart.converged() && in_all.converged()) << in_chart.message;
-  EXPECT_NEAR(in_chart.action, in_all.action, 1e-10);
-  std::vector<double> q(3), v(3);
-  in_chart.trajectory.at(0.6, q, v);
-  EXPECT_GT(q[2], 0.3);
-  EXPECT_EQ(in_chart.morse_index, in_all.morse_index);
+  ASSERT_TRUE(in_charts.converged() && in_all.converged()) << in_charts.message;
+  EXPECT_NEAR(in_charts.action, in_all.action, 1e-8);
+  EXPECT_NEAR(in_charts.momentum_start[0], 3.2, 1e-12);
+  EXPECT_FALSE(in_charts.morse_index);
 }
 
 /// The guess ends elsewhere, where x is no coordinate of the sphere.

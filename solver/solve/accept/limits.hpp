@@ -120,10 +120,10 @@ namespace sparse_windows {
 inline constexpr double first_trial = 4, like_the_last = 1.25, shortest = 1e-3;
 /// By which a window is shorter than the longest one at most, relative.
 inline constexpr double margin = 1e-3;
-/// Steps of inverse iteration to the field that vanishes at both ends of a window, and its two highest
-/// Legendre coefficients, relative to its largest: the window errs by about their square.
+/// Steps of inverse iteration to the field that vanishes at both ends of a window, and what elements may leave
+/// out of it, relative: the window errs by about the square.
 inline constexpr int inverse_steps = 3;
-inline constexpr double most_tail = 1e-2;
+inline constexpr double most_left_out = 1e-2;
 
 }  // namespace sparse_windows
 

@@ -145,8 +145,7 @@ void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options,
   if (!options.scheme && !(check.kicked <= momentum_tolerances * options.tolerance))
     return refuse(solution, "the momenta at the ends", check.kicked, options.tolerance,
                   "forces change fast within the first or the last element");
-  // What a finer quadrature moves is a part of the error; where the estimate explains it, it need not be all
-  // of that.
+  // What a finer quadrature moves is a part of the error: up to the tolerance where the estimate explains it.
   const bool explained = check.moved <= honest * solution.error_estimate;
   const double told = explained ? std::min(check.moved, outcome.tolerance) : check.moved;
   solution.error_estimate = std::max(solution.error_estimate, told);

@@ -7,6 +7,7 @@
 
 #include "solve/accept/limits.hpp"
 #include "solve/mesh/levels.hpp"
+#include "solve/mesh/resolution.hpp"
 #include "solve/newton/sparse_model.hpp"
 
 namespace extremal {
@@ -49,39 +50,24 @@ class PartsOfPath {
     return inertia.negative;
   }
 
-  /// The largest share of the two highest Legendre coefficients in the field of the part that the last call
-  /// was for whose eigenvalue is nearest zero.
-  double tail() {
-    const int n = problem_.coordinates(), lanes = simd_lanes();
+  /// What the elements of the last call leave out of the field whose eigenvalue is nearest zero, relative.
+  double left_out() {
+    const auto n = static_cast<std::size_t>(problem_.coordinates());
     std::vector<double> load(at_->path.nodes().size(), 0.0);
     for (std::size_t i = n; i + n < load.size(); ++i) load[i] = std::cos(1 + 2.4 * i);
-    Step field;
+    Step step;
     for (int k = 0; k < inverse_steps; ++k) {
-      at_->model.respond(at_->action, nullptr, load, field);
+      at_->model.respond(at_->action, nullptr, load, step);
       double largest = 0;
-      for (const double x : field.nodes) largest = std::max(largest, std::abs(x));
-      for (std::size_t i = 0; i < load.size(); ++i) load[i] = field.nodes[i] / largest;
+      for (const double x : step.nodes) largest = std::max(largest, std::abs(x));
+      for (std::size_t i = 0; i < load.size(); ++i) load[i] = step.nodes[i] / largest;
     }
-    const SchemeTables& scheme = tables_.scheme();
-    const int functions = scheme.functions, inner = functions - 2;
-    double largest = 0, highest = 0;
-    std::vector<double> values(functions);
-    for (int k = 0; k < at_->path.elements(); ++k)
-      for (int a = 0; a < n; ++a) {
-        for (int j = 0; j < inner; ++j) {
-          const std::size_t group = (std::size_t(k / lanes) * functions + j) * n + a;
-          values[j] = field.inner[group * lanes + k % lanes];
-        }
-        values[inner] = field.nodes[std::size_t(k) * n + a];
-        values[inner + 1] = field.nodes[std::size_t(k + 1) * n + a];
-        for (int i = 0; i < functions; ++i) {
-          double coefficient = 0;
-          for (int j = 0; j < functions; ++j) coefficient += scheme.legendre[i * functions + j] * values[j];
-          largest = std::max(largest, std::abs(coefficient));
-          if (i >= functions - 2) highest = std::max(highest, std::abs(coefficient));
-        }
-      }
-    return highest / largest;
+    Path field;
+    field.reset(tables_, at_->path.mesh(), 1);
+    field.add(step.nodes, step.inner, 1);
+    Resolution resolution;
+    resolution.measure(field, tables_);
+    return resolution.at(field.degree()).q / scales(field, tables_).q;
   }
 
  private:
@@ -151,40 +137,45 @@ std::optional<Bracket> bracket(PartsOfPath& parts, double from, double last, dou
 /// By halves, until the window is the longest there is, less a small part. False where its elements do not
 /// resolve the field that vanishes at both ends.
 bool narrow(PartsOfPath& parts, double from, Bracket& found) {
+  const int elements = elements_for(found.beyond - from);
   while (found.beyond - found.free_of > margin * (found.free_of - from)) {
     const double middle = (found.free_of + found.beyond) / 2;
-    const std::optional<int> count = parts.conjugate_times(from, middle, elements_for(middle - from));
+    const std::optional<int> count = parts.conjugate_times(from, middle, elements);
     if (!count) return false;
     (*count == 0 ? found.free_of : found.beyond) = middle;
   }
-  return parts.tail() <= most_tail;
+  return parts.left_out() <= most_left_out;
 }
 
 }  // namespace
 
+/// The count for the whole path is on elements that resolve fields as well as those of the windows do.
 std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajectory& trajectory) {
   Levels levels;
   levels.bind(problem.lagrangian);
   PartsOfPath parts(problem, trajectory, levels);
   const double last = trajectory.elements();
-  const std::optional<int> all = parts.conjugate_times(0, last, elements_for(last));
-  if (!all) return std::nullopt;
-  if (*all == 0) {
-    if (!(parts.tail() <= most_tail)) return std::nullopt;
-    return SparseWindows{0, {{0, trajectory.duration()}}};
-  }
-  SparseWindows result{*all, {}};
-  double first = std::min(first_trial, last), factor = 2;
+  SparseWindows result;
+  double first = std::min(first_trial, last), factor = 2, longest_element = 1;
   for (double from = 0; from < last;) {
     std::optional<Bracket> found = bracket(parts, from, last, first, factor);
     if (!found) return std::nullopt;
-    if (found->free_of < last && !narrow(parts, from, *found)) return std::nullopt;
-    const double end = found->free_of < last ? parts.time(found->free_of) : trajectory.duration();
-    result.windows.push_back({parts.time(from), end});
+    if (found->free_of < last) {
+      if (!narrow(parts, from, *found)) return std::nullopt;
+      longest_element = std::min(longest_element, (found->free_of - from) / 2);
+    } else if (from == 0 && !(parts.left_out() <= most_left_out)) {
+      return std::nullopt;
+    }
+    const bool ends = found->free_of == last;
+    result.windows.push_back({parts.time(from), ends ? trajectory.duration() : parts.time(found->free_of)});
     factor = like_the_last;
     first = factor * (found->free_of - from);
     from = found->free_of;
   }
+  if (result.windows.size() == 1) return result;
+  const std::optional<int> all = parts.conjugate_times(0, last, elements_for(last / longest_element));
+  if (!all) return std::nullopt;
+  result.conjugate_times = *all;
   return result;
 }
 

@@ -318,7 +318,7 @@ bool Continuation::lands() {
 /// and a longer one may lead over it.
 bool Continuation::step_over() {
   const double shorter = length_;
-  while ((length_ *= lengthening) <= longest_)
+  while ((length_ *= lengthening) <= longest_ && !options_.solve.deadline.passed())
     if (lands()) return true;
   length_ = shorter;
   tracker_.fail(StepFailure::hidden);

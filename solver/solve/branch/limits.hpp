@@ -112,7 +112,7 @@ inline constexpr double coverage = 4;
 inline constexpr double shortest_leap = 2e-3;
 /// The next try after a step that failed is so much of it.
 inline constexpr double shortening = 0.4;
-/// And over what roundoff hides.
+/// Where roundoff hides its end, the next try is longer by this factor.
 inline constexpr double lengthening = 1.5;
 /// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, else it
 /// shrinks; it shrinks, too, after corrections that took more factorisations.
