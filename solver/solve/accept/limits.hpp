@@ -120,8 +120,8 @@ namespace sparse_windows {
 inline constexpr double first_trial = 4, like_the_last = 1.25, shortest = 1e-3;
 /// By which a window is shorter than the longest one at most, relative.
 inline constexpr double margin = 1e-3;
-/// Steps of inverse iteration to the field that vanishes at both ends of a window, and what elements may leave
-/// out of it, relative: the window errs by about the square.
+/// Steps of inverse iteration to the field that vanishes at both ends of a window, and what elements may
+/// leave out of it, relative: the window errs by about the square.
 inline constexpr int inverse_steps = 3;
 inline constexpr double most_left_out = 1e-2;
 
