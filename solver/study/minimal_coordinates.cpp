@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -397,7 +396,8 @@ void put_minimal_coordinates(const SystemTable& table, const System& system, boo
   std::shared_ptr<const MinimalProblem> next;
   others.resize(std::min<std::size_t>(others.size(), most_others));
   others.insert(others.begin(), std::move(best));
-  for (const auto& chart : std::views::reverse(others)) {
+  std::ranges::reverse(others);
+  for (const auto& chart : others) {
     MinimalProblem linked = *chart;
     linked.next = std::move(next);
     next = std::make_shared<const MinimalProblem>(std::move(linked));
