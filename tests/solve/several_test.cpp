@@ -168,6 +168,26 @@ TEST(Several, LambertWithUpToSixRevolutions) {
   }
 }
 
+/// Slow motions do not arrive, but fall to the centre time after time; or the ends are near to each other, so
+/// that times of arrival hardly change along a curve.
+TEST(Several, LambertTowardsTheCentre) {
+  struct Case {
+    Values end;
+    double duration;
+    std::size_t count;
+  };
+  for (const Case& c : {Case{{0.3, 0.2}, 10, 14}, Case{{0.3, 0.2}, 20, 30}, Case{{0.9, 0.1}, 12, 18}}) {
+    const Values start{1, 0}, exact = lambert_energies(start, c.end, c.duration);
+    EXPECT_EQ(exact.size(), c.count);
+    Values energies;
+    for (const Solution& s : solve_all(fixed_ends(systems::kepler(), start, c.end, c.duration), 40))
+      energies.push_back(s.energy.value());
+    std::sort(energies.begin(), energies.end());
+    ASSERT_EQ(energies.size(), exact.size()) << c.end[0] << ", " << c.duration;
+    EXPECT_LT(largest_difference(energies, exact), 1e-7);
+  }
+}
+
 /// From a circle of 8,800 km to one of 42,900 km around the Earth in three days, in units of the first radius
 /// and of its period by 2π: half of the ellipses pass the centre at a fifteenth of it, up to fourteen times.
 TEST(Several, LambertByCloseEncounters) {

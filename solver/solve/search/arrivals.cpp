@@ -174,7 +174,8 @@ bool Arrivals::trace(const Vector& seed, double sense, double fastest, double lo
     last_tangent = std::exchange(tangent, onward);
     curve.push_back({u, tangent});
     if (closed) return true;
-    if (u.head(n_).norm() * speed_ > fastest || u[n_] > std::log(longest / time_)) return false;
+    const bool later = tangent[n_] > 0;
+    if (u.head(n_).norm() * speed_ > fastest || (later && u[n_] > std::log(longest / time_))) return false;
     if (steps <= 2 && cosine > mild_turn)
       length = std::min(1.6 * length, longest_length * (1 + u.head(n_).norm()));
   }
@@ -203,16 +204,16 @@ bool Arrivals::followed(const Arrival& arrival) const {
   return false;
 }
 
-/// Where the motion passes q1: with one coordinate the side is 0.
-std::vector<Arrivals::Passage> Arrivals::passages(const Vector& w, double until) {
-  Vector y = state(w);
+/// Where the motion passes q1, and whether it lasts: with one coordinate the side is 0.
+void Arrivals::pass(Flight& flight, double until) {
+  Vector y = state(flight.w);
   DormandPrince<double> method([this](double t, std::span<const double> x,
                                       std::span<double> slope) { return flow_.slope(t, x, slope); },
                                2 * n_);
   IntegrationOptions options;
   options.tolerance = coarse_step;
   options.block = n_;
-  std::vector<Passage> found;
+  std::vector<Passage>& found = flight.passages;
   std::vector<Vector> away;  // from q1, the last three
   std::vector<double> times;
   const auto add = [&](double t, const Vector& q) {
@@ -247,12 +248,14 @@ std::vector<Arrivals::Passage> Arrivals::passages(const Vector& w, double until)
     }
   }
   counted_(cost_ * (method.steps() + method.rejected()));
-  return found;
+  flight.lasts = t >= until;
 }
 
 Arrivals::Flight Arrivals::flight(Vector w, double until, const Scale& scale) {
   if (scale && !scale(w)) return {};
-  return {w, passages(w, until)};
+  Flight there{std::move(w), {}};
+  pass(there, until);
+  return there;
 }
 
 /// Adds the arrival near a motion that has this length of w.
@@ -299,6 +302,8 @@ void Arrivals::compare(const Flight& one, const Flight& other, double until, con
     return;
   }
   for (const auto& [a, b] : pairs) {
+    // So near to each other neighbours pass far apart where they part at a collision.
+    if (std::abs(a->side - b->side) >= near_passage * extent_) continue;
     const double part = a->side / (a->side - b->side);
     const double length = (1 - part) * one.w.norm() + part * other.w.norm();
     land(length * (one.w + part * (other.w - one.w)).normalized(), a->time + part * (b->time - a->time),
@@ -322,6 +327,7 @@ std::vector<Arrivals::Arrival> Arrivals::sweep(double speed, double until, const
   }
   for (std::size_t k = 0; k < flights.size() && counted_(0); ++k) {
     const Flight& next = flights[(k + 1) % flights.size()];
+    all_last_ = all_last_ && (flights[k].lasts || next.lasts);
     if (flights[k].w.size() > 0 && next.w.size() > 0) compare(flights[k], next, until, scale, 0, found);
   }
   return found;

@@ -35,6 +35,9 @@ class Arrivals {
 
   /// Of motions whose w have this length, or have been changed by `scale`, those that arrive until then.
   std::vector<Arrival> sweep(double speed, double until, const Scale& scale = {});
+  /// Whether all motions of the sweeps lasted, but for single ones: between neighbours that did not there may
+  /// be arrivals that were not met.
+  bool all_last() const { return all_last_; }
   /// Along the curve of an arrival, both ways, to where motions are too fast or too long, or where it closes:
   /// its arrivals at the time that is the unit.
   std::vector<Arrival> along(const Arrival& seed, double fastest, double longest);
@@ -55,6 +58,7 @@ class Arrivals {
   struct Flight {
     Vector w;  ///< empty if there is none
     std::vector<Passage> passages;
+    bool lasts = false;
   };
 
   /// Errors of the integrator's steps, and the last step of Newton's method.
@@ -71,10 +75,10 @@ class Arrivals {
   void cross(const Vector& a, const Vector& slope_a, const Vector& b, const Vector& slope_b, double length,
              std::vector<Arrival>& found);
   Flight flight(Vector w, double until, const Scale& scale);
+  void pass(Flight& flight, double until);
   void land(const Vector& w, double time, std::vector<Arrival>& found);
   void compare(const Flight& one, const Flight& other, double until, const Scale& scale, int halvings,
                std::vector<Arrival>& found);
-  std::vector<Passage> passages(const Vector& w, double until);
 
   Flow flow_;
   int n_, cost_;
@@ -83,6 +87,7 @@ class Arrivals {
   double speed_, time_, extent_;
   std::function<bool(int)> counted_;
   std::vector<std::vector<Point>> curves_;
+  bool all_last_ = true;
 };
 
 }  // namespace extremal

@@ -161,8 +161,11 @@ inline constexpr int most_scanned = 24, most_dimensions = 4;
 /// Lengths of velocities on which curves of arrivals are looked for, at first and in each ring beyond, and
 /// how many times more with one coordinate.
 inline constexpr int first_levels = 8, further_levels = 5, denser_in_one = 3;
-/// Times, by the duration, until which curves are looked for and followed; and velocities, by the reach.
-inline constexpr double seed_until = 1.5, follow_until = 1.5, follow_beyond = 100;
+/// Steps of integrators for one of these lengths at most.
+inline constexpr int most_sweep_steps = 100000;
+/// Times, by the duration, until which curves are looked for, and followed where times grow along them; and
+/// velocities, by the reach.
+inline constexpr double seed_until = 1.5, follow_until = 1.1, follow_beyond = 100;
 /// Directions in which the least velocity is looked for.
 inline constexpr int directions_tried = 24;
 /// Newton steps for a velocity of given energy, and how near they come, relative.

@@ -180,17 +180,28 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
     return more(0);
   }
   const int levels = (first ? first_levels : further_levels) * (n == 1 ? denser_in_one : 1);
-  for (int k = 0; k < levels && more(0); ++k) {
+  // Slow motions fall into what attracts them, and take most steps: so the fast ones come first, and no level
+  // takes the steps of all.
+  bool complete = true;
+  for (int k = levels - 1; k >= 0 && more(0); --k) {
     // Denser towards the least energies, where motions take longest.
     const double root_part = (k + 0.5) / levels, part = root_part * root_part;
     const double speed = std::sqrt(nearest * nearest + part * (farthest * farthest - nearest * nearest));
-    for (const Arrivals::Arrival& seed : arrivals_->sweep(speed, seed_until * given.value))
+    int steps_here = 0;
+    arrivals_->count_by([&](int steps) {
+      steps_here += steps;
+      return more(steps) && steps_here < most_sweep_steps;
+    });
+    const std::vector<Arrivals::Arrival> seeds = arrivals_->sweep(speed, seed_until * given.value);
+    complete = complete && (steps_here < most_sweep_steps || seeds.empty());
+    arrivals_->count_by(more);
+    for (const Arrivals::Arrival& seed : seeds)
       if (more(0) && !arrivals_->followed(seed))
         for (const Arrivals::Arrival& arrival :
              arrivals_->along(seed, follow_beyond * farthest, follow_until * given.value))
           take(arrival);
   }
-  return more(0);
+  return more(0) && complete && arrivals_->all_last();
 }
 
 bool MotionScan::next(double reach) {

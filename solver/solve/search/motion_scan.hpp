@@ -47,8 +47,9 @@ class MotionScan {
   /// The least reach of motions whose energy suffices for the end. q'·∂L/∂q' − L grows along q' where L is
   /// convex in q': so at the end it is at least −L(q(T), 0).
   double slowest();
-  /// Visits the motions that meet the end, whose curves come through a reach between two. False if there were
-  /// not enough integrator steps: `more` is told how many were taken.
+  /// Visits the motions that meet the end, whose curves come through a reach between two. False if others
+  /// may be missing, because motions did not last, or there were not enough integrator steps: `more` is told
+  /// how many were taken.
   bool all(double nearest, double farthest, const std::function<bool(int steps)>& more,
            const std::function<void(const Guess& motion, double duration)>& visit);
 

@@ -58,6 +58,7 @@ bool Several::trace_arrivals() {
   const std::function<bool(int)> more = scan_budget();
   double nearest = motions_.slowest();
   double farthest = reach_beyond * std::max(wanted_reach(), nearest);
+  bool told = true;
   for (int growths = 0; growths < most_growths;) {
     const std::size_t before = found_.size();
     const bool complete = motions_.all(nearest, farthest, more, [&](const Guess& motion, double duration) {
@@ -65,14 +66,15 @@ bool Several::trace_arrivals() {
       ++scanned_;
       if (search_.refine_motion(motion, duration, from_arrival)) keep();
     });
-    if (!complete) return false;
+    if (!more(0)) return false;
+    told = told && complete;
     const bool enough = static_cast<int>(found_.size()) >= most_;
     nearest = farthest;
-    if (enough && farthest >= wanted_reach()) return true;
+    if (enough && farthest >= wanted_reach()) return told;
     farthest = enough ? reach_beyond * wanted_reach() : farthest * growth_of_arrivals;
     growths = found_.size() > before ? 0 : growths + 1;
   }
-  return true;
+  return told;
 }
 
 /// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.
