@@ -181,8 +181,8 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
   }
   const int levels = (first ? first_levels : further_levels) * (n == 1 ? denser_in_one : 1);
   // Slow motions fall into what attracts them, and take most steps: so the fast ones come first, and no level
-  // takes the steps of all.
-  bool complete = true;
+  // takes the steps of all. Those slower than all that arrive need not be looked at to the end.
+  bool complete = true, arrived = false;
   for (int k = levels - 1; k >= 0 && more(0); --k) {
     // Denser towards the least energies, where motions take longest.
     const double root_part = (k + 0.5) / levels, part = root_part * root_part;
@@ -193,7 +193,8 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
       return more(steps) && steps_here < most_sweep_steps;
     });
     const std::vector<Arrivals::Arrival> seeds = arrivals_->sweep(speed, seed_until * given.value);
-    complete = complete && (steps_here < most_sweep_steps || seeds.empty());
+    complete = complete && (steps_here < most_sweep_steps || (arrived && seeds.empty()));
+    arrived = arrived || !seeds.empty();
     arrivals_->count_by(more);
     for (const Arrivals::Arrival& seed : seeds)
       if (more(0) && !arrivals_->followed(seed))
