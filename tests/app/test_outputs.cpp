@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "command.hpp"
+#include "machine/long_test.hpp"
 
 using namespace extremal::test;
 
@@ -159,6 +160,7 @@ TEST_F(Outputs, AnInterruptEndsEveryVerbAtOnceAndLeavesNothing) {
 
 /// A step that is begun is ended; those of Ipopt and Ceres are long where coordinates are many.
 TEST_F(Outputs, TheBudgetEndsEveryVerb) {
+  LONG_TEST();
   using namespace std::chrono_literals;
   write("long.toml", chain(100));
   write("short.toml", chain(40));

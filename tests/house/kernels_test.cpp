@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "house/sources.hpp"
+#include "machine/long_test.hpp"
 
 /// Kernels are compiled for several instruction sets. Any inline function that they share with other files
 /// could be kept by the linker in the copy that this processor cannot run.
@@ -50,6 +51,7 @@ std::vector<std::string> output_of(const std::string& command) {
 
 /// In the object files themselves: every symbol that a kernel defines for the linker names its level.
 TEST(Kernels, DefineSymbolsOfTheirLevelOnly) {
+  LONG_TEST();
   const std::regex defined(R"((\S+\.simd\.cpp\.o):\S* ([TWVuDBR]) (\S+))");
   const std::regex levelled("^_Z[A-Z]*N?K?8extremal(4base|2v3|2v4)");
   int symbols = 0;

@@ -1,4 +1,5 @@
 #include "report/plot.hpp"
+#include "machine/long_test.hpp"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -74,6 +75,7 @@ std::vector<std::vector<std::string>> kinds() {
 }
 
 TEST(Plot, EveryKindAsSvgAndPng) {
+  LONG_TEST();
   const TemporaryFolder folder;
   for (const std::vector<std::string>& names : kinds()) {
     const Picture picture = arc("Arc of " + std::to_string(names.size()), names);
@@ -100,6 +102,7 @@ TEST(Plot, EveryKindAsSvgAndPng) {
 }
 
 TEST(Plot, IsTheSameTwice) {
+  LONG_TEST();
   const TemporaryFolder folder;
   for (const std::vector<std::string>& names : kinds()) {
     for (const std::string suffix : {".svg", ".png", ".pdf"}) {

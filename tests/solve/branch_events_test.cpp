@@ -1,3 +1,4 @@
+#include "machine/long_test.hpp"
 #include "solve/branches.hpp"
 #include "solve/scenes.hpp"
 
@@ -25,6 +26,7 @@ TEST(BranchEvents, TwoMultipliersThatPassMinusOneAtOnce) {
 /// Orbits of twice the period of the drive that begin at one period doubling and end at another one. Beyond
 /// it they would be the same ones, one period of the drive later.
 TEST(BranchEvents, ABranchThatComesBackToHalfItsPeriod) {
+  LONG_TEST();
   const Study study = study_of(
       "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { w = 1.5 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
       "(x^2 "
@@ -47,6 +49,7 @@ TEST(BranchEvents, ABranchThatComesBackToHalfItsPeriod) {
 /// come out of the turning points, and pass the end of the period. The fold by solutions of both linear
 /// equations put together (x(0) = −0.5106955, x'(0) = 0.0970157 there).
 TEST(BranchEvents, OrbitsThatGrazeAStop) {
+  LONG_TEST();
   const FollowedBranch found = extremal::follow(study_of(
       "[system]\ncoordinates = [\"x\"]\nparameters = { F = 0.6 }\nlagrangian = \"x'^2/2 - x^2/2 - "
       "2*max(abs(x) - "
@@ -182,6 +185,7 @@ TEST(BranchEvents, AFirstMemberThatCanBeShiftedInTime) {
 /// Without its drive the oscillator's orbits can be shifted in time, and at a = 1 the potential is round:
 /// branches of one value, which go all round.
 TEST(BranchEvents, BranchesOfOneValueAreClosed) {
+  LONG_TEST();
   const FollowedBranch shifted = extremal::follow(study_of(
       "[system]\ncoordinates = [\"x\"]\nparameters = { F = -0.2, w = 1.3 }\nlagrangian = \"x'^2/2 - x^2/2 - "
       "x^4/4 + F*x*cos(w*t)\"\n[boundary]\nperiodic = true\nduration = \"2*pi/w\"\n[guess]\nx = "

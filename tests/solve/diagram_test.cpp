@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/branches.hpp"
 #include "solve/scenes.hpp"
 
@@ -42,6 +43,7 @@ Followed follow_branches(const ProblemFamily& family, double tolerance, int poin
 /// However long the step on which it lies: at the fold itself the factors are singular to roundoff. All
 /// members are exp(y/2) = cosh θ / cosh θ(1 − 2t), with the energy 8θ² and λ = 8θ²/cosh²θ.
 TEST(Diagram, TheFoldOfBratusProblem) {
+  LONG_TEST();
   for (const double from : {0.3, 0.8, 1.0, 2.0})
     for (const int points : {60, 90, 120}) {
       const auto problem = [](double lambda) { return fixed_ends(systems::bratu(lambda), {0}, {0}, 1); };
@@ -166,6 +168,7 @@ ProblemFamily shaken_spring(double theta, double from, double to, double period 
 /// From rest, motions of the period π begin at a_0, b_2, a_2, and such of
 /// twice the period at b_1, a_1. Rest is stable where none of them is negative.
 TEST(Diagram, MathieusEquation) {
+  LONG_TEST();
   const Followed found = follow_branches(shaken_spring(1, -1, 5), 1e-10, 40);
   const Values even = characteristic(false, false), odd = characteristic(false, true);
   const std::vector<double> crossings = found.values(PointKind::branch);
@@ -217,6 +220,7 @@ TEST(Diagram, MathieusEquationShakenHard) {
 /// Of twice the period all of them cross, and two by two ever nearer to each other: on one step, whose
 /// elements suffice for rest, and not for what crosses there.
 TEST(Diagram, CrossingsInPairs) {
+  LONG_TEST();
   for (const double theta : {1.0, 2.0}) {
     Diagram diagram(shaken_spring(theta, -1, 20, 2 * pi), {.solve = within(1e-9), .points = 200});
     Followed found;
@@ -235,6 +239,7 @@ TEST(Diagram, CrossingsInPairs) {
 
 /// Shaken ever so little it is unstable for so few a about 1 that both ends of them fall within one step.
 TEST(Diagram, TwoDoublingsOnOneStep) {
+  LONG_TEST();
   for (const double theta : {0.05, 0.01, 0.001}) {
     const Followed found = follow_branches(shaken_spring(theta, 0.3, 3), 1e-10, 60);
     const std::vector<double> doublings = found.values(PointKind::period_doubling);
@@ -248,6 +253,7 @@ TEST(Diagram, TwoDoublingsOnOneStep) {
 
 /// Two springs shaken at once, one a little stiffer: on one step a pair of each passes −1.
 TEST(Diagram, TwoPairsOnOneStep) {
+  LONG_TEST();
   const double theta = 0.2, stiffer = 1.001;
   const auto lagrangian = [=](double a) {
     return trace(2, [=](auto q, auto v, auto t) {

@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 
 /// \file What cannot be solved is said to be so, and nothing that is not finite is returned.
@@ -84,6 +85,7 @@ TEST(Failure, ConjugateEnds) {
 }
 
 TEST(Failure, ToleranceBeyondRoundoff) {
+  LONG_TEST();
   for (const Problem& problem : {fixed_ends(systems::kepler(), {1, 0}, {-0.6, 0.9}, 2.5),
                                  fixed_ends(systems::pendulum(), {0}, {1.5}, 2)})
     EXPECT_EQ(wrong_answers(problem, {within(1e-17)}, "loosen"), "");
@@ -91,6 +93,7 @@ TEST(Failure, ToleranceBeyondRoundoff) {
 
 /// The message names the end at which L is infinite, and the speed that no path has.
 TEST(Failure, EndsThatNoPathReaches) {
+  LONG_TEST();
   const Problem centre = fixed_ends(systems::kepler(), {1, 0}, {0, 0}, 1);
   EXPECT_EQ(wrong_answers(centre, {within(1e-9)}, "not finite at the end, q[1] = 0, q[2] = 0"), "");
   const auto relativistic = trace(1, [](auto, auto v, auto) { return -sqrt(1 - v[0] * v[0]); });

@@ -4,6 +4,7 @@
 #include <functional>
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/branches.hpp"
 #include "solve/scenes.hpp"
 
@@ -82,6 +83,7 @@ TEST(FamilySymmetries, NoBranchFromAnotherMember) {
 /// The geodesic x² + y² = 1 of an ellipsoid whose third semiaxis is c: z'' = −(2π/c)² z. At c = 1 any great
 /// circle will do.
 TEST(FamilySymmetries, TheEquatorOfASphere) {
+  LONG_TEST();
   const std::vector<BranchPoint> points = family(
       "[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\n"
       "constraints = [\"x^2 + y^2 + z^2/a^2 = 1\"]\n%[boundary]\nperiodic = true\nduration = 1\n"

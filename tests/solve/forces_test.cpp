@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "machine/long_test.hpp"
 #include "problem/copies.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/adapt/others_to_try.hpp"
@@ -523,6 +524,7 @@ BranchEnd follow_over_flat_bottom(int m, double from) {
 /// At the first orbit the potential may be flat to roundoff, so that the orbit may be shifted, as no other
 /// may.
 TEST(Forces, FamiliesFromTheBottomOfAFlatPotential) {
+  LONG_TEST();
   EXPECT_EQ(follow_over_flat_bottom(8, 0.2), BranchEnd::target);
   follow_over_flat_bottom(16, 0.05);
 }
@@ -530,6 +532,7 @@ TEST(Forces, FamiliesFromTheBottomOfAFlatPotential) {
 /// Orbits of three periods of the drive lie on a closed curve between two folds. Where the amplitude of a
 /// drive grows, falls and grows again, another orbit has the first value, in the same direction.
 TEST(Forces, ClosedCurvesOfOrbitsAndOthers) {
+  LONG_TEST();
   const auto ring = [](double w) {
     return closed_problem({{"x"}, "x'^2/2 - x^2/2 - x^4/4", {fmt::format("-0.02*x' + cos({:.17g}*t)", w)}},
                           6 * pi / w, false, [](double tau) { return std::cos(2 * pi * tau); });
@@ -556,6 +559,7 @@ TEST(Forces, ClosedCurvesOfOrbitsAndOthers) {
 /// not, and the period of that doubles (G. L. Baker and J. P. Gollub, Chaotic Dynamics, 2nd edition, chapter
 /// 3).
 TEST(Forces, DrivenPendulumLosesItsSymmetryAndDoublesItsPeriod) {
+  LONG_TEST();
   const double T = 3 * pi;
   const auto pendulum = [&](double a) {
     return closed_problem({{"x"}, "x'^2/2 + cos(x)", {fmt::format("-x'/2 + {:.17g}*cos(2*t/3)", a)}}, T,

@@ -1,3 +1,4 @@
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 
 /// \file The times of the nodes as unknowns: one discrete energy, the extended symplectic form, and where
@@ -51,6 +52,7 @@ TEST(FreeTimes, AllElementsHaveOneEnergy) {
 
 /// Fine elements have almost one energy at equal times, and these are no solution yet.
 TEST(FreeTimes, EnergiesThatDifferLittleAreNotEqual) {
+  LONG_TEST();
   const Problem problem = fixed_ends(unit_pendulum(), {-2.0}, {2.9}, 3.0);
   for (const int elements : {6, 24, 28}) {
     Solver solver;
@@ -149,6 +151,7 @@ TEST(FreeTimes, EnergyAndMomentaAreDerivativesOfTheAction) {
 /// On the way to these times μ turns back, or an element stretches over the place where the energy error
 /// changes its sign.
 TEST(FreeTimes, BehindFolds) {
+  LONG_TEST();
   const Problem problem = fixed_ends(quartic_and_coupled(), {0, 1}, {2, 0.1}, 1.5);
   const std::pair<const char*, int> cases[] = {{"midpoint", 8},  {"midpoint", 12},  {"trapezoid", 3},
                                                {"trapezoid", 8}, {"trapezoid", 12}, {"simpson", 8},

@@ -1,3 +1,4 @@
+#include "machine/long_test.hpp"
 #include "solve/homotopy/duration_homotopy.hpp"
 
 #include <numbers>
@@ -158,6 +159,7 @@ TEST(ForceHomotopy, DerivativesAreThoseOfTheValue) {
 
 /// The straight line is far from every extremal.
 TEST(ForceHomotopy, FindsWhatOtherGuessesDoNot) {
+  LONG_TEST();
   const Solution solution = solve(chain_of_pendulums(5), within(1e-10));
   ASSERT_TRUE(solution.converged()) << solution.message;
   for (const int n : {20, 60}) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/branches.hpp"
 #include "system/formula.hpp"
 
@@ -197,6 +198,7 @@ TEST(Kinks, PeriodicOrbitOfGivenEnergy) {
 /// Where the force pushes away from the kink, x'' = sign x, only fast paths cross: −1 → 1 in T < 2√2. Slower
 /// ones would stay on the kink for a while, where there is no force to balance.
 TEST(Kinks, PathsThatWouldStickAreNotSolutions) {
+  LONG_TEST();
   const auto lagrangian = written({"x"}, "x'^2/2 + abs(x)");
   const double T = 2.5;
   const auto truth = [&](double t) {
@@ -303,6 +305,7 @@ TEST(Kinks, PinnedElementsStay) {
 /// Two wells that meet in a cusp, and a path much longer than their windows: no guess leads there. There are
 /// three extremals, by shooting with located crossings.
 TEST(Kinks, MotionsAreBracketedWhereNoGuessLeads) {
+  LONG_TEST();
   const auto wells = written({"x"}, "x'^2/2 - min(1.78*x^2, 2.876*(x - 1)^2 + 0.1)/2");
   const Solution s = solve(fixed_ends(wells, {-0.376}, {-0.153}, 6.74), within(1e-6));
   ASSERT_TRUE(s.converged()) << s.message;
@@ -321,6 +324,7 @@ TEST(Kinks, PathsOnOneSideOfAMomentumJumpAreFound) {
 
 /// p jumps with the sign of a velocity: a path that changes it is no extremal.
 TEST(Kinks, PathsAcrossAMomentumJumpAreNone) {
+  LONG_TEST();
   const auto refused = [](const Problem& problem, const SolveOptions& options) {
     Solver solver;
     const Solution s = solver.solve(problem, options);

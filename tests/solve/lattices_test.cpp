@@ -1,6 +1,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "rivals/verify.hpp"
 #include "solve/branch/diagram.hpp"
 #include "solve/scenes.hpp"
@@ -29,6 +30,7 @@ std::vector<BranchPoint> follow(const Study& study, double tolerance) {
 /// q = (1, 0, −1, 0, …) a cn(ωt | k²) with ω² = 2 + 2a² and k² = a²/ω²: 16 masses of energy a² + a⁴/2 (Poggi
 /// and Ruffo, Physica D 103 (1997) 251).
 TEST(Lattices, ModeOfFourLatticeConstants) {
+  LONG_TEST();
   const Study study =
       scene("fpu-mode-family", {"guess.q=\"0.02*sin(pi*i/2)*cos(2*pi*t/T)\"", "guess.duration=4.4428",
                                 "boundary.energy=0.0064", "continuation.to=100", "system.parameters.n=31"});
@@ -90,6 +92,7 @@ TEST(Lattices, BreatherIsLocal) {
 /// With h the coupling to the neighbours goes like 1/h²: alone a site swings as u = a dn(ωt | k²), ω² = a²/2
 /// and k² = 2 − 1/ω², of period 2 K/ω and energy h (a² − 1)²/4.
 TEST(Lattices, BreatherOfOneSite) {
+  LONG_TEST();
   Study study =
       scene("phi4-breather", {"continuation.parameter=h", "continuation.to=20.0", "continuation.points=40"});
   const std::vector<BranchPoint> points = follow(study, 1e-9);

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "problem/closing.hpp"
 #include "rivals/verify.hpp"
 #include "solve/guess/loop.hpp"
@@ -118,6 +119,7 @@ TEST(Loops, ChoreographiesOfFiveBodies) {
 }
 
 TEST(Loops, ThreeBodies) {
+  LONG_TEST();
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(found(three_bodies, 5).size(), 5u);
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 60);

@@ -1,6 +1,7 @@
 #include <numbers>
 
 #include "action/rule.hpp"
+#include "machine/long_test.hpp"
 #include "motion/flow.hpp"
 #include "rivals/shooting.hpp"
 #include "solve/laws.hpp"
@@ -225,6 +226,7 @@ double henon_heiles_energy(const Solution& s) {
 
 /// The random walk of 10⁵ roundings, not their sum.
 TEST(MarchedMotion, RoundoffDoesNotDrift) {
+  LONG_TEST();
   const Problem problem = from(systems::henon_heiles(), {0, 0.1}, {0.35, 0.1}, 1e5);
   EXPECT_NEAR(henon_heiles_energy(solve(problem, pinned(scheme("gauss(8)"), 120000))),
               0.35 * 0.35 / 2 + 0.01 - 1e-3 / 3, 1.5e-14);

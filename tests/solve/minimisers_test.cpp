@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/guess/first_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/laws.hpp"
@@ -129,6 +130,7 @@ TEST(Minimisers, PathsOfTheDriftAlone) {
 
 /// All of a chain at once: each coordinate has the action of the kink.
 TEST(Minimisers, KinksOfManyCoordinates) {
+  LONG_TEST();
   constexpr int n = 50;
   const Problem chain = fixed_ends(trace(n,
                                          [](auto q, auto v, auto) {
@@ -363,6 +365,7 @@ TEST(Minimisers, OneWellAfterTheOther) {
 }
 
 TEST(Minimisers, MostProbablePaths) {
+  LONG_TEST();
   for (const double T : {12.0, 30.0, 100.0}) {
     const std::vector<Solution> lowest = Solver().solve_all(maier_stein(T), within(1e-8), 2);
     ASSERT_EQ(lowest.size(), 2u) << T;

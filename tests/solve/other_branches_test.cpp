@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "machine/long_test.hpp"
 #include "solve/branch/bifurcation_equations.hpp"
 #include "solve/branches.hpp"
 #include "solve/scenes.hpp"
@@ -84,6 +85,7 @@ TEST(OtherBranches, OfTwoSprings) {
 }
 
 TEST(OtherBranches, OfThreeSprings) {
+  LONG_TEST();
   const FollowedBranch found =
       extremal::follow(springs("\"x\", \"y\", \"z\"",
                                "(x'^2 + y'^2 + z'^2)/2 - a*(x^2 + y^2 + z^2)/2 + x^4/8 + "

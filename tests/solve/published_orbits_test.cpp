@@ -1,3 +1,4 @@
+#include "machine/long_test.hpp"
 #include "solve/published.hpp"
 
 /// \file Published periodic orbits, solved for from their initial states: distance of the refined state from
@@ -45,6 +46,7 @@ TEST(PublishedOrbits, OfThreeBodiesInThePlane) {
 
 /// Errors grow by up to 7e16 over a period, and by the root of that over each half.
 TEST(PublishedOrbits, ThatAreVeryUnstable) {
+  LONG_TEST();
   for (const char* id : {"3b-simo-009", "3b-simo-061", "3b-simo-101", "3b-simo-161", "3b-simo-311",
                          "3b-sheen-6", "3b-hristov-600-2"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
@@ -53,6 +55,7 @@ TEST(PublishedOrbits, ThatAreVeryUnstable) {
 /// Encounters within a hundredth of the size of the orbit amplify roundoff, that of double beyond the
 /// tolerance.
 TEST(PublishedOrbits, WithCloseEncounters) {
+  LONG_TEST();
   for (const char* id :
        {"3b-sd-IIC2b-yinyangI", "3b-sd-IIC3b-yinyangII", "3b-sd-IIC2a-yinyangI", "3b-ll-IB13", "3b-ll-IIC22",
         "3b-ll-IA6", "3b-ll-IIC71", "3b-sheen-7", "3b-sheen-10", "3b-sd-IB4-mothIII", "3b-sd-IA3-bumblebee",
@@ -61,6 +64,7 @@ TEST(PublishedOrbits, WithCloseEncounters) {
 }
 
 TEST(PublishedOrbits, AsCloselyAsCanBe) {
+  LONG_TEST();
   for (const char* id :
        {"3b-ll-IB2", "3b-ll-IA6", "3b-ll-IA12", "3b-ll-IIC22", "3b-ll-IIC71", "3b-sd-IIC2a-yinyangI"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id), 1e-14), "") << id;
@@ -68,6 +72,7 @@ TEST(PublishedOrbits, AsCloselyAsCanBe) {
 
 /// To 3e-4 of the size of the orbit; free fall begins and ends at rest.
 TEST(PublishedOrbits, WithVeryCloseEncounters) {
+  LONG_TEST();
   for (const char* id : {"3b-ll-IB2", "3b-sd-IA2-butterflyII", "3b-sd-IB3-butterflyIII", "3b-ll-IA12",
                          "3b-ll-IA36", "3b-ff-F1_1_1_1_", "3b-ff-F2_1_1_1_"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
@@ -75,6 +80,7 @@ TEST(PublishedOrbits, WithVeryCloseEncounters) {
 
 /// To 1e-4 of it, and hundreds of times.
 TEST(PublishedOrbits, WithManyVeryCloseEncounters) {
+  LONG_TEST();
   for (const char* id : {"3b-ll-IB22", "3b-ll-IA150", "3b-llu-IB22-m0.75", "3b-llu-IIC89-m0.75",
                          "3b-llu-IIC88-m0.5", "3b-llu-IA1-m5"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
@@ -82,6 +88,7 @@ TEST(PublishedOrbits, WithManyVeryCloseEncounters) {
 
 /// To 1e-4, 1e-5 and 2e-6 of it: states integrated in extended precision miss the next encounters.
 TEST(PublishedOrbits, WithEncountersThatAmplifyAllRoundoff) {
+  LONG_TEST();
   for (const char* id : {"3b-llu-IA1-m10", "3b-llu-IB31-m0.5", "3b-ff-F29_1_1_1_", "3b-hristov-sd-20"})
     EXPECT_EQ(wrong(published("nbody_periodic_orbits.json", id)), "") << id;
 }
@@ -89,6 +96,7 @@ TEST(PublishedOrbits, WithEncountersThatAmplifyAllRoundoff) {
 /// By 34 digits along the whole period, from states rounded to double (Taylor series of order 44, differences
 /// of 1e-19); 1360.60, published for the second, was not.
 TEST(PublishedOrbits, MultipliersPastCloseEncounters) {
+  LONG_TEST();
   const std::pair<const char*, Values> cases[] = {{"3b-llu-IIC89-m0.75", {529.456403035, -14.8213771374}},
                                                   {"3b-ff-F29_1_1_1_", {1360.24040763, 322.554062813}},
                                                   {"3b-llu-IIC88-m0.5", {-14.7498050938}}};
@@ -103,6 +111,7 @@ TEST(PublishedOrbits, MultipliersPastCloseEncounters) {
 
 /// Ten digits of a state do not say when the last of the encounters come, which last no longer than 1e-6.
 TEST(PublishedOrbits, FromStatesOfTenDigits) {
+  LONG_TEST();
   for (const nlohmann::json& published : cases_of("three_body_states.json")) {
     nlohmann::json c = published;
     c["refined"] = c["published"];

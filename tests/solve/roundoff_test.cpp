@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "machine/long_test.hpp"
 #include "solve/mesh/levels.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/iteration.hpp"
@@ -50,6 +51,7 @@ TEST(Roundoff, OfAStepIsAllThatStepsChange) {
 /// Roundoff of q amplified to 1e-8 hides a tolerance of 1e-9 from some elements on: thousands of times more
 /// are not tried.
 TEST(Roundoff, ThatHidesTheToleranceOfASchemeEndsIt) {
+  LONG_TEST();
   const Study study = load(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/refused/nbody-amplified.toml");
   const Solution s = run(study);
   EXPECT_FALSE(s.converged());

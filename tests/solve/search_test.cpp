@@ -1,6 +1,7 @@
 #include <numbers>
 #include <random>
 
+#include "machine/long_test.hpp"
 #include "rivals/verify.hpp"
 #include "solve/adapt/refinement.hpp"
 #include "solve/mesh/mesh.hpp"
@@ -159,6 +160,7 @@ TEST(Search, IsTheSameEachTime) {
 
 /// V'' <= 0: the action with fixed ends is convex and has one extremal, from whatever guess.
 TEST(Search, ConvexActionFromAnyGuess) {
+  LONG_TEST();
   const std::shared_ptr<const Lagrangian> convex[] = {
       trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + q[0] * q[0] * q[0] * q[0]; }),
       trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + exp(5.0 * q[0]); }),

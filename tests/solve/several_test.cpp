@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "rivals/verify.hpp"
 #include "solve/motions.hpp"
 
@@ -95,6 +96,7 @@ Values pendulum_actions(double end, double duration) {
 }
 
 TEST(Several, AllMotionsOfAPendulum) {
+  LONG_TEST();
   struct Case {
     double end, duration;
     std::size_t count;
@@ -134,6 +136,7 @@ Values lambert_energies(const Values& r1, const Values& r2, double duration) {
 }
 
 TEST(Several, LambertWithUpToTwoRevolutions) {
+  LONG_TEST();
   struct Case {
     Values end;
     double duration;
@@ -152,6 +155,7 @@ TEST(Several, LambertWithUpToTwoRevolutions) {
 
 /// As from a low orbit to a high one: most of them pass the centre several times.
 TEST(Several, LambertWithUpToSixRevolutions) {
+  LONG_TEST();
   struct Case {
     Values end;
     double duration;
@@ -171,6 +175,7 @@ TEST(Several, LambertWithUpToSixRevolutions) {
 /// Slow motions do not arrive, but fall to the centre time after time; or the ends are near to each other, so
 /// that times of arrival hardly change along a curve.
 TEST(Several, LambertTowardsTheCentre) {
+  LONG_TEST();
   struct Case {
     Values end;
     double duration;
@@ -191,6 +196,7 @@ TEST(Several, LambertTowardsTheCentre) {
 /// From a circle of 8,800 km to one of 42,900 km around the Earth in three days, in units of the first radius
 /// and of its period by 2π: half of the ellipses pass the centre at a fifteenth of it, up to fourteen times.
 TEST(Several, LambertByCloseEncounters) {
+  LONG_TEST();
   const double unit = std::sqrt(std::pow(8800.0, 3) / 398600.4418), ratio = 42900 / 8800.0;
   const Values start{1, 0}, end{ratio * std::cos(0.7), ratio * std::sin(0.7)};
   const double duration = 3 * 86400 / unit;
@@ -207,6 +213,7 @@ TEST(Several, LambertByCloseEncounters) {
 /// Soap films between rings of radius 1, y = a cosh(t/a) about the middle, a shallow and a deep one. Momenta
 /// are bounded by y, and hardly depend on velocities as fast as those at the deep one's ends.
 TEST(Several, Catenaries) {
+  LONG_TEST();
   const auto film = trace(1, [](auto q, auto v, auto) { return q[0] * sqrt(1.0 + v[0] * v[0]); });
   for (const double width : {0.6, 1.0, 1.3}) {
     Values grid, exact;
@@ -285,6 +292,7 @@ TEST(Several, PairsNearTheSeparatrixOfADrivenPendulum) {
 
 /// Those of least action, without a gap, as many as are asked for.
 TEST(Several, NoneIsMissingBetweenThoseOfADoubleWell) {
+  LONG_TEST();
   const auto well = trace(1, [](auto q, auto v, auto) {
     const auto u = q[0] * q[0] - 1;
     return v[0] * v[0] / 2 - u * u / 4;
@@ -310,6 +318,7 @@ TEST(Several, NoneIsMissingBetweenThoseOfADoubleWell) {
 /// Three particles in a ring with exponential forces: the first of those that 3000 motions of chance, each
 /// corrected by shooting, lead to.
 TEST(Several, NoneIsMissingBetweenThoseOfTheTodaRing) {
+  LONG_TEST();
   const auto toda = trace(3, [](auto q, auto v, auto) {
     return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2 - exp(q[0] - q[1]) - exp(q[1] - q[2]) -
            exp(q[2] - q[0]);
@@ -377,6 +386,7 @@ TEST(Several, AsManyAsAreWanted) {
 }
 
 TEST(Several, ChaoticSystems) {
+  LONG_TEST();
   EXPECT_EQ(solve_all(ends_of_motion(systems::double_pendulum(), {0, 0}, {1, 2}, 3), 6).size(), 6u);
   EXPECT_EQ(solve_all(ends_of_motion(systems::henon_heiles(), {0.1, 0.2}, {0.4, 0.1}, 10), 6).size(), 6u);
 }

@@ -1,3 +1,4 @@
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 
 /// \file Modes of very different frequencies beside their closed forms.
@@ -7,6 +8,7 @@ namespace {
 
 /// V = (x² + k y² + x y)/2 by normal modes, each u(t) = (u(0) sin ω(T − t) + u(T) sin ωt)/sin ωT.
 TEST(StiffModes, AreThoseOfTheClosedForm) {
+  LONG_TEST();
   const double k = 5e7, T = 10;
   const auto lagrangian = trace(2, [k](auto q, auto v, auto) {
     return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - k * q[1] * q[1] - q[0] * q[1]) / 2.0;

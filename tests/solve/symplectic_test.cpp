@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 
 #include "action/discrete_action.hpp"
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 
 /// \file The action as a generating function: its derivatives are the momenta and −E, and the map
@@ -42,6 +43,7 @@ Solution moved(const NeighboursCase& c, const SolveOptions& options, int e, doub
 }
 
 TEST(GeneratingFunction, SlopesInTheEndsAreTheMomenta) {
+  LONG_TEST();
   for (const NeighboursCase& c : neighbours_cases())
     for (const Scheme& scheme : schemes_and_families())
       for (int elements : {1, 5}) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 #include "solve/refused.hpp"
 #include "study/study.hpp"
@@ -44,6 +45,7 @@ TEST(Unseen, ForceJustBeforeTheEnd) {
 /// that begins at the wall may have hardly another point in its reach. E = p²/2 + V holds, so p(0) follows
 /// from p(T).
 TEST(Unseen, MomentumAtAWall) {
+  LONG_TEST();
   const double start = 0.075;
   const auto answer = [&](double strength, double end, double tolerance) {
     const auto wall = trace(1, [&](auto q, auto v, auto) {
@@ -69,6 +71,7 @@ TEST(Unseen, MomentumAtAWall) {
 /// of given schemes that step over the wall, and others of higher degree on the same mesh, find the same
 /// path.
 TEST(Unseen, NoMotionFromAWall) {
+  LONG_TEST();
   const double start = 0.075, end = 40;
   const auto from_wall = [&](double potential) {
     const double strength = potential * end * end / 2 * std::pow(start, 12);
@@ -116,6 +119,7 @@ TEST(Unseen, RoundoffOfTheEnergyAtAFold) {
 /// A body is led along x, a well at y = 0 holds it less than exponentially far away, where every direction
 /// across is null: it rests at the well's bottom, or nowhere.
 TEST(Unseen, WherePullsVanish) {
+  LONG_TEST();
   const auto well =
       trace(2, [](auto q, auto v, auto) { return (v[0] * v[0] + v[1] * v[1]) / 2 + exp(-(q[1] * q[1])); });
   const auto led = with_ends(well, 1, [](BoundaryRelation& b) {
@@ -139,6 +143,7 @@ TEST(Unseen, WherePullsVanish) {
 /// that Newton's method finds is refused, and only another guess may lead to a solution. Roundoff that more
 /// elements do not reduce is found by few.
 TEST(Unseen, ScenesThatAreRefused) {
+  LONG_TEST();
   const auto refused = [](const char* name) {
     const Study study = load(std::string(EXTREMAL_SOURCE_DIR) + "/tests/data/refused/" + name + ".toml");
     const SolveOptions& options = study.options;

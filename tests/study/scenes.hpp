@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "machine/folder.hpp"
+#include "machine/long_test.hpp"
 #include "machine/sanitizer.hpp"
 #include "scene/source.hpp"
 #include "solve/external/method.hpp"

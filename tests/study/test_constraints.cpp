@@ -236,6 +236,7 @@ TEST_F(Scenes, NodesOfASchemeAreOnTheManifold) {
 }
 
 TEST_F(Scenes, SeveralExtremalsKeepTheConstraints) {
+  LONG_TEST();
   const Study s = study(pendulum(swing + "[search]\nsolutions = 3\n"));
   for (const Solution& solution : run_all(s)) {
     ASSERT_TRUE(solution.converged()) << solution.message;

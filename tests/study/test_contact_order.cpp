@@ -84,6 +84,7 @@ TEST_F(ContactOrder, AnArcThatRests) {
 }
 
 TEST_F(ContactOrder, EachDiscIsPassedOnBothSides) {
+  LONG_TEST();
   const Study s = study(
       "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n[path]\n"
       "constraints = [\"(x + 2.5)^2 + (y - 0.2)^2 >= 1\", \"x^2 + (y + 0.1)^2 >= 1\", "

@@ -180,6 +180,7 @@ TEST_F(Scenes, GuessFromAStateThatCrossesAKinkSlowly) {
 /// passage. Doubles lose the time of the passage against the forces there from e = 0.999999 on. Without a
 /// whole turn there is no conjugate time.
 TEST_F(Scenes, TheExtremalOfAnExactMotionIsFoundAtAnyTolerance) {
+  LONG_TEST();
   const auto position = [](double e, double E) {
     return std::array{std::cos(E) - e, std::sqrt(1 - e * e) * std::sin(E)};
   };

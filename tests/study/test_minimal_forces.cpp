@@ -276,6 +276,7 @@ TEST_F(Scenes, FamiliesOfLimitCyclesInAChart) {
 
 /// Of a rod whose pivot is driven: in all coordinates, in a chart, and by the angle.
 TEST_F(Scenes, FamiliesOfADrivenPivotHaveTheMultipliersOfTheAngle) {
+  LONG_TEST();
   const std::string rest =
       "[boundary]\nperiodic = true\nduration = \"2*pi/w\"\n[continuation]\nparameter = \"w\"\nto = 0.9\n"
       "[guess]\n";

@@ -81,6 +81,7 @@ TEST_F(PathEnds, AConditionDeterminesTheDuration) {
 }
 
 TEST_F(PathEnds, AnEnergyThatNoMinimiserHasIsTold) {
+  LONG_TEST();
   // The hill between the ends is higher; slow minimisers come near its top.
   const Solution solution =
       run(study("[system]\ncoordinates = [\"x\", \"y\"]\n"
@@ -219,6 +220,7 @@ TEST_F(PathEnds, RefusesWhatDoesNotRecur) {
 }
 
 TEST_F(PathEnds, TheEnergyNearestToTheOneGiven) {
+  LONG_TEST();
   // Parabolas of the duration T have the energy 2.005/T² + T²/2 + 0.7, at least 2.7025.
   const Solution solution =
       run(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - 2*y\"\n[path]\n"

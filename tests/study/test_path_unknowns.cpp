@@ -196,6 +196,7 @@ TEST_F(PathUnknowns, ConditionsThatNoMinimiserSatisfies) {
 
 /// A ceiling that the string does not touch changes nothing.
 TEST_F(PathUnknowns, AnUnknownThatDeterminesNothing) {
+  LONG_TEST();
   const Solution solution =
       run(study("[system]\ncoordinates = [\"y\"]\nlagrangian = \"y'^2/2 + 2*y\"\n[path]\n"
                 "constraints = [\"y >= 0\", \"y <= h\"]\n[boundary]\nduration = 3\nstart = { y = 1 }\n"

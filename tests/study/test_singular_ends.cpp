@@ -184,6 +184,7 @@ TEST_F(SingularEnds, ARadialCollisionOfKepler) {
 }
 
 TEST_F(SingularEnds, LayersThinnerThanTheDigitsOfTheTime) {
+  LONG_TEST();
   for (const double mu : {50.0, 70.0, 100.0}) {
     const std::string lagrangian = fmt::format("y'^2/2 + cosh({}*y)", mu);
     for (const bool late : {true, false}) {

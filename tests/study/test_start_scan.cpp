@@ -21,6 +21,7 @@ class StartScanScenes : public Scenes {
 /// in the duration T, which is longer than kπ. For T = 10, k is 1, 2 or 3, and each swing begins on either
 /// side.
 TEST_F(StartScanScenes, SwingsBetweenNaturalEnds) {
+  LONG_TEST();
   const std::vector<Solution> found = run_all(
       study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + cos(x)\"\n[boundary]\nduration = 10\n"
             "[search]\nsolutions = 40\n"));
@@ -50,6 +51,7 @@ TEST_F(StartScanScenes, MomentaAtBothEnds) {
 /// Two pendula that know nothing of each other: the extremals are all pairs of those of one. In T = 7 each
 /// rests below or above, or begins one half swing or two on either side.
 TEST_F(StartScanScenes, PairsOfSwings) {
+  LONG_TEST();
   const std::vector<Solution> found =
       run_all(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 + cos(x) + "
                     "cos(y)\"\n[boundary]\nduration = 7\n[search]\nsolutions = 60\n"));
@@ -59,6 +61,7 @@ TEST_F(StartScanScenes, PairsOfSwings) {
 /// A driven motion with a momentum given at either end. A scan by RK4 on 400 x 400 starts, each zero found by
 /// Newton's method, has 25 with p_x(0) and y(0) in this range.
 TEST_F(StartScanScenes, FixedEndsAndMomentaInTurn) {
+  LONG_TEST();
   const std::vector<Solution> found = run_all(study(
       "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - x^4/4 - y^4/4 - x*y/2 + "
       "0.3*x*cos(t)\"\n[boundary]\nstart = { x = 0.5, p_y = 0.2 }\nend = { y = 1, p_x = -0.3 }\n"
@@ -142,6 +145,7 @@ TEST_F(StartScanScenes, TurnsOfAnAngleAreOneOrbit) {
 /// each other under the reversal of time. A scan with RK4 of 400 x 400 starts has their action, of others
 /// that begin at rest, to four digits.
 TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
+  LONG_TEST();
   const std::vector<Solution> found =
       periodic_orbits("x'^2/2 - (1.2551*x^2/2 + 0.9748*x^4/4) + 0.6722*x*cos(1.1314*t)", "2*pi/1.1314",
                       "0.1 + 0.2*cos(1.1314*t)", 3);
@@ -153,6 +157,7 @@ TEST_F(StartScanScenes, OrbitsFarBeyondTheGuess) {
 /// An orbit of twice the period of the drive is one with its image a period later. A scan with RK4 of 400 x
 /// 400 starts has five of amplitude below 3 that are not.
 TEST_F(StartScanScenes, ImagesAPeriodLaterAreOneOrbit) {
+  LONG_TEST();
   const std::vector<Solution> found =
       periodic_orbits("x'^2/2 - (0.6483*x^2/2 + 0.2674*x^4/4) + 0.6432*x*cos(1.7925*t)", "2*2*pi/1.7925",
                       "0.1 + 0.2*cos(1.7925*t)", 13);

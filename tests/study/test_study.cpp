@@ -223,6 +223,7 @@ TEST_F(Scenes, TheBudgetIsPositiveAndEndsWhatDoesNotConverge) {
 
 /// So many coupled coordinates that the factors are those of one sparse matrix: asked before and within.
 TEST_F(Scenes, TheBudgetIsKeptByManyCoupledCoordinates) {
+  LONG_TEST();
   Study s = study(
       "[system]\ncoordinates = [\"q[180]\"]\nlagrangian = \"sum(i, 1, 180, q[i]'^2/2) - sum(i, 1, 180, "
       "sum(j, 1, 180, (q[j] - q[i])^2/360))\"\n[boundary]\nstart = { q = \"sin(i)\" }\n"
