@@ -8,6 +8,7 @@
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "linear/sparse_pattern.hpp"
@@ -50,20 +51,29 @@ void SparseSymmetric::Work::clear() {
   factored = false;
 }
 
-/// Scales by powers of two (Ruiz, as for the chain).
+/// Scales by powers of two (Ruiz, as for the chain), in so many sweeps or until none changes.
 void SparseSymmetric::Work::equilibrate() {
   const int sweeps = 3;
   scale.assign(n, 1.0);
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
+  bool changed = true;
+  for (int sweep = 0; sweep < sweeps && std::exchange(changed, false); ++sweep) {
     x.assign(n, 0.0);
-    for (int j = 0; j < n; ++j)
+    for (int j = 0; j < n; ++j) {
+      double largest = x[j];
       for (int p = pattern.begin[j]; p < pattern.begin[j + 1]; ++p) {
-        const double size = std::abs(value[p]) * scale[j] * scale[pattern.row[p]];
-        x[j] = std::max(x[j], size);
-        x[pattern.row[p]] = std::max(x[pattern.row[p]], size);
+        const int i = pattern.row[p];
+        const double size = std::abs(value[p]) * scale[j] * scale[i];
+        largest = std::max(largest, size);
+        x[i] = std::max(x[i], size);
       }
-    for (int i = 0; i < n; ++i)
-      if (x[i] > 0) scale[i] = std::ldexp(scale[i], -(std::ilogb(x[i]) / 2));
+      x[j] = std::max(x[j], largest);
+    }
+    for (int i = 0; i < n; ++i) {
+      const int halves = x[i] > 0 ? std::ilogb(x[i]) / 2 : 0;
+      if (halves == 0) continue;
+      scale[i] = std::ldexp(scale[i], -halves);
+      changed = true;
+    }
   }
   for (int j = 0; j < n; ++j)
     for (int p = pattern.begin[j]; p < pattern.begin[j + 1]; ++p)

@@ -124,6 +124,8 @@ inline constexpr double margin = 1e-3;
 /// leave out of it, relative: the window errs by about the square.
 inline constexpr int inverse_steps = 3;
 inline constexpr double most_left_out = 1e-2;
+/// Of so many trials one halves what is left, that the others may not.
+inline constexpr int most_by_slope = 4;
 
 }  // namespace sparse_windows
 

@@ -97,7 +97,9 @@ bool read_windows_alone(const Problem& problem, const SolveOptions& options, Sol
                      !problem.lagrangian->kinks();
   const auto too_many = [&](int times) { return (times + forms * elements) * n * n * n > most_work; };
   if (!suits || !too_many(solution.morse_index.value_or(0))) return false;
-  std::optional<SparseWindows> found = sparse_windows(problem, solution.trajectory);
+  const bool fixed = problem.ends.free == 0 && solution.nullity == 0;
+  std::optional<SparseWindows> found =
+      sparse_windows(problem, solution.trajectory, fixed ? solution.morse_index : std::optional<int>());
   if (!found || !too_many(found->conjugate_times)) return false;
   solution.windows = std::move(found->windows);
   solution.conjugate_times_known = found->conjugate_times == 0;

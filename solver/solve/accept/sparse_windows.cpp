@@ -39,8 +39,9 @@ class PartsOfPath {
   }
 
   /// How many times in the part are conjugate to its start; nothing if its end is one of them, to working
-  /// precision. The part is cut into so many elements, evenly in places.
+  /// precision. The part is cut into so many elements or more, evenly in places.
   std::optional<int> conjugate_times(double from, double to, int elements) {
+    elements = at_hand(elements);
     at_ = &of(elements);
     put_path(from, to, elements);
     at_->action.reset(*problem_.lagrangian, tables_, elements, false, Condense::nothing);
@@ -50,21 +51,39 @@ class PartsOfPath {
     return inertia.negative;
   }
 
-  /// What the elements of the last call leave out of the field whose eigenvalue is nearest zero, relative.
-  double left_out() {
+  /// Where the part of the last call ends, relative to the first time conjugate to its start: the eigenvalue
+  /// nearest zero of the second variation as a function of the nodes' values alone, which passes zero there
+  /// as that of all values does, elements being shorter than windows. By inverse iteration, from the field of
+  /// the part before on.
+  double softest(int steps) {
     const auto n = static_cast<std::size_t>(problem_.coordinates());
-    std::vector<double> load(at_->path.nodes().size(), 0.0);
-    for (std::size_t i = n; i + n < load.size(); ++i) load[i] = std::cos(1 + 2.4 * i);
-    Step step;
-    for (int k = 0; k < inverse_steps; ++k) {
-      at_->model.respond(at_->action, nullptr, load, step);
-      double largest = 0;
-      for (const double x : step.nodes) largest = std::max(largest, std::abs(x));
-      for (std::size_t i = 0; i < load.size(); ++i) load[i] = step.nodes[i] / largest;
+    std::vector<double>& x = at_->field;
+    if (x.empty()) {
+      x.assign(at_->path.nodes().size(), 0.0);
+      for (std::size_t i = n; i + n < x.size(); ++i) x[i] = std::cos(1 + 2.4 * i);
     }
+    double inverse = 0;
+    for (int k = 0; k < steps; ++k) {
+      at_->model.respond(at_->action, nullptr, x, at_->response);
+      const std::vector<double>& y = at_->response.nodes;
+      double xx = 0, xy = 0, largest = 0;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        xx += x[i] * x[i];
+        xy += x[i] * y[i];
+        largest = std::max(largest, std::abs(y[i]));
+      }
+      inverse = xy / xx;
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = y[i] / largest;
+    }
+    return 1 / inverse;
+  }
+
+  /// What the elements of the last call leave out of the field of softest(), relative.
+  double left_out() {
+    softest(inverse_steps);
     Path field;
     field.reset(tables_, at_->path.mesh(), 1);
-    field.add(step.nodes, step.inner, 1);
+    field.add(at_->response.nodes, at_->response.inner, 1);
     Resolution resolution;
     resolution.measure(field, tables_);
     return resolution.at(field.degree()).q / scales(field, tables_).q;
@@ -76,7 +95,15 @@ class PartsOfPath {
     SparseModel model;
     DiscreteAction action;
     Path path;
+    Step response;
+    std::vector<double> field = {};  ///< at the nodes, of the eigenvalue nearest zero
   };
+
+  /// To order a pattern takes several times as long as to factor it: up to twice as many elements will do.
+  int at_hand(int elements) const {
+    const auto made = by_count_.lower_bound(elements);
+    return made != by_count_.end() && made->first <= 2 * elements ? made->first : elements;
+  }
 
   Elements& of(int elements) {
     std::unique_ptr<Elements>& made = by_count_[elements];
@@ -117,16 +144,17 @@ int elements_for(double places) { return std::max(2, static_cast<int>(std::ceil(
 /// not at `beyond`.
 struct Bracket {
   double free_of, beyond;
+  double last;  ///< of both, that which was tried last
 };
 
 /// From a first trial on, each by a factor farther or nearer than the one before.
 std::optional<Bracket> bracket(PartsOfPath& parts, double from, double last, double first, double factor) {
-  Bracket found{from, INFINITY};
+  Bracket found{from, INFINITY, from};
   double trial = std::min(from + first, last);
   for (;;) {
     const std::optional<int> count = parts.conjugate_times(from, trial, elements_for(trial - from));
     if (!count) return std::nullopt;
-    (*count == 0 ? found.free_of : found.beyond) = trial;
+    (*count == 0 ? found.free_of : found.beyond) = found.last = trial;
     if (found.free_of == last) return found;
     if (found.free_of > from && found.beyond < INFINITY) return found;
     trial = *count == 0 ? std::min(from + factor * (trial - from), last) : from + (trial - from) / factor;
@@ -134,15 +162,34 @@ std::optional<Bracket> bracket(PartsOfPath& parts, double from, double last, dou
   }
 }
 
-/// By halves, until the window is the longest there is, less a small part. False where its elements do not
-/// resolve the field that vanishes at both ends.
-bool narrow(PartsOfPath& parts, double from, Bracket& found) {
+/// Until the window is the longest there is, less a small part: on both sides of where the softest eigenvalue
+/// leads, which falls with `slope` as the end moves away; by halves where it tells nothing, as beyond the
+/// second conjugate time it may be another one. False where the elements do not resolve the field that
+/// vanishes at both ends.
+bool narrow(PartsOfPath& parts, double from, Bracket& found, double& slope) {
+  struct Trial {
+    double end, softest;
+  };
+  std::optional<Trial> known;
+  const auto read = [&](double end, int count) {
+    const double softest = count > 1 ? NAN : parts.softest(known ? 1 : inverse_steps);
+    if (!(count == 0 ? softest > 0 : softest < 0)) return;
+    if (known) slope = (softest - known->softest) / (end - known->end);
+    known = {end, softest};
+  };
+  if (found.last == found.free_of) read(found.last, 0);
   const int elements = elements_for(found.beyond - from);
-  while (found.beyond - found.free_of > margin * (found.free_of - from)) {
-    const double middle = (found.free_of + found.beyond) / 2;
-    const std::optional<int> count = parts.conjugate_times(from, middle, elements);
+  for (int k = 1; found.beyond - found.free_of > margin * (found.free_of - from); ++k) {
+    double trial = (found.free_of + found.beyond) / 2;
+    if (known && slope < 0 && k % most_by_slope != 0) {
+      const double root = known->end - known->softest / slope, third = margin / 3 * (root - from);
+      const double aside = root - third > found.free_of + third ? root - third : root + third;
+      if (aside > found.free_of && aside < found.beyond) trial = aside;
+    }
+    const std::optional<int> count = parts.conjugate_times(from, trial, elements);
     if (!count) return false;
-    (*count == 0 ? found.free_of : found.beyond) = middle;
+    (*count == 0 ? found.free_of : found.beyond) = trial;
+    read(trial, *count);
   }
   return parts.left_out() <= most_left_out;
 }
@@ -150,18 +197,19 @@ bool narrow(PartsOfPath& parts, double from, Bracket& found) {
 }  // namespace
 
 /// The count for the whole path is on elements that resolve fields as well as those of the windows do.
-std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajectory& trajectory) {
+std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajectory& trajectory,
+                                            std::optional<int> index) {
   Levels levels;
   levels.bind(problem.lagrangian);
   PartsOfPath parts(problem, trajectory, levels);
   const double last = trajectory.elements();
   SparseWindows result;
-  double first = std::min(first_trial, last), factor = 2, longest_element = 1;
+  double first = std::min(first_trial, last), factor = 2, longest_element = 1, slope = 0;
   for (double from = 0; from < last;) {
     std::optional<Bracket> found = bracket(parts, from, last, first, factor);
     if (!found) return std::nullopt;
     if (found->free_of < last) {
-      if (!narrow(parts, from, *found)) return std::nullopt;
+      if (!narrow(parts, from, *found, slope)) return std::nullopt;
       longest_element = std::min(longest_element, (found->free_of - from) / 2);
     } else if (from == 0 && !(parts.left_out() <= most_left_out)) {
       return std::nullopt;
@@ -173,7 +221,9 @@ std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajec
     from = found->free_of;
   }
   if (result.windows.size() == 1) return result;
-  const std::optional<int> all = parts.conjugate_times(0, last, elements_for(last / longest_element));
+  const std::optional<int> all = index && longest_element == 1
+                                     ? index
+                                     : parts.conjugate_times(0, last, elements_for(last / longest_element));
   if (!all) return std::nullopt;
   result.conjugate_times = *all;
   return result;

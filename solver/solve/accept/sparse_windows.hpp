@@ -21,7 +21,9 @@ struct SparseWindows {
 
 /// Windows from the inertia of δ²S with fixed ends of parts of the path, all unknowns of a part at once in a
 /// sparse matrix. Nothing where a part is singular to working precision, or its elements do not resolve the
-/// field that vanishes at both its ends.
-std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajectory& trajectory);
+/// field that vanishes at both its ends. `index` is that of the path on its own elements between fixed ends,
+/// if it is known.
+std::optional<SparseWindows> sparse_windows(const Problem& problem, const Trajectory& trajectory,
+                                            std::optional<int> index);
 
 }  // namespace extremal
