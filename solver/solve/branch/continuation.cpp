@@ -315,11 +315,15 @@ bool Continuation::lands() {
 }
 
 /// Where equations are so nearly singular that roundoff hides where a step ends, shorter ones end no better,
-/// and a longer one may lead over it.
+/// and a longer one may lead over it. Whether branches cross there nothing can tell: only where the index is
+/// as before, none need to.
 bool Continuation::step_over() {
   const double shorter = length_;
+  const auto same_index = [&](const BranchState& a, const BranchState& b) {
+    return a.index == b.index && a.nullity == b.nullity;
+  };
   while ((length_ *= lengthening) <= longest_ && !options_.solve.deadline.passed())
-    if (lands()) return true;
+    if (lands() && same_index(tracker_.state, from_)) return true;
   length_ = shorter;
   tracker_.fail(StepFailure::hidden);
   return false;
