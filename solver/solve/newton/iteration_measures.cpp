@@ -39,7 +39,9 @@ double NewtonIteration::burden() const {
   if (in_twice_the_precision()) return tested;
   if (model_ != condensed_.get()) return sparse_burden * tested;
   const Chain& chain = action_.nodes.chain;
-  return tested * (chain.pivoted() ? pivoted_burden * (1 + static_cast<double>(chain.deflated().size())) : 1);
+  if (!chain.pivoted()) return tested;
+  const auto null_directions = static_cast<double>(chain.deflated().size());
+  return tested * pivoted_burden(problem_->coordinates()) * (1 + null_directions);
 }
 
 double NewtonIteration::stiffness() const {
