@@ -158,6 +158,7 @@ TEST_F(PathConstraints, ASphereIsPassedAlongAGeodesic) {
 }
 
 TEST_F(PathConstraints, OfAContinuumOneIsFound) {
+  LONG_TEST();
   // Between opposite points of a sphere there is a shortest way on each side.
   const Study s = study(particle("\"x^2 + y^2 + z^2 >= 1\"", "x = -2.0, y = 0.0, z = 0.0",
                                  "x = 2.0, y = 0.0, z = 0.0", 1, true) +
@@ -229,6 +230,23 @@ TEST_F(PathConstraints, ATouchIsAContactWithoutLength) {
   EXPECT_NEAR(found.contacts->contacts.front().from, 0.5, 1e-6);
   EXPECT_NEAR(found.contacts->contacts.front().to, 0.5, 1e-6);
   EXPECT_GT(least_distance(s, found), -1e-9 * 4);
+}
+
+/// A wall that rises to 0.9 for a three-thousandth of the time. No path is told that stays below.
+TEST_F(PathConstraints, AWallThatRisesForAMomentIsNotOverlooked) {
+  for (const double width : {3e-4, 5e-5}) {
+    Study s = study(fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2\"\n[path]\n"
+        "constraints = [\"x >= exp(-((t - 0.4137)/{})^2) - 0.1\"]\n[boundary]\nstart = {{ x = 0 }}\n"
+        "end = {{ x = 0 }}\nduration = 1\n",
+        width));
+    s.budget = 1;
+    const Solution found = run(s);
+    if (!found.converged()) continue;
+    double x = 0, v = 0;
+    found.trajectory.at(0.4137, {&x, 1}, {&v, 1});
+    EXPECT_GE(x, 0.9 - 1e-9) << width;
+  }
 }
 
 TEST_F(PathConstraints, AShortContactHasItsLength) {

@@ -28,11 +28,13 @@ Violation stretch(const Sampled& sampled, std::size_t least, int constraint, boo
   return {constraint, forbidden, sampled.t[first], sampled.t[last], -sampled.values[least]};
 }
 
-/// Points in each element, ends included.
-std::vector<double> times_of(const Trajectory& path) {
+/// Points in each element, ends included, no farther from each other than `most`.
+std::vector<double> times_of(const Trajectory& path, double most = INFINITY) {
   std::vector<double> times;
-  for (int k = 0; k < path.elements(); ++k)
-    for (int i = 0; i < points; ++i) times.push_back(path.times[k] + path.length(k) * i / points);
+  for (int k = 0; k < path.elements(); ++k) {
+    const int count = std::max(points, static_cast<int>(std::ceil(path.length(k) / most)));
+    for (int i = 0; i < count; ++i) times.push_back(path.times[k] + path.length(k) * i / count);
+  }
   times.push_back(path.duration());
   return times;
 }
@@ -71,10 +73,12 @@ class LawCheck {
         v_(n_) {}
 
   std::optional<Violation> run() {
-    for (std::size_t i = 0; i < path_.arcs().size(); ++i) check_distances(i);
+    for (std::size_t i = 0; i < path_.arcs().size(); ++i) check_distances(i, INFINITY);
     if (worst_) return worst_;
     for (std::size_t i = 0; i < path_.arcs().size(); ++i)
       if (!path_.arcs()[i].held.empty()) check_forces(i);
+    if (worst_) return worst_;
+    for (std::size_t i = 0; i < path_.arcs().size(); ++i) check_distances(i, path_.duration() / dense_points);
     return worst_;
   }
 
@@ -87,11 +91,12 @@ class LawCheck {
     return values.g[constraint] / (slope > 0 ? slope : 1);
   }
 
-  void check_distances(std::size_t i) {
+  /// At times that are no farther from each other than `most`.
+  void check_distances(std::size_t i, double most) {
     const PathArc& arc = path_.arcs()[i];
     const Trajectory& trajectory = path_.solved()[i].trajectory;
     const double tolerance = arcs_.options().tolerance * path_.size();
-    Sampled sampled{times_of(trajectory), {}};
+    Sampled sampled{times_of(trajectory, most), {}};
     for (int k = 0; k < inequalities_.count(); ++k) {
       sampled.values.clear();
       for (const double t : sampled.t) sampled.values.push_back(distance(i, k, t) + tolerance);

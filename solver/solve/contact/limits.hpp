@@ -71,6 +71,8 @@ inline constexpr double singular_rank = 1e-4;
 inline constexpr int most_changes = 12;
 /// Points in each element at which the inequalities are compared, and forces of contact.
 inline constexpr int points = 24;
+/// Points along a whole path, once nothing else is wrong: inequalities may change fast in time.
+inline constexpr double dense_points = 4096;
 /// A path is freed along so many times the stretch in which its force is negative, −k (a² − s²) there:
 /// between tangents at ±b it leaves the surface by ∫ k (a² − s²) ds = 0, so that b = √3 a.
 inline constexpr double freed_stretch = 1.7320508;
