@@ -116,17 +116,21 @@ std::vector<std::string> names_of(const std::vector<FitUnknown>& unknowns) {
   return names;
 }
 
-/// Nothing where the scene has no guess, or needs it.
-std::shared_ptr<const FitRequest> without_guess(const FitRequest& request) {
-  if (!request.from_data) return nullptr;
+/// Another request, where there is one and it can be made.
+template <class Make, class... Arguments>
+std::shared_ptr<const FitRequest> made(const Make& make, Arguments... arguments) {
+  if (!make) return nullptr;
   try {
-    return request.from_data();
+    return make(arguments...);
   } catch (const SceneError&) {
   } catch (const FormulaError&) {
   } catch (const std::invalid_argument&) {
   }
   return nullptr;
 }
+
+/// A duration in which a motion goes on for a while after the observations, of few digits.
+double longer(double duration) { return std::stod(fmt::format("{:.3g}", 1.1 * duration)); }
 
 }  // namespace
 
@@ -215,13 +219,22 @@ FitResult run_fit(const Study& study, int repeat, const std::function<void(const
     const auto begin = std::chrono::steady_clock::now();
     result = fit_to(study.fit->task, options);
     if (!result.solution.converged() && !options.deadline.passed())
-      if (const auto request = without_guess(*study.fit)) {
+      if (const auto request = made(study.fit->from_data)) {
         FitResult other = fit_to(request->task, options);
         if (other.solution.converged()) {
           other.solution.message += "; from the observations, since the fit from the guess failed";
           result = std::move(other);
         }
       }
+    // Where T is conjugate to 0, the ends determine no motion, and another duration is not conjugate.
+    if (!result.solution.converged() && !options.deadline.passed())
+      if (const auto request = made(study.fit->lasting, longer(study.problem.duration.value)))
+        if (fit_to(request->task, options).solution.converged())
+          result.solution.message = fmt::format(
+              "the fit of a longer motion converges, and that of this one does not: set duration = {} in "
+              "[boundary]. Ends that are conjugate to each other, or nearly so, as those of half a period or "
+              "a whole one, do not determine the motion between them",
+              request->task.duration);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     solving.push_back(seconds - result.solution.seconds_analyse);
     analysing.push_back(result.solution.seconds_analyse);

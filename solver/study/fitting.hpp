@@ -25,6 +25,8 @@ struct FitRequest {
   std::vector<std::string> parameters, open_ends;  ///< names of the unknowns, in their order
   /// The same without the guess of the scene, if that has one: from the observations. Throws SceneError.
   std::function<std::shared_ptr<const FitRequest>()> from_data = {};
+  /// The same for another duration, where one is given and ends at T are open. Throws SceneError.
+  std::function<std::shared_ptr<const FitRequest>(double duration)> lasting = {};
 };
 
 /// The path that was observed; no guess unless all coordinates were. Throws SceneError.

@@ -370,6 +370,14 @@ Study make_study(const Scene& scene, Purpose purpose) {
         bare.guess.state.reset();
         return make_study(bare, purpose).fit;
       };
+    const bool open_at_end = std::ranges::any_of(request->task.unknowns,
+                                                 [](const FitUnknown& unknown) { return unknown.last >= 0; });
+    if (open_at_end && !study.problem.duration.free && !study.problem.periodic)
+      request->lasting = [scene, purpose](double duration) {
+        Scene other = scene;
+        other.boundary.duration.value = duration;
+        return make_study(other, purpose).fit;
+      };
     study.fit = request;
   }
   if (scene.continuation && purpose == Purpose::family)

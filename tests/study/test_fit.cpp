@@ -288,6 +288,48 @@ TEST_F(Fits, NameAllThatDataLeaveOpenTogether) {
       << found.solution.message;
 }
 
+/// Only the quotient of three parameters shows in the motion.
+TEST_F(Fits, TellHowManyOfTheUnknownsMustBeGiven) {
+  const std::string product =
+      "[system]\ncoordinates = [\"x\"]\nparameters = { m = 1.0, b = 2.0, c = 1.5 }\n"
+      "lagrangian = \"m*x'^2/2 - b*c*x^2/2\"\n[boundary]\n";
+  std::string text = "t,x\n";
+  for (const auto& row : samples(product + "start = { x = 1.0, p_x = 0.3 }\nduration = 2.0\n", 21))
+    text += fmt::format("{:.17g},{:.17g}\n", row[0], row[1]);
+  write("data.csv", text);
+  const std::string fit = "duration = 2.0\n[fit]\ndata = \"data.csv\"\nparameters = ";
+  const FitResult found = run_fit(study(product + fit + "[\"m\", \"b\", \"c\"]\n"));
+  EXPECT_FALSE(found.solution.converged());
+  EXPECT_NE(found.solution.message.find("give 2 of them"), std::string::npos) << found.solution.message;
+  EXPECT_TRUE(run_fit(study(product + fit + "[\"b\"]\n")).solution.converged());
+}
+
+/// x = cos t + sin(t)/2 over half a period: any velocity leads from end to end.
+TEST_F(Fits, TellADurationOverWhichConjugateEndsAreNone) {
+  const std::string oscillator =
+      "[system]\ncoordinates = [\"x\"]\nparameters = { k = 1.3 }\nlagrangian = \"x'^2/2 - k*x^2/2\"\n";
+  std::string text = "t,x\n";
+  for (int i = 0; i <= 40; ++i) {
+    const double t = i == 40 ? 3.141592653589793 : pi * i / 40;
+    text += fmt::format("{:.17g},{:.17g}\n", t, std::cos(t) + std::sin(t) / 2);
+  }
+  write("data.csv", text);
+  const auto lasting = [&](double duration) {
+    return run_fit(
+        study(oscillator + fmt::format("[boundary]\nduration = {:.17g}\n[fit]\ndata = \"data.csv\"\n"
+                                       "parameters = [\"k\"]\n",
+                                       duration)));
+  };
+  const FitResult none = lasting(3.141592653589793);
+  EXPECT_FALSE(none.solution.converged());
+  EXPECT_NE(none.solution.message.find("set duration = 3.46 in [boundary]"), std::string::npos)
+      << none.solution.message;
+  const FitResult found = lasting(3.46);
+  ASSERT_TRUE(found.solution.converged()) << found.solution.message;
+  EXPECT_NEAR(found.values[0], 1, 1e-8);
+  EXPECT_NEAR(found.solution.momentum_start[0], 0.5, 1e-8);
+}
+
 /// From a first stiffness on the other side of one at which the duration is conjugate to the start.
 TEST_F(Fits, FindDampingFromAForcedResponse) {
   const auto rows =

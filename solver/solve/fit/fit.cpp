@@ -328,11 +328,15 @@ class Fit {
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);
     const Eigen::VectorXd& s = svd.singularValues();
     Eigen::VectorXd parts = Eigen::VectorXd::Zero(count);
+    int open = 0;
     for (Eigen::Index k = 0; k < s.size(); ++k)
-      if (!(s[k] > least * std::max(s[0], 1.0))) parts = parts.cwiseMax(svd.matrixV().col(k).cwiseAbs());
+      if (!(s[k] > least * std::max(s[0], 1.0))) {
+        parts = parts.cwiseMax(svd.matrixV().col(k).cwiseAbs());
+        ++open;
+      }
     for (Eigen::Index j = 0; j < count; ++j)
       if (parts[j] > named * parts.maxCoeff()) names.push_back(task_.unknowns[j].name);
-    if (!names.empty()) return undetermined_names(names);
+    if (!names.empty()) return undetermined_names(names, open);
     const Eigen::MatrixXd half =
         lengths.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
     result_.covariance = half * half.transpose();
@@ -354,17 +358,18 @@ class Fit {
     return qr.rank();
   }
 
-  bool undetermined_names(const std::vector<std::string>& names) {
+  /// So many directions of all of them are open.
+  bool undetermined_names(const std::vector<std::string>& names, int open = 1) {
     if (names.size() == 1)
       fail(fmt::format(
           "the data do not determine '{0}': it changes nothing that was observed; leave '{0}' out of "
           "the fit, or observe what depends on it",
           names.front()));
     else
-      fail(
-          fmt::format("the data do not determine '{}': along some change of all of them nothing that was "
-                      "observed changes; give one of them, or observe what depends on it alone",
-                      fmt::join(names, "', '")));
+      fail(fmt::format(
+          "the data do not determine '{}': along some change of all of them nothing that was "
+          "observed changes; give {} of them, or observe what depends on {} alone",
+          fmt::join(names, "', '"), open == 1 ? "one" : std::to_string(open), open == 1 ? "it" : "each"));
     return false;
   }
 
