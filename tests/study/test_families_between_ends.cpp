@@ -32,6 +32,22 @@ TEST_F(FamiliesBetweenEnds, WithoutAGuessTheOneNearestToTheLine) {
   EXPECT_NEAR(found.momentum_start[0], 0, 1e-8);
 }
 
+/// From x = 1 to rest at the saddle x = 0, where it stays: momentum −√(3/2), action (2/3)(√(27/8) − 1). The
+/// energy, which falls like exp(−2T), soon tells durations apart no more, nor do the ends.
+TEST_F(FamiliesBetweenEnds, RestsForEverLongerAtASaddle) {
+  const Study s = study(
+      "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + x^2/2 + x^4/4\"\n[boundary]\n"
+      "start = { x = 1 }\nduration = 8\n[continuation]\nparameter = \"duration\"\nto = 60\npoints = 60\n");
+  const FollowedBranch family = follow(s);
+  ASSERT_FALSE(family.points.empty());
+  EXPECT_NEAR(family.points.back().parameter, 60, 1e-9) << family.branches.front().message;
+  for (const BranchPoint& point : family.points) {
+    if (point.parameter < 20) continue;
+    EXPECT_NEAR(point.solution.momentum_start[0], -std::sqrt(1.5), 1e-8) << point.parameter;
+    EXPECT_NEAR(point.solution.action, (std::sqrt(27.0 / 8) - 1) * 2 / 3, 1e-10) << point.parameter;
+  }
+}
+
 TEST_F(FamiliesBetweenEnds, ConjugateEndsWithoutExtremals) {
   const Solution found = run(study(half_period + "end = { x = -0.5 }\n"));
   EXPECT_EQ(found.status, Status::conjugate_ends);

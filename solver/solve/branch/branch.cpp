@@ -193,7 +193,29 @@ double Branch::force_along(const Move& direction) const {
   return std::inner_product(along.begin(), along.end(), forces_.begin(), 0.0);
 }
 
+/// Where what closes the equations hardly changes along them, as the energy of paths that rest for ever
+/// longer at a saddle, the duration does.
 bool Branch::linearise_duration(Factors factors) {
+  if (!solve_closed(factors)) return false;
+  if (factors == Factors::anew && dot(direction, direction) * least_closing * least_closing > 1) {
+    closing_ = closed_by_duration();
+    if (!solve_closed(factors)) return false;
+  }
+  const DiscreteAction& action = w_.iteration.action();
+  const bool by_energy = closing_.row.empty();
+  along_ = by_energy ? energy_unit_ : energy_change(direction);
+  const double length = std::sqrt(dot(direction, direction));
+  free_ = {direction.parameter / (units_.duration * length), along_ / (energy_unit_ * length)};
+  if (w_.iteration.model().left_out() > 0) free_.energy = NAN;
+  off_ = by_energy
+             ? 0
+             : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
+  action_slope_ = -energy_ * direction.parameter + work_of_momenta(direction);
+  return true;
+}
+
+/// Correction and direction, along which what closes the equations changes by its unit.
+bool Branch::solve_closed(Factors factors) {
   QuadraticModel& model = w_.iteration.model();
   DiscreteAction& action = w_.iteration.action();
   if (!evaluate(&closing_, factors)) return false;
@@ -201,20 +223,17 @@ bool Branch::linearise_duration(Factors factors) {
   if (anew) energy_unit_ = energy_unit(action, path_.duration());
   closing_.value = by_energy ? energy_ : 0;
   solve_with_duration(model, action, closing_, correction);
-  if (anew) {
-    closing_.value = by_energy ? energy_ + energy_unit_ : -units_.extent;
-    solve_with_duration(model, action, closing_, direction);
-    direction.add(correction, -1);
-  }
-  along_ = by_energy ? energy_unit_ : energy_change(direction);
-  const double length = std::sqrt(dot(direction, direction));
-  free_ = {direction.parameter / (units_.duration * length), along_ / (energy_unit_ * length)};
-  if (model.left_out() > 0) free_.energy = NAN;
-  off_ = by_energy
-             ? 0
-             : energy_change(correction) - action.nodes.border_part - action.nodes.border_gradient - energy_;
-  action_slope_ = -energy_ * direction.parameter + work_of_momenta(direction);
+  if (!anew) return true;
+  const double unit = closing_.by_duration != 0 ? units_.duration : units_.extent;
+  closing_.value = by_energy ? energy_ + energy_unit_ : -unit;
+  solve_with_duration(model, action, closing_, direction);
+  direction.add(correction, -1);
   return true;
+}
+
+ClosingEquation Branch::closed_by_duration() const {
+  return {.row = std::vector<double>(2 * static_cast<std::size_t>(path_.coordinates()), 0.0),
+          .by_duration = 1};
 }
 
 /// Of E = −∂S/∂T, to first order.
@@ -225,16 +244,19 @@ double Branch::energy_change(const Move& move) const {
 }
 
 /// Where the energy has an extremum along the branch, the equations that it closes are singular. So are those
-/// that a displacement of the ends closes, where they do not move.
-std::vector<double> Branch::closing_row(const Move& onward) const {
+/// that a displacement of the ends closes, where they do not move, and at folds those that the duration does.
+ClosingEquation Branch::closing(const Move& onward) const {
   if (!by_duration() || tables_->unknowns() > most_dense_unknowns) return {};
   const std::size_t n = path_.coordinates(), last = onward.step.nodes.size() - n;
   std::vector<double> row(onward.step.nodes.begin(), onward.step.nodes.begin() + n);
   row.insert(row.end(), onward.step.nodes.begin() + last, onward.step.nodes.end());
-  const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
-  if (!(length > std::abs(energy_change(onward)) / energy_unit_ * units_.extent)) return {};
+  const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0)),
+               by_ends = length / units_.extent, by_energy = std::abs(energy_change(onward)) / energy_unit_,
+               by_duration = std::abs(onward.parameter) / units_.duration;
+  if (std::max(by_ends, by_energy) < least_closing * by_duration) return closed_by_duration();
+  if (!(by_ends > by_energy)) return {};
   for (double& x : row) x /= length;
-  return row;
+  return {.row = std::move(row)};
 }
 
 /// H δx = −∂g/∂p, and the equation that closes a free duration with it, by gradients beside the path with the

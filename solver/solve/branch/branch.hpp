@@ -69,10 +69,10 @@ class Branch : public ExtremalCurve {
   void ask_regular() { folds_.reset(); }
   /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
   bool defined() const { return defined_; }
-  /// Over (q(0), q(T)): a displacement of the ends that had better close the equations near the path that was
-  /// linearised at last, whose tangent is given. Empty: the energy does.
-  std::vector<double> closing_row(const Move& onward) const;
-  void close_by(const std::vector<double>& row) { closing_.row = row; }
+  /// What had better close the equations near the path that was linearised at last, whose tangent is given:
+  /// the energy, a displacement of the ends, or the duration.
+  ClosingEquation closing(const Move& onward) const;
+  void close_by(const ClosingEquation& closing) { closing_ = closing; }
   /// The response of the equations linearised last, with the tangent `onward` as their last row, to one of
   /// several loads without any symmetry: the nearer to a branch point, the longer, and along null directions
   /// there. Where these have one eigenvalue the response to a load has nothing across that to another.
@@ -133,6 +133,8 @@ class Branch : public ExtremalCurve {
  private:
   bool by_duration() const { return family_.varied != Varied::parameter; }
   bool linearise_duration(Factors factors);
+  bool solve_closed(Factors factors);
+  ClosingEquation closed_by_duration() const;
   bool linearise_parameter();
   bool respond_to_parameter();
   bool evaluate(const ClosingEquation* closing, Factors factors);

@@ -29,7 +29,7 @@ struct BranchState {
   Move bend, twist;          ///< of the branch off it, by σ² and σ³; empty if not known
   Move turning;              ///< of the tangent since the state before, by the way back to it; may be empty
   double back = 0;           ///< that way
-  std::vector<double> row;   ///< see Branch::closing_row
+  ClosingEquation closing;   ///< see Branch::closing
   std::vector<Move> family;  ///< see Branch::hold_family
   double rate = 0;           ///< ∂varied/∂s along the tangent
   double varied_error = 0;   ///< of the number that varies, by the error of the path

@@ -13,6 +13,9 @@ namespace branch {
 /// Changes of the parameter for difference quotients, in its unit: of four points, whose roundoff is small
 /// also where equations are nearly singular, unless those of two differ by more than this share: then of two.
 inline constexpr double wide = 1e-3, most_curved = 1e-4, narrow = 1e-5;
+/// What closes the equations changes along the branch by more than this share of the largest change, or
+/// roundoff is as large as half of the digits.
+inline constexpr double least_closing = 1e-7;
 
 }  // namespace branch
 

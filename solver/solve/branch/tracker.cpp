@@ -72,7 +72,7 @@ bool Tracker::return_to(const BranchState& from) {
   branch_.hold_family(from.family);
   if (!branch_.set_coordinate(from.coordinate)) return false;
   branch_.bind();
-  branch_.close_by(from.row);
+  branch_.close_by(from.closing);
   return true;
 }
 
@@ -208,7 +208,7 @@ bool Tracker::update_tangent(bool first) {
   state.action = branch_.action();
   state.tangent = branch_.direction;
   state.tangent.scale(onward);
-  state.row = branch_.closing_row(state.tangent);
+  state.closing = branch_.closing(state.tangent);
   state.family = branch_.held_family();
   state.rate = onward * branch_.change(true);
   state.turning = state.bend = state.twist = {};

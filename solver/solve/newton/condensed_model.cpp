@@ -36,7 +36,8 @@ class CondensedModel final : public SecondVariationModel {
     for (std::size_t k = n; k + n < load.size(); ++k) nodes.gradient[k] = -load[k];
     nodes.border_gradient = nodes.border_part = 0;
     nodes.end_parts.clear();
-    const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
+    ClosingEquation homogeneous = closing ? *closing : ClosingEquation();
+    homogeneous.value = 0;
     system_.solve(nodes, closing ? &homogeneous : nullptr, step.nodes, step.duration);
     action.expand_step(step.nodes, step.duration, step.inner);
     const std::vector<double> rest(step.nodes.size(), 0);

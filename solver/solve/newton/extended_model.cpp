@@ -58,7 +58,8 @@ class ExtendedModel final : public SecondVariationModel {
     const std::size_t n = action.start_gradient().size();
     for (std::size_t k = n; k + n < load.size(); ++k) load_.nodes.set(k, 0, {-load[k], 0});
     load_.on_duration = 0;
-    const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
+    ClosingEquation homogeneous = closing ? *closing : ClosingEquation();
+    homogeneous.value = 0;
     system_.solve(load_, closing ? &homogeneous : nullptr, step);
     action.expand_step(step.nodes, step.duration, step.inner);
     const std::vector<double> rest(step.nodes.size(), 0);

@@ -118,6 +118,7 @@ bool ExtendedSystem::factor(const ExtendedVariation& variation, const NodeEquati
     for (std::size_t k = 0; k < rows_.rows(); ++k) rows_.set(k, free_, {});
     for (int j = 0; j < border_; ++j) whole.set(free_, j, {});
     for (const Triplet& z : ends_->z) whole.add(free_, z.column, {closing->row[z.row] * z.value, 0});
+    whole.set(free_, free_, {closing->by_duration, 0});
     std::swap(whole, corner_);
   }
   lu_ = schur(rows_);

@@ -27,7 +27,8 @@ std::optional<double> least_eigenvalue(NewtonIteration& newton, const Path& path
   for (std::size_t i = n; i < load.size() - n; ++i) load[i] = diagonal(i) * component(random);
   ClosingEquation closed;
   const ClosingEquation* const closing = newton.closing(path);
-  if (closing) closed.row = closing->row;
+  if (closing) closed = *closing;
+  closed.value = 0;
   model->respond(newton.action(), closing ? &closed : nullptr, load, direction);
   double product = 0, square = 0;
   for (std::size_t i = n; i < load.size() - n; ++i) {

@@ -18,6 +18,7 @@ namespace extremal {
 struct ClosingEquation {
   std::vector<double> row;  ///< 2n, or empty
   double value = 0;         ///< to become zero
+  double by_duration = 0;   ///< the coefficient of T beside a row
 };
 
 /// A step of every unknown.

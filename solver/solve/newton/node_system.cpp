@@ -161,6 +161,7 @@ bool NodeSystem::factor_schur(const ClosingEquation* closing) {
   if (has_own_row(closing)) {
     schur_.row(free_).setZero();
     for (const Triplet& z : ends_->z) schur_(free_, z.column) += closing->row[z.row] * z.value;
+    schur_(free_, free_) = closing->by_duration;
   }
   scale_border(has_own_row(closing));
   if (!schur_.allFinite()) return false;
@@ -205,6 +206,7 @@ bool NodeSystem::factor_exactly(const ClosingEquation* closing) {
   if (own_row) {
     corner.row(free_).setZero();
     for (const Triplet& z : ends_->z) corner(free_, z.column) += closing->row[z.row] * z.value;
+    corner(free_, free_) = closing->by_duration;
     Eigen::Map<RowMatrix> rows(system_.row_block(), inner, border_);
     rows = Eigen::Map<const RowMatrix>(columns_.data(), inner, border_);
     rows.col(free_).setZero();

@@ -65,7 +65,7 @@ void SparseModel::solve(const DiscreteAction&, const ClosingEquation* closing, S
   if (own_row) equations_.express_row(closing->row, row_);
   const double value = !closing ? 0 : own_row ? closing->value : equations_.slope_duration() + closing->value;
   step.duration = border_.solve(matrix_, right_, own_row ? row_ : equations_.by_duration(),
-                                own_row ? 0 : equations_.corner(), -value, refining_);
+                                own_row ? closing->by_duration : equations_.corner(), -value, refining_);
   equations_.expand(right_, step);
 }
 
@@ -78,7 +78,8 @@ Inertia SparseModel::inertia(double, VariedBy by) {
 void SparseModel::respond(DiscreteAction& action, const ClosingEquation* closing,
                           std::span<const double> load, Step& step) {
   equations_.load(load);
-  const ClosingEquation homogeneous{closing ? closing->row : std::vector<double>{}, 0};
+  ClosingEquation homogeneous = closing ? *closing : ClosingEquation();
+  homogeneous.value = 0;
   solve(action, closing ? &homogeneous : nullptr, step);
 }
 
