@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -242,6 +243,44 @@ TEST_F(Scenes, SeveralExtremalsKeepTheConstraints) {
     ASSERT_TRUE(solution.converged()) << solution.message;
     EXPECT_LT(missed(s.problem, solution.trajectory), 4e-15);
   }
+}
+
+/// Ends of an angle that differ by whole turns are one point of the circle.
+TEST_F(Scenes, ExtremalsOnACircleAreThoseOfAllTurnsOfTheAngle) {
+  LONG_TEST();
+  const std::string rest = "duration = 2.2\n[search]\nsolutions = 6\n";
+  std::vector<double> expected;
+  for (int turns = -2; turns <= 2; ++turns)
+    for (const Solution& s :
+         run_all(study(fmt::format("[system]\ncoordinates = [\"a\"]\nlagrangian = \"a'^2/2 + 9.81*cos(a)\"\n"
+                                   "[boundary]\nstart = {{ a = 0.7 }}\nend = {{ a = \"-0.4 + {}*pi\" }}\n",
+                                   2 * turns) +
+                       rest)))
+      expected.push_back(s.action);
+  std::ranges::sort(expected);
+  const std::vector<Solution> found =
+      run_all(study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - 9.81*y\"\n"
+                    "constraints = [\"x^2 + y^2 = 1\"]\n[boundary]\n"
+                    "start = { x = \"sin(0.7)\", y = \"-cos(0.7)\" }\n"
+                    "end = { x = \"-sin(0.4)\", y = \"-cos(0.4)\" }\n" +
+                    rest));
+  ASSERT_EQ(found.size(), 6u);
+  for (std::size_t k = 0; k < found.size(); ++k)
+    EXPECT_NEAR(found[k].action, expected[k], 1e-8 * std::abs(expected[k])) << k;
+}
+
+/// Great circles both ways round, once and twice, and no arc between points that look alike from the end.
+TEST_F(Scenes, GreatCirclesOfSeveralTurns) {
+  LONG_TEST();
+  const std::vector<Solution> found =
+      run_all(study("[system]\ncoordinates = [\"x\", \"y\", \"z\"]\nlagrangian = \"(x'^2 + y'^2 + z'^2)/2\"\n"
+                    "constraints = [\"x^2 + y^2 + z^2 = 1\"]\n[boundary]\nstart = { x = 1, y = 0, z = 0 }\n"
+                    "end = { x = 0.6, y = 0.8, z = 0 }\nduration = 1\n[search]\nsolutions = 4\n"));
+  const double arc = std::acos(0.6), turn = 2 * std::numbers::pi;
+  const double lengths[] = {arc, turn - arc, turn + arc, 2 * turn - arc};
+  ASSERT_EQ(found.size(), std::size(lengths));
+  for (std::size_t k = 0; k < found.size(); ++k)
+    EXPECT_NEAR(found[k].action, lengths[k] * lengths[k] / 2, 1e-8 * found[k].action) << k;
 }
 
 TEST_F(Scenes, ConstraintsThatAreWrong) {

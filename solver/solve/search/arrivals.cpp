@@ -27,14 +27,17 @@ Vector null_direction(const Eigen::MatrixXd& slope) {
 }  // namespace
 
 Arrivals::Arrivals(const Lagrangian& lagrangian, Vector start, Vector rest, Vector end, Eigen::MatrixXd root,
-                   double speed, double time)
+                   const Tangents& tangents, double speed, double time)
     : flow_(lagrangian),
       n_(static_cast<int>(start.size())),
+      dimensions_(static_cast<int>(tangents.start.cols())),
       cost_(lagrangian.structure().quadratic ? 1 : implicit_cost),
       start_(std::move(start)),
       rest_(std::move(rest)),
       end_(std::move(end)),
       root_(std::move(root)),
+      along_(tangents.start),
+      onto_(tangents.end.transpose() * root_),
       speed_(speed),
       time_(time),
       extent_(std::max((root_ * (end_ - start_)).norm(), (root_ * end_).norm())) {
@@ -50,22 +53,22 @@ Vector Arrivals::state(const Vector& w) const {
 
 /// w by the unit of speed, and the logarithm of the time by its unit.
 Vector Arrivals::unknowns(const Arrival& arrival) const {
-  Vector u(n_ + 1);
-  u.head(n_) = arrival.w / speed_;
-  u[n_] = std::log(arrival.time / time_);
+  Vector u(dimensions_ + 1);
+  u.head(dimensions_) = along_.transpose() * arrival.w / speed_;
+  u[dimensions_] = std::log(arrival.time / time_);
   return u;
 }
 
 Arrivals::Arrival Arrivals::arrival(const Vector& u) const {
-  return {speed_ * u.head(n_), time_ * std::exp(u[n_])};
+  return {speed_ * along_ * u.head(dimensions_), time_ * std::exp(u[dimensions_])};
 }
 
 /// The motion with its variations by w.
 bool Arrivals::fly(const Vector& u, double step_error, Miss& miss) {
   const Arrival goal = arrival(u);
-  Vector y = Vector::Zero(2 * n_ * (1 + n_)), v(n_);
+  Vector y = Vector::Zero(2 * n_ * (1 + dimensions_)), v(n_);
   y.head(2 * n_) = state(goal.w);
-  for (int k = 0; k < n_; ++k) y.segment(2 * n_ * (k + 1) + n_, n_) = speed_ * root_.col(k);
+  for (int k = 0; k < dimensions_; ++k) y.segment(2 * n_ * (k + 1) + n_, n_) = speed_ * root_ * along_.col(k);
   if (!y.allFinite()) return false;
   DormandPrince<double> method(
       [this](double t, std::span<const double> x, std::span<double> slope) {
@@ -82,10 +85,11 @@ bool Arrivals::fly(const Vector& u, double step_error, Miss& miss) {
   if (!counted_(variations_cost * cost_ * (method.steps() + method.rejected())) || result != Integrated::done)
     return false;
   if (!flow_.velocity(span_of(y).first(n_), span_of(y).subspan(n_, n_), t, span_of(v))) return false;
-  miss.miss = root_ * (y.head(n_) - end_) / extent_;
-  miss.slope.resize(n_, n_ + 1);
-  for (int k = 0; k < n_; ++k) miss.slope.col(k) = root_ * y.segment(2 * n_ * (k + 1), n_) / extent_;
-  miss.slope.col(n_) = root_ * v * (goal.time / extent_);
+  miss.miss = onto_ * (y.head(n_) - end_) / extent_;
+  miss.away = (root_ * (y.head(n_) - end_)).norm() / extent_;
+  miss.slope.resize(dimensions_, dimensions_ + 1);
+  for (int k = 0; k < dimensions_; ++k) miss.slope.col(k) = onto_ * y.segment(2 * n_ * (k + 1), n_) / extent_;
+  miss.slope.col(dimensions_) = onto_ * v * (goal.time / extent_);
   return miss.miss.allFinite() && miss.slope.allFinite();
 }
 
@@ -97,18 +101,20 @@ bool Arrivals::meet(Vector& u, const Vector& normal, const Nearness& wanted, Eig
     Miss at;
     if (!fly(u, wanted.step_error, at)) return false;
     slope = at.slope;
-    if (at.miss.norm() <= wanted.last * wanted.last) return true;
-    Eigen::MatrixXd matrix(n_ + 1, n_ + 1);
+    // Another point of a manifold may be seen where q1 is.
+    const bool there = at.away <= seen_beside + seen_near * at.miss.norm();
+    if (at.miss.norm() <= wanted.last * wanted.last) return there;
+    Eigen::MatrixXd matrix(dimensions_ + 1, dimensions_ + 1);
     matrix << at.slope, normal.transpose();
-    Vector right = Vector::Zero(n_ + 1);
-    right.head(n_) = -at.miss;
+    Vector right = Vector::Zero(dimensions_ + 1);
+    right.head(dimensions_) = -at.miss;
     const Vector step = matrix.partialPivLu().solve(right);
     const double size = step.norm();
-    if (!(size < before * contraction) || !(size < longest_correction * (1 + u.head(n_).norm())))
+    if (!(size < before * contraction) || !(size < longest_correction * (1 + u.head(dimensions_).norm())))
       return false;
     before = size;
     u += step;
-    if (size <= wanted.last) return true;
+    if (size <= wanted.last) return there;
   }
   return false;
 }
@@ -123,12 +129,12 @@ void Arrivals::cross(const Vector& a, const Vector& slope_a, const Vector& b, co
   Vector last = a;
   for (int k = 1; k <= crossing_samples; ++k) {
     const Vector next = between(static_cast<double>(k) / crossing_samples);
-    if ((last[n_] < 0) != (next[n_] < 0)) {
-      Vector u = last + (next - last) * (last[n_] / (last[n_] - next[n_]));
-      u[n_] = 0;
+    if ((last[dimensions_] < 0) != (next[dimensions_] < 0)) {
+      Vector u = last + (next - last) * (last[dimensions_] / (last[dimensions_] - next[dimensions_]));
+      u[dimensions_] = 0;
       Eigen::MatrixXd slope;
       int steps = 0;
-      const Vector normal = Vector::Unit(n_ + 1, n_);
+      const Vector normal = Vector::Unit(dimensions_ + 1, dimensions_);
       if (meet(u, normal, {step_error_along, last_step_along}, slope, steps) &&
           meet(u, normal, {step_error_arriving, last_step_arriving}, slope, steps))
         found.push_back(arrival(u));
@@ -174,10 +180,12 @@ bool Arrivals::trace(const Vector& seed, double sense, double fastest, double lo
     last_tangent = std::exchange(tangent, onward);
     curve.push_back({u, tangent});
     if (closed) return true;
-    const bool later = tangent[n_] > 0;
-    if (u.head(n_).norm() * speed_ > fastest || (later && u[n_] > std::log(longest / time_))) return false;
+    const bool later = tangent[dimensions_] > 0;
+    if (u.head(dimensions_).norm() * speed_ > fastest ||
+        (later && u[dimensions_] > std::log(longest / time_)))
+      return false;
     if (steps <= 2 && cosine > mild_turn)
-      length = std::min(1.6 * length, longest_length * (1 + u.head(n_).norm()));
+      length = std::min(1.6 * length, longest_length * (1 + u.head(dimensions_).norm()));
   }
   return false;
 }
@@ -204,7 +212,7 @@ bool Arrivals::followed(const Arrival& arrival) const {
   return false;
 }
 
-/// Where the motion passes q1, and whether it lasts: with one coordinate the side is 0.
+/// Where the motion passes q1, and whether it lasts: in one dimension the side is 0.
 void Arrivals::pass(Flight& flight, double until) {
   Vector y = state(flight.w);
   DormandPrince<double> method([this](double t, std::span<const double> x,
@@ -214,23 +222,28 @@ void Arrivals::pass(Flight& flight, double until) {
   options.tolerance = coarse_step;
   options.block = n_;
   std::vector<Passage>& found = flight.passages;
-  std::vector<Vector> away;  // from q1, the last three
-  std::vector<double> times;
+  struct Sample {
+    double time, distance;  // from q1
+    Vector seen;            // from there, in the tangents
+  };
+  std::vector<Sample> samples;
   const auto add = [&](double t, const Vector& q) {
-    away.push_back(root_ * (q - end_));
-    times.push_back(t);
-    const std::size_t k = away.size() - 1;
-    if (n_ == 1 && k > 1 && (away[k][0] < 0) != (away[k - 1][0] < 0)) {
-      const double a = away[k - 1][0], b = away[k][0];
-      found.push_back({times[k - 1] + (times[k] - times[k - 1]) * a / (a - b), 0});
+    samples.push_back({t, (root_ * (q - end_)).norm(), onto_ * (q - end_)});
+    const std::size_t k = samples.size() - 1;
+    if (k < 2) return;
+    const Sample &before = samples[k - 2], &middle = samples[k - 1], &after = samples[k];
+    if (dimensions_ == 1) {
+      const double a = middle.seen[0], b = after.seen[0];
+      const bool near = std::min(middle.distance, after.distance) <= seen_near * std::abs(b - a);
+      if (near && (a < 0) != (b < 0))
+        found.push_back({middle.time + (after.time - middle.time) * a / (a - b), 0});
+      return;
     }
-    if (n_ == 1 || k < 2) return;
-    const double before = away[k - 2].norm(), middle = away[k - 1].norm(), after = away[k].norm();
-    if (!(middle < before && middle <= after)) return;
-    const Vector along = (away[k] - away[k - 2]).normalized();
-    const double back = away[k - 1].dot(along);
-    const double speed = (away[k] - away[k - 2]).norm() / (times[k] - times[k - 2]);
-    found.push_back({times[k - 1] - back / speed, along[0] * away[k - 1][1] - along[1] * away[k - 1][0]});
+    if (!(middle.distance < before.distance && middle.distance <= after.distance)) return;
+    const Vector along = (after.seen - before.seen).normalized();
+    const double back = middle.seen.dot(along);
+    const double speed = (after.seen - before.seen).norm() / (after.time - before.time);
+    found.push_back({middle.time - back / speed, along[0] * middle.seen[1] - along[1] * middle.seen[0]});
   };
   add(0, start_);
   double t = 0;
@@ -261,8 +274,8 @@ Arrivals::Flight Arrivals::flight(Vector w, double until, const Scale& scale) {
 /// Adds the arrival near a motion that has this length of w.
 void Arrivals::land(const Vector& w, double time, std::vector<Arrival>& found) {
   if (!(time > 0)) return;
-  Vector u = unknowns({w, time}), normal = Vector::Zero(n_ + 1);
-  normal.head(n_) = w.normalized();
+  Vector u = unknowns({w, time}), normal = Vector::Zero(dimensions_ + 1);
+  normal.head(dimensions_) = along_.transpose() * w.normalized();
   Eigen::MatrixXd slope;
   int steps = 0;
   if (meet(u, normal, {step_error_along, last_step_along}, slope, steps)) found.push_back(arrival(u));
@@ -313,9 +326,9 @@ void Arrivals::compare(const Flight& one, const Flight& other, double until, con
 
 std::vector<Arrivals::Arrival> Arrivals::sweep(double speed, double until, const Scale& scale) {
   std::vector<Arrival> found;
-  if (n_ == 1) {
+  if (dimensions_ == 1) {
     for (double side : {1.0, -1.0}) {
-      const Flight there = flight(Vector::Constant(1, side * speed), until, scale);
+      const Flight there = flight(side * speed * along_, until, scale);
       for (const Passage& passage : there.passages) land(there.w, passage.time, found);
     }
     return found;
@@ -323,7 +336,8 @@ std::vector<Arrivals::Arrival> Arrivals::sweep(double speed, double until, const
   std::vector<Flight> flights;
   for (int k = 0; k < sectors && counted_(0); ++k) {
     const double angle = 2 * std::numbers::pi * k / sectors;
-    flights.push_back(flight(speed * Eigen::Vector2d(std::cos(angle), std::sin(angle)), until, scale));
+    flights.push_back(
+        flight(speed * along_ * Eigen::Vector2d(std::cos(angle), std::sin(angle)), until, scale));
   }
   for (std::size_t k = 0; k < flights.size() && counted_(0); ++k) {
     const Flight& next = flights[(k + 1) % flights.size()];

@@ -15,8 +15,9 @@ namespace extremal {
 /// velocities may have one. One that comes by q1 at a time T meets
 ///   root (q(T; w) − q1) = 0,
 /// as many equations as coordinates for one unknown more. So arrivals form curves, and the motions that
-/// arrive at a given time are where curves cross it. Curves are met on motions of given |w|: with one
-/// coordinate q passes q1; with two, neighbours pass it on different sides. Only for these.
+/// arrive at a given time are where curves cross it. On a manifold w and the equations have as many
+/// components as it has dimensions. Curves are met on motions of given |w|: in one dimension q passes q1; in
+/// two, neighbours pass it on different sides. Only for these.
 class Arrivals {
  public:
   using Vector = Eigen::VectorXd;
@@ -26,10 +27,14 @@ class Arrivals {
   };
   /// Gives w another size; false if none suits.
   using Scale = std::function<bool(Vector& w)>;
+  /// Orthonormal columns, n × dimensions: w there may be at q0, and root δq at q1.
+  struct Tangents {
+    Eigen::MatrixXd start, end;
+  };
 
   /// `root` is symmetric and positive, that of masses; `speed` and `time` are the units of w and of times.
   Arrivals(const Lagrangian& lagrangian, Vector start, Vector rest, Vector end, Eigen::MatrixXd root,
-           double speed, double time);
+           const Tangents& tangents, double speed, double time);
   /// To be called with the steps of each integration; false if there may be no more.
   void count_by(std::function<bool(int steps)> counted) { counted_ = std::move(counted); }
 
@@ -47,6 +52,7 @@ class Arrivals {
  private:
   struct Miss {
     Vector miss;            ///< by the extent
+    double away;            ///< likewise: the distance from q1
     Eigen::MatrixXd slope;  ///< by the unknowns
   };
   struct Passage {
@@ -81,9 +87,10 @@ class Arrivals {
                std::vector<Arrival>& found);
 
   Flow flow_;
-  int n_, cost_;
+  int n_, dimensions_, cost_;
   Vector start_, rest_, end_;
   Eigen::MatrixXd root_;
+  Eigen::MatrixXd along_, onto_;  ///< of w at q0, n × dimensions; of q − q1, dimensions × n
   double speed_, time_, extent_;
   std::function<bool(int)> counted_;
   std::vector<std::vector<Point>> curves_;

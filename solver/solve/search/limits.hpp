@@ -40,6 +40,9 @@ inline constexpr double sharpest_turn = 0.9, mild_turn = 0.98;
 inline constexpr int most_points = 400, crossing_samples = 8;
 /// Points so near to a curve, by the length of the step there, are on it.
 inline constexpr double near_curve = 1e-3;
+/// Of a manifold other points are seen where q1 is: those farther away than this part of the extent and so
+/// many times what is missed; and on a way past it, than so many times what it moves there.
+inline constexpr double seen_beside = 0.1, seen_near = 2;
 
 }  // namespace arrivals
 
@@ -158,6 +161,8 @@ inline constexpr int velocities = 64, most_bisections = 40;
 /// A scan of more coordinates would have to be too dense; of so many the ball is filled evenly, of more the
 /// distance from its centre is as of these.
 inline constexpr int most_scanned = 24, most_dimensions = 4;
+/// Velocities of momenta that are to lead along a manifold: off it by less than this part of themselves.
+inline constexpr double off_manifold = 1e-9;
 /// Lengths of velocities on which curves of arrivals are looked for, at first and in each ring beyond, and
 /// how many times more with one coordinate.
 inline constexpr int first_levels = 8, further_levels = 5, denser_in_one = 3;

@@ -7,6 +7,7 @@
 #include "linear/dense.hpp"
 #include "motion/flow.hpp"
 #include "motion/sample.hpp"
+#include "problem/manifold.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/search/arrivals.hpp"
 #include "solve/search/limits.hpp"
@@ -71,6 +72,30 @@ MotionScan::MotionScan(const Problem& problem, Search& search) : problem_(proble
   const Eigen::VectorXd roots = eigen.values.cwiseSqrt();
   root_ = eigen.vectors * roots.asDiagonal() * eigen.vectors.transpose();
   inverse_root_ = eigen.vectors * roots.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
+  find_tangents(ends.data() + n);
+}
+
+/// Motions of L̃ keep to the manifold only if they begin on it with a velocity along it: G q' = 0, and so
+/// G root⁻¹ w = 0 where momenta are linear in velocities and constraints are fixed in time.
+void MotionScan::find_tangents(const double* last) {
+  const auto n = static_cast<std::size_t>(start_.size());
+  if (!problem_.manifold) {
+    tangents_.start = tangents_.end = Eigen::MatrixXd::Identity(start_.size(), start_.size());
+    return;
+  }
+  const auto at = [&](const double* q) {
+    const ConstraintValues values = problem_.manifold->at({q, n}, 0);
+    return values.rates.isZero(0) ? values.slopes : Eigen::MatrixXd();
+  };
+  const Eigen::MatrixXd start = at(start_.data()), end = at(last);
+  if (start.size() == 0 || end.size() == 0) return;
+  const Eigen::MatrixXd along = complement((start * inverse_root_).transpose());
+  for (Eigen::Index k = 0; k < along.cols(); ++k) {
+    const Eigen::VectorXd v = velocity(along.col(k));
+    const double off = (start * v).norm();
+    if (!(off <= off_manifold * start.norm() * v.norm())) return;
+  }
+  tangents_ = {along, orthonormal(root_ * complement(end.transpose()))};
 }
 
 /// p at the start; not finite where L is not.
@@ -108,19 +133,19 @@ double MotionScan::unit() { return (static_cast<double>(random_() >> 11) + 0.5) 
 
 /// Of length one, all alike: normal numbers (Box and Muller).
 Eigen::VectorXd MotionScan::direction() {
-  Eigen::VectorXd u(start_.size());
+  const bool along = tangents_.start.cols() > 0;
+  Eigen::VectorXd u(along ? tangents_.start.cols() : start_.size());
   do
     for (double& x : u) x = std::sqrt(-2 * std::log(unit())) * std::cos(2 * std::numbers::pi * unit());
   while (!(u.norm() > 0));
-  return u.normalized();
+  return along ? tangents_.start * u.normalized() : u.normalized();
 }
 
-/// Motions of L̃ keep to the manifold only if they begin on it: their velocities have fewer coordinates. At a
-/// kink of L a curve has no tangent. With one coordinate the end alone is a condition on the start.
+/// At a kink of L a curve has no tangent. With one coordinate the end alone is a condition on the start.
 bool MotionScan::has_curves() const {
-  const auto n = start_.size();
-  return usable_ && !problem_.lagrangian->kinks() && (n == 2 || (n == 1 && problem_.duration.free)) &&
-         !problem_.manifold;
+  const auto dimensions = tangents_.start.cols();
+  return usable_ && !problem_.lagrangian->kinks() &&
+         (dimensions == 2 || (dimensions == 1 && (problem_.duration.free || problem_.manifold)));
 }
 
 double MotionScan::slowest() {
@@ -138,8 +163,8 @@ double MotionScan::slowest() {
   for (int k = 0; k < directions_tried; ++k) {
     const double angle = 2 * std::numbers::pi * k / directions_tried;
     Eigen::VectorXd direction = Eigen::VectorXd::Constant(1, k % 2 == 0 ? 1 : -1);
-    if (n == 2) direction = Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    Eigen::VectorXd v = inverse_root_ * direction * std::sqrt(2 * (needed - at_rest));
+    if (tangents_.start.cols() == 2) direction = Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    Eigen::VectorXd v = inverse_root_ * (tangents_.start * direction) * std::sqrt(2 * (needed - at_rest));
     if (!scale_to_energy(lagrangian, from, needed, {v.data(), n})) return 0;
     least = std::min(least, unknown(v).norm());
   }
@@ -162,11 +187,12 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
     const Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(search_.ends().data() + n, start_.size());
     double speed = farthest;
     if (given.free) {
-      Eigen::VectorXd w = Eigen::VectorXd::Unit(start_.size(), 0);
+      Eigen::VectorXd w = tangents_.start.col(0);
       if (!scale(w)) return false;
       speed = w.norm();
     }
-    arrivals_ = std::make_unique<Arrivals>(lagrangian, start_, rest_, end, root_, speed, given.value);
+    arrivals_ =
+        std::make_unique<Arrivals>(lagrangian, start_, rest_, end, root_, tangents_, speed, given.value);
   }
   arrivals_->count_by(more);
   const auto take = [&](const Arrivals::Arrival& arrival) {
@@ -179,7 +205,8 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
     for (const Arrivals::Arrival& arrival : arrivals_->sweep(1, farthest, scale)) take(arrival);
     return more(0);
   }
-  const int levels = (first ? first_levels : further_levels) * (n == 1 ? denser_in_one : 1);
+  const bool one = tangents_.start.cols() == 1;
+  const int levels = (first ? first_levels : further_levels) * (one ? denser_in_one : 1);
   // Slow motions fall into what attracts them, and take most steps: so the fast ones come first, and no level
   // takes the steps of all. Those slower than all that arrive need not be looked at to the end.
   bool complete = true, arrived = false;

@@ -29,10 +29,10 @@ inline constexpr const char* from_arrival = "newton from a motion that arrives";
 
 /// Motions from the start whose momenta lie in a ball. The momentum at the start determines an extremal. The
 /// radius of the ball, the reach, is in the norm of the inverse of ∂²L/∂q'∂q' at the start; or, where the
-/// energy is given and the duration free, the longest duration. In two coordinates, or in one where the
-/// duration is free, curves of arrivals are followed. Else motions fill the ball evenly, and each is led to
-/// the end that it misses: all extremals with momenta in the ball are led to, some by more motions than
-/// others.
+/// energy is given and the duration free, the longest duration. In two coordinates, in one where the duration
+/// is free, and on manifolds of one or two dimensions curves of arrivals are followed. Else motions fill the
+/// ball evenly, and each is led to the end that it misses: all extremals with momenta in the ball are led to,
+/// some by more motions than others.
 class MotionScan {
  public:
   MotionScan(const Problem& problem, Search& search);
@@ -63,6 +63,7 @@ class MotionScan {
   Eigen::VectorXd velocity(const Eigen::VectorXd& w);
   double unit();
   Eigen::VectorXd direction();
+  void find_tangents(const double* last);
 
   const Problem& problem_;
   Search& search_;
@@ -70,6 +71,7 @@ class MotionScan {
   std::optional<Flow> flow_;
   Eigen::VectorXd start_, rest_;         ///< the start, and the momentum of rest there
   Eigen::MatrixXd root_, inverse_root_;  ///< of ∂²L/∂q'∂q'; w = root⁻¹ (p − rest)
+  Arrivals::Tangents tangents_;          ///< no columns: w that lead along the manifold are no plane
   std::unique_ptr<Arrivals> arrivals_;
   std::mt19937_64 random_{20240229};
 };
