@@ -221,8 +221,9 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
     junctions.emplace(arcs_, intervals, path, constants_);
     const Junctions::Result result = junctions->run();
     if (result == Junctions::Result::failed) {
-      refuse(Status::not_converged, "no local minimiser was found near the guess: " + junctions->message() +
-                                        "; give another guess, or fewer inequalities");
+      refuse(Status::not_converged,
+             "no local minimiser was found near the guess: " + junctions->message() + "; give another guess" +
+                 (problem_.inequalities->count() > 1 ? ", or fewer inequalities" : ""));
       return std::nullopt;
     }
     if (result == Junctions::Result::collapsed) {
