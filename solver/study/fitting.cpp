@@ -124,6 +124,7 @@ std::shared_ptr<const FitRequest> made(const Make& make, Arguments... arguments)
     return make(arguments...);
   } catch (const SceneError&) {
   } catch (const FormulaError&) {
+  } catch (const RelationError&) {
   } catch (const std::invalid_argument&) {
   }
   return nullptr;

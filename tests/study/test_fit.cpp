@@ -310,7 +310,7 @@ TEST_F(Fits, TellADurationOverWhichConjugateEndsAreNone) {
       "[system]\ncoordinates = [\"x\"]\nparameters = { k = 1.3 }\nlagrangian = \"x'^2/2 - k*x^2/2\"\n";
   std::string text = "t,x\n";
   for (int i = 0; i <= 40; ++i) {
-    const double t = i == 40 ? 3.141592653589793 : pi * i / 40;
+    const double t = pi * i / 40;
     text += fmt::format("{:.17g},{:.17g}\n", t, std::cos(t) + std::sin(t) / 2);
   }
   write("data.csv", text);
@@ -320,7 +320,7 @@ TEST_F(Fits, TellADurationOverWhichConjugateEndsAreNone) {
                                        "parameters = [\"k\"]\n",
                                        duration)));
   };
-  const FitResult none = lasting(3.141592653589793);
+  const FitResult none = lasting(pi);
   EXPECT_FALSE(none.solution.converged());
   EXPECT_NE(none.solution.message.find("set duration = 3.46 in [boundary]"), std::string::npos)
       << none.solution.message;

@@ -51,10 +51,9 @@ class PartsOfPath {
     return inertia.negative;
   }
 
-  /// Where the part of the last call ends, relative to the first time conjugate to its start: the eigenvalue
-  /// nearest zero of the second variation as a function of the nodes' values alone, which passes zero there
-  /// as that of all values does, elements being shorter than windows. By inverse iteration, from the field of
-  /// the part before on.
+  /// The eigenvalue nearest zero of the last part's second variation, as a function of the nodes' values
+  /// alone. It passes zero where the part ends at a time conjugate to its start, since elements are shorter
+  /// than windows. By inverse iteration, which begins with the field of the part before.
   double softest(int steps) {
     const auto n = static_cast<std::size_t>(problem_.coordinates());
     std::vector<double>& x = at_->field;

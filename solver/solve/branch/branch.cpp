@@ -251,10 +251,10 @@ ClosingEquation Branch::closing(const Move& onward) const {
   std::vector<double> row(onward.step.nodes.begin(), onward.step.nodes.begin() + n);
   row.insert(row.end(), onward.step.nodes.begin() + last, onward.step.nodes.end());
   const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0)),
-               by_ends = length / units_.extent, by_energy = std::abs(energy_change(onward)) / energy_unit_,
-               by_duration = std::abs(onward.parameter) / units_.duration;
-  if (std::max(by_ends, by_energy) < least_closing * by_duration) return closed_by_duration();
-  if (!(by_ends > by_energy)) return {};
+               of_ends = length / units_.extent, of_energy = std::abs(energy_change(onward)) / energy_unit_,
+               of_duration = std::abs(onward.parameter) / units_.duration;
+  if (std::max(of_ends, of_energy) < least_closing * of_duration) return closed_by_duration();
+  if (!(of_ends > of_energy)) return {};
   for (double& x : row) x /= length;
   return {.row = std::move(row)};
 }
