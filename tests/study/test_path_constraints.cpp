@@ -83,6 +83,40 @@ TEST_F(PathConstraints, TheShortestWayRoundADisc) {
   EXPECT_EQ(forces_at(found, 0.1).front(), 0);
 }
 
+// Coarse elements are longer than these discs, or the path is symmetric beside them, or passes right through.
+TEST_F(PathConstraints, DiscsThatAreSmall) {
+  struct Case {
+    double radius, start;
+  };
+  for (const auto& [radius, start] : {Case{0.3, 0}, Case{0.2, 0}, Case{0.05, 0}, Case{0.02, 0.02}}) {
+    const Study s = study(particle(fmt::format("\"(x - 0.3137)^2 + y^2 >= {}^2\"", radius),
+                                   fmt::format("x = -10.0, y = {}", start), "x = 10.0, y = 0.0"));
+    const Solution found = run(s);
+    ASSERT_TRUE(found.converged()) << radius << ": " << found.message;
+    const double length = radius * length_round_disc(std::hypot(10.3137, start) / radius, 9.6863 / radius,
+                                                     half_turn - std::atan(start / 10.3137));
+    EXPECT_NEAR(found.action, length * length / 2, 1e-8 * length * length) << radius;
+    EXPECT_GT(least_distance(s, found), -1e-8 * length) << radius;
+  }
+}
+
+// Seen from the disc the path is straight but for the way round it; it passes within 7e-4 of the time.
+TEST_F(PathConstraints, ADiscThatIsFast) {
+  const double speed = 300, passage = 0.4137, radius = 0.2;
+  const Study s =
+      study(particle(fmt::format("\"(x - 1)^2 + (y - {}*(t - {}))^2 >= {}^2\"", speed, passage, radius),
+                     "x = 0.0, y = 0.0", "x = 2.4, y = 0.0"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  const double before = speed * passage, after = speed * (1 - passage);
+  const double angle = half_turn - std::abs(std::atan(1 / before) - std::atan(1.4 / after));
+  const double length =
+      radius * length_round_disc(std::hypot(1, before) / radius, std::hypot(1.4, after) / radius, angle);
+  // With u = q' − (0, w): ∫ (u² + 2 w u_y + w²)/2.
+  EXPECT_NEAR(found.action, length * length / 2 - speed * speed / 2, 1e-8 * length * length);
+  EXPECT_GT(least_distance(s, found), -1e-7);
+}
+
 TEST_F(PathConstraints, AnEllipseIsPassedOutside) {
   const Study s = study(particle("\"x^2/4 + y^2 >= 1\"", "x = -3.0, y = 0.3", "x = 3.0, y = -0.1"));
   const Solution found = run(s);

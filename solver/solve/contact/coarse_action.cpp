@@ -24,7 +24,7 @@ void cut(std::vector<double>& matrix, int rows, int n) {
 
 }  // namespace
 
-CoarseAction::CoarseAction(const Problem& problem, int elements)
+CoarseAction::CoarseAction(const Problem& problem, const CoarseElements& elements)
     : CoarseAction(problem, coarse_times(problem, elements)) {}
 
 CoarseAction::CoarseAction(const Problem& problem, std::vector<double> times)
@@ -40,6 +40,14 @@ CoarseAction::CoarseAction(const Problem& problem, std::vector<double> times)
     for (int c = 0; c < inequalities_.count(); ++c) places_.push_back({k, c});
     if (problem.manifold) constrained_.push_back(k);
   }
+}
+
+double CoarseAction::elements_in(double from, double to) const {
+  const auto place = [&](double t) {
+    const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
+    return static_cast<double>(after - times_.begin()) - (*after - t) / (*after - *(after - 1));
+  };
+  return place(to) - place(from);
 }
 
 bool CoarseAction::fixed(int node) const {

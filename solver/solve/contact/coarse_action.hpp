@@ -36,8 +36,20 @@ struct CoarseContacts {
   std::vector<double> multipliers = {};  ///< ν of integrals
 };
 
-/// Times of so many elements, of equal lengths between waypoints.
-std::vector<double> coarse_times(const Problem& problem, int elements);
+/// A stretch of time, in parts of the duration.
+struct Stretch {
+  double from, to;
+  double length() const { return to - from; }
+};
+
+/// How many elements a coarse path has: equal ones between waypoints, and closer_elements in each of these
+/// stretches, where they are shorter.
+struct CoarseElements {
+  int equal;
+  std::vector<Stretch> closer = {};
+};
+
+std::vector<double> coarse_times(const Problem& problem, const CoarseElements& elements);
 
 /// A waypoint whose time is free: the elements between the waypoints or ends beside it stretch with it.
 /// Beside the last one of a path that may be shifted in time is the first, N nodes later.
@@ -55,7 +67,7 @@ struct WaypointNode {
 class CoarseAction {
  public:
   /// Keeps a reference to the problem.
-  CoarseAction(const Problem& problem, int elements);
+  CoarseAction(const Problem& problem, const CoarseElements& elements);
   /// The same on elements between these times, from 0 to T; each waypoint is at the nearest node.
   CoarseAction(const Problem& problem, std::vector<double> times);
 
@@ -69,6 +81,8 @@ class CoarseAction {
   double cell_end(int node) const {
     return node == elements_ ? times_.back() : (times_[node] + times_[node + 1]) / 2;
   }
+  /// How many lie between two times, with fractions.
+  double elements_in(double from, double to) const;
   /// Where inequalities are compared: at nodes that the boundary relation leaves free.
   const std::vector<NodeInequality>& places() const { return places_; }
   const std::vector<WaypointNode>& free_waypoints() const { return free_waypoints_; }

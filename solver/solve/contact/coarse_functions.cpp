@@ -5,6 +5,7 @@
 #include "problem/manifold.hpp"
 #include "solve/contact/coarse_action.hpp"
 #include "solve/contact/element_hessian.hpp"
+#include "solve/contact/limits.hpp"
 
 /// \file The coarse action as a minimum under inequalities: values and derivatives.
 
@@ -148,7 +149,8 @@ void CoarseAction::put_units(std::span<const double> z, double size, InequalityM
   minimum.value_unit = force * size * duration / elements_;  // what a node adds
   std::vector<double> slopes(minimum.slopes.size());
   if (!minimum.constraint_slopes(variables(z, size), slopes)) return;
-  // Those that are the same at other nodes have one unit.
+  // Equations that are the same at other nodes have one unit. An inequality counts as a distance at each
+  // node: beside a small obstacle its slope may be far below that elsewhere.
   const int inequalities = inequalities_.count(), places = static_cast<int>(places_.size());
   const int constraints = problem_.manifold ? problem_.manifold->constraints() : 0;
   const int ends =
@@ -158,13 +160,16 @@ void CoarseAction::put_units(std::span<const double> z, double size, InequalityM
     return row < ends ? inequalities + row - places
                       : inequalities + ends - places + (row - ends) % constraints;
   };
-  std::vector<double> largest(inequalities + ends - places + constraints);
+  std::vector<double> largest(inequalities + ends - places + constraints), own(places);
   for (std::size_t i = 0; i < slopes.size(); ++i) {
-    double& most = largest[kind(minimum.slopes[i].row)];
+    const int row = minimum.slopes[i].row;
+    double& most = largest[kind(row)];
     most = std::max(most, std::abs(slopes[i]));
+    if (row < places) own[row] = std::max(own[row], std::abs(slopes[i]));
   }
   for (int row = 0; row < minimum.inequalities + minimum.equations; ++row) {
-    const double most = largest[kind(row)];
+    double most = largest[kind(row)];
+    if (row < places) most = std::max(own[row], limits::contact::least_slope * most);
     minimum.constraint_units.push_back(most > 0 ? most * size : 1);
   }
 }

@@ -7,7 +7,6 @@
 #include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/point_range.hpp"
-#include "solve/contact/coarse_action.hpp"
 #include "solve/contact/found_values.hpp"
 #include "solve/contact/limits.hpp"
 
@@ -126,11 +125,11 @@ std::vector<double> nodes_between(const CoarsePath& path, std::size_t n, const s
 
 }  // namespace
 
-CoarseMinima::CoarseMinima(const Problem& problem, int elements, std::vector<double> z,
+CoarseMinima::CoarseMinima(const Problem& problem, CoarseElements elements, std::vector<double> z,
                            const Deadline& deadline)
-    : elements_(elements),
+    : elements_(std::move(elements)),
       deadline_(deadline),
-      last_{problem, {std::move(z), coarse_times(problem, elements)}} {}
+      last_{problem, {std::move(z), coarse_times(problem, elements_)}} {}
 
 bool CoarseMinima::find(double duration, const std::vector<double>& unknowns) {
   std::optional<Minimum> found = at(duration, unknowns);

@@ -6,6 +6,7 @@
 
 #include "machine/deadline.hpp"
 #include "problem/problem.hpp"
+#include "solve/contact/coarse_action.hpp"
 #include "solve/external/inequality_minimum.hpp"
 
 /// \file Minima of the coarse action for values of the duration and the unknown constants.
@@ -17,7 +18,7 @@ struct CoarsePath {
   std::vector<double> z, times;
 };
 
-/// Minima of so many elements, each continued from the last one. Free times of waypoints are those by which
+/// Minima on such elements, each continued from the last one. Free times of waypoints are those by which
 /// the action is least too.
 class CoarseMinima {
  public:
@@ -30,7 +31,8 @@ class CoarseMinima {
   };
 
   /// From the nodes z of a path at coarse_times(). Keeps a reference to the deadline.
-  CoarseMinima(const Problem& problem, int elements, std::vector<double> z, const Deadline& deadline);
+  CoarseMinima(const Problem& problem, CoarseElements elements, std::vector<double> z,
+               const Deadline& deadline);
 
   /// The minimum for these values; nothing where there is none, or only one on another side of an obstacle
   /// than the last.
@@ -44,7 +46,7 @@ class CoarseMinima {
   const Deadline& deadline() const { return deadline_; }
 
  private:
-  int elements_;
+  CoarseElements elements_;
   const Deadline& deadline_;
   Minimum last_;
   MinimumReport failure_;

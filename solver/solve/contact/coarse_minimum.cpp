@@ -240,7 +240,7 @@ bool find_first(CoarseMinima& minima) {
 
 }  // namespace
 
-CoarseMinimum coarse_minimum(Problem& problem, int elements, const std::vector<double>& z,
+CoarseMinimum coarse_minimum(Problem& problem, const CoarseElements& elements, const std::vector<double>& z,
                              const Deadline& deadline) {
   CoarseMinima minima(problem, elements, z, deadline);
   if (!find_first(minima)) return {minima.failure()};

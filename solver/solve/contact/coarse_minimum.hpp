@@ -5,6 +5,7 @@
 
 #include "machine/deadline.hpp"
 #include "problem/problem.hpp"
+#include "solve/contact/coarse_action.hpp"
 #include "solve/external/inequality_minimum.hpp"
 
 /// \file Minima of the coarse action; a free duration with them.
@@ -21,7 +22,7 @@ struct CoarseMinimum {
 /// at which the minimum has the energy given, or satisfies the condition that closes it: the minimum is
 /// continued in the duration from that of the problem, by the secant rule. Unknown constants become those
 /// with which the minimum satisfies their conditions. The problem gets all of these values.
-CoarseMinimum coarse_minimum(Problem& problem, int elements, const std::vector<double>& z,
+CoarseMinimum coarse_minimum(Problem& problem, const CoarseElements& elements, const std::vector<double>& z,
                              const Deadline& deadline);
 
 }  // namespace extremal

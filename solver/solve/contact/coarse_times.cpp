@@ -6,6 +6,7 @@
 #include "problem/manifold.hpp"
 #include "solve/contact/coarse_action.hpp"
 #include "solve/contact/element_hessian.hpp"
+#include "solve/contact/limits.hpp"
 
 /// \file Times of a coarse path: those of waypoints, and derivatives by those that are free.
 
@@ -28,15 +29,12 @@ double time_at(const std::vector<double>& times, int node) {
   return node > last ? times[node - last] + times.back() : times[node];
 }
 
-}  // namespace
-
-std::vector<double> coarse_times(const Problem& problem, int elements) {
-  const double duration = problem.duration.value;
-  const std::vector<WaypointCondition> waypoints = waypoints_of(problem);
-  const int count = static_cast<int>(waypoints.size());
+/// Equal elements between the ends and waypoints, whose times are given.
+std::vector<double> equal_times(const std::vector<double>& given, double duration, int elements) {
+  const int count = static_cast<int>(given.size());
   std::vector<double> times{0};
   for (int w = 0; w <= count; ++w) {
-    const double from = times.back(), to = w < count ? waypoints[w].at(duration) : duration;
+    const double from = times.back(), to = w < count ? given[w] : duration;
     // At least one element remains for each leg that follows.
     const int first = static_cast<int>(times.size()) - 1, last = elements - (count - w);
     const int node = w == count ? elements
@@ -45,6 +43,41 @@ std::vector<double> coarse_times(const Problem& problem, int elements) {
     for (int k = first + 1; k < node; ++k) times.push_back(from + (to - from) * (k - first) / (node - first));
     times.push_back(to);
   }
+  return times;
+}
+
+/// Nodes within a stretch are replaced by equal elements; those that are given stay.
+void put_closer(double from, double to, const std::vector<double>& given, std::vector<double>& times) {
+  const double step = (to - from) / limits::contact::closer_elements;
+  const auto stays = [&](double t) {
+    return t == times.back() || t == 0 || std::ranges::count(given, t) > 0;
+  };
+  std::vector<double> kept;
+  for (const double t : times)
+    if (t < from - step / 2 || t > to + step / 2 || stays(t)) kept.push_back(t);
+  const std::size_t before = kept.size();
+  for (int k = 0; k <= limits::contact::closer_elements; ++k) {
+    const double t = from + k * step;
+    const auto next =
+        std::lower_bound(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(before), t - step / 2);
+    const bool near = next != kept.begin() + static_cast<std::ptrdiff_t>(before) && *next <= t + step / 2;
+    if (!near && t > 0 && t < times.back()) kept.push_back(t);
+  }
+  std::ranges::sort(kept);
+  times = std::move(kept);
+}
+
+}  // namespace
+
+std::vector<double> coarse_times(const Problem& problem, const CoarseElements& elements) {
+  const double duration = problem.duration.value;
+  std::vector<double> given;
+  for (const WaypointCondition& waypoint : waypoints_of(problem)) given.push_back(waypoint.at(duration));
+  std::vector<double> times = equal_times(given, duration, elements.equal);
+  std::vector<Stretch> closer = elements.closer;
+  std::ranges::stable_sort(closer, std::ranges::greater{}, &Stretch::length);
+  for (const Stretch& stretch : closer)
+    put_closer(stretch.from * duration, stretch.to * duration, given, times);
   return times;
 }
 

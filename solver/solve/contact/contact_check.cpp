@@ -39,9 +39,13 @@ std::vector<double> times_of(const Trajectory& path, double most = INFINITY) {
   return times;
 }
 
+struct Least {
+  double t, value;
+};
+
 /// The least value between two times, by golden sections.
 template <class Function>
-double least_between(double a, double b, const Function& f) {
+Least least_between(double a, double b, const Function& f) {
   constexpr double part = 0.381966011250105;
   double x = a + part * (b - a), y = b - part * (b - a), fx = f(x), fy = f(y);
   for (int k = 0; k < 24; ++k) {
@@ -59,7 +63,17 @@ double least_between(double a, double b, const Function& f) {
       fy = f(y);
     }
   }
-  return std::min(fx, fy);
+  return fx < fy ? Least{x, fx} : Least{y, fy};
+}
+
+/// Between a time at which f is not negative and one at which it is: the last of the first kind, about.
+template <class Function>
+double last_kept(double kept, double forbidden, const Function& f) {
+  for (int k = 0; k < 12; ++k) {
+    const double middle = (kept + forbidden) / 2;
+    (f(middle) < 0 ? forbidden : kept) = middle;
+  }
+  return kept;
 }
 
 class LawCheck {
@@ -103,10 +117,18 @@ class LawCheck {
       const std::size_t least = std::ranges::min_element(sampled.values) - sampled.values.begin();
       const double a = sampled.t[least > 0 ? least - 1 : 0],
                    b = sampled.t[std::min(least + 1, sampled.t.size() - 1)];
-      double& value = sampled.values[least];
-      value = std::min(value, least_between(a, b, [&](double t) { return distance(i, k, t) + tolerance; }));
-      if (!(value < 0)) continue;
-      keep(stretch(sampled, least, k, true), arc.from);
+      const auto at = [&](double t) { return distance(i, k, t) + tolerance; };
+      const Least between = least_between(a, b, at);
+      const bool seen = sampled.values[least] < 0;
+      if (!seen && !(between.value < 0)) continue;
+      Violation violation = stretch(sampled, least, k, true);
+      violation.amount = std::max(violation.amount, -between.value);
+      // Of a stretch between two samples the ends are looked for.
+      if (!seen) {
+        violation.from = last_kept(a, between.t, at);
+        violation.to = last_kept(b, between.t, at);
+      }
+      keep(violation, arc.from);
     }
   }
 

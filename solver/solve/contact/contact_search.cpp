@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "problem/inequalities.hpp"
 #include "problem/point_range.hpp"
 #include "solution/path_contacts.hpp"
+#include "solve/contact/aside.hpp"
 #include "solve/contact/coarse_action.hpp"
 #include "solve/contact/coarse_minimum.hpp"
 #include "solve/contact/found_values.hpp"
@@ -127,6 +129,13 @@ std::string blocked_waypoint(const Problem& problem, const std::vector<Interval>
   return {};
 }
 
+/// Adds the stretch about what happens in few elements between two times.
+void add_if_few(const CoarseAction& action, double from, double to, std::vector<Stretch>& few) {
+  if (action.elements_in(from, to) > few_elements || !(to > from)) return;
+  const double duration = action.times().back(), middle = (from + to) / 2, half = wider * (to - from) / 2;
+  few.push_back({std::max(0.0, middle - half) / duration, std::min(duration, middle + half) / duration});
+}
+
 }  // namespace
 
 ContactSearch::ContactSearch(const Problem& problem, const SolveOptions& options, const ArcSolve& solve,
@@ -138,49 +147,20 @@ ContactSearch::ContactSearch(const Problem& problem, const SolveOptions& options
       several_(several) {}
 
 Solution ContactSearch::run(std::vector<double> z) {
-  guess_ = guess_of_nodes(coarse_times(problem_, coarse_elements[0]), z);
-  for (const int elements : coarse_elements) {
-    if (options_.deadline.passed()) break;
-    if (elements * problem_.coordinates() > most_unknowns && elements != coarse_elements[0]) break;
-    CoarseMinimum minimum = coarse_minimum(problem_, elements, first_nodes(elements), options_.deadline);
-    const MinimumReport& report = minimum.report;
-    const std::string& reason = minimum.reason;
-    if (!report.converged) {
-      if (const std::string contradiction = incompatible_inequalities(problem_, guess_);
-          !contradiction.empty()) {
-        refuse(Status::no_solution_near, contradiction);
-        break;
-      }
-      refuse(
-          report.unbounded || !reason.empty() ? Status::no_solution_near : Status::not_converged,
-          !reason.empty() ? reason + "; give another value, or another guess"
-          : report.unbounded
-              ? "no local minimiser is near: the action has no lower bound along paths that begin at "
-                "the guess. A free path that is longer than a window is no minimiser; shorten the "
-                "duration, or give inequalities that bound the path"
-              : fmt::format("no local minimiser was found near the guess: the interior point method did not "
-                            "converge. If the path is longer than a window and free of contact, there is "
-                            "none; shorten the duration, or give another guess{}",
-                            problem_.duration.free ? " or another guess.duration" : ""));
-      no_duration_ = !reason.empty();
-      if (no_duration_) break;
-      if (report.unbounded) break;
-      continue;
-    }
-    guess_ = guess_of_nodes(minimum.times, minimum.z);
-    const double size = largest_range(minimum.z, problem_.coordinates());
-    if (const std::string broken = broken_end(problem_, size); !broken.empty()) {
-      refuse(Status::no_solution_near, broken);
-      break;
-    }
-    const double element = minimum.times.back() / elements;
-    std::vector<Interval> intervals = coarse_intervals(std::move(minimum));
-    if (const std::string blocked = blocked_waypoint(problem_, intervals, element, size); !blocked.empty()) {
-      refuse(Status::not_converged, blocked);
-      break;
-    }
-    if (std::optional<Solution> found = join(std::move(intervals))) return *std::move(found);
-    if (saddle_) break;
+  CoarseElements elements{coarse_elements[0]};
+  guess_ = guess_of_nodes(coarse_times(problem_, elements), z);
+  for (std::size_t level = 0, closer = 0;
+       level < std::size(coarse_elements) && !options_.deadline.passed();) {
+    elements.equal = coarse_elements[level];
+    if (level > 0 && elements.equal * problem_.coordinates() > most_unknowns) break;
+    ++attempts_;
+    Attempt attempt = from_elements(elements);
+    if (attempt.solution) return *std::move(attempt.solution);
+    if (attempt.final) break;
+    // Where something happens in few elements there will be more.
+    const std::vector<Stretch>& few = attempt.few;
+    elements.closer.insert(elements.closer.end(), few.begin(), few.end());
+    if (few.empty() || ++closer > most_closer) ++level;
   }
   if (options_.deadline.passed()) {
     failure_.status = Status::iteration_limit;
@@ -190,12 +170,61 @@ Solution ContactSearch::run(std::vector<double> z) {
   return std::move(failure_);
 }
 
-/// Nodes between those of the path found last.
-std::vector<double> ContactSearch::first_nodes(int elements) const {
-  const std::vector<double> times = coarse_times(problem_, elements);
+/// A minimiser by way of the coarse minimum of these elements.
+ContactSearch::Attempt ContactSearch::from_elements(const CoarseElements& elements) {
+  CoarseMinimum minimum = coarse_minimum(problem_, elements, first_nodes(elements), options_.deadline);
+  const MinimumReport& report = minimum.report;
+  const std::string& reason = minimum.reason;
+  if (!report.converged) {
+    if (const std::string contradiction = incompatible_inequalities(problem_, guess_);
+        !contradiction.empty()) {
+      refuse(Status::no_solution_near, contradiction);
+      return {.final = true};
+    }
+    refuse(report.unbounded || !reason.empty() ? Status::no_solution_near : Status::not_converged,
+           !reason.empty() ? reason + "; give another value, or another guess"
+           : report.unbounded
+               ? "no local minimiser is near: the action has no lower bound along paths that begin at "
+                 "the guess. A free path that is longer than a window is no minimiser; shorten the "
+                 "duration, or give inequalities that bound the path"
+               : fmt::format("no local minimiser was found near the guess: the interior point method did not "
+                             "converge. If the path is longer than a window and free of contact, there is "
+                             "none; shorten the duration, or give another guess{}",
+                             problem_.duration.free ? " or another guess.duration" : ""));
+    no_duration_ = !reason.empty();
+    return {.final = no_duration_ || report.unbounded};
+  }
+  guess_ = guess_of_nodes(minimum.times, minimum.z);
+  const double size = largest_range(minimum.z, problem_.coordinates());
+  if (const std::string broken = broken_end(problem_, size); !broken.empty()) {
+    refuse(Status::no_solution_near, broken);
+    return {.final = true};
+  }
+  const double element = minimum.times.back() / elements.equal;
+  const CoarseAction action(problem_, minimum.times);
+  std::vector<Interval> intervals = coarse_intervals(std::move(minimum));
+  if (const std::string blocked = blocked_waypoint(problem_, intervals, element, size); !blocked.empty()) {
+    refuse(Status::not_converged, blocked);
+    return {.final = true};
+  }
+  Attempt attempt;
+  for (const Interval& interval : intervals)
+    if (!interval.held.empty()) add_if_few(action, interval.from, interval.to, attempt.few);
+  missed_.reset();
+  attempt.solution = join(std::move(intervals));
+  attempt.final = saddle_;
+  if (missed_ && missed_->forbidden) add_if_few(action, missed_->from, missed_->to, attempt.few);
+  return attempt;
+}
+
+/// Nodes between those of the path found last, moved aside of what shorter elements show to be forbidden.
+std::vector<double> ContactSearch::first_nodes(const CoarseElements& elements) const {
+  const CoarseAction action(problem_, elements);
+  const std::vector<double>& times = action.times();
   const std::size_t n = problem_.coordinates();
   std::vector<double> z(times.size() * n);
   for (std::size_t k = 0; k < times.size(); ++k) guess_.at(times[k] / times.back(), {z.data() + k * n, n});
+  if (!elements.closer.empty()) move_aside(problem_, action, z);
   return z;
 }
 
@@ -243,6 +272,7 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
     put_unknowns({constants.begin(), constants.begin() + std::ssize(unknowns_of(problem_))}, problem_);
     const std::optional<Violation> violation = worst_violation(arcs_, *junctions);
     if (!violation) return accept(*junctions);
+    missed_ = violation;
     refuse(Status::not_converged, describe(*violation));
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       intervals[i].from = junctions->arcs()[i].from;

@@ -22,6 +22,8 @@ class ContactSearch {
   /// From the nodes of a path of the coarsest elements.
   Solution run(std::vector<double> z);
 
+  /// Coarse minima from which it was tried to go on.
+  int attempts() const { return attempts_; }
   /// Whether what was found last is stationary, but no minimum.
   bool saddle() const { return saddle_; }
   /// Whether minima of no duration satisfy what closes it; others may.
@@ -35,7 +37,13 @@ class ContactSearch {
   std::string describe(const Violation& violation) const;
   std::optional<Solution> accept(Junctions& path);
   std::optional<Solution> accept_free(const Junctions& path);
-  std::vector<double> first_nodes(int elements) const;
+  struct Attempt {
+    std::optional<Solution> solution = {};
+    bool final = false;             ///< other elements would lead to nothing else
+    std::vector<Stretch> few = {};  ///< where contacts, or what is forbidden, are no longer than few elements
+  };
+  Attempt from_elements(const CoarseElements& elements);
+  std::vector<double> first_nodes(const CoarseElements& elements) const;
   std::vector<Interval> coarse_intervals(CoarseMinimum minimum);
   void refuse(Status status, std::string message);
 
@@ -45,8 +53,10 @@ class ContactSearch {
   Arcs arcs_;
   bool several_;
   Guess guess_;
-  std::vector<double> constants_;  ///< k and ν of the path found last
+  std::vector<double> constants_;    ///< k and ν of the path found last
+  std::optional<Violation> missed_;  ///< by the path found last
   Solution failure_;
+  int attempts_ = 0;
   bool singular_ = false, saddle_ = false, no_duration_ = false;
 };
 

@@ -28,17 +28,20 @@ double seconds_since(Clock::time_point start) {
 
 Solution solve_with_inequalities(const Problem& problem, const SolveOptions& options, const ArcSolve& solve) {
   const auto start = Clock::now();
-  const CoarseAction action(problem, coarse_elements[0]);
+  const CoarseAction action(problem, CoarseElements{coarse_elements[0]});
   ContactSearch search(problem, options, solve, false);
   Solution solution = search.run(first_path(problem, action));
   // From a path that is symmetric, the method may come to a saddle: beside it there are minima. The steps of
   // a coarse path may also lead through what is forbidden.
   const bool bounded = search.saddle() || search.no_duration() || solution.status == Status::not_converged;
-  for (int number = 0; !solution.converged() && bounded && number < most_bends && !options.deadline.passed();
+  int attempts = search.attempts();
+  for (int number = 0; !solution.converged() && bounded && number < most_bends && attempts < most_attempts &&
+                       !options.deadline.passed();
        ++number)
     if (const std::optional<std::vector<double>> z = bent_path(problem, action, number)) {
       ContactSearch beside(problem, options, solve, false);
       Solution other = beside.run(*z);
+      attempts += beside.attempts();
       if (!other.converged()) continue;
       solution = std::move(other);
     }
@@ -49,7 +52,7 @@ Solution solve_with_inequalities(const Problem& problem, const SolveOptions& opt
 std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& options, int most,
                                  const ArcSolve& solve) {
   const auto start = Clock::now();
-  const CoarseAction action(problem, coarse_elements[0]);
+  const CoarseAction action(problem, CoarseElements{coarse_elements[0]});
   std::vector<Solution> found;
   std::vector<char> singular;
   Solution failure;

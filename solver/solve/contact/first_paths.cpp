@@ -5,10 +5,10 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include "problem/manifold.hpp"
+#include "solve/contact/aside.hpp"
 #include "solve/contact/limits.hpp"
 #include "solve/guess/starting_ends.hpp"
 
@@ -88,19 +88,6 @@ bool jumps(const Nodes& z, std::size_t n) {
   return longest > jump * length && length > 0;
 }
 
-/// A direction across the line between the ends; the same at every call.
-VectorXd aside(const Nodes& z, int n, unsigned number) {
-  std::minstd_rand random{7 + 13 * number};
-  VectorXd direction(n), chord(n);
-  for (int a = 0; a < n; ++a) {
-    direction[a] = 2.0 * random() / std::minstd_rand::max() - 1;
-    chord[a] = z[z.size() - n + a] - z[a];
-  }
-  const double length = chord.norm();
-  if (n > 1 && length > 0) direction -= direction.dot(chord) / (length * length) * chord;
-  return direction.normalized();
-}
-
 void bend(Nodes& z, const VectorXd& direction, double size, int wave) {
   const auto n = static_cast<std::size_t>(direction.size());
   const double nodes = static_cast<double>(z.size()) / static_cast<double>(n) - 1;
@@ -159,7 +146,7 @@ std::vector<std::vector<double>> paths_by_sides(const Problem& problem, const Co
   const int n = problem.coordinates();
   if (problem.periodic) return {};
   const Nodes line = unbent(problem, action);
-  const VectorXd direction = aside(line, n, 0);
+  const VectorXd direction = across_line(line, n, 0);
   const double size = size_of(line, n);
   // Of each inequality the sides that may be chosen; one that is out of the way may be left as it is.
   std::vector<std::vector<std::vector<double>>> choices;
@@ -206,11 +193,13 @@ std::vector<double> first_path(const Problem& problem, const CoarseAction& actio
   const int n = problem.coordinates();
   const Nodes line = unbent(problem, action);
   const double size = size_of(line, n);
+  Nodes aside = line;
+  if (move_aside(problem, action, aside) && !jumps(aside, n)) return aside;
   Nodes pushed = line;
   push(problem, action, pushed);
   for (const double part : bends) {
     Nodes z = line;
-    bend(z, aside(line, n, 0), part * size, 1);
+    bend(z, across_line(line, n, 0), part * size, 1);
     if (push(problem, action, z) && !jumps(z, n)) return z;
   }
   return pushed;
@@ -225,7 +214,7 @@ std::optional<std::vector<double>> bent_path(const Problem& problem, const Coars
             wave = number / signs / directions(n) % waves, size = number / signs / directions(n) / waves;
   Nodes z = unbent(problem, action);
   const double extent = size_of(z, n);
-  bend(z, aside(z, n, direction), (sign == 0 ? 1 : -1) * wave_sizes[size] * extent, wave + 1);
+  bend(z, across_line(z, n, direction), (sign == 0 ? 1 : -1) * wave_sizes[size] * extent, wave + 1);
   if (!push(problem, action, z) || jumps(z, n)) return std::nullopt;
   return z;
 }

@@ -51,12 +51,13 @@ bool includes(const std::vector<int>& a, const std::vector<int>& b) { return std
 /// Where several inequalities are held on few elements, beside the ends of the path, a path passes a corner
 /// rather than resting in it: it leaves one surface before it comes to another. One that the neighbours do
 /// not hold is held there alone, or none; what is missing then is found as a violation.
-void pass_corners(std::vector<Interval>& intervals, double longest) {
+void pass_corners(const CoarseAction& action, std::vector<Interval>& intervals) {
   std::vector<Interval> passed;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const Interval& interval = intervals[i];
     const double length = interval.to - interval.from;
-    if (i == 0 || i + 1 == intervals.size() || length > longest || interval.held.size() < 2) {
+    if (i == 0 || i + 1 == intervals.size() ||
+        action.elements_in(interval.from, interval.to) > corner_elements || interval.held.size() < 2) {
       passed.push_back(interval);
       continue;
     }
@@ -106,17 +107,35 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t i = a; i < z.size(); i += n) size = std::max(size, std::abs(z[i] - z[a]));
   if (!(size > 0)) size = 1;
+  std::vector<ConstraintValues> compared;
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
+  const auto pressure = [&](std::size_t place, std::size_t c) {
+    const int node = action.places()[place].node;
+    const double slope = compared[place / m].slopes.row(static_cast<Eigen::Index>(c)).norm();
+    return multipliers[place + c] * slope / (action.cell_end(node) - action.cell_begin(node));
+  };
+  for (std::size_t place = 0; place < action.places().size(); place += m) {
+    const int node = action.places()[place].node;
+    compared.push_back(inequalities.all->at(z.subspan(node * n, n), action.time(node)));
+    for (std::size_t c = 0; c < m; ++c)
+      largest[static_cast<Eigen::Index>(c)] =
+          std::max(largest[static_cast<Eigen::Index>(c)], pressure(place, c));
+  }
   std::vector<std::vector<int>> held(elements + 1);
   for (std::size_t place = 0; place < action.places().size(); place += m) {
     const int node = action.places()[place].node;
-    const ConstraintValues values = inequalities.all->at(z.subspan(node * n, n), action.time(node));
+    const ConstraintValues& values = compared[place / m];
     std::vector<Pressed> pressed;
-    const double cell = action.cell_end(node) - action.cell_begin(node);
+    const double step = size * (action.cell_end(node) - action.cell_begin(node)) / problem.duration.value;
     for (std::size_t c = 0; c < m; ++c) {
-      // The product of both is the small barrier parameter; in contact the force is the larger one.
-      const double slope = values.slopes.row(c).norm(), pressure = multipliers[place + c] * slope / cell;
-      if (pressure * slope * size > std::abs(values.g[c]) * force)
-        pressed.push_back({static_cast<int>(c), pressure,
+      // The product of pressure and distance is the small barrier parameter; in contact the pressure is the
+      // larger one: by the forces and the size of the path, and by the largest pressure and the way of a
+      // node, since beside a small obstacle the first two are large.
+      const auto row = static_cast<Eigen::Index>(c);
+      const double pressed_by = pressure(place, c),
+                   distance = std::abs(values.g[row]) / values.slopes.row(row).norm();
+      if (pressed_by * size > distance * force && pressed_by * step > distance * largest[row])
+        pressed.push_back({static_cast<int>(c), pressed_by,
                            node > 0 && std::ranges::binary_search(held[node - 1], static_cast<int>(c))});
     }
     Eigen::MatrixXd basis(n, 0);
@@ -162,7 +181,7 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
     }
     intervals.push_back({held[k], from, to});
   }
-  pass_corners(intervals, corner_elements * problem.duration.value / elements);
+  pass_corners(action, intervals);
   intervals.front().at_start = std::move(at_start);
   intervals.back().at_end = std::move(at_end);
   return intervals;

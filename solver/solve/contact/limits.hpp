@@ -9,6 +9,12 @@ namespace extremal::limits::contact {
 /// Equal elements on which contacts are looked for, coarse first: each further level serves where the one
 /// before has not led to a solution.
 inline constexpr int coarse_elements[] = {96, 384, 1152};
+/// A contact, or a stretch in which the path is forbidden, of fewer elements than the first number gets so
+/// many in a stretch longer than it by a factor; so often, before elements become shorter everywhere.
+inline constexpr int few_elements = 8, closer_elements = 32, most_closer = 4;
+inline constexpr double wider = 3;
+/// Slopes of an inequality at nodes below this part of the largest do not make it a distance.
+inline constexpr double least_slope = 1e-4;
 /// Elements on which a path that passes a corner holds both sides of it, at most.
 inline constexpr double corner_elements = 2.5;
 /// Whether inequalities contradict each other is looked for at so many times, from so many points about the
@@ -80,6 +86,11 @@ inline constexpr double freed_stretch = 1.7320508;
 inline constexpr double negative_force = 1e-6;
 /// Degree of elements of paths that constraints determine, and their largest number.
 inline constexpr int held_degree = 8, most_held_elements = 1024;
+/// Places on an element at which it is compared with what is forbidden; slopes of a boundary that differ by
+/// less, of unit size, have one direction; the least and the largest distance by which a path is moved aside,
+/// in parts of its size, and halvings between.
+inline constexpr int points_between = 8, aside_halvings = 8;
+inline constexpr double turned = 1e-2, least_aside = 1e-6, most_aside = 2;
 /// Steps of a path that has been moved out of what is forbidden: longer than this part of it, it jumps.
 inline constexpr double jump = 0.1;
 /// A path of which so many of its elements are forbidden is bent aside by these parts of its size.
@@ -100,7 +111,8 @@ inline constexpr std::size_t most_sides = 64;
 inline constexpr int waves = 4;
 inline constexpr double wave_sizes[] = {0.35, 0.8, 1.6};
 inline constexpr int most_in_vain = 24;
-/// Bent paths that are tried where the guess has led to no minimum.
-inline constexpr int most_bends = 6;
+/// Bent paths that are tried where the guess has led to no minimum, while coarse minima are no more than
+/// these.
+inline constexpr int most_bends = 6, most_attempts = 12;
 
 }  // namespace extremal::limits::contact
