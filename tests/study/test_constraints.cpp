@@ -434,3 +434,21 @@ TEST_F(Scenes, AnEndThatConstraintsHoldInASinglePointIsFound) {
   EXPECT_NEAR(below.problem.ends.offset[3], -1, 1e-12);
   EXPECT_TRUE(run(below).converged());
 }
+
+TEST_F(Scenes, EndsOnDifferentBranchesAreToldApart) {
+  LONG_TEST();
+  const auto between = [](const std::string& constraint, const std::string& start, const std::string& end) {
+    return fmt::format(
+        "[system]\ncoordinates = [\"x\", \"y\"]\nconstraints = [\"{}\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n"
+        "[boundary]\nstart = {{ {} }}\nend = {{ {} }}\nduration = 1\n",
+        constraint, start, end);
+  };
+  for (const std::string& scene :
+       {between("y^2 = 0.01", "x = 0, y = 0.1", "x = 1, y = -0.1"),
+        between("x*y = 1", "x = 0.5, y = 2", "x = -1, y = -1"),
+        between("(x^2 + y^2 - 1)*(x^2 + y^2 - 4) = 0", "x = 1, y = 0", "x = 0, y = 2")}) {
+    const Solution found = run(study(scene));
+    EXPECT_EQ(found.status, Status::no_solution_near) << scene;
+    EXPECT_NE(found.message.find("does not lead to the end"), std::string::npos) << found.message;
+  }
+}

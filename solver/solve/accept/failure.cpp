@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "solve/accept/acceptance.hpp"
+#include "solve/accept/branches_apart.hpp"
 #include "solve/accept/conjugate_ends.hpp"
 #include "solve/accept/limits.hpp"
 #include "system/open_ends.hpp"
@@ -158,6 +159,9 @@ Solution explain_failure(const Problem& problem, const SolveOptions& options, co
   solution.message = last.message;
   if (const std::string reason = irregularity(problem); !reason.empty()) {
     solution.message = reason;
+  } else if (const std::string apart = branches_apart(problem); !apart.empty()) {
+    solution.status = Status::no_solution_near;
+    solution.message = apart;
   } else if (last.status != Status::conjugate_ends && last.path.elements() > 0 &&
              !options.deadline.passed() &&
              failed_at_conjugate_ends(problem, trajectory_of(last.path), w.variation)) {
