@@ -335,6 +335,63 @@ TEST(MarchedMotion, EndsElementsOnKinks) {
   EXPECT_NEAR(node(pushed.trajectory, pushed.trajectory.elements())[0], 5, 1e-12);
 }
 
+/// x'' = −sgn x + 0.3 sin t in closed form between the zeros of x, which bisection finds.
+double driven_between_kinks(double x, double duration) {
+  double v = 0, t = 0, side = -1;
+  for (;;) {
+    const auto at = [&](double s) {
+      return x + (v + 0.3 * std::cos(t)) * (s - t) + side * (s - t) * (s - t) / 2 -
+             0.3 * (std::sin(s) - std::sin(t));
+    };
+    double before = t + 1e-3, after = before;
+    while (after < duration && (at(after) > 0) == (at(before) > 0)) after = std::min(after + 1e-3, duration);
+    if ((at(after) > 0) == (at(before) > 0)) return at(duration);
+    before = after - 1e-3;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (before + after) / 2;
+      ((at(middle) > 0) == (side < 0) ? before : after) = middle;
+    }
+    v += side * (after - t) + 0.3 * (std::cos(t) - std::cos(after));
+    x = 0;
+    t = after;
+    side = -side;
+  }
+}
+
+/// Where a kink is crossed the force jumps, which elements that end there do not overlook.
+TEST(MarchedMotion, CrossesKinksUnderADrive) {
+  const auto lagrangian = marched_system({"x"}, "x'^2/2 - abs(x) + 0.3*x*sin(t)");
+  for (const double duration : {5.0, 10.0, 30.0}) {
+    const Solution s = solve(from(lagrangian, {0.7}, {0}, duration), within(1e-9));
+    ASSERT_TRUE(s.converged()) << s.message;
+    EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], driven_between_kinks(0.7, duration), 5e-9);
+    EXPECT_LT(s.trajectory.elements(), 100);
+  }
+}
+
+/// x = 0 at 8 thousandths before a jump of the square wave at π; forces are constant in between.
+TEST(MarchedMotion, EndsOnTheFirstOfTwoKinksThatAreNear) {
+  const auto lagrangian = marched_system({"x"}, "x'^2/2 - abs(x) + x*(2*step(sin(3*t)) - 1)/2");
+  const Solution s = solve(from(lagrangian, {0.3}, {0.1}, 20), within(1e-9));
+  ASSERT_TRUE(s.converged()) << s.message;
+  // Parabolas between zeros of x and multiples of π/3.
+  double x = 0.3, v = 0.1, t = 0;
+  for (int wave = 0; t < 20;) {
+    const double side = x > 0 || (x == 0 && v > 0) ? -1 : 1, force = side + (wave % 2 == 0 ? 0.5 : -0.5);
+    const double jump = std::min(20.0, (wave + 1) * pi / 3), root = std::sqrt(v * v - 2 * force * x);
+    double zero = INFINITY;
+    for (const double r : {(-v - root) / force, (-v + root) / force})
+      if (r > 1e-9) zero = std::min(zero, r);
+    const bool crosses = t + zero < jump;
+    const double h = crosses ? zero : jump - t;
+    x = crosses ? 0 : x + v * h + force * h * h / 2;
+    v += force * h;
+    t += h;
+    wave += !crosses;
+  }
+  EXPECT_NEAR(node(s.trajectory, s.trajectory.elements())[0], x, 1e-9);
+}
+
 /// The impulse 0.1 √π at t = 5, a thousandth wide.
 TEST(MarchedMotion, FindsForcesBetweenThePointsOfElements) {
   const auto lagrangian = marched_system({"x"}, "x'^2/2 - x^2/2 + 100*x*exp(-((t - 5)/1e-3)^2)");

@@ -83,6 +83,9 @@ KinkWatch::Verdict KinkWatch::judge(const MotionState& state, std::span<const do
       verdict.length = std::min(verdict.length.value_or(INFINITY), h + missed);
     if (next_[s].on) missed_ = std::abs(missed);
   }
+  // An element that ends on one surface does not go on to another that is near.
+  const bool ends_on_one = std::ranges::any_of(next_, &Side::on);
+  if (ends_on_one && verdict.length && *verdict.length > h + precision) verdict.length.reset();
   return verdict;
 }
 

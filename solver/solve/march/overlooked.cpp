@@ -81,6 +81,13 @@ std::optional<double> overlooked_force(const Lagrangian& lagrangian, const Traje
   ForceReader reader(lagrangian, trajectory);
   AlignedDoubles force, momentum;
   double largest = 0, missed = 0;
+  // Elements end on kinks, where forces jump: the middle of a step does not tell their mean there.
+  const bool kinked = lagrangian.kinks() != nullptr;
+  const std::vector<double>& ends = trajectory.times;
+  const auto jumps = [&](int k) {
+    const auto end = std::ranges::upper_bound(ends, k * step);
+    return kinked && end != ends.end() && *end < (k + 1) * step;
+  };
   for (int first = 0; first < steps; first += steps_a_batch) {
     const int count = std::min(steps_a_batch, steps - first);
     for (int i = 0; i < points_together; ++i)
@@ -88,6 +95,7 @@ std::optional<double> overlooked_force(const Lagrangian& lagrangian, const Traje
     reader.read(force, momentum);
     for (std::size_t a = 0; a < n; ++a)
       for (int k = 0; k < count; ++k) {
+        if (jumps(first + k)) continue;
         const std::size_t at = a * points_together + 2 * k;
         const double change = momentum[at + 2] - momentum[at], push = step * force[at + 1];
         const double noise = momentum_noise * (std::abs(momentum[at]) + std::abs(momentum[at + 2]));
