@@ -200,6 +200,16 @@ void close_momenta(const BoundaryTable& boundary, const System& system, Closure&
 
 }  // namespace
 
+bool maps_momenta(const BoundaryTable& boundary, const System& system) {
+  const auto named = [&](const std::string& name) { return is_momentum(name, system); };
+  return std::ranges::any_of(boundary.map, [&](const Assignment& line) {
+    return named(line.name) || std::ranges::any_of(line.values, [&](const Quantity& value) {
+             return value.formula() &&
+                    std::ranges::any_of(names_in(std::get<std::string>(value.value)), named);
+           });
+  });
+}
+
 Closure read_closure(const BoundaryTable& boundary, const System& system) {
   Closure closure(system.names.size());
   for (std::size_t a = 0; a < closure.size(); ++a) closure[a].coefficients = {{0, static_cast<int>(a), 1.0}};

@@ -22,6 +22,9 @@ struct PlacedRelation {
 /// q(T) = R q(0) + c: one affine form of q(0) for each coordinate.
 using Closure = std::vector<AffineForm>;
 
+/// Whether the map says what becomes of momenta, or takes them to coordinates.
+bool maps_momenta(const BoundaryTable& boundary, const System& system);
+
 /// The map of a periodic orbit; what it leaves out is unchanged.
 Closure read_closure(const BoundaryTable& boundary, const System& system);
 

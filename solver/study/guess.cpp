@@ -51,16 +51,6 @@ void fill_formula(const Quantity& quantity, int a, int index, const System& syst
   for (std::size_t k = 0; k < times.size(); ++k) guess.q[k * n + a] = values[k];
 }
 
-/// Whether "p_x" names the momentum of a coordinate.
-bool is_momentum(const std::string& name, const System& system) {
-  if (!name.starts_with("p_")) return false;
-  const auto named = [&](const std::string& stem) {
-    return std::ranges::any_of(system.coordinates, [&](const Coordinate& c) { return c.name == stem; });
-  };
-  const std::string stem = name.substr(0, name.find_first_of("['"));
-  return system.hamiltonian ? named(stem) : !named(stem) && named(stem.substr(2));
-}
-
 /// Of phase space: which momenta the guess gives.
 std::vector<char> given_momenta(const GuessTable& table, const System& system) {
   const std::size_t n = system.names.size() / 2;

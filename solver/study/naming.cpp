@@ -49,6 +49,15 @@ double evaluate_beside(const std::vector<std::string>& words, const Quantity& qu
   return evaluate(quantity, vocabulary);
 }
 
+bool is_momentum(const std::string& name, const System& system) {
+  if (!name.starts_with("p_")) return false;
+  const auto named = [&](const std::string& stem) {
+    return std::ranges::any_of(system.coordinates, [&](const Coordinate& c) { return c.name == stem; });
+  };
+  const std::string stem = name.substr(0, name.find_first_of("['"));
+  return system.hamiltonian ? named(stem) : !named(stem) && named(stem.substr(2));
+}
+
 Range range_of(const std::string& name, const Location& at, const System& system,
                std::vector<std::string> keys) {
   const std::size_t bracket = name.find('[');

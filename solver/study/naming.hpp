@@ -44,6 +44,9 @@ struct Range {
   int index = 0;       ///< of the first in its array; 0 for a coordinate that is none
 };
 
+/// Whether "p_x" names the momentum of a coordinate.
+bool is_momentum(const std::string& name, const System& system);
+
 /// What "x" or "x[2]" names. Throws UnknownName, with `keys` among the names that may be meant, or SceneError
 /// for an index out of range.
 Range range_of(const std::string& name, const Location& at, const System& system,

@@ -181,6 +181,8 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   problem.periodic = scene.boundary.periodic;
   if (scene.system.curvature) problem.curvature = scene.system.curvature->value;
   const ExtendedScene parts = split(scene, system, extended);
+  const bool legendre = scene.system.hamiltonian && !system.hamiltonian;
+  if (legendre && maps_momenta(parts.linear, system)) return std::nullopt;
   set_relation(parts.linear, system, problem);
   if (problem.initial)
     check_initial_data(scene, purpose);
@@ -198,7 +200,6 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
   const bool constrained = !scene.system.constraints.empty();
   if (scene.guess.state && system.lagrangian->structure().quadratic && !constrained)
     check_regular(problem, scene.system);
-  const bool legendre = scene.system.hamiltonian && !system.hamiltonian;
   if (legendre && names_momenta(scene.guess, system) && !has_legendre_transform(problem)) return std::nullopt;
   std::optional<InfiniteEnds> infinite;
   if (scene.boundary.infinite) infinite = read_infinite_ends(scene, purpose, problem);

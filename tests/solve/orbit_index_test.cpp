@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <numbers>
 #include <span>
 
 #include "solve/published.hpp"
@@ -51,6 +52,30 @@ TEST(OrbitIndex, OfRestBetweenConjugateEnds) {
       EXPECT_EQ(std::ssize(s.conjugate_times), k - 1) << lagrangian;
       for (const double x : s.trajectory.nodes) EXPECT_EQ(x, place);
     }
+}
+
+/// From the aphelion fields vanish in the plane at T alone; in space those across it at T/2 as well. Beyond
+/// the pericentre little is left of their digits.
+TEST(OrbitIndex, ThinEllipsesHaveNoMoreConjugateTimesThanTheirIndex) {
+  const std::string
+      plane = "coordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 + 1/sqrt(x^2 + y^2)\"\n",
+      space =
+          "coordinates = [\"x\", \"y\", \"z\"]\n"
+          "lagrangian = \"(x'^2 + y'^2 + z'^2)/2 + 1/sqrt(x^2 + y^2 + z^2)\"\n";
+  for (const double e : {0.5, 0.9, 0.995, 0.9995, 0.9999, 0.99999, 0.999998}) {
+    const std::string boundary =
+        fmt::format("periodic = true\nduration = \"2*pi\"\n[guess]\nstate = {{ x = {}, \"y'\" = {} }}\n",
+                    1 + e, std::sqrt((1 - e) / (1 + e)));
+    const Solution in_plane = at_rest(plane, boundary), in_space = at_rest(space, boundary);
+    ASSERT_TRUE(in_plane.converged()) << e << in_plane.message;
+    ASSERT_TRUE(in_space.converged()) << e << in_space.message;
+    EXPECT_EQ(in_plane.morse_index, 0) << e;
+    EXPECT_TRUE(in_plane.conjugate_times.empty()) << e;
+    EXPECT_GT(in_plane.windows.front()[1], 0.99 * in_plane.duration()) << e;
+    EXPECT_EQ(in_space.morse_index, 1) << e;
+    ASSERT_EQ(in_space.conjugate_times.size(), 1u) << e;
+    EXPECT_NEAR(in_space.conjugate_times.front(), std::numbers::pi, 1e-6) << e;
+  }
 }
 
 /// Ellipses run through k times: 2(k − 1), and the directions of all ellipses of one period.

@@ -290,6 +290,33 @@ TEST_F(PhaseSpaceScenes, MultipliersOfVorticesInARow) {
   EXPECT_LE(solution.floquet->symplectic_defect, 1e-12);
 }
 
+/// The pair at the distance one turns at 1/π: in half a turn the vortices change places, and any part of a
+/// turn is a rotation of the plane (x, p).
+TEST_F(PhaseSpaceScenes, MapsNameMomenta) {
+  const auto distance = [&](const std::string& map, const std::string& duration, const std::string& turn) {
+    const Study s =
+        study(vortices + "[boundary]\nperiodic = true\nduration = \"" + duration + "\"\nmap = { " + map +
+              " }\n[guess]\nx = [\"0.52*cos(" + turn + ")\", \"-0.49*cos(" + turn +
+              ")\"]\np_x = [\"0.5*sin(" + turn + ")\", \"-0.51*sin(" + turn + ")\"]\n");
+    const Solution solution = run(s);
+    EXPECT_TRUE(solution.converged()) << solution.message;
+    if (!solution.converged()) return 0.0;
+    const Point start = at(s, solution, 0);
+    return std::hypot(start.q[0] - start.q[1], start.p[0] - start.p[1]);
+  };
+  EXPECT_NEAR(distance("\"x[1]\" = \"x[2]\", \"x[2]\" = \"x[1]\", \"p_x[1]\" = \"p_x[2]\", "
+                       "\"p_x[2]\" = \"p_x[1]\"",
+                       "pi^2", "pi*t/T"),
+              1, 1e-9);
+  std::string rotation;
+  for (const int i : {1, 2})
+    rotation += fmt::format(
+        "{1}\"x[{0}]\" = \"cos(0.7)*x[{0}] - sin(0.7)*p_x[{0}]\", "
+        "\"p_x[{0}]\" = \"sin(0.7)*x[{0}] + cos(0.7)*p_x[{0}]\"",
+        i, i > 1 ? ", " : "");
+  EXPECT_NEAR(distance(rotation, "0.7*pi", "0.7*t/T"), 1, 1e-9);
+}
+
 /// Unequal circulations; the energy closes the period.
 TEST_F(PhaseSpaceScenes, EnergyClosesThePeriod) {
   const Study s =
