@@ -102,6 +102,8 @@ inline constexpr double shift = 1e-3;
 /// Elements on which the second variation is taken, at least so many in each arc. They end where contacts do:
 /// then that of a shift in time is zero to second order.
 inline constexpr int variation_elements[] = {384, 1536}, least_arc_elements = 4;
+/// In contacts, by the cube root of how short they are.
+inline constexpr double turn_elements = 1.0 / 96;
 /// Points at which an inequality is looked for aside of a path, as far as the path is long; steepest slope of
 /// a path that goes round it, by its length; combinations of sides.
 inline constexpr int side_points = 96;
