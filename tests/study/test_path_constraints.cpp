@@ -117,6 +117,26 @@ TEST_F(PathConstraints, ADiscThatIsFast) {
   EXPECT_GT(least_distance(s, found), -1e-7);
 }
 
+// Its radius of curvature is 1/800 where the path bends, within four thousandths of the time.
+TEST_F(PathConstraints, ASharpTip) {
+  const Study s = study(particle("\"y >= 1 - 400*x^2\"", "x = -1.0, y = 0.1", "x = 1.0, y = -0.05"));
+  const Solution found = run(s);
+  ASSERT_TRUE(found.converged()) << found.message;
+  // The tangent from (x, y) touches where 400 z² − 800 x z + 1 − y = 0.
+  const auto touch = [](double x, double y) {
+    return x - std::copysign(std::sqrt(x * x - (1 - y) / 400), x);
+  };
+  const double a = touch(-1, 0.1), b = touch(1, -0.05);
+  const auto arc = [](double z) {
+    const double slope = 800 * z;
+    return (slope * std::sqrt(1 + slope * slope) + std::asinh(slope)) / 1600;
+  };
+  const double length =
+      std::hypot(a + 1, 1 - 400 * a * a - 0.1) + arc(b) - arc(a) + std::hypot(1 - b, 1 - 400 * b * b + 0.05);
+  EXPECT_NEAR(found.action, length * length / 2, 1e-8);
+  EXPECT_GT(least_distance(s, found), -1e-8);
+}
+
 TEST_F(PathConstraints, AnEllipseIsPassedOutside) {
   const Study s = study(particle("\"x^2/4 + y^2 >= 1\"", "x = -3.0, y = 0.3", "x = 3.0, y = -0.1"));
   const Solution found = run(s);
