@@ -119,6 +119,7 @@ TEST_F(PathConstraints, ADiscThatIsFast) {
 
 // Its radius of curvature is 1/800 where the path bends, within four thousandths of the time.
 TEST_F(PathConstraints, ASharpTip) {
+  LONG_TEST();
   const Study s = study(particle("\"y >= 1 - 400*x^2\"", "x = -1.0, y = 0.1", "x = 1.0, y = -0.05"));
   const Solution found = run(s);
   ASSERT_TRUE(found.converged()) << found.message;

@@ -352,8 +352,8 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     else
       leave_out_end(solution);
     leave_out_times_at_end(problem, size, solution);
-    // Displacements that vanish at the ends are some of those that count: conjugate times in between are no more
-    // than the index.
+    // Displacements that vanish at the ends are some of those that count: conjugate times in between are no
+    // more than the index.
     const bool counted = (problem.ends.free == 0 || problem.periodic) && options.elements == 0 && !indefinite;
     if (problem.infinite || counted) leave_out_later_times(solution);
   }

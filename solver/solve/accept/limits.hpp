@@ -80,8 +80,8 @@ inline constexpr std::size_t most_named = 6;
 
 namespace branches {
 
-/// Steps along a curve, by the distance between the ends, or from the end where that is longer; how far from the
-/// start it is left.
+/// Steps along a curve, by the distance between the ends, or from the end where that is longer; how far from
+/// the start it is left.
 inline constexpr double first_step = 1e-3, least_step = 1e-9, longest_step = 0.1, far = 1e4;
 inline constexpr int most_steps = 20'000;
 /// Cosines of the turn of a step: less is too much, more allows a longer one. A point is on the curve where

@@ -151,6 +151,24 @@ bool move_aside(const Problem& problem, const CoarseAction& action, std::vector<
   return out;
 }
 
+bool cuts_through(const Problem& problem, const CoarseAction& action, const std::vector<double>& z) {
+  const auto n = static_cast<std::size_t>(action.coordinates());
+  const double size = largest_range(z, n);
+  std::vector<double> q(n);
+  for (int k = 0; k < action.elements(); ++k) {
+    double step = 0;
+    for (std::size_t a = 0; a < n; ++a) {
+      q[a] = (z[k * n + a] + z[(k + 1) * n + a]) / 2;
+      step = std::max(step, std::abs(z[(k + 1) * n + a] - z[k * n + a]));
+    }
+    const ConstraintValues values =
+        problem.inequalities->all->at(q, (action.time(k) + action.time(k + 1)) / 2);
+    for (Eigen::Index c = 0; c < values.g.size(); ++c)
+      if (values.g[c] < -(deepest_chord * step + on_it * size) * values.slopes.row(c).norm()) return true;
+  }
+  return false;
+}
+
 VectorXd across_line(const std::vector<double>& z, int n, unsigned number) {
   std::minstd_rand random{7 + 13 * number};
   VectorXd direction(n), chord(n);

@@ -193,16 +193,15 @@ std::vector<double> first_path(const Problem& problem, const CoarseAction& actio
   const int n = problem.coordinates();
   const Nodes line = unbent(problem, action);
   const double size = size_of(line, n);
-  Nodes aside = line;
-  if (move_aside(problem, action, aside) && !jumps(aside, n)) return aside;
   Nodes pushed = line;
   push(problem, action, pushed);
   for (const double part : bends) {
     Nodes z = line;
     bend(z, across_line(line, n, 0), part * size, 1);
-    if (push(problem, action, z) && !jumps(z, n)) return z;
+    if (push(problem, action, z) && !jumps(z, n) && !cuts_through(problem, action, z)) return z;
   }
-  return pushed;
+  Nodes aside = line;
+  return move_aside(problem, action, aside) ? aside : pushed;
 }
 
 int bent_paths(const Problem& problem) { return signs * sizes * waves * directions(problem.coordinates()); }

@@ -91,6 +91,8 @@ inline constexpr int held_degree = 8, most_held_elements = 1024;
 /// in parts of its size, and halvings between.
 inline constexpr int points_between = 8, aside_halvings = 8;
 inline constexpr double turned = 1e-2, least_aside = 1e-6, most_aside = 2;
+/// The middle of an element between two points of a boundary is no deeper than this part of its length.
+inline constexpr double deepest_chord = 0.2;
 /// Steps of a path that has been moved out of what is forbidden: longer than this part of it, it jumps.
 inline constexpr double jump = 0.1;
 /// A path of which so many of its elements are forbidden is bent aside by these parts of its size.
