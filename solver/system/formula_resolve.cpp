@@ -195,7 +195,7 @@ class Resolver {
     const bool ends = kind_ == Kind::condition || kind_ == Kind::quantity;
     const bool definition = known != nullptr && known->meaning == Meaning::definition;
     const Syntax& argument = child(node, node.indexed);
-    if (!index && argument.form == Form::reference && formula_.name(argument) == "t")
+    if (!index && !ends && argument.form == Form::reference && formula_.name(argument) == "t")
       stop(node,
            fmt::format("write {0}{1} for {0}{1}(t)", spelled(name, known->array), node.velocity ? "'" : ""));
     if (index || (known->meaning != Meaning::coordinate && !definition) || !ends)

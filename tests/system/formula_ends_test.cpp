@@ -77,6 +77,7 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   EXPECT_EQ(refused("x[1](0) = 1"), "'x' is a coordinate without elements; write x | where | 0");
   EXPECT_EQ(refused("q[3](0) = 1"), "q[3] is out of range: 'q' has 2 elements, counted from 1 | where | 0");
   EXPECT_EQ(refused("x(1) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
+  EXPECT_EQ(refused("x(t) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
   EXPECT_EQ(refused("x(0, T) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
   EXPECT_EQ(refused("x'(0) = 1"),
             "\"x'\" is a velocity; conditions hold between coordinates; a momentum is given with 'start' and "
