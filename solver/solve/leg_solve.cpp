@@ -118,16 +118,14 @@ void add_points(const Trajectory& leg, double from, double duration, Guess& gues
 
 }  // namespace
 
-std::optional<Problem> guessed_by_legs(const Problem& problem,
-                                       const std::function<Solution(const Problem&)>& solve) {
+std::optional<std::vector<LegProblem>> separate_legs(const Problem& problem) {
   const Extension& extension = *problem.extension;
   const bool common = extension.constants() > 0 || !extension.conditions.empty() ||
                       !extension.end_terms.empty() || !extension.where.empty() || problem.duration.free;
   // At another time L would be another one.
   if (common || !problem.lagrangian->structure().autonomous || !problem.guess.given()) return std::nullopt;
   const int count = static_cast<int>(extension.waypoints.size());
-  Problem guessed = problem;
-  guessed.guess = {};
+  std::vector<LegProblem> legs;
   for (int first = -1, last = 0; last <= count; ++last) {
     if (last < count) {
       const WaypointCondition& waypoint = extension.waypoints[last];
@@ -135,15 +133,40 @@ std::optional<Problem> guessed_by_legs(const Problem& problem,
     }
     if (first < 0 && last == count) return std::nullopt;  // one leg
     const Leg leg(problem, first, last);
-    const std::optional<Problem> own = leg.problem();
+    std::optional<Problem> own = leg.problem();
     if (!own) return std::nullopt;
-    const Solution solution = solve(*own);
-    if (!solution.converged()) return std::nullopt;
-    add_points(solution.trajectory, leg.from(), problem.duration.value, guessed.guess);
+    legs.push_back({*std::move(own), leg.from()});
     first = last;
   }
+  return legs;
+}
+
+Problem guessed_by_legs(const Problem& problem, const std::vector<LegProblem>& legs,
+                        const std::vector<const Trajectory*>& paths) {
+  Problem guessed = problem;
+  guessed.guess = {};
+  for (std::size_t k = 0; k < legs.size(); ++k)
+    add_points(*paths[k], legs[k].from, problem.duration.value, guessed.guess);
   guessed.guess.tau.back() = 1;
   return guessed;
+}
+
+std::vector<std::vector<int>> least_combinations(const std::vector<std::vector<double>>& actions, int most) {
+  std::vector<std::pair<double, std::vector<int>>> least = {{0, {}}};
+  for (const std::vector<double>& of_leg : actions) {
+    std::vector<std::pair<double, std::vector<int>>> longer;
+    for (const auto& [sum, numbers] : least)
+      for (std::size_t k = 0; k < of_leg.size(); ++k) {
+        longer.emplace_back(sum + of_leg[k], numbers);
+        longer.back().second.push_back(static_cast<int>(k));
+      }
+    std::ranges::sort(longer);
+    if (std::ssize(longer) > most) longer.resize(static_cast<std::size_t>(most));
+    least = std::move(longer);
+  }
+  std::vector<std::vector<int>> combinations;
+  for (auto& [sum, numbers] : least) combinations.push_back(std::move(numbers));
+  return combinations;
 }
 
 }  // namespace extremal

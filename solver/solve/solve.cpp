@@ -179,17 +179,35 @@ Solution solve_any(const Problem& problem, const SolveOptions& options, Workspac
                         });
 }
 
-/// With an extension; where no guess of the whole leads to a solution, from those of its legs.
-Solution solve_extended(const Problem& problem, const SolveOptions& options, Workspace& w) {
-  SolveOptions own = options;  // of a leg
+SolveOptions of_a_leg(const SolveOptions& options) {
+  SolveOptions own = options;
   own.scheme.reset();
   own.elements = 0;
   own.progress = nullptr;
+  return own;
+}
+
+/// The solutions of all legs as guess; nothing where one has none.
+std::optional<Problem> guessed_by_legs(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  const std::optional<std::vector<LegProblem>> legs = separate_legs(problem);
+  if (!legs) return std::nullopt;
+  std::vector<Solution> found;
+  std::vector<const Trajectory*> paths;
+  found.reserve(legs->size());
+  for (const LegProblem& leg : *legs) {
+    found.push_back(leg.problem.extension ? solve_bordered(leg.problem, options)
+                                          : solve_any(leg.problem, options, w));
+    if (!found.back().converged()) return std::nullopt;
+    paths.push_back(&found.back().trajectory);
+  }
+  return guessed_by_legs(problem, *legs, paths);
+}
+
+/// With an extension; where no guess of the whole leads to a solution, from those of its legs.
+Solution solve_extended(const Problem& problem, const SolveOptions& options, Workspace& w) {
   Solution solution = solve_bordered(problem, options);
   if (solution.converged()) return solution;
-  const std::optional<Problem> guessed = guessed_by_legs(problem, [&](const Problem& leg) {
-    return leg.extension ? solve_bordered(leg, own) : solve_any(leg, own, w);
-  });
+  const std::optional<Problem> guessed = guessed_by_legs(problem, of_a_leg(options), w);
   if (!guessed) return solution;
   Solution found = solve_bordered(*guessed, options);
   if (!found.converged()) return solution;
@@ -340,7 +358,10 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
     return solve_all(whole, options, most);
   }
   if (problem.inequalities) return minimisers(problem, options, most, arc_solve(w));
-  if (problem.extension) return bordered_all(problem, options, most);
+  if (problem.extension) {
+    std::vector<Solution> found = combined_from_legs(problem, options, most);
+    return found.empty() ? bordered_all(problem, options, most) : found;
+  }
   w.levels.bind(problem.lagrangian);
   const SolveOptions adaptive = options.scheme ? without_scheme(options) : options;
   Several several(problem, adaptive, w);
@@ -360,6 +381,43 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   if (discrete.empty()) return {solve(problem, options)};
   sort_by_action(discrete);
   return discrete;
+}
+
+/// Each leg's extremals are searched for by themselves; those of the whole are all combinations. Empty where
+/// legs are not separate, or one has none.
+std::vector<Solution> Solver::combined_from_legs(const Problem& problem, const SolveOptions& options,
+                                                 int most) {
+  const auto start = Clock::now();
+  const std::optional<std::vector<LegProblem>> legs = separate_legs(problem);
+  if (!legs) return {};
+  std::vector<std::vector<Solution>> found;
+  std::vector<std::vector<double>> actions;
+  for (const LegProblem& leg : *legs) {
+    found.push_back(solve_all(leg.problem, of_a_leg(options), most));
+    std::erase_if(found.back(), [](const Solution& s) { return !s.converged(); });
+    if (found.back().empty()) return {};
+    std::vector<double>& of_leg = actions.emplace_back();
+    for (const Solution& solution : found.back()) of_leg.push_back(solution.action);
+  }
+  std::vector<Solution> all;
+  const std::vector<std::vector<int>> combinations = least_combinations(actions, most);
+  for (const std::vector<int>& numbers : combinations) {
+    std::vector<const Trajectory*> paths;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      paths.push_back(&found[k][static_cast<std::size_t>(numbers[k])].trajectory);
+    Solution solution = solve_bordered(guessed_by_legs(problem, *legs, paths), options);
+    if (!solution.converged()) continue;
+    solution.strategy = "extremals of the legs between waypoints, then newton from there";
+    solution.seconds_solve = seconds_since(start);
+    all.push_back(std::move(solution));
+  }
+  sort_by_action(all);
+  if (!all.empty() && std::ssize(all) < most)
+    all.front().message += fmt::format(
+        "; {} of up to {} extremals found, from {} combinations of those of the {} "
+        "legs; more may exist",
+        all.size(), most, combinations.size(), legs->size());
+  return all;
 }
 
 }  // namespace extremal

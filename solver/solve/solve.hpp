@@ -28,6 +28,8 @@ class Solver {
   std::vector<Solution> solve_all(const Problem& problem, const SolveOptions& options, int most);
 
  private:
+  std::vector<Solution> combined_from_legs(const Problem& problem, const SolveOptions& options, int most);
+
   struct Memory;
   std::unique_ptr<Memory> memory_;
 };

@@ -157,6 +157,27 @@ TEST_F(Scenes, AllTimesOfAWaypoint) {
   for (std::size_t k = 0; k < times.size(); ++k) EXPECT_NEAR(times[k], expected[k], 1e-4);
 }
 
+/// A waypoint that is given parts the action into those of two legs.
+TEST_F(Scenes, LegsAreSearchedByThemselves) {
+  const auto between = [](double start, double end, double duration, const std::string& rest) {
+    return system("[\"x\"]", "x'^2/2 + x^2/2 - x^4/4") +
+           fmt::format(
+               "[boundary]\nstart = {{ x = {} }}\nend = {{ x = {} }}\nduration = {}\n{}[search]\n"
+               "solutions = 12\n",
+               start, end, duration, rest);
+  };
+  const std::vector<Solution> first = run_all(study(between(0.5, 0.8, 4, ""))),
+                              second = run_all(study(between(0.8, -0.3, 5, "")));
+  std::vector<double> sums;
+  for (const Solution& a : first)
+    for (const Solution& b : second) sums.push_back(a.action + b.action);
+  std::ranges::sort(sums);
+  const std::vector<Solution> found =
+      run_all(study(between(0.5, -0.3, 9, "[[waypoints]]\nat = 4.0\nx = 0.8\n")));
+  ASSERT_EQ(found.size(), 12u) << found.front().message;
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k].action, sums[k], 1e-8) << k;
+}
+
 TEST_F(Scenes, WaypointsAtGivenTimes) {
   const Study three = study(system("[\"x\"]", "x'^2/2 - x^2/2") +
                             "[boundary]\nstart = { x = 0 }\nend = { x = 1 }\nduration = 3\n"
