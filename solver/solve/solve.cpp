@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -51,14 +52,13 @@ double given_size(const Problem& problem) {
   return size;
 }
 
-/// Several solutions of a problem with an extension.
-std::vector<Solution> bordered_all(const Problem& problem, const SolveOptions& options, int most) {
+/// Which solutions of a problem with an extension count as one.
+std::function<bool(const Solution&, const Solution&)> same_of(const Problem& problem, double tolerance) {
   const bool orbits = problem.periodic && problem.shifts_in_time();
-  const double size = given_size(problem), tolerance = options.tolerance;
-  return solve_bordered_all(problem, options, most, [=](const Solution& a, const Solution& b) {
+  return [orbits, size = given_size(problem), tolerance](const Solution& a, const Solution& b) {
     if (orbits) return same_orbit(a, b, tolerance);
     return same_path(a, b, tolerance, size) || same_continuum(a, b, tolerance);
-  });
+  };
 }
 
 /// Newton's method on the part of an orbit that its symmetries leave to be found, continued to the whole.
@@ -360,7 +360,8 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
   if (problem.inequalities) return minimisers(problem, options, most, arc_solve(w));
   if (problem.extension) {
     std::vector<Solution> found = combined_from_legs(problem, options, most);
-    return found.empty() ? bordered_all(problem, options, most) : found;
+    if (!found.empty()) return found;
+    return solve_bordered_all(problem, options, most, same_of(problem, options.tolerance));
   }
   w.levels.bind(problem.lagrangian);
   const SolveOptions adaptive = options.scheme ? without_scheme(options) : options;
@@ -400,22 +401,23 @@ std::vector<Solution> Solver::combined_from_legs(const Problem& problem, const S
     for (const Solution& solution : found.back()) of_leg.push_back(solution.action);
   }
   std::vector<Solution> all;
+  const auto same = same_of(problem, options.tolerance);
   const std::vector<std::vector<int>> combinations = least_combinations(actions, most);
   for (const std::vector<int>& numbers : combinations) {
     std::vector<const Trajectory*> paths;
     for (std::size_t k = 0; k < numbers.size(); ++k)
       paths.push_back(&found[k][static_cast<std::size_t>(numbers[k])].trajectory);
     Solution solution = solve_bordered(guessed_by_legs(problem, *legs, paths), options);
-    if (!solution.converged()) continue;
+    const auto known = [&](const Solution& other) { return same(solution, other); };
+    if (!solution.converged() || std::ranges::any_of(all, known)) continue;
     solution.strategy = "extremals of the legs between waypoints, then newton from there";
     solution.seconds_solve = seconds_since(start);
     all.push_back(std::move(solution));
   }
   sort_by_action(all);
-  if (!all.empty() && std::ssize(all) < most)
+  if (!all.empty())
     all.front().message += fmt::format(
-        "; {} of up to {} extremals found, from {} combinations of those of the {} "
-        "legs; more may exist",
+        "; {} of up to {} extremals found, from {} combinations of those of the {} legs; more may exist",
         all.size(), most, combinations.size(), legs->size());
   return all;
 }

@@ -252,7 +252,8 @@ void leave_out_times_at_end(const Problem& problem, double size, Solution& solut
 /// hold each other in time, or at infinity. The error of the path may move that to a time in the tail, where
 /// fields are roundoff: times beyond the index.
 void leave_out_later_times(Solution& solution) {
-  const std::size_t index = solution.morse_index.value_or(0);
+  if (!solution.morse_index) return;
+  const auto index = static_cast<std::size_t>(*solution.morse_index);
   if (solution.nullity.value_or(0) == 0 || solution.conjugate_times.size() <= index) return;
   solution.conjugate_times.resize(index);
   std::vector<std::array<double, 2>>& windows = solution.windows;

@@ -1,12 +1,9 @@
 #include "solve/accept/branches_apart.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <vector>
+#include <utility>
 
 #include "problem/manifold.hpp"
 #include "solve/accept/limits.hpp"
@@ -42,8 +39,9 @@ class Curve {
         if ((step /= 2) < curve::least_step * size_) return Met::unknown;
         continue;
       }
-      if (passes(end_, q, next)) return Met::end;
-      if (k > 0 && length > 2 * step && turned.dot(first) > 0 && passes(start_, q, next)) return Met::start;
+      if (passes(end_, q, next, curve::beside)) return Met::end;
+      if (k > 0 && length > 2 * step && turned.dot(first) > 0 && passes(start_, q, next, curve::bulge))
+        return Met::start;
       length += step;
       if ((next - start_).norm() > curve::far * size_) return Met::far;
       q = next;
@@ -64,11 +62,12 @@ class Curve {
     if (lu.dimensionOfKernel() != 1) return {};
     return lu.kernel().col(0).normalized();
   }
-  /// Whether a point lies between two that are near each other on a curve.
-  static bool passes(const VectorXd& point, const VectorXd& a, const VectorXd& b) {
+  /// Whether a point lies between two that are near each other on a curve, or beside it by this part of their
+  /// distance.
+  static bool passes(const VectorXd& point, const VectorXd& a, const VectorXd& b, double within) {
     const VectorXd chord = b - a, from = point - a;
     const double along = from.dot(chord) / chord.squaredNorm();
-    return along > -0.1 && along < 1.1 && (from - along * chord).norm() < curve::beside * chord.norm();
+    return along > -0.1 && along < 1.1 && (from - along * chord).norm() < within * chord.norm();
   }
 
   const Manifold& manifold_;
@@ -93,8 +92,8 @@ std::string branches_apart(const Problem& problem) {
     if (met == Met::start) break;
   }
   return "the constraints leave a curve, and the part of it on which the start lies does not lead to the "
-         "end; move "
-         "an end";
+         "end: "
+         "move an end";
 }
 
 }  // namespace extremal

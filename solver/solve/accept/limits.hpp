@@ -84,9 +84,11 @@ namespace branches {
 /// the start it is left.
 inline constexpr double first_step = 1e-3, least_step = 1e-9, longest_step = 0.1, far = 1e4;
 inline constexpr int most_steps = 20'000;
-/// Cosines of the turn of a step: less is too much, more allows a longer one. A point is on the curve where
-/// it is this close to a chord, by its length.
-inline constexpr double least_cosine = 0.98, quiet_cosine = 0.999, beside = 0.2;
+/// Cosines of the turn of a step: less is too much, more allows a longer one.
+inline constexpr double least_cosine = 0.98, quiet_cosine = 0.999;
+/// Of a chord: an end nearer to it may be on the curve; the curve has returned to a start that is nearer than
+/// an arc with the largest turn bulges, 1/8 of the angle.
+inline constexpr double beside = 0.2, bulge = 0.03;
 
 }  // namespace branches
 

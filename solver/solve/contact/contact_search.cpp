@@ -210,10 +210,11 @@ ContactSearch::Attempt ContactSearch::from_elements(const CoarseElements& elemen
   Attempt attempt;
   for (const Interval& interval : intervals)
     if (!interval.held.empty()) add_if_few(action, interval.from, interval.to, attempt.few);
-  missed_.reset();
-  attempt.solution = join(std::move(intervals));
+  Joined joined = join(std::move(intervals));
+  attempt.solution = std::move(joined.solution);
   attempt.final = saddle_;
-  if (missed_ && missed_->forbidden) add_if_few(action, missed_->from, missed_->to, attempt.few);
+  if (joined.missed && joined.missed->forbidden)
+    add_if_few(action, joined.missed->from, joined.missed->to, attempt.few);
   return attempt;
 }
 
@@ -242,9 +243,10 @@ std::vector<Interval> ContactSearch::coarse_intervals(CoarseMinimum minimum) {
 }
 
 /// Arcs of these intervals, which change until the law holds. Nothing where it does not.
-std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
+ContactSearch::Joined ContactSearch::join(std::vector<Interval> intervals) {
   PathPoints path = [this](double t, std::span<double> q) { guess_.at(t / problem_.duration.value, q); };
   std::optional<Junctions> junctions, before;
+  Joined joined;
   for (int k = 0; k < most_changes && !options_.deadline.passed(); ++k) {
     tidy(intervals, problem_.duration.value);
     junctions.emplace(arcs_, intervals, path, constants_);
@@ -253,7 +255,7 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
       refuse(Status::not_converged,
              "no local minimiser was found near the guess: " + junctions->message() + "; give another guess" +
                  (problem_.inequalities->count() > 1 ? ", or fewer inequalities" : ""));
-      return std::nullopt;
+      return joined;
     }
     if (result == Junctions::Result::collapsed) {
       leave_out(intervals, junctions->collapsed(), problem_.duration.value);
@@ -271,8 +273,8 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
     const std::vector<double>& constants = junctions->constants();
     put_unknowns({constants.begin(), constants.begin() + std::ssize(unknowns_of(problem_))}, problem_);
     const std::optional<Violation> violation = worst_violation(arcs_, *junctions);
-    if (!violation) return accept(*junctions);
-    missed_ = violation;
+    if (!violation) return {accept(*junctions)};
+    joined.missed = violation;
     refuse(Status::not_converged, describe(*violation));
     for (std::size_t i = 0; i < intervals.size(); ++i) {
       intervals[i].from = junctions->arcs()[i].from;
@@ -286,7 +288,7 @@ std::optional<Solution> ContactSearch::join(std::vector<Interval> intervals) {
     change(intervals, violation->constraint, violation->forbidden, middle - half, middle + half,
            problem_.duration.value);
   }
-  return std::nullopt;
+  return joined;
 }
 
 /// Takes away a touch whose impulse pulls, and shortens a contact that pulls a free end.

@@ -32,7 +32,11 @@ class ContactSearch {
   bool singular() const { return singular_; }
 
  private:
-  std::optional<Solution> join(std::vector<Interval> intervals);
+  struct Joined {
+    std::optional<Solution> solution = {};
+    std::optional<Violation> missed = {};  ///< by the last path on the way to none
+  };
+  Joined join(std::vector<Interval> intervals);
   bool take_away_touch(const Junctions& path, std::vector<Interval>& intervals) const;
   std::string describe(const Violation& violation) const;
   std::optional<Solution> accept(Junctions& path);
@@ -53,8 +57,7 @@ class ContactSearch {
   Arcs arcs_;
   bool several_;
   Guess guess_;
-  std::vector<double> constants_;    ///< k and ν of the path found last
-  std::optional<Violation> missed_;  ///< by the path found last
+  std::vector<double> constants_;  ///< k and ν of the path found last
   Solution failure_;
   int attempts_ = 0;
   bool singular_ = false, saddle_ = false, no_duration_ = false;

@@ -108,7 +108,7 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
     for (std::size_t i = a; i < z.size(); i += n) size = std::max(size, std::abs(z[i] - z[a]));
   if (!(size > 0)) size = 1;
   std::vector<ConstraintValues> compared;
-  Eigen::VectorXd largest = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(m));
+  std::vector<double> largest(m, 0.0);
   const auto pressure = [&](std::size_t place, std::size_t c) {
     const int node = action.places()[place].node;
     const double slope = compared[place / m].slopes.row(static_cast<Eigen::Index>(c)).norm();
@@ -117,9 +117,7 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
   for (std::size_t place = 0; place < action.places().size(); place += m) {
     const int node = action.places()[place].node;
     compared.push_back(inequalities.all->at(z.subspan(node * n, n), action.time(node)));
-    for (std::size_t c = 0; c < m; ++c)
-      largest[static_cast<Eigen::Index>(c)] =
-          std::max(largest[static_cast<Eigen::Index>(c)], pressure(place, c));
+    for (std::size_t c = 0; c < m; ++c) largest[c] = std::max(largest[c], pressure(place, c));
   }
   std::vector<std::vector<int>> held(elements + 1);
   for (std::size_t place = 0; place < action.places().size(); place += m) {
@@ -134,7 +132,7 @@ std::vector<Interval> intervals_of(const Problem& problem, const CoarseAction& a
       const auto row = static_cast<Eigen::Index>(c);
       const double pressed_by = pressure(place, c),
                    distance = std::abs(values.g[row]) / values.slopes.row(row).norm();
-      if (pressed_by * size > distance * force && pressed_by * step > distance * largest[row])
+      if (pressed_by * size > distance * force && pressed_by * step > distance * largest[c])
         pressed.push_back({static_cast<int>(c), pressed_by,
                            node > 0 && std::ranges::binary_search(held[node - 1], static_cast<int>(c))});
     }

@@ -85,8 +85,9 @@ std::optional<double> overlooked_force(const Lagrangian& lagrangian, const Traje
   const bool kinked = lagrangian.kinks() != nullptr;
   const std::vector<double>& ends = trajectory.times;
   const auto jumps = [&](int k) {
+    if (!kinked) return false;
     const auto end = std::ranges::upper_bound(ends, k * step);
-    return kinked && end != ends.end() && *end < (k + 1) * step;
+    return end != ends.end() && *end < (k + 1) * step;
   };
   for (int first = 0; first < steps; first += steps_a_batch) {
     const int count = std::min(steps_a_batch, steps - first);
