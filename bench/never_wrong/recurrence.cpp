@@ -16,7 +16,7 @@ namespace bench {
 namespace {
 
 /// Of what the tolerance allows; velocities are ten tolerances off, and so are those of the second time.
-constexpr double margin = 10, velocity_margin = 200;
+constexpr double closing_margin = 10, velocity_margin = 200;
 /// An orbit so much smaller than its guess is at rest.
 constexpr double at_rest = 1e-9;
 
@@ -109,7 +109,7 @@ std::vector<Fault> deny_recurrence(const extremal::Study& study, const extremal:
       verify(between_ends(problem, both), both,
              {.tolerance = tolerance, .margin = std::numeric_limits<double>::max()});
   const double roundoff = velocity_roundoff(path) * path.duration() / (tolerance * size_of(study, path));
-  if (found.verified && found.defect > margin + roundoff)
+  if (found.verified && found.defect > closing_margin + roundoff)
     return {{"false", fmt::format("it does not recur: {:.3g} tolerances off at t = {:.6g} of twice {:.6g}",
                                   found.defect, found.worst_time, path.duration())}};
   return {};

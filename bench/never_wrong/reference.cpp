@@ -13,7 +13,7 @@
 namespace bench {
 namespace {
 
-constexpr double tightest = 1e-13;
+constexpr double tightest_solve = 1e-13;
 /// A range below this part of the values is none.
 constexpr double negligible = 1e-12;
 /// A path this small beside guess and ends has come to rest at zero.
@@ -75,7 +75,7 @@ double largest_difference(const std::vector<double>& x, const std::vector<double
 /// To the tightest tolerance that is met.
 extremal::Solution most_accurate(extremal::Study& study) {
   extremal::Solution solution;
-  for (double tolerance = tightest; tolerance < 1e-10 && !solution.converged(); tolerance *= 10) {
+  for (double tolerance = tightest_solve; tolerance < 1e-10 && !solution.converged(); tolerance *= 10) {
     study.options.tolerance = tolerance;
     solution = run(study);
   }
@@ -194,9 +194,9 @@ std::optional<TrueError> distance_from_nearest(const extremal::Study& study,
 std::optional<double> error_by_shooting(const extremal::Study& study, const extremal::Solution& solution) {
   const extremal::Verification found =
       verify(study.problem, solution.trajectory,
-             {.tolerance = tightest, .margin = std::numeric_limits<double>::max()});
+             {.tolerance = tightest_solve, .margin = std::numeric_limits<double>::max()});
   if (!found.distance) return std::nullopt;
-  return *found.distance * tightest * size_of(study, solution.trajectory);
+  return *found.distance * tightest_solve * size_of(study, solution.trajectory);
 }
 
 }  // namespace bench

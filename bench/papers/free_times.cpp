@@ -35,7 +35,7 @@ Motion kepler() {
 
 /// From the lowest point to near the upper one, which it passes slowly. With the other schemes no node times
 /// give all elements of this way the same energy.
-Motion pendulum() {
+Motion pendulum_motion() {
   const double energy = 1 + 1e-4;
   return {trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2 + cos(q[0]); }),
           {0},
@@ -88,7 +88,7 @@ Figure free_times() {
   const std::vector<Colour> colours = distinct_colours(names.size());
   for (const auto& [motion, title, box] :
        {std::tuple{kepler(), "t, Kepler, e = 0.9, to near the periapsis", left_box},
-        {pendulum(), "t, pendulum near its separatrix", right_box}}) {
+        {pendulum_motion(), "t, pendulum near its separatrix", right_box}}) {
     Panel panel;
     panel.box = box;
     panel.x = make_axis({title}, 0, motion.duration, 7);

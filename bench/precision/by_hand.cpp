@@ -12,12 +12,12 @@
 namespace bench {
 namespace {
 
-constexpr int most_repeats = 2001;
+constexpr int most_repeats_by_hand = 2001;
 /// Coordinates above which the variations of several segments take too long.
-constexpr int most_multiple = 40;
+constexpr int most_multiple_by_hand = 40;
 /// Tried, so that the best can be chosen in hindsight: numbers of segments, and tolerances far from the
 /// solution (0: the final one).
-constexpr int segment_counts[] = {1, 2, 4, 8, 16, 32};
+constexpr int segments_by_hand[] = {1, 2, 4, 8, 16, 32};
 constexpr double loose_tolerances[] = {0, 1e-5, 1e-4, 1e-3};
 /// Tolerances, one a decade.
 constexpr int least_digits = 3, most_digits = 14;
@@ -35,7 +35,7 @@ double time_solve(shooting::Shooter& shooter, const std::vector<double>& guess, 
     converged = shooter.solve(guess);
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
     spent += seconds.back();
-  } while (converged && spent < budget && seconds.size() < most_repeats);
+  } while (converged && spent < budget && seconds.size() < most_repeats_by_hand);
   const auto middle = seconds.begin() + seconds.size() / 2;
   std::nth_element(seconds.begin(), middle, seconds.end());
   return *middle;
@@ -78,9 +78,9 @@ void measure_by_hand(const extremal::Study& study, const Reference& reference, d
                      SceneRecord& record) try {
   const HandProblem hand = hand_problem(study);
   const int n = hand.system.coordinates;
-  if (n > most_multiple) record.multiple_by_hand.absence = fmt::format("not tried with {} coordinates", n);
-  for (const int segments : segment_counts) {
-    if (segments > 1 && n > most_multiple) break;
+  if (n > most_multiple_by_hand) record.multiple_by_hand.absence = fmt::format("not tried with {} coordinates", n);
+  for (const int segments : segments_by_hand) {
+    if (segments > 1 && n > most_multiple_by_hand) break;
     const std::vector<double> guess = hand_guess(hand, study.problem, segments);
     Rival& rival = segments == 1 ? record.single_by_hand : record.multiple_by_hand;
     for (const double loose : loose_tolerances)

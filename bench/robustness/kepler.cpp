@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int guess_steps = 100;
+constexpr int arc_steps = 100;
 
 /// Mean anomaly where the true anomaly is f, continuous in f.
 double mean_anomaly(double f, double e) {
@@ -44,8 +44,8 @@ Case kepler_arc(const std::shared_ptr<const extremal::Lagrangian>& kepler, doubl
   result.problem = fixed_ends(kepler, {r0, 0}, {r1 * std::cos(angle), r1 * std::sin(angle)},
                               mean_anomaly(first + angle, e) - mean_anomaly(first, e));
   if (!circular) return result;
-  for (int k = 0; k <= guess_steps; ++k) {
-    const double tau = static_cast<double>(k) / guess_steps, r = r0 + tau * (r1 - r0);
+  for (int k = 0; k <= arc_steps; ++k) {
+    const double tau = static_cast<double>(k) / arc_steps, r = r0 + tau * (r1 - r0);
     result.problem.guess.tau.push_back(tau);
     result.problem.guess.q.push_back(r * std::cos(tau * angle));
     result.problem.guess.q.push_back(r * std::sin(tau * angle));
