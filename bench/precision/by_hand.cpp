@@ -78,7 +78,8 @@ void measure_by_hand(const extremal::Study& study, const Reference& reference, d
                      SceneRecord& record) try {
   const HandProblem hand = hand_problem(study);
   const int n = hand.system.coordinates;
-  if (n > most_multiple_by_hand) record.multiple_by_hand.absence = fmt::format("not tried with {} coordinates", n);
+  if (n > most_multiple_by_hand)
+    record.multiple_by_hand.absence = fmt::format("not tried with {} coordinates", n);
   for (const int segments : segments_by_hand) {
     if (segments > 1 && n > most_multiple_by_hand) break;
     const std::vector<double> guess = hand_guess(hand, study.problem, segments);

@@ -120,16 +120,59 @@ TEST_F(StartScanScenes, MotionsInAWave) {
   EXPECT_EQ(found.size(), 7);
 }
 
-/// Orbits of a driven pendulum, of which Newton's method from starts on a lattice knows these within a
-/// half turn: two of them are images of each other under the reversal of time.
+/// Orbits of a driven pendulum that swing less than a half turn, as Newton's method from starts on a lattice
+/// has them: two are images of each other under the reversal of time, two under that of x half a period
+/// later. Less action have those that stand, or swing over the top and back.
 TEST_F(StartScanScenes, DrivenPeriodicOrbits) {
+  LONG_TEST();
   const std::vector<Solution> found =
-      periodic_orbits("x'^2/2 + cos(x) + 0.4*x*cos(2*pi*t/14)", "14", "0.1*cos(2*pi*t/14)", 4);
-  std::vector<double> actions;
-  for (const Solution& s : found) actions.push_back(s.action);
-  const std::vector<double> expected{14.5381, 14.5381, 14.5419, 14.7160};
-  ASSERT_EQ(actions.size(), expected.size());
-  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(actions[k], expected[k], 1e-4);
+      periodic_orbits("x'^2/2 + cos(x) + 0.4*x*cos(2*pi*t/14)", "14", "0.1*cos(2*pi*t/14)", 30);
+  std::vector<double> swings;
+  for (const Solution& s : found)
+    if (s.action > 12) swings.push_back(s.action);
+  const std::vector<double> expected{14.5381, 14.5381, 14.5419, 14.5419, 14.7160};
+  ASSERT_EQ(swings.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(swings[k], expected[k], 1e-4);
+  EXPECT_NEAR(found.front().action, -7.4771, 1e-4);
+}
+
+/// Three periods of a driven double well: chaos, in which RK4 and Newton's method from 60 x 60 starts know
+/// eleven orbits, as (x, x') at their start. Each is found, at one of the three periods it may begin in.
+TEST_F(StartScanScenes, OrbitsInChaos) {
+  LONG_TEST();
+  const std::vector<Solution> found =
+      periodic_orbits("x'^2/2 + x^2/2 - x^4/4 + 0.3*x*cos(1.2*t)", "6*pi/1.2", "0.1*cos(1.2*t)", 60);
+  constexpr double known[][2] = {
+      {-1.2039, 0},      {0.3679, 0},  {-1.1530, 0}, {-1.5411, 0}, {-0.6168, 0}, {0.2549, -0.4348},
+      {0.2145, -0.3011}, {-1.5250, 0}, {0.8561, 0},  {0.6995, 0},  {1.9439, 0},
+  };
+  for (const auto& [x, v] : known) {
+    const bool there = std::ranges::any_of(found, [&](const Solution& s) {
+      for (int period = 0; period < 3; ++period) {
+        std::vector<double> q(1), slope(1);
+        s.trajectory.at(period * s.duration() / 3, q, slope);
+        if (std::hypot(q[0] - x, slope[0] - v) < 1e-3) return true;
+      }
+      return false;
+    });
+    EXPECT_TRUE(there) << x << ", " << v;
+  }
+  EXPECT_GE(found.size(), 30);
+}
+
+/// With two coordinates, each driven, the box of starts has four dimensions. All orbits differ in action.
+TEST_F(StartScanScenes, DrivenOrbitsInThePlane) {
+  LONG_TEST();
+  const std::vector<Solution> found = run_all(
+      study("[system]\ncoordinates = [\"x\", \"y\"]\n"
+            "lagrangian = \"(x'^2+y'^2)/2 - (x^2+2*y^2)/2 - x^4/4 - x*y^2/2 - y^4/8 + 0.7*x*cos(1.3*t) + "
+            "0.3*y*sin(1.3*t)\"\n[boundary]\nperiodic = true\nduration = \"2*pi/1.3\"\n"
+            "[guess]\nx = \"0.3*cos(1.3*t)\"\ny = \"0.1*sin(1.3*t)\"\n[search]\nsolutions = 10\n"));
+  EXPECT_GE(found.size(), 5);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    EXPECT_TRUE(found[k].converged());
+    for (std::size_t j = 0; j < k; ++j) EXPECT_GT(std::abs(found[k].action - found[j].action), 1e-6);
+  }
 }
 
 /// A pendulum that is driven weakly hangs or stands: by whole turns, and the action that the drive gives a

@@ -59,6 +59,16 @@ bool Search::refine_motion(const Guess& motion, double duration, const char* str
   return result;
 }
 
+bool Search::close(const Guess& motion, const char* strategy) {
+  Problem launched = problem_;
+  launched.guess = motion;
+  guess_ = &launched;
+  const bool result = begin() != GuessKind::undefined && found(strategy);
+  outcome_.status = result ? Status::converged : Status::not_converged;
+  guess_ = &problem_;
+  return result;
+}
+
 /// With one coordinate the way by which motions miss the end is a function of one number. Where its sign
 /// changes there is an extremal, or a velocity from which the end is not continuous; no derivative is needed,
 /// so that kinks of L do no harm.

@@ -399,6 +399,12 @@ inline constexpr double arrivals_share = 0.3;
 /// costly.
 inline constexpr double reach_beyond = 1.1, growth_of_reach = 1.4, growth_of_arrivals = 2.5;
 inline constexpr int most_growths = 4, most_cheap_growths = 24;
+/// Of the effort of one solve, for a motion that nearly closes; points of the first lattice of starts, whose
+/// box grows so often in vain, times its dimensions.
+inline constexpr double share_of_motion = 0.01, first_points = 576;
+inline constexpr int growths_in_vain = 2;
+/// Of integrators' steps, for motions that nearly close.
+inline constexpr double openings_share = 0.6;
 /// Motions for each extremal known that may lead nowhere, in a row.
 inline constexpr int most_astray = 40;
 /// A path that a homotopy has led to the problem is known to this, relative to its extent.
@@ -409,6 +415,22 @@ inline constexpr int returns_each = 2;
 inline constexpr unsigned spare_loops = 1;
 
 }  // namespace several
+
+namespace closing_motions {
+
+/// A box of twice as many dimensions is to be filled.
+inline constexpr int most_coordinates = 3;
+/// Of an integrator's step, relative: of motions that are looked at, and of those that are closed.
+inline constexpr double coarse_step = 1e-4, fine_step = 1e-7;
+/// By units: of motions that close. Steps of least squares towards one.
+inline constexpr double closed = 1e-4;
+/// A singular value of the return map less one, by units: of an orbit that is isolated.
+inline constexpr double isolated = 1e-5;
+inline constexpr int most_steps = 12;
+/// Of least squares, by the mean curvature: first, and after steps that succeed and fail.
+inline constexpr double first_damping = 1e-3, less_damping = 0.1, more_damping = 8;
+
+}  // namespace closing_motions
 
 namespace start_scan {
 

@@ -42,6 +42,8 @@ class Search {
   bool connect(const Guess& motion, double duration);
   /// Pursues a motion from the start that nearly meets the end; whether an extremal was found.
   bool refine_motion(const Guess& motion, double duration, const char* strategy);
+  /// The same of a periodic problem, from a motion that does not close.
+  bool close(const Guess& motion, const char* strategy);
   /// Leaves a saddle along its direction of most negative curvature, to either `side` (−1, 1), for a
   /// minimiser.
   bool descend_from(const Trajectory& saddle, double side);

@@ -29,7 +29,8 @@ Several::Several(const Problem& problem, const SolveOptions& options, Workspace&
       path_(search_.path()),
       loops_(problem, options, workspace, search_),
       motions_(problem, search_),
-      starts_(problem) {
+      starts_(problem),
+      closing_(problem) {
   if (problem.periodic && !problem.lagrangian->structure().autonomous && closing_map(problem).identity())
     period_ = recurrence_time(problem);
 }
@@ -151,8 +152,11 @@ std::vector<Solution> Several::run(int most) {
   if (!begun && !loops_.usable() && !motions_.has_curves() && !starts_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
   if (begun) descend();
-  const bool told = (most_ > 1 || !begun) &&
-                    ((motions_.has_curves() && trace_arrivals()) || (starts_.usable() && scan_starts()));
+  bool told = false;
+  if (most_ > 1 || !begun) {
+    const bool closed = closing_.usable() && scan_openings();
+    told = (motions_.has_curves() && trace_arrivals()) || (starts_.usable() && scan_starts()) || closed;
+  }
   if (!told && (!found_.empty() || loops_.usable())) {
     search_.renew(patience);
     if (begun) deflate();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solve/accept/acceptance.hpp"
+#include "solve/search/closing_motions.hpp"
 #include "solve/search/loop_search.hpp"
 #include "solve/search/motion_scan.hpp"
 #include "solve/search/search.hpp"
@@ -62,9 +63,10 @@ class Several {
   void trace_family(std::size_t solution, int family);
   std::unique_ptr<Homotopy> leave(int family, bool onward);
   void load(const Solution& solution);
-  std::function<bool(int)> scan_budget();
+  std::function<bool(int)> scan_budget(double part = 1);
   bool trace_arrivals();
   bool scan_starts();
+  bool scan_openings();
   void scan();
   double wanted_reach(double least, const std::function<double(const Solution&)>& reach_of) const;
   double wanted_reach();
@@ -80,6 +82,7 @@ class Several {
   LoopSearch loops_;
   MotionScan motions_;
   StartScan starts_;
+  ClosingMotions closing_;
   std::optional<double> period_;  ///< of L, of which that of orbits is a multiple
   std::vector<Solution> found_;
   std::optional<Solution> repeating_;  ///< the first that runs through an orbit several times

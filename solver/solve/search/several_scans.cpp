@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solve/guess/first_path.hpp"
 #include "solve/search/distinct.hpp"
 #include "solve/search/limits.hpp"
 #include "solve/search/several.hpp"
@@ -44,11 +45,12 @@ bool Several::reaches_known() {
          }) >= 0;
 }
 
-/// Whether an integrator may take so many more steps.
-std::function<bool(int)> Several::scan_budget() {
-  return [this, deadline = options_.deadline.share(arrivals_share)](int steps) {
+/// Whether integrators may take so many more steps, of all those there are for scans a part.
+std::function<bool(int)> Several::scan_budget(double part) {
+  const auto most = static_cast<long>(part * most_scan_steps);
+  return [this, most, deadline = options_.deadline.share(part * arrivals_share)](int steps) {
     scan_steps_ += steps;
-    return scan_steps_ < most_scan_steps && !deadline.passed();
+    return scan_steps_ < most && !deadline.passed();
   };
 }
 
@@ -126,6 +128,43 @@ bool Several::scan_starts() {
     shell.farthest = enough ? reach_beyond * wanted : shell.farthest * growth;
   }
   return true;
+}
+
+/// From motions that nearly close. False if none leads to an orbit.
+bool Several::scan_openings() {
+  const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
+  start_path(problem_, search_.ends(), tables, path_);
+  const double frequency = std::max(1.0, w_.frequency.phase()) / problem_.duration.value;
+  if (!closing_.around(search_.ends(), extents(path_, negligible_extent[0]), frequency)) return false;
+  const std::function<bool(int)> more = scan_budget(openings_share);
+  const int dimensions = closing_.dimensions();
+  const auto wanted = [this] {
+    return reach_beyond * wanted_reach(1, [this](const Solution& s) { return closing_.reach_of(s); });
+  };
+  const auto visit = [this](const Guess& motion) {
+    search_.renew(share_of_motion);
+    ++scanned_;
+    if (search_.close(motion, from_open_motion)) keep();
+  };
+  const double growth = std::pow(growth_of_arrivals, 1.0 / dimensions);
+  auto across = static_cast<int>(std::round(std::pow(first_points, 1.0 / dimensions)));
+  double nearest = 0, farthest = wanted();
+  for (int growths = 0; growths < growths_in_vain * dimensions;) {
+    const std::size_t before = found_.size();
+    if (!closing_.all(nearest, farthest, across, more, visit)) return !found_.empty();
+    const bool enough = static_cast<int>(found_.size()) >= most_;
+    if (enough && farthest >= wanted()) break;
+    nearest = farthest;
+    farthest = enough ? wanted() : farthest * growth;
+    growths = found_.size() > before ? 0 : growths + 1;
+  }
+  // As long as denser starts lead to more.
+  for (std::size_t before = 0; found_.size() > before;) {
+    before = found_.size();
+    across *= 2;
+    if (!closing_.all(0, wanted(), across, more, visit)) break;
+  }
+  return !found_.empty();
 }
 
 /// Motions to where no extremal between those wanted is likely to be missing; where there are too few, to
