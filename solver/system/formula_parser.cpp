@@ -78,12 +78,13 @@ class Parser {
 
   void close(char symbol, const Token& opening) {
     if (!token_.is(symbol)) {
-      if (token_.kind != TokenKind::end && !token_.is(',') && !token_.is(')') && !token_.is(']'))
-        unexpected();
-      const std::string_view open =
-          std::string_view(formula_.text).substr(opening.offset, token_.offset - opening.offset);
-      stop(token_.offset, fmt::format("'{}' is missing for the '{}' of {}{}", symbol, opening.text,
-                                      open.substr(0, most_shown), open.size() > most_shown ? "…" : ""));
+      const bool ends = token_.is(',') || token_.is(')') || token_.is(']') || token_.is('=');
+      if (token_.kind != TokenKind::end && !ends) unexpected();
+      const std::size_t length = previous_.offset + previous_.text.size() - opening.offset;
+      const std::string_view open = std::string_view(formula_.text).substr(opening.offset, length);
+      stop(token_.offset, fmt::format("'{}' is missing for the '{}' of {}{}{}", symbol, opening.text,
+                                      open.substr(0, most_shown), open.size() > most_shown ? "…" : "",
+                                      token_.is('=') ? ", before '='" : ""));
     }
     advance();
   }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -522,4 +524,33 @@ TEST_F(Scenes, FamiliesOfExtendedProblems) {
   double u = 2;
   for (int k = 0; k < 20; ++k) u -= (std::sinh(u) - std::sqrt(5) * u) / (std::cosh(u) - std::sqrt(5));
   EXPECT_NEAR(std::asinh(slope(chain, 1)) - std::asinh(slope(chain, 0)), 2 * u, 1e-8);
+}
+
+/// Two oscillators of frequencies 1 and √2 that start on the unit circle, at an angle θ, and end at a point:
+/// the action S(θ) of what is between is known, and extremals are where its derivative is zero. There are two
+/// or four, all of which a search finds, from whichever the shortest line leads to.
+TEST_F(Scenes, AllExtremalsThatStartOnACircle) {
+  constexpr double T = 0.64;
+  for (const auto& [x, y] :
+       {std::pair{-5.11, 0.84}, {-0.91, -0.43}, {0.45, -0.71}, {-0.4, 0.05}, {0.96, -0.48}}) {
+    const auto part = [](double w, double start, double end) {
+      return w / (2 * std::sin(w * T)) * ((start * start + end * end) * std::cos(w * T) - 2 * start * end);
+    };
+    const auto action = [&](double angle) {
+      return part(1, std::cos(angle), x) + part(std::numbers::sqrt2, std::sin(angle), y);
+    };
+    std::vector<double> expected;
+    constexpr int steps = 20000;
+    const auto at = [&](int k) { return action(2 * std::numbers::pi * k / steps); };
+    for (int k = 0; k < steps; ++k)
+      if ((at(k) - at(k - 1)) * (at(k + 1) - at(k)) <= 0) expected.push_back(at(k));
+    std::ranges::sort(expected);
+    const std::vector<Solution> found = run_all(study(fmt::format(
+        "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 - x^2/2 - "
+        "y^2\"\n[boundary]\nconditions = [\"x(0)^2 + y(0)^2 = 1\", \"x(T) = {}\", \"y(T) = {}\"]\n"
+        "duration = {}\n[search]\nsolutions = 6\n",
+        x, y, T)));
+    ASSERT_EQ(found.size(), expected.size()) << x;
+    for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k].action, expected[k], 1e-5) << x;
+  }
 }

@@ -89,6 +89,7 @@ TEST(FormulaNumber, MalformedFormulasAreRefusedWhereTheyBreak) {
   EXPECT_EQ(refusal("1)"), "unexpected ')'; no '(' is open | duration | 1");
   EXPECT_EQ(refusal("a = 1"), "unexpected '='; a formula has no '=' | duration | 2");
   EXPECT_EQ(refusal("2*(1 + a"), "')' is missing for the '(' of (1 + a | duration | 8");
+  EXPECT_EQ(refusal("(1 + a = 2"), "')' is missing for the '(' of (1 + a, before '=' | duration | 7");
   EXPECT_EQ(refusal("m[1"), "']' is missing for the '[' of [1 | duration | 3");
   EXPECT_EQ(refusal("()"), "a value is missing before ')' | duration | 1");
   EXPECT_EQ(refusal("1 + * 2"), "unexpected '*' | duration | 4");

@@ -84,6 +84,8 @@ class BorderedSolve {
       const bool wanted = static_cast<int>(found.size()) < most;
       if (tried + 1 == unbent && wanted) {
         add_zeros_of_jump(starts);
+        if (!extension_.conditions.empty() && problem_.ends.free > 0 && !problem_.periodic)
+          for (int k = 0; k < drawn_ends; ++k) starts.push_back({.ends = k});
         add_bent(starts);
       }
     }

@@ -100,6 +100,8 @@ struct BendRow {
 inline constexpr std::initializer_list<BendRow> bends = {{0.1, 1, 1, 1}, {0.1, 2, 2, 1}, {0.3, 1, 1, 2},
                                                          {0.3, 2, 2, 2}, {0.1, 3, 3, 1}, {0.3, 1, 3, 4},
                                                          {1.0, 1, 3, 4}};
+/// Ends that are drawn, and steps towards the conditions between them.
+inline constexpr int drawn_ends = 32, most_end_steps = 12;
 /// Of the jump at a waypoint as a function of its time: equal steps, the shortest leg by their sum, halvings
 /// of a bracket, steps towards a minimum, elements of each time, and steps of Newton's method in all.
 inline constexpr int scanned_steps = 96, bisections = 8, descents = 6;

@@ -20,10 +20,12 @@ struct Start {
   unsigned seed = 0;
   bool led = false;
   bool downhill = false;  ///< to a minimiser first
-  int zero = -1;          ///< of the jump at a waypoint, beside which a state was found
+  int ends = -1;  ///< of the ends that are drawn where conditions hold between them; the guess's: −1
+  int zero = -1;  ///< of the jump at a waypoint, beside which a state was found
 
   const char* strategy() const {
     if (zero >= 0) return "newton from a time of the waypoint next to which the jump of the energy vanishes";
+    if (ends >= 0) return "newton from other ends that meet the conditions";
     if (downhill) return "minimisation from the guess";
     if (size == 0)
       return led ? "newton from the guess, integrals and conditions led to what is given"
@@ -54,6 +56,8 @@ class StartingStates {
 
  private:
   std::vector<double> moved_ends(double size, const std::vector<double>& extent, Noise& noise) const;
+  std::vector<double> drawn_ends(const Start& start, const Path& path) const;
+  void move_ends(const std::vector<double>& moved, const ElementTables& tables, Path& path) const;
   void bend(const Start& start, const ElementTables& tables, Path& path) const;
   void pass_waypoints(const ElementTables& tables, Path& path) const;
 

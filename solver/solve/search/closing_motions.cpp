@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "linear/dense.hpp"
 #include "motion/dop853.hpp"
@@ -14,6 +15,37 @@ namespace extremal {
 namespace limit = limits::closing_motions;
 
 using Eigen::MatrixXd;
+
+namespace {
+
+/// Middles of the cells of a box, from −1 to 1 along each dimension; numbers count along the first fastest.
+struct Lattice {
+  Lattice(int dimensions, int across) : across(across), stride(dimensions + 1, 1) {
+    for (int k = 0; k < dimensions; ++k) stride[k + 1] = stride[k] * across;
+  }
+  int dimensions() const { return static_cast<int>(stride.size()) - 1; }
+  int points() const { return stride.back(); }
+  int place(int number, int k) const { return number / stride[k] % across; }
+  Eigen::VectorXd at(int number) const {
+    Eigen::VectorXd point(dimensions());
+    for (int k = 0; k < dimensions(); ++k) point[k] = (2 * place(number, k) + 1.0) / across - 1;
+    return point;
+  }
+  /// Whether no neighbour along a dimension has a smaller value.
+  bool least(const std::vector<double>& values, int number) const {
+    for (int k = 0; k < dimensions(); ++k)
+      for (const int side : {-1, 1}) {
+        const int there = place(number, k) + side;
+        if (there >= 0 && there < across && values[number + side * stride[k]] < values[number]) return false;
+      }
+    return true;
+  }
+
+  int across;
+  std::vector<int> stride;
+};
+
+}  // namespace
 
 ClosingMotions::ClosingMotions(const Problem& problem) : problem_(problem), n_(problem.coordinates()) {
   if (!problem.periodic || problem.duration.free || problem.lagrangian->structure().autonomous ||
@@ -141,40 +173,20 @@ bool ClosingMotions::all(double nearest, double farthest, int across,
                          const std::function<bool(int steps)>& more,
                          const std::function<void(const Guess& motion)>& visit) {
   more_ = more;
-  const int dimensions = 2 * n_;
-  std::vector<int> stride(dimensions + 1, 1);
-  for (int k = 0; k < dimensions; ++k) stride[k + 1] = stride[k] * across;
-  const auto place = [&](int number, int k) { return number / stride[k] % across; };
-  const auto part = [&](int number, int k) { return 2 * (place(number, k) + 0.5) / across - 1; };
-  const auto reach = [&](int number) {
-    double most = 0;
-    for (int k = 0; k < dimensions; ++k) most = std::max(most, std::abs(part(number, k)));
-    return most * farthest;
+  const Lattice lattice(dimensions(), across);
+  const auto reach = [&](int number) { return farthest * lattice.at(number).lpNorm<Eigen::Infinity>(); };
+  const auto start = [&](int number) -> Vector {
+    return centre_ + farthest * lattice.at(number).cwiseProduct(unit_);
   };
-  const auto start_of = [&](int number) {
-    Vector y = centre_;
-    for (int k = 0; k < dimensions; ++k) y[k] += farthest * part(number, k) * unit_[k];
-    return y;
-  };
-  const int points = stride[dimensions];
   const double seam = nearest - 2 * farthest / across;  // neighbours of the first
-  std::vector<double> openings(points, INFINITY);
-  for (int i = 0; i < points && more(0); ++i)
-    if (reach(i) >= seam) openings[i] = opening_from(start_of(i));
-  const auto least_beside = [&](int number) {
-    for (int k = 0; k < dimensions; ++k)
-      for (const int side : {-1, 1}) {
-        const int there = place(number, k) + side;
-        if (there >= 0 && there < across && openings[number + side * stride[k]] < openings[number])
-          return false;
-      }
-    return true;
-  };
-  for (int i = 0; i < points && more(0); ++i) {
-    if (!(reach(i) > nearest) || !std::isfinite(openings[i]) || !least_beside(i)) continue;
-    Vector closed = start_of(i);
+  std::vector<double> openings(lattice.points(), INFINITY);
+  for (int k = 0; k < lattice.points() && more(0); ++k)
+    if (reach(k) >= seam) openings[k] = opening_from(start(k));
+  for (int k = 0; k < lattice.points() && more(0); ++k) {
+    if (!(reach(k) > nearest) || !std::isfinite(openings[k]) || !lattice.least(openings, k)) continue;
+    Vector closed = start(k);
     const Closing result = close(closed);
-    if (result != Closing::degenerate) try_from(result == Closing::closed ? closed : start_of(i), visit);
+    if (result != Closing::degenerate) try_from(result == Closing::closed ? closed : start(k), visit);
   }
   return more(0);
 }
