@@ -554,3 +554,13 @@ TEST_F(Scenes, AllExtremalsThatStartOnACircle) {
     for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k].action, expected[k], 1e-5) << x;
   }
 }
+
+/// A free waypoint that is the start is passed at t = 0, where it is none.
+TEST_F(Scenes, PointsThatAreOneAreTold) {
+  const Solution found = run(
+      study("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n[boundary]\nstart = { "
+            "x = 0, "
+            "y = 0 }\nend = { x = 1, y = 0 }\nduration = 1\n[[waypoints]]\nat = \"free\"\nx = 0\ny = 0\n"));
+  EXPECT_FALSE(found.converged());
+  EXPECT_NE(found.message.find("waypoint 1 is where the start is"), std::string::npos) << found.message;
+}

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "scenes.hpp"
 
@@ -211,5 +212,23 @@ TEST_F(StartScanScenes, ImagesAPeriodLaterAreOneOrbit) {
       if (&a == &b) continue;
       b.trajectory.at(b.duration() / 2, q, v);
       EXPECT_GT(std::abs(a.trajectory.nodes[0] - q[0]) + std::abs(a.trajectory.slopes[0] - v[0]), 1e-3);
+    }
+}
+
+/// The same where the image a period later is whole turns of an angle away: a pendulum whose pivot shakes.
+TEST_F(StartScanScenes, ImagesAPeriodLaterAndTurnsApartAreOneOrbit) {
+  LONG_TEST();
+  const std::vector<Solution> found =
+      periodic_orbits("x'^2/2 + cos(x) + 0.6*cos(x)*cos(2.1*t)", "4*pi/2.1", "0.5*cos(1.05*t)", 8);
+  ASSERT_FALSE(found.empty());
+  std::vector<double> q(1), v(1);
+  for (const Solution& a : found)
+    for (const Solution& b : found) {
+      if (&a == &b) continue;
+      for (const double later : {0.0, b.duration() / 2}) {
+        b.trajectory.at(later, q, v);
+        const double turns = std::remainder(a.trajectory.nodes[0] - q[0], 2 * std::numbers::pi);
+        EXPECT_GT(std::abs(turns) + std::abs(a.trajectory.slopes[0] - v[0]), 1e-3);
+      }
     }
 }

@@ -122,12 +122,37 @@ class BorderedSolve {
     return refused_ && !known.refused && known.status == Status::not_converged;
   }
 
+  /// Where a time is free between points that are one, it may become zero; empty: there are none.
+  std::string told_equal_points() const {
+    const auto end_at = [this](int first) {
+      std::vector<std::pair<int, double>> fixed;
+      for (int a = 0; a < n_; ++a)
+        if (problem_.ends.fixed[first + a]) fixed.emplace_back(a, problem_.ends.offset[first + a]);
+      return WaypointCondition{.fixed = std::move(fixed)};
+    };
+    std::vector<WaypointCondition> points{end_at(0)};
+    points.insert(points.end(), extension_.waypoints.begin(), extension_.waypoints.end());
+    points.push_back(end_at(n_));
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const WaypointCondition &before = points[k - 1], &after = points[k];
+      if (!(before.free || after.free) || static_cast<int>(after.fixed.size()) < n_ ||
+          before.fixed != after.fixed)
+        continue;
+      const std::string last = k + 1 < points.size() ? fmt::format("waypoint {}", k) : "the end";
+      return fmt::format(
+          "; {} is where {} is, and nothing may keep them apart in time: leave one out, or give the "
+          "time",
+          last, k > 1 ? fmt::format("waypoint {}", k - 1) : "the start");
+    }
+    return {};
+  }
+
   Solution failure(const Failure& first) const {
     Solution solution;
     solution.status =
         spent() && first.status == Status::not_converged ? Status::iteration_limit : first.status;
     solution.message =
-        first.message + told_spent() +
+        first.message + told_spent() + told_equal_points() +
         "; no guess with waves added led to a solution; another guess of the path, of the unknowns or of the "
         "duration may";
     return solution;

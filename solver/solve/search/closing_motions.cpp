@@ -47,7 +47,10 @@ struct Lattice {
 
 }  // namespace
 
-ClosingMotions::ClosingMotions(const Problem& problem) : problem_(problem), n_(problem.coordinates()) {
+ClosingMotions::ClosingMotions(const Problem& problem)
+    : problem_(problem),
+      n_(problem.coordinates()),
+      cost_(problem.lagrangian->structure().quadratic ? 1 : limits::scanned_motions::implicit_cost) {
   if (!problem.periodic || problem.duration.free || problem.lagrangian->structure().autonomous ||
       problem.paired || problem.manifold || problem.phase || problem.extension || problem.inequalities ||
       n_ > limit::most_coordinates || !Flow::suits(*problem.lagrangian))
@@ -103,7 +106,8 @@ bool ClosingMotions::integrate(const Slope& slope, Vector& y, double tolerance, 
   options.max_steps = limits::scanned_motions::most_integrator_steps;
   double t = 0;
   const Integrated result = method.advance(t, span_of(y), problem_.duration.value, options);
-  return more_(cost * (method.steps() + method.rejected())) && result == Integrated::done && y.allFinite();
+  return more_(cost * cost_ * (method.steps() + method.rejected())) && result == Integrated::done &&
+         y.allFinite();
 }
 
 /// Infinite where there is no motion until T.

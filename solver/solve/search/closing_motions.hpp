@@ -52,7 +52,7 @@ class ClosingMotions {
   void try_from(const Vector& start, const std::function<void(const Guess& motion)>& visit);
 
   const Problem& problem_;
-  int n_;
+  int n_, cost_;
   std::optional<Flow> flow_;
   Eigen::MatrixXd back_, transposed_;  ///< R⁻¹ and Rᵀ of q(T) = R q(0) + c
   Vector shift_;                       ///< c

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "motion/point.hpp"
@@ -54,9 +55,9 @@ double action_size(const Solution& a) {
   return std::abs(a.action) + momentum * extent(a.trajectory);
 }
 
-/// Whether the shift from a to b leaves L the same but for a function of t, which moves no path: at points
-/// between them and beyond, also beside the line that it is along.
-bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const Trajectory& b) {
+/// Whether a shift leaves L the same but for a function of t, which moves no path: at points near a, and as
+/// far from it as the shift, also beside the line that it is along.
+bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const std::vector<double>& shift) {
   const std::size_t n = a.coordinates;
   std::vector<double> here(n), there(n), v(n);
   Scratch scratch;
@@ -72,9 +73,8 @@ bool invariant(const Lagrangian& lagrangian, const Trajectory& a, const Trajecto
     for (std::size_t j = 0; j < std::size(shifted); ++j) {
       a.at(a.times[k], here, v);
       for (std::size_t i = 0; i < n; ++i) {
-        const double shift = b.nodes[i] - a.nodes[i];
-        here[i] += shifted[(i + j) % std::size(shifted)] * shift;
-        there[i] = here[i] + shift;
+        here[i] += shifted[(i + j) % std::size(shifted)] * shift[i];
+        there[i] = here[i] + shift[i];
       }
       const PointValues value = evaluate_at(lagrangian, here, v, a.times[k], Order::gradient, scratch),
                         moved = evaluate_at(lagrangian, there, v, a.times[k], Order::gradient, scratch);
@@ -109,25 +109,22 @@ bool same_orbit(const Solution& a, const Solution& b, double tolerance) {
 }
 
 bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b,
-                        double tolerance) {
-  Solution moved = b;
+                        std::optional<double> period, double tolerance) {
   const std::size_t n = a.trajectory.coordinates;
-  for (std::size_t k = 0; k < moved.trajectory.nodes.size(); ++k)
-    moved.trajectory.nodes[k] += a.trajectory.nodes[k % n] - b.trajectory.nodes[k % n];
-  const double size = std::max(extent(a.trajectory), extent(b.trajectory));
+  const double size = std::max(extent(a.trajectory), extent(b.trajectory)), duration = b.duration();
   const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
-  return near(a.trajectory, moved.trajectory, allowed) && near(moved.trajectory, a.trajectory, allowed) &&
-         invariant(lagrangian, a.trajectory, b.trajectory);
-}
-
-bool same_but_for_time(const Solution& a, const Solution& b, double period, double tolerance) {
-  const double size = std::max(extent(a.trajectory), extent(b.trajectory));
-  const double allowed = margin * (a.error_estimate + b.error_estimate + tolerance * size);
-  const double duration = b.duration();
-  for (double later = period; later < (1 - tolerance) * duration; later += period)
-    if (near(a.trajectory, b.trajectory, allowed, later) &&
-        near(b.trajectory, a.trajectory, allowed, duration - later))
+  std::vector<double> shift(n), v(n);
+  for (double later = 0; later < (1 - tolerance) * duration; later += period.value_or(duration)) {
+    b.trajectory.at(later, shift, v);
+    for (std::size_t i = 0; i < n; ++i) shift[i] -= a.trajectory.nodes[i];
+    Trajectory moved = b.trajectory;
+    for (std::size_t k = 0; k < moved.nodes.size(); ++k) moved.nodes[k] -= shift[k % n];
+    const bool in_place = std::ranges::all_of(shift, [&](double x) { return std::abs(x) <= allowed; });
+    if (near(a.trajectory, moved, allowed, later) &&
+        near(moved, a.trajectory, allowed, later > 0 ? duration - later : 0) &&
+        ((in_place && later > 0) || invariant(lagrangian, a.trajectory, shift)))
       return true;
+  }
   return false;
 }
 

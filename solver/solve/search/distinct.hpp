@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solution/solution.hpp"
@@ -22,11 +23,10 @@ bool same_continuum(const Solution& a, const Solution& b, double tolerance);
 /// energy agree.
 bool same_orbit(const Solution& a, const Solution& b, double tolerance);
 
-/// Whether one is the other moved by a vector that leaves L unchanged, as angles have.
-bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b, double tolerance);
-
-/// Whether one periodic path is the other some periods of L later.
-bool same_but_for_time(const Solution& a, const Solution& b, double period, double tolerance);
+/// Whether one is the other moved by a vector that leaves L unchanged, as angles have; of periodic paths,
+/// where the period of L is given, perhaps some of these later.
+bool same_but_for_place(const Lagrangian& lagrangian, const Solution& a, const Solution& b,
+                        std::optional<double> period, double tolerance);
 
 /// Whether two solutions on the same elements are the same to roundoff.
 bool same_discrete(const Solution& a, const Solution& b);

@@ -78,8 +78,8 @@ int Several::add(Solution candidate, bool held) {
       problem_.paired || !problem_.boundary.momenta.empty() || !problem_.boundary.costs.empty();
   const int number = find([&](const Solution& other) {
     if (closed) return same_orbit(candidate, other, options_.tolerance);
-    return (!placed && same_but_for_place(*problem_.lagrangian, candidate, other, options_.tolerance)) ||
-           (period_ && same_but_for_time(candidate, other, *period_, options_.tolerance)) ||
+    return (!placed &&
+            same_but_for_place(*problem_.lagrangian, candidate, other, period_, options_.tolerance)) ||
            (!held && same_continuum(candidate, other, options_.tolerance));
   });
   if (number >= 0) return number;
