@@ -531,8 +531,9 @@ TEST_F(Scenes, FamiliesOfExtendedProblems) {
 /// or four, all of which a search finds, from whichever the shortest line leads to.
 TEST_F(Scenes, AllExtremalsThatStartOnACircle) {
   constexpr double T = 0.64;
-  for (const auto& [x, y] :
-       {std::pair{-5.11, 0.84}, {-0.91, -0.43}, {0.45, -0.71}, {-0.4, 0.05}, {0.96, -0.48}}) {
+  constexpr double ends[][2] = {{-5.11, 0.84}, {-0.91, -0.43}, {0.45, -0.71}, {-0.4, 0.05}, {0.96, -0.48}};
+  for (const auto& end : ends) {
+    const double x = end[0], y = end[1];
     const auto part = [](double w, double start, double end) {
       return w / (2 * std::sin(w * T)) * ((start * start + end * end) * std::cos(w * T) - 2 * start * end);
     };

@@ -147,16 +147,16 @@ TEST_F(StartScanScenes, OrbitsInChaos) {
       {-1.2039, 0},      {0.3679, 0},  {-1.1530, 0}, {-1.5411, 0}, {-0.6168, 0}, {0.2549, -0.4348},
       {0.2145, -0.3011}, {-1.5250, 0}, {0.8561, 0},  {0.6995, 0},  {1.9439, 0},
   };
-  for (const auto& [x, v] : known) {
+  for (const auto& start : known) {
     const bool there = std::ranges::any_of(found, [&](const Solution& s) {
       for (int period = 0; period < 3; ++period) {
         std::vector<double> q(1), slope(1);
         s.trajectory.at(period * s.duration() / 3, q, slope);
-        if (std::hypot(q[0] - x, slope[0] - v) < 1e-3) return true;
+        if (std::hypot(q[0] - start[0], slope[0] - start[1]) < 1e-3) return true;
       }
       return false;
     });
-    EXPECT_TRUE(there) << x << ", " << v;
+    EXPECT_TRUE(there) << start[0] << ", " << start[1];
   }
   EXPECT_GE(found.size(), 30);
 }

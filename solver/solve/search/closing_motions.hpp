@@ -7,6 +7,7 @@
 
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
+#include "solution/solution.hpp"
 
 /// \file Periodic orbits under a drive from motions that do not close.
 
