@@ -39,8 +39,8 @@ std::vector<double> StartingStates::moved_ends(double size, const std::vector<do
   return moved;
 }
 
-/// How far ends that are drawn are from those of the path: evenly in a box of its extent or twice that, then
-/// moved onto the conditions by the shortest steps.
+/// How far ends that are drawn are from those of the path: at random in a box of its extent or twice that,
+/// then moved onto the conditions by the shortest steps.
 std::vector<double> StartingStates::drawn_ends(const Start& start, const Path& path) const {
   const std::vector<double> extent = extents(path, negligible_extent[0]), from = ends_of(path);
   const int free = problem_.ends.free, rows = static_cast<int>(extension_.conditions.size());

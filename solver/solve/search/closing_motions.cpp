@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "linear/dense.hpp"
-#include "motion/dop853.hpp"
 #include "problem/closing.hpp"
 #include "solve/search/limits.hpp"
 #include "solve/search/motion_scan.hpp"
+#include "solve/search/state_motion.hpp"
 
 namespace extremal {
 
@@ -98,16 +98,7 @@ ClosingMotions::Vector ClosingMotions::opening(const Vector& start, const Vector
 /// From y to T; false if there is no motion until then.
 template <class Slope>
 bool ClosingMotions::integrate(const Slope& slope, Vector& y, double tolerance, int cost) {
-  DormandPrince<double> method(slope, static_cast<int>(y.size()));
-  IntegrationOptions options;
-  options.tolerance = tolerance;
-  options.block = n_;
-  options.controlled = 2 * n_;
-  options.max_steps = limits::scanned_motions::most_integrator_steps;
-  double t = 0;
-  const Integrated result = method.advance(t, span_of(y), problem_.duration.value, options);
-  return more_(cost * cost_ * (method.steps() + method.rejected())) && result == Integrated::done &&
-         y.allFinite();
+  return move_state(slope, n_, problem_.duration.value, tolerance, cost * cost_, more_, y) && y.allFinite();
 }
 
 /// Infinite where there is no motion until T.
@@ -188,9 +179,9 @@ bool ClosingMotions::all(double nearest, double farthest, int across,
     if (reach(k) >= seam) openings[k] = opening_from(start(k));
   for (int k = 0; k < lattice.points() && more(0); ++k) {
     if (!(reach(k) > nearest) || !std::isfinite(openings[k]) || !lattice.least(openings, k)) continue;
-    Vector closed = start(k);
-    const Closing result = close(closed);
-    if (result != Closing::degenerate) try_from(result == Closing::closed ? closed : start(k), visit);
+    Vector nearer = start(k);
+    const Closing result = close(nearer);
+    if (result != Closing::degenerate) try_from(result == Closing::closed ? nearer : start(k), visit);
   }
   return more(0);
 }

@@ -422,12 +422,12 @@ namespace closing_motions {
 inline constexpr int most_coordinates = 3;
 /// Of an integrator's step, relative: of motions that are looked at, and of those that are closed.
 inline constexpr double coarse_step = 1e-4, fine_step = 1e-7;
-/// By units: of motions that close. Steps of least squares towards one.
-inline constexpr double closed = 1e-4;
-/// A singular value of the return map less one, by units: of an orbit that is isolated.
-inline constexpr double isolated = 1e-5;
+/// What a motion that closes misses, at most, and the least singular value of the return map less one that an
+/// isolated orbit has: by units.
+inline constexpr double closed = 1e-4, isolated = 1e-5;
+/// Of least squares: steps, and the damping by the mean curvature, first and after steps that succeed and
+/// fail.
 inline constexpr int most_steps = 12;
-/// Of least squares, by the mean curvature: first, and after steps that succeed and fail.
 inline constexpr double first_damping = 1e-3, less_damping = 0.1, more_damping = 8;
 
 }  // namespace closing_motions

@@ -154,8 +154,8 @@ std::vector<Solution> Several::run(int most) {
   if (begun) descend();
   bool told = false;
   if (most_ > 1 || !begun) {
-    const bool closed = closing_.usable() && scan_openings();
-    told = (motions_.has_curves() && trace_arrivals()) || (starts_.usable() && scan_starts()) || closed;
+    const bool by_openings = closing_.usable() && scan_openings();
+    told = (motions_.has_curves() && trace_arrivals()) || (starts_.usable() && scan_starts()) || by_openings;
   }
   if (!told && (!found_.empty() || loops_.usable())) {
     search_.renew(patience);

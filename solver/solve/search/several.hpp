@@ -27,8 +27,9 @@ class Homotopy;
 /// ends after as many steps as one solve may take without a new one. With one or two coordinates the motions
 /// from the start that meet the end come first. With more, motions from the start, evenly drawn, are led to
 /// the end until those that lead to no new extremal tell that none is likely to be missing between those
-/// found. For a periodic problem, random loops that close as it asks take the place of arcs and motions, and
-/// an orbit that closes after part of the time, so that it is run through several times, is left out.
+/// found. For a periodic problem, random loops that close as it asks take the place of arcs and motions.
+/// Under a drive, motions that nearly close come first. An orbit that closes after part of the time, so that
+/// it is run through several times, is left out.
 class Several {
  public:
   Several(const Problem& problem, const SolveOptions& options, Workspace& workspace);

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "linear/dense.hpp"
-#include "motion/dop853.hpp"
 #include "solve/search/limits.hpp"
+#include "solve/search/state_motion.hpp"
 
 namespace extremal {
 
@@ -90,16 +90,7 @@ std::optional<StartScan::State> StartScan::state(const Vector& w) {
 /// From y to T; false if there is no motion until then.
 template <class Slope>
 bool StartScan::integrate(const Slope& slope, Vector& y, double tolerance, int cost) {
-  DormandPrince<double> method(slope, static_cast<int>(y.size()));
-  IntegrationOptions options;
-  options.tolerance = tolerance;
-  options.block = n_;
-  options.controlled = 2 * n_;
-  options.max_steps = most_integrator_steps;
-  double t = 0;
-  const Integrated result = method.advance(t, span_of(y), problem_.duration.value, options);
-  more_(cost * cost_ * (method.steps() + method.rejected()));
-  return result == Integrated::done;
+  return move_state(slope, n_, problem_.duration.value, tolerance, cost * cost_, more_, y);
 }
 
 /// The miss of a motion, and its state at T by units; not finite where there is none until T.
