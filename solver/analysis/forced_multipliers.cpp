@@ -156,7 +156,7 @@ class ProductEigenvalues {
       : factors_(factors), n_(factors.front().rows()), triangles_(factors.size()) {
     MatrixXd start(n_, n_);
     for (Eigen::Index i = 0; i < start.size(); ++i) start.data()[i] = std::cos(1 + 2.4 * i);
-    after_ = start.householderQr().householderQ();
+    after_ = orthonormal(start);
   }
 
   std::vector<Complex> run() {

@@ -31,12 +31,20 @@ UnitaryBasis unitary(const MatrixXcd& m) {
 
 MatrixXd solved(const MatrixXd& a, const MatrixXd& b) { return Eigen::PartialPivLU<MatrixXd>(a).solve(b); }
 
-VectorXd least_norm(const MatrixXd& a, const VectorXd& b) {
-  return a.completeOrthogonalDecomposition().solve(b);
+MatrixXd least_norm(const MatrixXd& a, const MatrixXd& b, double negligible) {
+  Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors(a.rows(), a.cols());
+  if (negligible > 0) factors.setThreshold(negligible);
+  return factors.compute(a).solve(b);
+}
+
+MatrixXd inverse(const MatrixXd& m) { return Eigen::PartialPivLU<MatrixXd>(m).inverse(); }
+
+bool positive_definite(const MatrixXd& m) {
+  return m.allFinite() && Eigen::LLT<MatrixXd>(m).info() == Eigen::Success;
 }
 
 SingularValues singular_value_decomposition(const MatrixXd& m) {
-  const Eigen::BDCSVD<MatrixXd> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::BDCSVD<MatrixXd> svd(m, Eigen::ComputeThinU | Eigen::ComputeFullV);
   return {svd.matrixU(), svd.singularValues(), svd.matrixV()};
 }
 

@@ -36,8 +36,14 @@ UnitaryBasis unitary(const Eigen::MatrixXcd& m);
 /// A⁻¹ B by LU with partial pivoting; not finite where A is singular.
 Eigen::MatrixXd solved(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// The shortest x that minimises |Ax − b|.
-Eigen::VectorXd least_norm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+/// The shortest X that minimises |AX − B|; pivots below `negligible` of the largest count as zero.
+Eigen::MatrixXd least_norm(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double negligible = 0);
+
+/// Not finite where m is singular.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& m);
+
+/// Of a symmetric matrix, by its lower triangle; false where it is not finite.
+bool positive_definite(const Eigen::MatrixXd& m);
 
 /// In ascending order; of a symmetric (Hermitian) matrix the lower triangle is read.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& m);
@@ -67,7 +73,7 @@ struct ComplexEigen {
 /// Of a matrix that is normal within `accuracy` vectors are orthonormal, also where values coincide.
 ComplexEigen complex_eigen(const Eigen::MatrixXd& m, double accuracy);
 
-/// m = u diag(values) vᵀ, all of u and v, values descending.
+/// m = u diag(values) vᵀ: all of v, of u as many columns as m has, at most; values descending.
 struct SingularValues {
   Eigen::MatrixXd u;
   Eigen::VectorXd values;

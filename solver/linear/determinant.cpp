@@ -1,8 +1,9 @@
 #include "linear/determinant.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
+
+#include "linear/sparse_lu.hpp"
 
 namespace extremal {
 

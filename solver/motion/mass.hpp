@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/SparseLU>
 #include <span>
 #include <vector>
 
 #include "linear/dense.hpp"
+#include "linear/sparse_lu.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file Solves with ∂²L/∂q'∂q'.

@@ -1,5 +1,6 @@
 #include "problem/closing.hpp"
 
+#include "linear/dense.hpp"
 #include "problem/problem.hpp"
 
 namespace extremal {
@@ -11,8 +12,7 @@ ClosingMap closing_map(const Problem& problem) {
     (entry.column < n ? start : end)(entry.row, entry.column % n) += entry.value;
   const Eigen::VectorXd value = Eigen::Map<const Eigen::VectorXd>(problem.boundary.value.data(), n);
   if (end.isIdentity(0)) return {-start, value};
-  const auto lu = end.partialPivLu();
-  return {-lu.solve(start), lu.solve(value)};
+  return {-solved(end, start), solved(end, value)};
 }
 
 }  // namespace extremal

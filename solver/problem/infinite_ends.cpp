@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "linear/dense.hpp"
 #include "problem/limits.hpp"
 
 namespace extremal {
@@ -201,8 +202,7 @@ void meet_momenta(const Problem& problem, const RestPoint& rest, bool at_end, st
     missing[a] = asked - rest.momentum[a];
   }
   missing -= slope * away;
-  const Eigen::VectorXd free_away =
-      Eigen::MatrixXd(slope(free, free)).colPivHouseholderQr().solve(Eigen::VectorXd(missing(free)));
+  const Eigen::VectorXd free_away = least_norm(slope(free, free), missing(free));
   if (!free_away.allFinite()) return;
   for (std::size_t k = 0; k < free.size(); ++k) q[free[k]] = rest.q[free[k]] + free_away[k];
 }

@@ -1,6 +1,6 @@
 #include "problem/manifold.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +20,7 @@ constexpr double least_factor = 1e-3;
 /// Steps below so many roundings of the point gain nothing more.
 constexpr double last_step = 4 * std::numeric_limits<double>::epsilon();
 /// Where g cannot be made smaller, so long a step was one of roundoff.
-constexpr double roundoff = 1e3 * last_step;
+constexpr double rounded_step = 1e3 * last_step;
 
 /// Singular values of gradients of unit length that depend on each other.
 constexpr double dependence = 1e-9;
@@ -65,7 +65,7 @@ ConstraintValues Manifold::at(std::span<const double> q, double t) const {
 VectorXd Manifold::normal_step(const ConstraintValues& values, const VectorXd& g) const {
   const MatrixXd across = parts_.metric * values.slopes.transpose();
   const MatrixXd a = values.slopes * across;
-  return across * a.completeOrthogonalDecomposition().solve(g);
+  return across * least_norm(a, g);
 }
 
 /// The step of one iteration onto the manifold from q; infinite where gradients vanish or depend on each
@@ -73,7 +73,7 @@ VectorXd Manifold::normal_step(const ConstraintValues& values, const VectorXd& g
 VectorXd Manifold::step_onto(std::span<const double> q, const ConstraintValues& values) const {
   const VectorXd step = normal_step(values, values.g);
   const double left = (values.g - values.slopes * step).norm();
-  const double digits = roundoff * values.slopes.norm() * vector(q).norm();
+  const double digits = rounded_step * values.slopes.norm() * vector(q).norm();
   if (left <= std::max(0.5 * values.g.norm(), digits)) return step;
   return VectorXd::Constant(step.size(), INFINITY);
 }
@@ -101,7 +101,7 @@ bool Manifold::project(std::span<double> q, double t) const {
     }
     if (!nearer) {
       point = from;
-      return length <= roundoff * point.norm();
+      return length <= rounded_step * point.norm();
     }
     if (length <= last_step * point.norm()) return true;
   }
@@ -125,7 +125,7 @@ std::vector<double> Manifold::projected_momentum(std::span<const double> q, doub
   const ConstraintValues values = at(q, t);
   const MatrixXd across = parts_.metric * values.slopes.transpose();
   const MatrixXd a = values.slopes * across;
-  const VectorXd normal = a.completeOrthogonalDecomposition().solve(across.transpose() * vector(p));
+  const VectorXd normal = least_norm(a, across.transpose() * vector(p));
   return values_of(vector(p) - values.slopes.transpose() * normal);
 }
 
@@ -147,7 +147,7 @@ SaddlePoint saddle_point(const MatrixXd& mass, const MatrixXd& slopes, const Vec
   matrix << mass / heavy, -scaled.transpose(), scaled, MatrixXd::Zero(m, m);
   VectorXd right(n + m);
   right << a / heavy, b.cwiseQuotient(steep);
-  const VectorXd found = matrix.completeOrthogonalDecomposition().solve(right);
+  const VectorXd found = least_norm(matrix, right);
   return {found.head(n), heavy * found.tail(m).cwiseQuotient(steep)};
 }
 

@@ -32,8 +32,8 @@ class InChart {
         chart_(lagrangian_->chart()) {
     const int n = chart_.coordinates;
     basis_ = Eigen::Map<const RowMajor>(chart_.basis.data(), n, n);
-    const RowMajor inverse = basis_.inverse();
-    inverse_.assign(inverse.data(), inverse.data() + inverse.size());
+    const RowMajor rows = inverse(basis_);
+    inverse_.assign(rows.data(), rows.data() + rows.size());
     put_points();
   }
 
@@ -260,7 +260,7 @@ class InChart {
       if (fixed(end)) continue;
       const Guess& guess = problem_.guess;
       const std::span<const double> q(guess.q.data() + (end ? guess.q.size() - n : 0), n);
-      const MatrixXd by_y = slopes_at(end), to_z = basis_.partialPivLu().solve(by_y);
+      const MatrixXd by_y = slopes_at(end), to_z = solved(basis_, by_y);
       const MatrixXd slopes = problem_.manifold->at(q, end ? problem_.duration.value : 0).slopes * by_y;
       const MatrixXd of_w = -solved(slopes.rightCols(m), slopes.leftCols(d));
       const MatrixXd by_end = rows.middleCols(end * n, n) * to_z;
@@ -283,8 +283,8 @@ class InChart {
     for (int a = 0; a < d; ++a) u.boundary.fix(a, false, x[a]);
     const MatrixXd by_y = slopes_at(0), slopes = problem_.manifold->at(given.q, 0).slopes * by_y;
     const VectorXd p = by_y.transpose() * Eigen::Map<const VectorXd>(given.p.data(), d + m);
-    const VectorXd by_u = p.head(d) - slopes.leftCols(d).transpose() *
-                                          slopes.rightCols(m).transpose().partialPivLu().solve(p.tail(m));
+    const VectorXd by_u =
+        p.head(d) - slopes.leftCols(d).transpose() * solved(slopes.rightCols(m).transpose(), p.tail(m));
     u.initial = InitialData{{x.begin(), x.begin() + d}, {by_u.begin(), by_u.end()}, false};
     return by_u.allFinite();
   }
@@ -346,10 +346,8 @@ std::vector<double> covector(const MinimalProblem& minimal, std::span<const doub
                              std::span<const double> p) {
   const Chart& chart = minimal.lagrangian->chart();
   const Index n = chart.coordinates;
-  const MatrixXd inverse =
-      Eigen::Map<const MatrixXd>(chart.basis.data(), n, n).inverse();  // of the transpose
-  const std::vector<double> y =
-      chart.coordinates_of({inverse.data(), static_cast<std::size_t>(n * n)}, q, {});
+  const MatrixXd back = inverse(Eigen::Map<const MatrixXd>(chart.basis.data(), n, n));  // of the transpose
+  const std::vector<double> y = chart.coordinates_of({back.data(), static_cast<std::size_t>(n * n)}, q, {});
   VectorXd all = VectorXd::Zero(n);
   std::ranges::copy(p, all.begin());
   const std::vector<double> slopes = chart.slopes(y);

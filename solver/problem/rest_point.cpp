@@ -26,7 +26,7 @@ constexpr double sign_goal = 1e-14;
 /// Exponents that a message lists.
 constexpr int most_listed = 12;
 
-Matrix square(const std::vector<double>& rows, Eigen::Index n) {
+Matrix square_matrix(const std::vector<double>& rows, Eigen::Index n) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   return Eigen::Map<const RowMajor>(rows.data(), n, n);
 }
@@ -89,11 +89,11 @@ Matrix drift(AtRest& at, const Eigen::VectorXd& q, const PointValues& values) {
   const Eigen::Index n = q.size();
   const PointValues after = at.later(q, time_step), before = at.later(q, -time_step);
   const double lapse = 2 * time_step * at.time_unit();
-  const Matrix mass_rate = (square(after.vv, n) - square(before.vv, n)) / lapse,
-               mixed_rate = (square(after.vq, n) - square(before.vq, n)) / lapse,
-               damping = mass_rate * solved(square(values.vv, n), Matrix::Identity(n, n));
+  const Matrix mass_rate = (square_matrix(after.vv, n) - square_matrix(before.vv, n)) / lapse,
+               mixed_rate = (square_matrix(after.vq, n) - square_matrix(before.vq, n)) / lapse,
+               damping = mass_rate * solved(square_matrix(values.vv, n), Matrix::Identity(n, n));
   Matrix added = Matrix::Zero(2 * n, 2 * n);
-  added.bottomRows(n) << damping * square(values.vq, n) - mixed_rate, -damping;
+  added.bottomRows(n) << damping * square_matrix(values.vq, n) - mixed_rate, -damping;
   return added;
 }
 
@@ -119,10 +119,10 @@ double least_real_part(const Eigen::VectorXcd& exponents) { return exponents.rea
 }  // namespace
 
 Matrix linear_motion(const PointValues& values, Eigen::Index n) {
-  const Matrix c = square(values.vq, n), inverse = solved(square(values.vv, n), Matrix::Identity(n, n)),
-               slope = inverse * c;
+  const Matrix c = square_matrix(values.vq, n),
+               inverse = solved(square_matrix(values.vv, n), Matrix::Identity(n, n)), slope = inverse * c;
   Matrix a(2 * n, 2 * n);
-  a << -slope, inverse, square(values.qq, n) - c.transpose() * slope, slope.transpose();
+  a << -slope, inverse, square_matrix(values.qq, n) - c.transpose() * slope, slope.transpose();
   return a;
 }
 
@@ -142,20 +142,20 @@ RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near,
   const auto force = [&] { return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.dq.data(), n)); };
   RestPoint rest;
   rest.force = force().cwiseAbs().maxCoeff();
-  if (!std::isfinite(values.value) || !force().allFinite() || !square(values.qq, n).allFinite() ||
-      !square(values.vv, n).allFinite() || !square(values.vq, n).allFinite())
+  if (!std::isfinite(values.value) || !force().allFinite() || !square_matrix(values.qq, n).allFinite() ||
+      !square_matrix(values.vv, n).allFinite() || !square_matrix(values.vq, n).allFinite())
     throw std::invalid_argument("L or a derivative of it is not finite at rest there");
   rest.distance = INFINITY;
   const double size = std::max(given.cwiseAbs().maxCoeff(), 1e-300);
   for (int k = 0; k < most_newton_steps; ++k) {
-    const Eigen::VectorXd step = least_norm(square(values.qq, n), -force());
+    const Eigen::VectorXd step = least_norm(square_matrix(values.qq, n), -force());
     if (!step.allFinite() || force().isZero(0)) {
       if (force().isZero(0)) rest.distance = (q - given).cwiseAbs().maxCoeff();
       break;
     }
     q += step;
     values = at(q);
-    if (!force().allFinite() || !square(values.qq, n).allFinite()) break;
+    if (!force().allFinite() || !square_matrix(values.qq, n).allFinite()) break;
     if (step.cwiseAbs().maxCoeff() > newton_goal * size) continue;
     rest.distance = (q - given).cwiseAbs().maxCoeff();
     break;
@@ -167,7 +167,7 @@ RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near,
   rest.q.assign(q.begin(), q.end());
   rest.momentum = values.dv;
   rest.value = values.value;
-  rest.stiffness = square(values.qq, n).cwiseAbs().maxCoeff();
+  rest.stiffness = square_matrix(values.qq, n).cwiseAbs().maxCoeff();
   const Matrix a = motion_about(lagrangian, at, q, values);
   if (!a.allFinite()) throw std::invalid_argument("the mass matrix ∂²L/∂q'∂q' is singular at rest there");
   rest.exponents = general_eigenvalues(a);

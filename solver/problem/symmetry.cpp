@@ -1,10 +1,11 @@
 #include "problem/symmetry.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "linear/dense.hpp"
 #include "problem/problem.hpp"
 #include "system/kinks.hpp"
 
@@ -203,15 +204,14 @@ std::vector<Generator> continuous_symmetries(const Problem& problem, const Symme
 std::vector<Generator> symmetries_that_keep(const MatrixXd& values,
                                             const std::vector<Generator>& symmetries) {
   if (values.rows() == 0 || symmetries.empty()) return symmetries;
-  const Eigen::JacobiSVD<MatrixXd> svd(values, Eigen::ComputeFullV);
-  const VectorXd& sizes = svd.singularValues();
+  const auto [u, sizes, v] = singular_value_decomposition(values);
   const Eigen::Index rank = (sizes.array() > kept * std::max(1.0, sizes[0])).count();
   std::vector<Generator> result;
   for (Eigen::Index j = rank; j < values.cols(); ++j) {
     Generator sum{std::vector<double>(symmetries[0].matrix.size()),
                   std::vector<double>(symmetries[0].shift.size())};
     for (std::size_t s = 0; s < symmetries.size(); ++s) {
-      const double factor = svd.matrixV()(static_cast<Eigen::Index>(s), j);
+      const double factor = v(static_cast<Eigen::Index>(s), j);
       for (std::size_t k = 0; k < sum.matrix.size(); ++k) sum.matrix[k] += factor * symmetries[s].matrix[k];
       for (std::size_t k = 0; k < sum.shift.size(); ++k) sum.shift[k] += factor * symmetries[s].shift[k];
     }

@@ -16,7 +16,7 @@ namespace extremal {
 namespace {
 
 /// Relations between the ends are imposed exactly; the duration likewise.
-constexpr double negligible = 64 * std::numeric_limits<double>::epsilon();
+constexpr double roundings = 64 * std::numeric_limits<double>::epsilon();
 
 void check(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options) {
   const auto require = [](bool holds, const std::string& message) {
@@ -54,7 +54,7 @@ std::string broken_numbers(const Problem& problem, const Trajectory& trajectory)
       return fmt::format("element {} runs from t = {} to {}", k, trajectory.times[k - 1],
                          trajectory.times[k]);
   const double duration = problem.duration.value, found = trajectory.duration();
-  if (!problem.duration.free && std::abs(found - duration) > negligible * duration)
+  if (!problem.duration.free && std::abs(found - duration) > roundings * duration)
     return fmt::format("it lasts {} instead of {}", found, duration);
   return {};
 }
@@ -90,12 +90,12 @@ class Verifier {
     for (int r = 0; r < conditions.rows(); ++r) {
       const double residual = std::abs(values_.residual[r]);
       if (r < conditions.relation_rows()) {
-        if (residual > negligible * values_.magnitude[r])
+        if (residual > roundings * values_.magnitude[r])
           return fmt::format("condition {} on the ends is missed by {:.3g}", r + 1, residual);
         continue;
       }
       const double allowed =
-          velocity_factor * options_.tolerance * values_.size[r] + negligible * values_.magnitude[r];
+          velocity_factor * options_.tolerance * values_.size[r] + roundings * values_.magnitude[r];
       if (residual > 0) result_.conditions = std::max(result_.conditions, residual / allowed);
     }
     if (!(result_.conditions <= options_.margin))

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "action/rule.hpp"
+#include "linear/dense.hpp"
 #include "problem/closing.hpp"
 #include "problem/manifold.hpp"
 #include "solution/limits.hpp"
@@ -83,9 +84,7 @@ VectorXcd normal_multipliers(const Problem& problem, const Trajectory& trajector
   };
   // c(R q) = S c(q), so that C(Rq) R = S C(q).
   const MatrixXd before = normals(start, 0), after = normals(end, trajectory.duration()) * map.r;
-  const MatrixXd turn =
-      before.transpose().completeOrthogonalDecomposition().solve(after.transpose()).transpose();
-  return turn.inverse().eigenvalues();
+  return general_eigenvalues(inverse(least_norm(before.transpose(), after.transpose()).transpose()));
 }
 
 void leave_out(const VectorXcd& turns, double growth, Floquet& floquet) {

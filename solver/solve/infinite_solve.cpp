@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "action/rule.hpp"
@@ -58,11 +59,7 @@ class InfiniteSolve {
   }
 
   Solution run() {
-    Solution solution = first();
-    if (solution.converged() && shrunk_to_rest(solution)) return at_rest_alone();
-    if (!solution.converged()) return explained(std::move(solution));
-    solution = lengthened(std::move(solution));
-    if (solution.converged() && shrunk_to_rest(solution)) return at_rest_alone();
+    Solution solution = found();
     if (solution.converged() && options_.scheme) {
       const double error = solution.error_estimate;
       Solution pinned = solve_(finite(sampled(solution.trajectory)), options_, true);
@@ -143,31 +140,35 @@ class InfiniteSolve {
     return result;
   }
 
-  /// From the guess; from extremals of short durations between fixed ends; from other guesses.
-  Solution first() {
+  /// From the guess; from that in another size or place; from extremals of short durations between fixed
+  /// ends; from other guesses. The first that leads to rest on longer and longer parts is the one; else what
+  /// failed last.
+  Solution found() {
     const SampledPath guess = sampled(problem_.guess, problem_.duration.value);
-    const Solution found = solve_(finite(guess), adaptive_, true);
-    if (usable(found)) return found;
-    for (const double decays : lengthenings) {
-      Solution longer = solve_(finite(extended(guess, {decays, decays})), adaptive_, true);
-      if (usable(longer)) return longer;
-    }
-    if (const std::optional<SampledPath> other = resized(guess)) {
-      Solution solution = solve_(finite(*other), adaptive_, true);
-      if (usable(solution)) {
-        solution.strategy = "newton from the guess in another size";
-        return solution;
-      }
-    }
+    Solution result;
+    const auto leads = [&](Solution first, std::string_view strategy = {}) {
+      const bool shrank = first.converged() && shrunk_to_rest(first);
+      result = shrank ? at_rest_alone() : first.converged() ? lengthened(std::move(first)) : std::move(first);
+      if (result.converged() && shrunk_to_rest(result)) result = at_rest_alone();
+      if (result.converged() && !strategy.empty()) result.strategy = strategy;
+      return result.converged();
+    };
+    if (leads(solve_(finite(guess), adaptive_, true))) return result;
+    for (const double decays : lengthenings)
+      if (leads(solve_(finite(extended(guess, {decays, decays})), adaptive_, true))) return result;
+    if (const auto other = resized(guess);
+        other && leads(solve_(finite(*other), adaptive_, true), "newton from the guess in another size"))
+      return result;
+    if (const auto other = moved(guess);
+        other && leads(solve_(finite(*other), adaptive_, true), "newton from the guess moved in time"))
+      return result;
     for (const double decays : short_durations) {
-      if (options_.deadline.passed()) break;
-      Solution from_short = through_short(guess, decays);
-      if (usable(from_short)) return from_short;
+      if (options_.deadline.passed()) return result;
+      if (leads(through_short(guess, decays))) return result;
     }
-    if (options_.deadline.passed()) return found;
-    return solve_(finite(guess), adaptive_, false);
+    if (!options_.deadline.passed()) leads(solve_(finite(guess), adaptive_, false));
+    return result;
   }
-  bool usable(const Solution& solution) const { return solution.converged() && !shrunk_to_rest(solution); }
 
   /// Whether rest is an extremal of the problem: then others are saddles of the action between it and paths
   /// far away.
@@ -177,37 +178,38 @@ class InfiniteSolve {
     return std::ranges::none_of(problem_.ends.fixed, fixed);
   }
 
-  /// ∫ L − L(rest) dt of a guess whose distance from rest is multiplied by `size` and whose time by 1/`rate`.
-  double action_of(const SampledPath& guess, double size, double rate) const {
+  SampledPath in_size(const SampledPath& guess, double size, double rate, int samples) const {
+    const std::size_t n = problem_.coordinates();
+    const double T = guess.duration(), middle = infinite(0) ? (infinite(1) ? 0.5 * T : T) : 0;
+    const std::vector<double>& rest = equilibrium(infinite(1) ? 1 : 0);
+    SampledPath path;
+    std::vector<double> q(n);
+    for (int k = 0; k <= samples; ++k) {
+      path.t.push_back(T * k / samples);
+      problem_.guess.at(std::clamp((middle + rate * (path.t.back() - middle)) / T, 0.0, 1.0), q);
+      for (std::size_t a = 0; a < n; ++a) path.q.push_back(rest[a] + size * (q[a] - rest[a]));
+    }
+    return path;
+  }
+
+  /// ∫ L − L(rest) dt.
+  double action_of(const SampledPath& path) const {
     const std::size_t n = problem_.coordinates();
     const std::vector<double>& rest = equilibrium(infinite(1) ? 1 : 0);
     const std::vector<double> zero(n, 0);
-    const double T = guess.duration(), step = T / scan_samples;
-    std::vector<double> q(n), before(n), v(n);
+    std::vector<double> q(n), v(n);
     double sum = 0;
-    for (int k = 0; k <= scan_samples; ++k) {
-      const double t = k * step;
-      resized_at(guess, size, rate, t, q);
-      if (k > 0) {
-        for (std::size_t a = 0; a < n; ++a) {
-          v[a] = (q[a] - before[a]) / step;
-          before[a] = 0.5 * (q[a] + before[a]);
-        }
-        const double middle = t - 0.5 * step;
-        sum += step * (evaluate_at(*problem_.lagrangian, before, v, middle, Order::value, scratch_).value -
-                       evaluate_at(*problem_.lagrangian, rest, zero, middle, Order::value, scratch_).value);
+    for (std::size_t k = 1; k < path.t.size(); ++k) {
+      const double step = path.t[k] - path.t[k - 1], middle = path.t[k] - 0.5 * step;
+      for (std::size_t a = 0; a < n; ++a) {
+        const double before = path.q[(k - 1) * n + a], after = path.q[k * n + a];
+        q[a] = 0.5 * (before + after);
+        v[a] = (after - before) / step;
       }
-      before = q;
+      sum += step * (evaluate_at(*problem_.lagrangian, q, v, middle, Order::value, scratch_).value -
+                     evaluate_at(*problem_.lagrangian, rest, zero, middle, Order::value, scratch_).value);
     }
     return sum;
-  }
-
-  void resized_at(const SampledPath& guess, double size, double rate, double t,
-                  std::vector<double>& q) const {
-    const double T = guess.duration(), middle = infinite(0) ? (infinite(1) ? 0.5 * T : T) : 0;
-    const std::vector<double>& rest = equilibrium(infinite(1) ? 1 : 0);
-    problem_.guess.at(std::clamp((middle + rate * (t - middle)) / T, 0.0, 1.0), q);
-    for (std::size_t a = 0; a < q.size(); ++a) q[a] = rest[a] + size * (q[a] - rest[a]);
   }
 
   /// The guess in that size in which its action is largest, and in that rate in which this largest one is
@@ -221,7 +223,8 @@ class InfiniteSolve {
       double most = 0, at_most = 0;
       bool passed = false;
       for (int k = -scan_sizes; k <= scan_sizes && !passed; ++k) {
-        const double at_size = std::pow(2.0, k / 4.0), action = action_of(guess, at_size, at_rate);
+        const double at_size = std::pow(2.0, k / 4.0),
+                     action = action_of(in_size(guess, at_size, at_rate, scan_samples));
         if (!std::isfinite(action)) break;
         passed = at_most > 0 && action < most;
         if (action > most) {
@@ -235,12 +238,46 @@ class InfiniteSolve {
       rate = at_rate;
     }
     if (!(size > 0)) return std::nullopt;
+    return in_size(guess, size, rate, samples_of_resized);
+  }
+
+  /// The guess moved in time to where its action is stationary: where the path is between two rests, as that
+  /// of a bubble with a thin wall is, the way over the pass moves the wall alone.
+  std::optional<SampledPath> moved(const SampledPath& guess) const {
+    if (!allows_rest() || infinite(0) == infinite(1)) return std::nullopt;
+    const auto action = [&](double later) { return action_of(later_by(guess, later, scan_samples)); };
+    const double T = guess.duration();
+    // Of the shortest path nearly all of the action is kinetic.
+    const double sign = std::copysign(1, action(infinite(0) ? most_shift * T : -most_shift * T));
+    double step = shift_step * T, best = 0, at_best = 0;
+    for (double later = -most_shift * T; later <= most_shift * T; later += step) {
+      const double here = sign * action(later);
+      const bool most = here > sign * action(later - step) && here > sign * action(later + step);
+      if (!(most && here > at_best)) continue;
+      best = later;
+      at_best = here;
+    }
+    if (!(at_best > 0)) return std::nullopt;
+    for (; step > least_shift * T; step /= 2)
+      for (const double later : {best - step / 2, best + step / 2})
+        if (const double here = sign * action(later); here > at_best) {
+          best = later;
+          at_best = here;
+        }
+    return later_by(guess, best, samples_of_resized);
+  }
+
+  /// A guess with one infinite end, later by so much: at the finite end it rests, or begins on its way.
+  SampledPath later_by(const SampledPath& guess, double later, int samples) const {
     const std::size_t n = problem_.coordinates();
+    const double T = guess.duration(),
+                 duration = infinite(0) ? std::max(T, T - later) : std::max(T, T + later);
     SampledPath path;
     std::vector<double> q(n);
-    for (int k = 0; k <= samples_of_resized; ++k) {
-      path.t.push_back(guess.duration() * k / samples_of_resized);
-      resized_at(guess, size, rate, path.t.back(), q);
+    for (int k = 0; k <= samples; ++k) {
+      path.t.push_back(duration * k / samples);
+      const double from = infinite(0) ? path.t.back() - (duration - T) : path.t.back();
+      problem_.guess.at(std::clamp((from - later) / T, 0.0, 1.0), q);
       path.q.insert(path.q.end(), q.begin(), q.end());
     }
     return path;

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <span>
 
+#include "linear/dense.hpp"
 #include "machine/simd.hpp"
 #include "problem/manifold.hpp"
 #include "problem/nearby.hpp"
@@ -149,7 +150,7 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
       const PointValues values =
           evaluate_at(*problem.lagrangian, {q, n}, velocity, 0, Order::hessian, scratch);
       const Eigen::Map<const Eigen::MatrixXd> mass(values.vv.data(), n, n);
-      return mass.allFinite() && mass.llt().info() == Eigen::Success;
+      return positive_definite(mass);
     };
     bool bounded = convex(rest);
     for (int k = 0; k < 8 && bounded; ++k) {

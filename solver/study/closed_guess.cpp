@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
+
 namespace extremal {
 
 namespace {
@@ -32,7 +34,7 @@ void ClosedGuess::at(double tau, std::span<double> q) const {
   }
   for (double k = 0; k > periods; --k) {
     x -= end_;
-    if (turned) x = map_.r.partialPivLu().solve(x).eval();
+    if (turned) x = solved(map_.r, x);
     x += start_;
   }
 }

@@ -60,7 +60,7 @@ ClosingCorrection::ClosingCorrection(const Problem& problem, const MotionPoints&
   // Momenta go as the inverse of the transpose.
   Eigen::MatrixXd closing = Eigen::MatrixXd::Zero(size, size);
   closing.topLeftCorner(n, n) = map.r;
-  closing.bottomRightCorner(n, n) = map.r.inverse().transpose();
+  closing.bottomRightCorner(n, n) = inverse(map.r).transpose();
   const Eigen::MatrixXd first = variations(problem, onwards, deadline),
                         second = variations(problem, back, deadline);
   if (first.size() == 0 || second.size() == 0) return;

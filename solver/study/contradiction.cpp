@@ -14,7 +14,7 @@
 namespace extremal {
 namespace {
 
-using namespace limits::contradiction;
+namespace limit = limits::contradiction;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -59,7 +59,7 @@ class OneByOne {
   /// Newton's method for the first `count`, with shortest steps.
   bool hold(Index count, VectorXd& q) const {
     if (count == 0) return true;
-    for (int step = 0; step < most_corrections; ++step) {
+    for (int step = 0; step < limit::most_corrections; ++step) {
       const ConstraintValues values = at(q);
       const VectorXd change = free_ * least_norm(values.slopes.topRows(count) * free_, -values.g.head(count));
       if (!change.allFinite()) return false;
@@ -76,7 +76,7 @@ class OneByOne {
   std::optional<double> approach(Index k, VectorXd& q) const {
     if (!hold(k, q)) return std::nullopt;
     double g = at(q).g[k];
-    for (int step = 0; step < most_approaches && !met(k, q); ++step) {
+    for (int step = 0; step < limit::most_approaches && !met(k, q); ++step) {
       const ConstraintValues values = at(q);
       VectorXd along = slope(values, k);
       if (k > 0) {
@@ -86,7 +86,7 @@ class OneByOne {
       if (!(along.norm() > limits::constraints::dependence * slope(values, k).norm())) break;
       const VectorXd whole = free_ * along * (-g / along.squaredNorm());
       const double last = g;
-      for (double part = 1; part >= least_part && g == last; part /= 2) {
+      for (double part = 1; part >= limit::least_part && g == last; part /= 2) {
         VectorXd there = q + part * whole;
         if (!hold(k, there)) continue;
         if (const double reached = at(there).g[k]; std::abs(reached) < std::abs(g)) {
@@ -94,7 +94,7 @@ class OneByOne {
           q = std::move(there);
         }
       }
-      if (!(std::abs(g) < (1 - least_fall) * std::abs(last))) break;
+      if (!(std::abs(g) < (1 - limit::least_fall) * std::abs(last))) break;
     }
     return g;
   }
@@ -145,7 +145,7 @@ void check_ends(const Scene& scene, const Problem& problem, const Eigen::Ref<con
     const VectorXd fixed = offset.segment(first, n), near = points.col(at_end ? points.cols() - 1 : 0);
     const OneByOne along(*problem.manifold, free, at_end ? problem.duration.value : 0.0);
     Farthest of_end;
-    for (int seed = 0; seed < tries && of_end.known(); ++seed)
+    for (int seed = 0; seed < limit::tries && of_end.known(); ++seed)
       of_end.add(along.unmet(fixed + free * least_norm(free, near + aside(n, seed * size, seed) - fixed)));
     const std::optional<Unmet> found = of_end.found();
     if (!found) continue;
@@ -168,10 +168,11 @@ void check_contradictions(const Scene& scene, const Problem& problem, const std:
   const double T = problem.duration.value;
 
   Farthest of_constraints;
-  for (int part = 0; part <= parts; ++part) {
-    const OneByOne anywhere(*problem.manifold, MatrixXd::Identity(n, n), T * part / parts);
-    for (int seed = 0; seed < tries && of_constraints.known(); ++seed)
-      of_constraints.add(anywhere.unmet(all.col((count - 1) * part / parts) + aside(n, seed * size, seed)));
+  for (int part = 0; part <= limit::parts; ++part) {
+    const OneByOne anywhere(*problem.manifold, MatrixXd::Identity(n, n), T * part / limit::parts);
+    for (int seed = 0; seed < limit::tries && of_constraints.known(); ++seed)
+      of_constraints.add(
+          anywhere.unmet(all.col((count - 1) * part / limit::parts) + aside(n, seed * size, seed)));
   }
   if (const std::optional<Unmet> found = of_constraints.found()) {
     const Text& text = scene.system.constraints[found->constraint];

@@ -1,10 +1,12 @@
 #include "study/deviation.hpp"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unsupported/Eigen/MatrixFunctions>
+
+#include "linear/dense.hpp"
 
 namespace extremal {
 
@@ -91,9 +93,7 @@ class Aligner {
     result.largest = apart.lpNorm<Eigen::Infinity>();
     result.mean_square = apart.squaredNorm() / static_cast<double>(rows);
     if (moves == 0) return result;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> least(by_move.rows(), moves);
-    least.setThreshold(same_move);
-    result.moves = least.compute(by_move).solve(-apart);
+    result.moves = least_norm(by_move, -apart, same_move);
     return result;
   }
 

@@ -40,6 +40,21 @@ inline constexpr double homogeneous = 1e-10;
 
 }  // namespace extremal::limits::regularity
 
+namespace extremal::limits::continuity {
+
+/// Points about the guess from which a surface is looked for, and how many on it tell.
+inline constexpr int tries = 32, telling = 4;
+inline constexpr int most_steps = 20;
+/// Of the state, relative: a surface is reached this closely.
+inline constexpr double on_surface = 1e-12;
+/// Distances from it, relative to the state: between them a term |u|^a falls to 10^-4a, a jump stays within
+/// this part.
+inline constexpr double farther = 1e-5, nearer = 1e-9, stays = 1e-2;
+/// Jumps below this part of L are roundoff.
+inline constexpr double least_jump = 1e-9;
+
+}  // namespace extremal::limits::continuity
+
 namespace extremal::limits::constraints {
 
 /// Expressions of L̃ are dense in the coordinates: their Hessian has (2n)² entries that each hold all

@@ -7,7 +7,7 @@ namespace extremal {
 namespace {
 
 /// Of q, relative: more digits than a guess needs.
-constexpr double tolerance = 1e-10;
+constexpr double march_tolerance = 1e-10;
 /// Cubic interpolation between so many samples of an element keeps about six digits.
 constexpr int samples_an_element = 64;
 
@@ -48,7 +48,7 @@ std::optional<Guess> motion_across_kinks(const Problem& problem, std::span<const
   std::vector<double> p(q.size());
   if (!Flow(problem.motion(), problem.motion_copies()).momentum(q, v, 0, p)) return std::nullopt;
   const Solution motion =
-      Solver().solve(initial_problem_of(problem, q, p), {.tolerance = tolerance, .deadline = deadline});
+      Solver().solve(initial_problem_of(problem, q, p), {.tolerance = march_tolerance, .deadline = deadline});
   if (!motion.converged()) return std::nullopt;
   return sampled(motion.trajectory);
 }

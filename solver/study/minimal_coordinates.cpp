@@ -77,10 +77,10 @@ class ChartChoice {
         m_(manifold_.constraints()),
         d_(n_ - m_) {
     const Chart whole = chart_of(frame);
-    const MatrixXd inverse = frame.basis.inverse().transpose();
+    const MatrixXd by_q = inverse(frame.basis).transpose();
     std::vector<double> near;
     for (const VectorXd& q : path.q) {
-      near = whole.coordinates_of({inverse.data(), static_cast<std::size_t>(n_ * n_)}, values_of(q), near);
+      near = whole.coordinates_of({by_q.data(), static_cast<std::size_t>(n_ * n_)}, values_of(q), near);
       all_.push_back(near);
     }
     scale_ = manifold_.metric().diagonal().cwiseSqrt();
@@ -139,9 +139,9 @@ class ChartChoice {
   /// The coordinate of z that is this one of q; −1 where none is.
   int in_frame(int coordinate) const {
     if (frame_.polar.empty()) return coordinate;
-    const MatrixXd inverse = frame_.basis.inverse();
+    const MatrixXd by_q = inverse(frame_.basis);
     for (Index b = 2 * std::ssize(frame_.polar); b < n_; ++b)
-      if ((inverse.row(b) - VectorXd::Unit(n_, coordinate).transpose()).norm() < structural)
+      if ((by_q.row(b) - VectorXd::Unit(n_, coordinate).transpose()).norm() < structural)
         return static_cast<int>(b);
     return -1;
   }
@@ -330,10 +330,7 @@ class ChartChoice {
     // What is left beside the means.
     const VectorXd mean = by.colwise().mean(), mean_w = w.colwise().mean();
     const MatrixXd left = (by.rowwise() - mean.transpose()).rightCols(features - 1);
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> parts;
-    parts.setThreshold(limits::polar::fitted_rank);
-    parts.compute(left);
-    const MatrixXd slopes = parts.solve(w.rowwise() - mean_w.transpose());
+    const MatrixXd slopes = least_norm(left, w.rowwise() - mean_w.transpose(), limits::polar::fitted_rank);
     for (Index l = 0; l < m_; ++l) {
       chart.start.push_back(mean_w[l] - mean.tail(features - 1).dot(slopes.col(l)));
       for (Index i = 0; i + 1 < features; ++i) chart.start.push_back(slopes(i, l));

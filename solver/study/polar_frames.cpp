@@ -150,7 +150,7 @@ class Directions {
       left.row(k) << 2 * x.transpose(), 1;
       right[k] = x.squaredNorm();
     }
-    return least_norm(left, right).head(2);
+    return least_norm(left, right).topRows(2);
   }
 
   /// Orthonormal columns in the scaled directions: what coordinates of q make of them, the longest first.
@@ -261,7 +261,7 @@ Frame frame_of(const Manifold& manifold, const PathPoints& path, const std::vect
     for (Index i = 0; i < plane->beside.rows(); ++i) rows.take(plane->beside.row(i));
   }
   const MatrixXd all = rows.completed();
-  frame.basis = rounded(all.inverse());
+  frame.basis = rounded(inverse(all));
   for (std::size_t i = 0; i < taken.size(); ++i) {
     Polar pair;
     pair.angle = static_cast<int>(2 * i);
@@ -299,14 +299,14 @@ std::vector<char> moving_constraints(const Manifold& manifold) {
 
 std::vector<int> invariant_constraints(const Manifold& manifold, const PathPoints& path,
                                        const MatrixXd& basis, const Polar& pair) {
-  const MatrixXd inverse = basis.inverse();
+  const MatrixXd by_q = inverse(basis);
   const Index m = manifold.constraints();
   std::vector<char> changed = moving_constraints(manifold);
   std::mt19937_64 random(20240229);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < tries; ++i) {
     const std::size_t k = i * path.q.size() / tries;
-    VectorXd z = inverse * path.q[k];
+    VectorXd z = by_q * path.q[k];
     const double size = z.lpNorm<Eigen::Infinity>();
     for (double& x : z) x += 0.3 * size * any(random);
     const double angle = std::numbers::pi * any(random), c = std::cos(angle), s = std::sin(angle);

@@ -22,6 +22,7 @@
 #include "study/boundary.hpp"
 #include "study/checks.hpp"
 #include "study/constraints.hpp"
+#include "study/continuity.hpp"
 #include "study/extension.hpp"
 #include "study/fitting.hpp"
 #include "study/guess.hpp"
@@ -209,6 +210,9 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
     suited = read_constrained_guess(scene, parts, system, put_guess, purpose, ends, problem);
   else
     put_guess(system, problem);
+  if (infinite)
+    reach_equilibria(
+        scene, *infinite, [&](Problem& longer) { put_guess(system, longer); }, problem);
   if (legendre && !has_legendre_transform(problem)) return std::nullopt;
   if (parts.extended) {
     read_extension(scene, parts, system, {suited, ends}, problem);
@@ -229,6 +233,7 @@ std::optional<Problem> read_problem(const Scene& scene, const System& system, co
     if (system.lagrangian->kinks() || !may_be_extended(scene, purpose)) refuse_partly_free(scene, problem);
     return read_problem(scene, system, put_guess, purpose, true);
   }
+  check_continuous(problem, scene.system);
   if (!problem.manifold || !has_regular_chart(problem)) {
     problem.lagrangian = as_made(std::move(problem.lagrangian));
     problem.copies = as_made(std::move(problem.copies));

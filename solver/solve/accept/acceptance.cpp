@@ -216,8 +216,12 @@ void explain_nullity(const Problem& problem, Solution& solution) {
   solution.message += family_of_symmetries;
 }
 
-/// A shift in time is a symmetry of L.
-void tell_soft_shift(const Outcome& found, Solution& solution) {
+/// A shift in time is a symmetry of L. Other fields across the path may be as soft: between long rests
+/// elimination alone does not tell on which side of zero these are.
+void read_soft_shift(const Problem& problem, const Outcome& found, double size, SecondVariation& variation,
+                     Solution& solution) {
+  if (problem.ends.free == 0 && !solution.windows.empty())
+    read_index(problem, variation, size > 0 ? solution.error_estimate / size : 0, solution);
   solution.minimizing = solution.morse_index == 0;
   solution.message +=
       "; a shift in time between the rests of this path changes the action by hardly more than roundoff: of "
@@ -345,7 +349,7 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     if (found.family == 0) explain_nullity(problem, solution);
     if (found.family == 0) tell_continuum(problem, solution);
     if (found.shifts_held)
-      tell_soft_shift(found, solution);
+      read_soft_shift(problem, found, size, w.variation, solution);
     else if (found.family == 0 && rests_without_force(problem, options, sizes, solution))
       read_index_at_rest(problem, w.variation, solution);
     else if (found.family == 0)

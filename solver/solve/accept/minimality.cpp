@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,6 +11,7 @@
 
 #include "analysis/bounds.hpp"
 #include "analysis/limits.hpp"
+#include "linear/dense.hpp"
 #include "problem/closing.hpp"
 #include "solve/accept/limits.hpp"
 #include "solve/accept/sparse_windows.hpp"
@@ -33,8 +34,6 @@ double longest_window(const Problem& problem, const SolveOptions& options, const
   const int whole = static_cast<int>(std::clamp(elements, 1.0, 1e9));
   return unit * std::min(pi, window_bound(*options.scheme, whole));
 }
-
-bool positive_definite(const Eigen::MatrixXd& m) { return m.allFinite() && m.llt().info() == Eigen::Success; }
 
 /// Whether ∂²L/∂q'∂q' is positive definite; between the ends alone, where it is not at one of them.
 enum class LegendreCondition { holds, between_ends, fails };

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
-#include <Eigen/SparseLU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "linear/dense.hpp"
+#include "linear/sparse_lu.hpp"
 #include "solve/bordered/limits.hpp"
 #include "solve/bordered/null_directions.hpp"
 

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "linear/dense.hpp"
 #include "solve/bordered/bordered_newton.hpp"
 #include "solve/bordered/limits.hpp"
 
@@ -106,17 +107,16 @@ std::string dependence(BorderedEquations& equations, const BorderedState& state,
     return fmt::format(
         "{} integrals and conditions are more than the {} unknowns of the path; take more elements", count,
         at.columns.rows());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(at.columns, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const auto [u, sizes, v] = singular_value_decomposition(at.columns);
   std::vector<std::string> names;
   for (int j = 0; j < count; ++j)
-    if (std::abs(svd.matrixV()(j, count - 1)) > takes_part) names.push_back(name(j));
-  if (!(svd.singularValues()[count - 1] > dependent))
+    if (std::abs(v(j, count - 1)) > takes_part) names.push_back(name(j));
+  if (!(sizes[count - 1] > dependent))
     return fmt::format("{} depend on each other along the path found: leave one of them out",
                        fmt::join(names, ", "));
   // The shortest step that meets them all, to first order: Cᵀ d = −missed.
   Eigen::VectorXd step = Eigen::VectorXd::Zero(equations.unknowns());
-  step.head(at.columns.rows()) = -svd.matrixU() * svd.singularValues().cwiseInverse().asDiagonal() *
-                                 svd.matrixV().transpose() * at.missed;
+  step.head(at.columns.rows()) = -u * sizes.cwiseInverse().asDiagonal() * v.transpose() * at.missed;
   const double missed = missed_by(equations, first, count), distance = step.lpNorm<Eigen::Infinity>();
   const auto is_met = [&] {
     BorderedState moved = state;

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Dense>
-#include <Eigen/SparseLU>
+#include <Eigen/Core>
 #include <memory>
+
+#include "linear/sparse_lu.hpp"
 
 /// \file Directions in which a large sparse matrix is singular, and solutions across them.
 

@@ -1,10 +1,11 @@
 #include "solve/branch/bifurcation_equations.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "linear/dense.hpp"
 #include "solve/branch/limits.hpp"
 
 namespace extremal {
@@ -45,7 +46,7 @@ Eigen::MatrixXd fitted(const std::vector<Eigen::VectorXd>& directions, int degre
                        const Eigen::MatrixXd& values) {
   Eigen::MatrixXd basis(std::ssize(directions), monomials(directions.front(), degree).size());
   for (Eigen::Index k = 0; k < basis.rows(); ++k) basis.row(k) = monomials(directions[k], degree).transpose();
-  return basis.colPivHouseholderQr().solve(values).transpose();
+  return least_norm(basis, values).transpose();
 }
 
 }  // namespace
@@ -118,7 +119,7 @@ Eigen::VectorXd BifurcationEquations::descend(Eigen::VectorXd direction, double 
     }
     Eigen::MatrixXd normal = slopes.transpose() * slopes;
     normal.diagonal().array() += damping * normal.trace();
-    const Eigen::VectorXd next = (direction - normal.ldlt().solve(slopes.transpose() * left)).normalized();
+    const Eigen::VectorXd next = (direction - solved(normal, slopes.transpose() * left)).normalized();
     const Eigen::VectorXd after = missed(next);
     const bool better = after.norm() < left.norm();
     damping = std::max(damping * (better ? 0.1 : 10), least_damping);

@@ -1,12 +1,13 @@
 #include "solve/branch/branch.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "action/energies.hpp"
+#include "linear/dense.hpp"
 #include "machine/simd.hpp"
 #include "solve/branch/limits.hpp"
 #include "solve/mesh/roundoff.hpp"
@@ -152,7 +153,7 @@ void Branch::take_across_phases(Move& move) const {
   Eigen::MatrixXd directions = weighted;
   for (Eigen::Index i = 0; i < size; ++i) directions.row(i) /= weight(static_cast<int>(i / n));
   Eigen::Map<Eigen::VectorXd> nodes(move.step.nodes.data(), size);
-  nodes -= directions * (weighted.transpose() * directions).ldlt().solve(weighted.transpose() * nodes).eval();
+  nodes -= directions * solved(weighted.transpose() * directions, weighted.transpose() * nodes);
 }
 
 bool Branch::evaluate(const ClosingEquation* closing, Factors factors) {

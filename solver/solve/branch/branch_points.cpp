@@ -1,8 +1,9 @@
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "linear/dense.hpp"
 #include "problem/phase_space.hpp"
 #include "solve/branch/branch_point.hpp"
 #include "solve/branch/limits.hpp"
@@ -45,13 +46,13 @@ std::vector<Move> null_directions(const Tracker& tracker, const ProblemFamily& f
   Eigen::MatrixXd changes(2, count);
   for (Eigen::Index j = 0; j < count; ++j)
     changes.col(j) << kernel[j].parameter / unit, kernel[j].step.duration / state.units.duration;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(changes, Eigen::ComputeFullV);
-  const auto rank = (svd.singularValues().array() > hardly_changed).count();
+  const auto [u, sizes, v] = singular_value_decomposition(changes);
+  const auto rank = (sizes.array() > hardly_changed).count();
   std::vector<Move> found;
   for (Eigen::Index k = rank; k < count; ++k) {
     found.push_back(kernel.front());
-    found.back().scale(svd.matrixV()(0, k));
-    for (Eigen::Index j = 1; j < count; ++j) found.back().add(kernel[j], svd.matrixV()(j, k));
+    found.back().scale(v(0, k));
+    for (Eigen::Index j = 1; j < count; ++j) found.back().add(kernel[j], v(j, k));
   }
   return found;
 }

@@ -1,11 +1,12 @@
 #include "solve/branch/common_symmetries.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "linear/dense.hpp"
 #include "problem/own_symmetries.hpp"
 #include "solve/branch/limits.hpp"
 
@@ -32,7 +33,7 @@ Eigen::MatrixXd columns_of(const std::vector<Generator>& symmetries) {
 bool span_the_same(const std::vector<Generator>& a, const std::vector<Generator>& b) {
   if (a.empty()) return true;
   const Eigen::MatrixXd of_a = columns_of(a), of_b = columns_of(b);
-  const Eigen::MatrixXd rest = of_b - of_a * of_a.colPivHouseholderQr().solve(of_b);
+  const Eigen::MatrixXd rest = of_b - of_a * least_norm(of_a, of_b);
   return rest.norm() <= same * of_b.norm();
 }
 

@@ -91,7 +91,7 @@ double mean_square(const Path& path) {
 /// zero.
 bool is_first(const BranchState& state, const BranchState& first, bool paired) {
   const auto equal = [](double a, double b) {
-    return std::abs(a - b) <= same * std::max(std::abs(a), std::abs(b));
+    return std::abs(a - b) <= limits::event_location::same * std::max(std::abs(a), std::abs(b));
   };
   return state.rate * first.rate > 0 && equal(state.coordinate, first.coordinate) &&
          state.orientation == first.orientation && equal(state.path.duration(), first.path.duration()) &&
@@ -107,11 +107,11 @@ double find_first(Tracker& tracker, const EventSearch& search, const BranchStep&
   for (const BranchState* state : {&step.from, &step.to})
     if (std::abs(state->varied - first.varied) > least) return NAN;
   const double before = tracker.way(first, step.from).along, after = tracker.way(first, step.to).along;
-  if (!(before < -same && after >= 0)) return NAN;
+  if (!(before < -limits::event_location::same && after >= 0)) return NAN;
   const double at = root(
       tracker, step.from, {0, before}, {step.length, after}, std::nullopt,
       [&] { return tracker.way(first, BranchState(tracker.state)).along; },
-      [](double off, double) { return std::abs(off) <= same; });
+      [](double off, double) { return std::abs(off) <= limits::event_location::same; });
   return std::isfinite(at) && tracker.way(first, BranchState(tracker.state)).length <= first_error ? at : NAN;
 }
 

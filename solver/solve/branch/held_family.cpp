@@ -52,7 +52,7 @@ bool Tracker::hold_family() {
   branch_.bind();
   std::vector<double> sizes;
   std::vector<Move> directions;
-  if (move_aside(hardly))
+  if (move_aside(limits::held_family::hardly))
     directions = responses(std::min(2 * path_.coordinates(), most_suspected) + 1, sizes);
   std::size_t count = 0;
   for (std::size_t k = 1; k < sizes.size(); ++k)

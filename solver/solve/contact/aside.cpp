@@ -1,6 +1,6 @@
 #include "solve/contact/aside.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "linear/dense.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/manifold.hpp"
 #include "problem/point_range.hpp"
@@ -93,7 +94,7 @@ VectorXd way_out(const Problem& problem, const Passage& passage, const std::vect
                all = std::sqrt(passage.sum.dot(metric * passage.sum));
   // Through the middle of an obstacle either side will do.
   VectorXd way =
-      metric * (size > turned * std::max(all, 1.0) ? sum : across(metric.ldlt().solve(across_line(z, n, 0))));
+      metric * (size > turned * std::max(all, 1.0) ? sum : across(solved(metric, across_line(z, n, 0))));
   const double largest = way.lpNorm<Eigen::Infinity>();
   if (largest > 0) way /= largest;
   return way;

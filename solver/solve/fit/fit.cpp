@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "linear/dense.hpp"
 #include "solve/fit/fitted_path.hpp"
 #include "solve/fit/limits.hpp"
 #include "solve/fit/solved_path.hpp"
@@ -123,7 +124,7 @@ class Fit {
     if (before == 0) return guess - off;
     const Eigen::MatrixXd moved = guesses.leftCols(before).colwise() - guess,
                           answers = offs.leftCols(before).colwise() - off;
-    const Eigen::VectorXd parts = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(answers).solve(off);
+    const Eigen::VectorXd parts = least_norm(answers, off);
     return guess - moved * parts - (off - answers * parts);
   }
 
@@ -160,7 +161,7 @@ class Fit {
       const Trajectory beside = moved(small_move * Eigen::VectorXd::Unit(count, j));
       put([&](double t) { beside.at(std::min(t, beside.duration()), there, v); }, fields.col(j));
     }
-    return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fields / small_move).solve(away);
+    return least_norm(fields / small_move, away);
   }
 
   std::string values_text() const {
@@ -241,9 +242,7 @@ class Fit {
     for (int k = 0; k < most_last_steps && evaluate(x, residuals, entries); ++k) {
       const Weighted at = weighted(residuals, entries);
       if (k == 0) length = first_last_step * at.residuals.norm();
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least(at.jacobian.rows(), at.jacobian.cols());
-      least.setThreshold(undetermined);
-      const Eigen::VectorXd step = least.compute(at.jacobian).solve(at.residuals);
+      const Eigen::VectorXd step = least_norm(at.jacobian, at.residuals, undetermined);
       const double next = (at.jacobian * step).norm();
       if (!(next < length / 2)) break;
       length = next;
@@ -289,7 +288,7 @@ class Fit {
   /// Whether no step of Gauss and Newton lowers χ². A trust region also shrinks to nothing, where steps lead
   /// to other extremals.
   bool stationary(const Weighted& at) {
-    const double lower = (at.jacobian * at.jacobian.colPivHouseholderQr().solve(at.residuals)).norm();
+    const double lower = (at.jacobian * least_norm(at.jacobian, at.residuals)).norm();
     if (lower <= least_descent * at.residuals.norm() + options_.tolerance * task_.data.size()) return true;
     fail(fmt::format(
         "the fit stopped at {}, which is no minimum: a step of Gauss and Newton lowers chi squared "
@@ -325,20 +324,18 @@ class Fit {
     for (Eigen::Index j = 0; j < count; ++j) jacobian.col(j) /= lengths[j];
     const double least = members() > 0 ? std::max(undetermined_beside, options_.tolerance) : undetermined;
     const Eigen::Index along = leave_out(all.rightCols(all.cols() - count), jacobian);
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinV);
-    const Eigen::VectorXd& s = svd.singularValues();
+    const auto [u, s, v] = singular_value_decomposition(jacobian);
     Eigen::VectorXd parts = Eigen::VectorXd::Zero(count);
     int open = 0;
     for (Eigen::Index k = 0; k < s.size(); ++k)
       if (!(s[k] > least * std::max(s[0], 1.0))) {
-        parts = parts.cwiseMax(svd.matrixV().col(k).cwiseAbs());
+        parts = parts.cwiseMax(v.col(k).cwiseAbs());
         ++open;
       }
     for (Eigen::Index j = 0; j < count; ++j)
       if (parts[j] > named * parts.maxCoeff()) names.push_back(task_.unknowns[j].name);
     if (!names.empty()) return undetermined_names(names, open);
-    const Eigen::MatrixXd half =
-        lengths.cwiseInverse().asDiagonal() * svd.matrixV() * s.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd half = lengths.cwiseInverse().asDiagonal() * v * s.cwiseInverse().asDiagonal();
     result_.covariance = half * half.transpose();
     result_.freedom = static_cast<int>(jacobian.rows() - count - along);
     result_.scaled = !task_.data.sigmas && result_.freedom > 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
 #include "solve/fit/limits.hpp"
 #include "solve/fit/members.hpp"
 #include "solve/mesh/resolution.hpp"
@@ -130,12 +131,11 @@ void FittedPath::choose_node() {
   if (!response_.factor(newton_, at_->problem, path_, tables_, changes)) return;
   fields_.resize(ends_.size());
   for (std::size_t k = 0; k < ends_.size(); ++k) response_.to(changes[k], fields_[k]);
-  const Eigen::PartialPivLU<Eigen::MatrixXd> unit(fields_at(1));
+  const Eigen::MatrixXd unit = inverse(fields_at(1));
   double largest = 0;
   int best = path_.elements();
   for (int node = 1; node <= path_.elements(); ++node) {
-    const Eigen::MatrixXd field = fields_at(node) * unit.inverse();
-    const double size = field.jacobiSvd().singularValues().minCoeff();
+    const double size = singular_values(fields_at(node) * unit).minCoeff();
     if (!std::isfinite(size)) return;
     if (size > largest) {
       largest = size;
@@ -247,7 +247,7 @@ bool FittedPath::hold_node(std::span<const double> coordinates, std::span<const 
     missing[static_cast<Eigen::Index>(j)] =
         coordinates[ends_[j]] - (path_.node(node_)[a] + path_.rest(node_)[a]) - step.nodes[first + a];
   }
-  const Eigen::VectorXd parts = fields_at(node_).partialPivLu().solve(missing);
+  const Eigen::VectorXd parts = solved(fields_at(node_), missing);
   if (!parts.allFinite()) return false;
   for (std::size_t j = 0; j < ends_.size(); ++j) add(step, fields_[j], parts[static_cast<Eigen::Index>(j)]);
   return true;
@@ -278,7 +278,7 @@ bool FittedPath::evaluate_by_values(std::span<double> residuals, std::span<doubl
 void FittedPath::combine_fields() {
   const std::size_t n = path_.coordinates(), held = node_ * n;
   for (std::size_t k = 0; k < ends_.size(); ++k) fields_[k] = steps_[ends_[k]];
-  const Eigen::MatrixXd inverse = fields_at(node_).inverse();
+  const Eigen::MatrixXd by_node = inverse(fields_at(node_));
   for (std::size_t j = 0; j < steps_.size(); ++j) {
     const auto end = std::ranges::find(ends_, j);
     Eigen::VectorXd moved = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(ends_.size()));
@@ -287,7 +287,7 @@ void FittedPath::combine_fields() {
     else
       for (std::size_t k = 0; k < ends_.size(); ++k)
         moved[static_cast<Eigen::Index>(k)] = -steps_[j].nodes[held + task_.unknowns[ends_[k]].last];
-    const Eigen::VectorXd parts = inverse * moved;
+    const Eigen::VectorXd parts = by_node * moved;
     if (end != ends_.end()) add(steps_[j], fields_[end - ends_.begin()], -1);
     for (std::size_t k = 0; k < ends_.size(); ++k)
       add(steps_[j], fields_[k], parts[static_cast<Eigen::Index>(k)]);

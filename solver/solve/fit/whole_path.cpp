@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
 #include "problem/copies.hpp"
 #include "solve/fit/fitted_path.hpp"
 #include "solve/fit/limits.hpp"
@@ -114,9 +115,7 @@ class WholePath {
     for (Eigen::Index j = unknowns; j < count; ++j)
       differentiate(members[j - unknowns], {}, jacobian.col(j).data());
     if (!jacobian.allFinite() || !by_step.allFinite()) return false;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> least(jacobian.rows(), count);
-    least.setThreshold(undetermined);
-    const Eigen::VectorXd y = least.compute(jacobian).solve(-(residuals + by_step));
+    const Eigen::VectorXd y = least_norm(jacobian, -(residuals + by_step), undetermined);
     at.changes.resize(unknowns);
     at.length = 0;
     for (Eigen::Index j = 0; j < unknowns; ++j) {

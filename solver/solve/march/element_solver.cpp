@@ -1,10 +1,11 @@
 #include "solve/march/element_solver.hpp"
 
 #include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
+#include "linear/sparse_lu.hpp"
 #include "solve/march/limits.hpp"
 
 namespace extremal {
@@ -36,7 +37,7 @@ struct ElementSolver::Sparse {
     Eigen::MatrixXd whole(shape.s, shape.s);
     for (int f = 0; f < shape.s; ++f)
       for (int k = 0; k < shape.s; ++k) whole(f, k) = shape.stiffness[k * shape.functions + f];
-    stiffness = whole.inverse();
+    stiffness = inverse(whole);
     return true;
   }
 };

@@ -200,7 +200,8 @@ class InitialMotion {
         options_.tolerance, until, worst.of, worst.error, worst.allowed, shorter * until);
   }
 
-  /// Equal elements of the scheme against a motion that is known much better.
+  /// Equal elements of the scheme against a motion that is known much better; so many as the tolerance needs
+  /// have the velocities of their momenta, which are of the order of the scheme.
   void run_scheme() {
     Marched companion = adaptive(scheme_companion, degree_for(scheme_companion, lagrangian_), nullptr);
     if (companion.complete() && shorten_elements(companion.march.trajectory))
@@ -221,10 +222,8 @@ class InitialMotion {
           if (!companion.complete()) return fail(companion.march, 0);
           apart = deviation(lagrangian_, found.march.trajectory, companion.march.trajectory);
         }
-        const double size = apart.range.q > 1e-12 * apart.magnitude ? apart.range.q : apart.magnitude;
-        const double excess = apart.error.q / (options_.tolerance * size);
-        if (options_.elements > 0 || apart.error.q == 0 || excess <= 1)
-          return accept(std::move(found), apart);
+        const double excess = apart.excess(options_.tolerance);
+        if (options_.elements > 0 || excess <= 1) return accept(std::move(found), apart);
         if (excess > stagnant * before && apart.error.q < 1e-9 * apart.range.q) return refuse_roundoff(apart);
         before = excess;
         growth = std::pow(2 * excess, 1.0 / order);
@@ -250,7 +249,8 @@ class InitialMotion {
       const StepTables finer(scheme, std::min(points + 2, most_points), lagrangian_);
       Marched result{std::make_unique<StepTables>(scheme, points, lagrangian_), {}, 0};
       result.march = march_uniform(*problem_.initial, problem_.duration.value, *result.tables, elements,
-                                   options_.deadline, options_.progress, more ? &finer : nullptr);
+                                   options_.elements == 0, options_.deadline, options_.progress,
+                                   more ? &finer : nullptr);
       steps_ += result.march.steps;
       if (!more || !result.complete()) return result;
       const March& march = result.march;

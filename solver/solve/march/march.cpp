@@ -269,8 +269,9 @@ class AdaptiveMarch {
 }  // namespace
 
 March march_uniform(const InitialData& start, double duration, const StepTables& tables, int elements,
-                    const Deadline& deadline, const MarchProgress& progress, const StepTables* finer) {
-  MarchRecord record(tables, start, elements, false);
+                    bool recovering, const Deadline& deadline, const MarchProgress& progress,
+                    const StepTables* finer) {
+  MarchRecord record(tables, start, elements, recovering);
   ElementSolver solver(tables);
   UniformMotion uniform(tables, start.paired);
   Differences differences(tables.unknowns());

@@ -38,9 +38,10 @@ struct March {
 /// Reports a number of elements, a degree, a residual and a step now and then.
 using MarchProgress = std::function<void(const Iteration&)>;
 
-/// `elements` equal elements. With `finer`, its quadrature sums the action of the same path up as well.
+/// `elements` equal elements; with `recovering` the trajectory has the velocities of their momenta
+/// (dense_output.hpp). With `finer`, its quadrature sums the action of the same path up as well.
 March march_uniform(const InitialData& start, double duration, const StepTables& tables, int elements,
-                    const Deadline& deadline, const MarchProgress& progress = {},
+                    bool recovering, const Deadline& deadline, const MarchProgress& progress = {},
                     const StepTables* finer = nullptr);
 
 /// Elements as long as truncation allows: `truncation` for q, relative to the largest range of a coordinate

@@ -1,9 +1,10 @@
 #include "solve/newton/raised_model.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "action/rule.hpp"
+#include "linear/dense.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -16,7 +17,7 @@ using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 Matrix inverse_stiffness(const SchemeTables& scheme) {
   const int inner = scheme.degree - 1;
   const Matrix all = Eigen::Map<const Matrix>(scheme.stiffness.data(), scheme.functions, scheme.functions);
-  return all.topLeftCorner(inner, inner).llt().solve(Matrix::Identity(inner, inner));
+  return extremal::inverse(all.topLeftCorner(inner, inner));
 }
 
 /// to[k] += factor · from[k], k < count.

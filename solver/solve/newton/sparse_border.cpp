@@ -71,9 +71,7 @@ double SparseBorder::solve(SparseSymmetric& a, std::span<double> x, std::span<co
   const Eigen::VectorXd unit = s.rowwise().lpNorm<Eigen::Infinity>();
   for (Eigen::Index i = 0; i < s.rows(); ++i)
     if (unit[i] > 0) s.row(i) /= unit[i], right[i] /= unit[i];
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(dependent).compute(s);
-  const Eigen::VectorXd border = decomposition.solve(right);
+  const Eigen::VectorXd border = least_norm(s, right, dependent);
   all.noalias() -= solved_ * border;
   return first_ > 0 ? border[0] : 0;
 }

@@ -20,8 +20,7 @@ using Vector = Arrivals::Vector;
 
 /// Of length one, where the slope does nothing.
 Vector null_direction(const Eigen::MatrixXd& slope) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slope, Eigen::ComputeFullV);
-  return svd.matrixV().col(slope.cols() - 1);
+  return singular_value_decomposition(slope).v.col(slope.cols() - 1);
 }
 
 }  // namespace
@@ -108,7 +107,7 @@ bool Arrivals::meet(Vector& u, const Vector& normal, const Nearness& wanted, Eig
     matrix << at.slope, normal.transpose();
     Vector right = Vector::Zero(dimensions_ + 1);
     right.head(dimensions_) = -at.miss;
-    const Vector step = matrix.partialPivLu().solve(right);
+    const Vector step = solved(matrix, right);
     const double size = step.norm();
     if (!(size < before * contraction) || !(size < longest_correction * (1 + u.head(dimensions_).norm())))
       return false;

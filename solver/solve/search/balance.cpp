@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/dense.hpp"
 #include "solution/solution.hpp"
 #include "solve/search/limits.hpp"
 
@@ -281,7 +282,7 @@ void Balance::balance() {
   const Actions held = actions(*least, -largest_log(*least));
   const Eigen::MatrixXd doubts = by_shifts_.transpose() * held.doubt.asDiagonal();
   energy_ = std::exp(largest_log(*least)) / kinetic_;
-  error_ = fastest_ * hessian(held).llt().solve(doubts).cwiseAbs().rowwise().sum().maxCoeff();
+  error_ = fastest_ * solved(hessian(held), doubts).cwiseAbs().rowwise().sum().maxCoeff();
 }
 
 double Balance::displacement() const {

@@ -57,7 +57,7 @@ ClosingMotions::ClosingMotions(const Problem& problem)
     return;
   flow_.emplace(*problem.lagrangian);
   const ClosingMap map = closing_map(problem);
-  back_ = map.r.inverse();
+  back_ = inverse(map.r);
   transposed_ = map.r.transpose();
   shift_ = map.c;
 }
@@ -135,9 +135,7 @@ ClosingMotions::Closing ClosingMotions::close(Vector& start) {
   for (int k = 0; k < limit::most_steps && miss.norm() > limit::closed; ++k) {
     const MatrixXd normal = derivatives.transpose() * derivatives;
     const Vector weight = Vector::Constant(states, damping * normal.trace() / states);
-    const Vector step = MatrixXd(normal + MatrixXd(weight.asDiagonal()))
-                            .ldlt()
-                            .solve(Vector(-(derivatives.transpose() * miss)));
+    const Vector step = -solved(normal + MatrixXd(weight.asDiagonal()), derivatives.transpose() * miss);
     const Vector tried = start + step.cwiseProduct(unit_);
     const bool lasts = tried.allFinite() && linearise(tried, tried_miss, tried_derivatives);
     if (lasts && tried_miss.norm() < miss.norm()) {
@@ -150,8 +148,7 @@ ClosingMotions::Closing ClosingMotions::close(Vector& start) {
     }
   }
   if (miss.norm() > limit::closed) return Closing::fails;
-  const auto values = Eigen::JacobiSVD<MatrixXd>(derivatives).singularValues();
-  return values.minCoeff() > limit::isolated ? Closing::closed : Closing::degenerate;
+  return singular_values(derivatives).minCoeff() > limit::isolated ? Closing::closed : Closing::degenerate;
 }
 
 void ClosingMotions::try_from(const Vector& start, const std::function<void(const Guess& motion)>& visit) {

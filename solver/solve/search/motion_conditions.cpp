@@ -7,9 +7,9 @@ namespace extremal {
 
 namespace {
 
+using Eigen::MatrixXd;
 using Vector = MotionConditions::Vector;
-using Matrix = Eigen::MatrixXd;
-using PivotedLU = Eigen::FullPivLU<Matrix>;
+using PivotedLU = Eigen::FullPivLU<MatrixXd>;
 
 /// Columns in the order of their pivots.
 std::vector<int> order_of(const PivotedLU& elimination) {
@@ -21,7 +21,7 @@ std::vector<int> order_of(const PivotedLU& elimination) {
 
 MotionConditions::MotionConditions(const Problem& problem) {
   const int n = problem.coordinates(), rows = problem.boundary.rows, all = 2 * n;
-  Matrix start = Matrix::Zero(all, all), end = Matrix::Zero(all, all);
+  MatrixXd start = MatrixXd::Zero(all, all), end = MatrixXd::Zero(all, all);
   Vector value = Vector::Zero(all);
   for (const Triplet& entry : problem.boundary.matrix)
     (entry.column < n ? start : end)(entry.row, entry.column % n) += entry.value;
@@ -47,20 +47,20 @@ MotionConditions::MotionConditions(const Problem& problem) {
   entries_.resize(all);
   std::iota(entries_.begin(), entries_.end(), 0);
   std::vector<int> determined;
-  Matrix weights = Matrix::Zero(0, count);
+  MatrixXd weights = MatrixXd::Zero(0, count);
   if (count < all) {
-    const Matrix without_end = of_end.kernel().transpose();
-    const Matrix relation = without_end * start;
+    const MatrixXd without_end = of_end.kernel().transpose();
+    const MatrixXd relation = without_end * start;
     const PivotedLU of_start(relation);
     entries_ = order_of(of_start);
     determined.assign(entries_.begin(), entries_.end() - count);
     entries_.erase(entries_.begin(), entries_.end() - count);
     std::ranges::sort(entries_);
     const PivotedLU square(relation(Eigen::all, determined));
-    weights = -square.solve(Matrix(relation(Eigen::all, entries_)));
+    weights = -square.solve(MatrixXd(relation(Eigen::all, entries_)));
     base_(determined) = square.solve(without_end * value);
   }
-  free_ = Matrix::Zero(all, count);
+  free_ = MatrixXd::Zero(all, count);
   for (int k = 0; k < count; ++k) free_(entries_[k], k) = 1;
   for (std::size_t k = 0; k < determined.size(); ++k) free_.row(determined[k]) = weights.row(k);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "linear/dense.hpp"
 #include "motion/sample.hpp"
 #include "problem/closing.hpp"
 #include "solve/search/limits.hpp"
@@ -28,7 +29,7 @@ SettledMotion::SettledMotion(const Problem& problem, std::function<bool()> more)
               static_cast<int>(2 * n_)) {
   // Both copies close alike.
   const ClosingMap map = closing_map(problem);
-  back_ = map.r.topLeftCorner(n_, n_).inverse();
+  back_ = inverse(map.r.topLeftCorner(n_, n_));
   transposed_ = map.r.topLeftCorner(n_, n_).transpose();
   shift_ = map.c.head(n_);
 }

@@ -52,7 +52,7 @@ std::optional<double> TimeLaw::energy_for(double T) const {
   double high = 2 * std::log(sum / T), low = high;  // the lengths add up to less than T
   for (int k = 0; duration(std::exp(low)) < T; ++k, low -= 2)
     if (k == most_octaves) return std::nullopt;
-  for (int k = 0; k < halvings; ++k) {
+  for (int k = 0; k < limits::time_law::halvings; ++k) {
     const double middle = 0.5 * (low + high);
     (duration(std::exp(middle)) > T ? low : high) = middle;
   }

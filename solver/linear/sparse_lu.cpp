@@ -1,0 +1,3 @@
+#include "linear/sparse_lu.hpp"
+
+template class Eigen::SparseLU<Eigen::SparseMatrix<double>>;

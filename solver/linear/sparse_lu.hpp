@@ -1,0 +1,7 @@
+#pragma once
+
+#include <Eigen/SparseLU>
+
+/// \file Eigen's sparse LU, instantiated once: see dense.hpp.
+
+extern template class Eigen::SparseLU<Eigen::SparseMatrix<double>>;
