@@ -414,6 +414,47 @@ Halves closed_halves(InitialState state, const Bounds& bounds) {
   return halves;
 }
 
+/// The duration that is free, moved to where the motion comes nearest to where it has to arrive, to first
+/// order again and again; the same where it does not come nearer. An encounter may last less than a digit of
+/// the duration that is given.
+double return_time(const InitialState& state, Problem problem, Bounds bounds) {
+  using namespace limits::return_time;
+  const double given = problem.duration.value;
+  const InitialState goal = closed(closing_map(problem), state);
+  Flow flow(problem.motion(), problem.motion_copies());
+  const std::size_t n = state.q.size();
+  std::vector<double> wanted = goal.q, slope(2 * n);
+  wanted.resize(2 * n);
+  if (!flow.momentum(goal.q, goal.v, 0, std::span(wanted).subspan(n))) return given;
+  const Bounds moved{problem, bounds.hamiltonian, bounds.deadline, bounds.at};
+  double best = given, least = INFINITY;
+  for (int k = 0; k < most_steps; ++k) {
+    const FollowedMotion motion = double_motion(state, 0, problem.duration.value, moved);
+    const std::vector<Extended>& points = motion.points.y;
+    std::vector<double> y(points.end() - static_cast<std::ptrdiff_t>(2 * n), points.end());
+    if (!flow.slope(problem.duration.value, y, slope)) break;
+    double along = 0, speed = 0, apart = 0;
+    for (const std::size_t part : {std::size_t{0}, n}) {
+      double size = 0;
+      for (std::size_t a = part; a < part + n; ++a) size = std::max(size, std::abs(wanted[a]));
+      if (size == 0) continue;
+      for (std::size_t a = part; a < part + n; ++a) {
+        const double missed = (wanted[a] - y[a]) / size, rate = slope[a] / size;
+        along += missed * rate;
+        speed += rate * rate;
+        apart += missed * missed;
+      }
+    }
+    if (!(apart < gain * least) || !(speed > 0)) break;
+    least = apart;
+    best = problem.duration.value;
+    const double next = best + along / speed;
+    if (!(std::abs(next - given) <= farthest * given)) break;
+    problem.duration.value = next;
+  }
+  return best;
+}
+
 /// Of an orbit that closes only the first half is integrated onwards; the second is integrated back from
 /// where it has to arrive: errors grow for half as long. Halfway each gives way to the other.
 void add_halves(const SampledMotion& first, const SampledMotion& second, Guess& guess) {
@@ -441,7 +482,12 @@ void integrate_state(const std::vector<Assignment>& values, const System& system
   const double duration = problem.duration.value;
   try {
     if (problem.periodic) {
-      const Halves halves = closed_halves(state, bounds);
+      Halves halves = closed_halves(state, bounds);
+      if (!(halves.gap() <= limits::closing_correction::most_apart) && problem.duration.free &&
+          !hamiltonian) {
+        problem.duration.value = return_time(state, problem, bounds);
+        if (problem.duration.value != duration) halves = closed_halves(state, bounds);
+      }
       add_halves(halves.first, halves.second, problem.guess);
       problem.guess.samples_a_step = halves.hopeless ? 0 : samples_a_step;
     } else {

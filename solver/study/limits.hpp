@@ -26,6 +26,15 @@ inline constexpr int most_corrections = 8;
 
 }  // namespace extremal::limits::closing_correction
 
+namespace extremal::limits::return_time {
+
+/// Steps to the time of a return, the least fall of the squared distance that a step brings, and how far from
+/// the duration that is given it may be, relative.
+inline constexpr int most_steps = 4;
+inline constexpr double gain = 0.25, farthest = 0.1;
+
+}  // namespace extremal::limits::return_time
+
 namespace extremal::limits::regularity {
 
 /// Points about the guess that are tried, and how many where the mass is finite and singular tell that it is

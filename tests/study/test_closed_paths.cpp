@@ -17,7 +17,7 @@ using namespace extremal::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Point {
   double x, y;

@@ -25,7 +25,7 @@ const std::string bratu =
     "[system]\ncoordinates = [\"x\"]\nparameters = { lambda = 1.0 }\n"
     "lagrangian = \"x'^2/2 - lambda*exp(x)\"\n[boundary]\nstart = { x = 0 }\nend = { x = 0 }\nduration = 1\n";
 
-const std::string swing =
+const std::string swinging =
     "[system]\nuse = \"pendulum\"\n[boundary]\nperiodic = true\nduration = 2.2\n"
     "[guess]\ntheta = \"1.2*cos(2*pi*t/T)\"\n";
 
@@ -129,11 +129,11 @@ TEST_F(SchemesOf, MoreElementsMayMissWhatFewFind) {
   }
 }
 
-/// The swing begins at a turning point, so that half the period and the period are conjugate to its start.
+/// The swinging begins at a turning point, so that half the period and the period are conjugate to its start.
 TEST_F(SchemesOf, TheEndIsNoConjugateTime) {
   for (const char* scheme : {"", "midpoint", "trapezoid", "gauss(2)", "lobatto(3)", "gauss(4)"}) {
     const std::string solving = *scheme ? solve_table(scheme, "tolerance = 1e-5") : "";
-    const Solution found = run(study(swing + solving));
+    const Solution found = run(study(swinging + solving));
     ASSERT_TRUE(found.converged()) << scheme << ": " << found.message;
     ASSERT_EQ(found.conjugate_times.size(), 1u) << scheme;
     EXPECT_NEAR(found.conjugate_times.front(), 1.1, 1e-3) << scheme;

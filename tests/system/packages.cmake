@@ -1,3 +1,5 @@
+# Several sources have fixtures of one name.
+set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
 # Replaces operator new.
 set_source_files_properties(system/allocations.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 # The tape at every instruction set, where the processor has it.

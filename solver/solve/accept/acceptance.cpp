@@ -338,6 +338,7 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     const double distance =
         indefinite ? INFINITY : read_minimality(problem, options, w.variation, solution, named);
     if (!indefinite && w.variation.too_many() && !named) confirm_index(problem, path, found, w, solution);
+    if (!indefinite && !named) read_index_at_open_end(problem, path, found, w, solution);
     const Scales sizes = scales(path, *found.tables);
     const double size = sizes.q;
     // Pieces that minimise have windows. The index of pinned elements is their own.

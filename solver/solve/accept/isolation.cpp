@@ -83,7 +83,9 @@ std::optional<Resolved> resolved(NewtonIteration& newton, Path& path) {
 /// the least eigenvalue there. If it differs by more, elements do not resolve Jacobi fields, and pieces told
 /// it. Where eigenvalues count as zero the sign of the least one is none of the index.
 void set_index(int index, Solution& solution) {
-  if (!solution.morse_index || solution.nullity.value_or(0) > 0 || std::abs(*solution.morse_index - index) != 1) return;
+  if (!solution.morse_index || solution.nullity.value_or(0) > 0 ||
+      std::abs(*solution.morse_index - index) != 1)
+    return;
   solution.morse_index = index;
   solution.minimizing = index == 0;
   solution.windows.clear();

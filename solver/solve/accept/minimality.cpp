@@ -169,6 +169,24 @@ double read_minimality(const Problem& problem, const SolveOptions& options, Seco
   return found.distance;
 }
 
+void read_index_at_open_end(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
+                            Solution& solution) {
+  if (!solution.morse_index || !solution.windows.empty() || !uses_gauss(*problem.lagrangian)) return;
+  w.iteration.reset(problem, w.levels.finer(outcome.tables->scheme()), path.elements());
+  w.iteration.forget();
+  const double size = scales(path, *outcome.tables).q;
+  w.iteration.set_scale(size);
+  solution.morse_index.reset();
+  solution.nullity.reset();
+  solution.minimizing = false;
+  if (!w.iteration.factor(path)) return;
+  const Inertia inertia =
+      w.iteration.model().inertia(zero_eigenvalue_along(size, outcome.error, path.elements()));
+  solution.morse_index = inertia.negative;
+  solution.nullity = inertia.zero;
+  solution.minimizing = inertia.negative == 0 && inertia.zero == 0;
+}
+
 void confirm_index(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
                    Solution& solution) {
   if (!solution.morse_index) return;

@@ -23,6 +23,11 @@ struct OwnElements {
 double read_minimality(const Problem& problem, const SolveOptions& options, SecondVariation& memory,
                        Solution& solution, const OwnElements* own = nullptr);
 
+/// Sets the index by a quadrature with more points, where ∂²L/∂q'∂q' vanishes at an open end: of products
+/// η η', which are left of a total derivative there, the elements' own misses more than the mass gives.
+void read_index_at_open_end(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,
+                            Solution& solution);
+
 /// Takes the index away, with a word why, unless finer elements have the same one: where elements do not
 /// resolve the second variation, its negative eigenvalues are those that they have room for.
 void confirm_index(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w,

@@ -91,6 +91,10 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
         "; {} of {} local minimisers wanted were found from {} first paths; "
         "more may exist",
         found.size(), most, tried);
+  else if (most > 1)
+    found.front().message += fmt::format(
+        "; these {} local minimisers were found from {} first paths; others may exist, of less action too",
+        most, tried);
   return found;
 }
 
