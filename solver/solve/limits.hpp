@@ -29,8 +29,8 @@ inline constexpr double kept_decays = 12;
 /// Sizes of a guess from 2⁻⁴ to 2⁴ and rates from 1/8 to 8 among which one near a pass of the action is
 /// looked for; points of the integral, and of the guess that is made.
 inline constexpr int scan_sizes = 16, scan_rates = 6, scan_samples = 160, samples_of_resized = 1024;
-/// Shifts of the guess among which the action is stationary, their distances, and how closely one is found, in
-/// parts of its duration.
+/// Shifts of the guess among which the action is stationary, their distances, and how closely one is found,
+/// in parts of its duration.
 inline constexpr double most_shift = 0.75, shift_step = 1.0 / 64, least_shift = 1e-3;
 inline constexpr int samples_a_decay = 8, samples_of_part = 256;
 inline constexpr int quadrature_points = 12;

@@ -301,7 +301,19 @@ TEST(MarchedMotion, SchemeAloneMeetsTheTolerance) {
     const MotionCase c = motion_cases().front();
     const Solution s = solve(from(c), options), truth = solve(from(c), within(1e-12));
     EXPECT_LT(sup_distance(s.trajectory, truth.trajectory), 1e-5 * 1.6);
-    EXPECT_EQ(s.trajectory.degree, scheme(name).degree);
+    EXPECT_EQ(s.degree, scheme(name).degree);
+    // Slopes of elements of degree one are of order one, velocities of their momenta of order two.
+    double apart = 0, low = INFINITY, high = -INFINITY;
+    std::vector<double> q(s.trajectory.coordinates), v(q), exact(q);
+    for (int k = 0; k <= 1000; ++k) {
+      const double t = s.duration() * k / 1000;
+      s.trajectory.at(t, q, v);
+      truth.trajectory.at(t, q, exact);
+      low = std::min(low, exact[0]);
+      high = std::max(high, exact[0]);
+      apart = std::max(apart, std::abs(v[0] - exact[0]));
+    }
+    EXPECT_LT(apart, 10 * 1e-5 * (high - low));
   }
 }
 

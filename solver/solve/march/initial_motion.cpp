@@ -210,7 +210,7 @@ class InitialMotion {
     int elements = options_.elements > 0 ? options_.elements : first_elements;
     const int order = std::min(options_.scheme->order, options_.scheme->degree + 1);
     for (double before = INFINITY;;) {
-      Marched found = uniform(elements);
+      Marched found = uniform(elements, options_.elements == 0);
       if (!found.complete() && (options_.elements > 0 || found.march.end != March::End::no_element))
         return fail(found.march, elements);
       double growth = most_element_growth;
@@ -241,7 +241,7 @@ class InitialMotion {
   }
 
   /// An exact quadrature takes more points until they do not change the action.
-  Marched uniform(int elements) {
+  Marched uniform(int elements, bool recovering) {
     const Scheme& scheme = *options_.scheme;
     for (int points = scheme.points;; points += points < 8 ? 2 : 4) {
       points = std::min(points, most_points);
@@ -249,8 +249,7 @@ class InitialMotion {
       const StepTables finer(scheme, std::min(points + 2, most_points), lagrangian_);
       Marched result{std::make_unique<StepTables>(scheme, points, lagrangian_), {}, 0};
       result.march = march_uniform(*problem_.initial, problem_.duration.value, *result.tables, elements,
-                                   options_.elements == 0, options_.deadline, options_.progress,
-                                   more ? &finer : nullptr);
+                                   recovering, options_.deadline, options_.progress, more ? &finer : nullptr);
       steps_ += result.march.steps;
       if (!more || !result.complete()) return result;
       const March& march = result.march;
@@ -279,9 +278,14 @@ class InitialMotion {
     solution_.iterations = static_cast<int>(std::min<long long>(steps_, INT_MAX));
     solution_.trajectory = std::move(march.trajectory);
     const SchemeTables& scheme = found.tables->scheme();
-    if (solution_.pinned && !problem_.paired)
+    if (solution_.pinned && !problem_.paired) {
+      // Of the discrete path itself, not of what its momenta make of it.
+      const Marched discrete =
+          options_.elements == 0 ? uniform(solution_.trajectory.elements(), false) : Marched{};
       solution_.element_energies =
-          element_energies(lagrangian_, scheme.node, scheme.weight, solution_.trajectory);
+          element_energies(lagrangian_, scheme.node, scheme.weight,
+                           discrete ? discrete.march.trajectory : solution_.trajectory);
+    }
     solution_.action = march.action;
     solution_.residual = march.residual;
     solution_.error_estimate = std::max(apart.error.q, unit_roundoff * apart.magnitude);
