@@ -427,3 +427,36 @@ TEST_F(Scenes, ResonanceIsTold) {
   EXPECT_EQ(found.status, Status::no_solution_near);
   EXPECT_NE(found.message.find("in resonance"), std::string::npos) << found.message;
 }
+
+/// A wall of two fields, f = tanh t and g = 0, attains the bound 4/3 of its action. The second variation by g
+/// has an eigenvalue of about exp(−2 r T): no sign of it is known in a long time.
+TEST_F(Scenes, WallsBesideASoftField) {
+  for (const double duration : {40.0, 150.0, 1000.0}) {
+    const Solution found = run(study(fmt::format(
+        "[system]\ncoordinates = [\"f\", \"g\"]\n"
+        "lagrangian = \"(f'^2 + g'^2)/2 + ((1 - f^2 - r*g^2)^2 + 4*r^2*f^2*g^2)/2\"\n"
+        "parameters = {{ r = 0.7 }}\n[boundary]\nstart = {{ f = -1, g = 0 }}\nend = {{ f = 1, g = 0 }}\n"
+        "duration = {}\n",
+        duration)));
+    ASSERT_TRUE(found.converged()) << duration << ": " << found.message;
+    EXPECT_NEAR(found.action, 4.0 / 3, 1e-10);
+    EXPECT_EQ(found.morse_index, 0) << duration;
+    EXPECT_EQ(found.nullity, 2) << duration;
+    EXPECT_TRUE(found.minimizing);
+  }
+}
+
+/// An encounter of the length 1e-6 comes too early or too late on an orbit whose period is known to three
+/// digits.
+TEST_F(Scenes, PeriodsOfStatesGivenRoughly) {
+  for (const double e : {0.99, 0.9999, 0.99999})
+    for (const double period : {6.2, 6.2832, 6.4}) {
+      const Solution found = run(study(fmt::format(
+          "[system]\nuse = \"kepler\"\n[boundary]\nperiodic = true\nduration = \"free\"\nenergy = -0.5\n"
+          "[guess]\nstate = {{ x = {}, \"y'\" = \"-sqrt((1 - {})/(1 + {}))\" }}\nduration = {}\n",
+          -1 - e, e, e, period)));
+      ASSERT_TRUE(found.converged()) << e << ' ' << period << ": " << found.message;
+      EXPECT_NEAR(found.duration(), 2 * std::numbers::pi, 1e-8) << e;
+      EXPECT_NEAR(found.action, 3 * std::numbers::pi, 1e-8) << e;
+    }
+}

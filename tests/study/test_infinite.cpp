@@ -245,3 +245,24 @@ TEST_F(InfiniteEndsOf, OneOfAFamilyOfWallsIsTheNearestToTheGuess) {
     EXPECT_NEAR(highest, height, 1e-4 * height);
   }
 }
+
+/// A bubble with a thin wall: its radius, 17.47 by shooting, is far from that of the guess.
+TEST_F(InfiniteEndsOf, BouncesWithAThinWall) {
+  for (const double radius : {6.0, 12.0, 19.0, 24.0}) {
+    const Solution found =
+        solved(scene_of("[\"f\"]", "t^2*(f'^2/2 + f^2/2 - f^3/2 + 0.12*f^4)", "end = { f = 0 }\n",
+                        fmt::format("[guess]\nduration = 29.5\nf = \"2.16/(1 + exp(t - {}))\"\n", radius)));
+    ASSERT_TRUE(found.converged()) << radius << ": " << found.message;
+    EXPECT_NEAR(found.action, 83.5912181414, 1e-7) << radius;
+    EXPECT_EQ(found.morse_index, 1) << radius;
+  }
+}
+
+/// The part of the time axis that a guess describes lasts until the guess comes to its equilibrium. S by
+/// shooting.
+TEST_F(InfiniteEndsOf, AGuessThatArrivesLate) {
+  const Solution found = solved(scene_of("[\"f\"]", "t^3*(f'^2/2 + (f^2 - 1)^2/2 + 0.3*(f - f^3/3) - 0.2)",
+                                         "end = { f = 1 }\n", "[guess]\nf = \"tanh(t - 10)\"\n"));
+  ASSERT_TRUE(found.converged()) << found.message;
+  EXPECT_NEAR(found.action, 326.86625, 1e-4);
+}

@@ -98,3 +98,31 @@ TEST_F(Scenes, PlaceWhereJsonEnds) {
             "with a line "
             "of names");
 }
+
+/// The action would jump with the time of the crossing.
+TEST_F(Scenes, LagrangiansThatJump) {
+  const auto scene = [](const std::string& law) {
+    return "[system]\ncoordinates = [\"x\"]\n" + law +
+           "\n[boundary]\nstart = { x = -1 }\nend = { x = 1 }\nduration = 1\n";
+  };
+  struct Case {
+    std::string law, jump;
+  };
+  const Case jumps[] = {
+      {"lagrangian = \"x'^2/2 - 0.3*x/abs(x)\"", "L jumps by 0.6 "},
+      {"lagrangian = \"x'^2/2 - 0.5*max(x - 0.2, 0)/(x - 0.2)\"", "L jumps by 0.5 "},
+      {"lagrangian = \"x'^2/2 + 0.1*abs(x')/x' - min(x, 0)\"", "L jumps by 0.2 "},
+      {"hamiltonian = \"p_x^2/2 + 0.3*x/abs(x)\"", "H jumps by 0.6 "},
+  };
+  for (const Case& c : jumps)
+    EXPECT_NE(message(scene(c.law)).find(": " + c.jump), std::string::npos) << message(scene(c.law));
+  // The mend works: the energy of the smooth step is the same on both sides.
+  const Solution smooth = run(study(scene("lagrangian = \"x'^2/2 - 0.3*tanh(x/0.1)\"")));
+  ASSERT_TRUE(smooth.converged()) << smooth.message;
+  EXPECT_LT(*smooth.energy_drift, 1e-8);
+  // Continuous ones, of which powers, quotients and what lies beside a kink are infinitely steep.
+  for (const char* potential :
+       {"abs(x)", "x*abs(x)", "sqrt(abs(x))", "abs(x)^1.5", "max(0, x)^2/(1 + abs(x))", "min(abs(x), 0.3)",
+        "x^2/(1e-3 + abs(x))", "max(x, 0.5*x)"})
+    EXPECT_EQ(message(scene(fmt::format("lagrangian = \"x'^2/2 - {}\"", potential))), "") << potential;
+}

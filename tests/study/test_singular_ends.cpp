@@ -73,6 +73,24 @@ TEST_F(SingularEnds, FallsFromRestItself) {
   }
 }
 
+/// The fastest tunnel through a ball is a hypocycloid, of time sqrt(π² − (π − θ)²), and has no conjugate
+/// points: all of them from one point cover the ball.
+TEST_F(SingularEnds, TunnelsThroughABallAreMinima) {
+  for (const double angle : {1.0, 2.6, 3.05, 3.1})
+    for (const double tolerance : {1e-9, 1e-12}) {
+      const Solution found =
+          solved(singular_scene("sqrt(r'^2 + r^2)/sqrt(1 - r^2)",
+                                fmt::format("start = {{ r = 1 }}\nend = {{ r = 1 }}\nduration = {}\n[guess]\n"
+                                            "r = \"1 - 0.3*sin(pi*t/T)\"\n[solve]\ntolerance = {}\n",
+                                            angle, tolerance),
+                                "", "\"r\""));
+      ASSERT_TRUE(found.converged()) << angle << ": " << found.message;
+      EXPECT_NEAR(found.action, std::sqrt(pi * pi - (pi - angle) * (pi - angle)), 1e-9) << angle;
+      EXPECT_EQ(found.morse_index, 0) << angle << ' ' << tolerance;
+      EXPECT_TRUE(found.minimizing);
+    }
+}
+
 TEST_F(SingularEnds, TheTrajectoryIsTheCycloid) {
   const Solution found = solved(singular_scene(fall, "start = { y = 0 }\nend = { y = 0 }\nduration = 10"));
   ASSERT_TRUE(found.converged()) << found.message;
