@@ -135,7 +135,7 @@ constexpr KeyRecord keys[] = {
      R"(state = { x = 1.0, "y'" = 0.9 })", true},
     {"guess", "duration", Kind::quantity, "that of `file`",
      "Guess of a free duration; required unless `file` is given. With an infinite duration, the time T over "
-     "which the guess is given, from t = 0.",
+     "which the guess is given, from t = 0; without it that in which the guess comes near its equilibria.",
      "duration = 2.4"},
     {"guess", "*", Kind::quantities, "the line between the ends",
      "Formula of `t`, `T` and parameters; for an array one for each element, or one in the index `i`. With a "
