@@ -13,7 +13,7 @@ namespace extremal {
 struct MotionSpectrum {
   std::vector<Spectrum> coordinates;  ///< in the order of the problem; not momenta
   /// Mean velocity of each coordinate, taken away before: not zero only on orbits that a map shifts, "a +
-  /// 2*pi".
+  /// 2*pi", and where it makes most of the way along an arc, as of an angle that turns over.
   std::vector<double> drift;
 };
 

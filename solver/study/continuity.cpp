@@ -79,7 +79,7 @@ class Crossing {
 
 std::string state_text(const Problem& problem, const State& at) {
   std::string text;
-  for (std::size_t a = 0; a < std::min<std::size_t>(at.q.size(), 4); ++a)
+  for (std::size_t a = 0; a < std::min<std::size_t>(problem.names.size(), 4); ++a)
     text += fmt::format("{} = {:.4g}, {}' = {:.4g}, ", problem.names[a], at.q[a], problem.names[a], at.v[a]);
   return text + fmt::format("t = {:.4g}", at.t);
 }

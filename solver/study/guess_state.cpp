@@ -417,7 +417,7 @@ Halves closed_halves(InitialState state, const Bounds& bounds) {
 /// The duration that is free, moved to where the motion comes nearest to where it has to arrive, to first
 /// order again and again; the same where it does not come nearer. An encounter may last less than a digit of
 /// the duration that is given.
-double return_time(const InitialState& state, Problem problem, Bounds bounds) {
+double return_time(const InitialState& state, Problem problem, const Bounds& bounds) {
   using namespace limits::return_time;
   const double given = problem.duration.value;
   const InitialState goal = closed(closing_map(problem), state);
@@ -428,7 +428,7 @@ double return_time(const InitialState& state, Problem problem, Bounds bounds) {
   if (!flow.momentum(goal.q, goal.v, 0, std::span(wanted).subspan(n))) return given;
   const Bounds moved{problem, bounds.hamiltonian, bounds.deadline, bounds.at};
   double best = given, least = INFINITY;
-  for (int k = 0; k < most_steps; ++k) {
+  for (int k = 0; k < most_returns; ++k) {
     const FollowedMotion motion = double_motion(state, 0, problem.duration.value, moved);
     const std::vector<Extended>& points = motion.points.y;
     std::vector<double> y(points.end() - static_cast<std::ptrdiff_t>(2 * n), points.end());

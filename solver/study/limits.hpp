@@ -30,7 +30,7 @@ namespace extremal::limits::return_time {
 
 /// Steps to the time of a return, the least fall of the squared distance that a step brings, and how far from
 /// the duration that is given it may be, relative.
-inline constexpr int most_steps = 4;
+inline constexpr int most_returns = 4;
 inline constexpr double gain = 0.25, farthest = 0.1;
 
 }  // namespace extremal::limits::return_time

@@ -150,6 +150,26 @@ TEST_F(Spectra, OfARotation) {
   }
 }
 
+/// From initial data: θ = 2 am(t/k) = Ω t + Σ 4 qⁿ/(n (1 + q²ⁿ)) sin n Ω t with Ω = π/(k K(k)), k² = 2/(E +
+/// 1) and the nome q = exp(−π K'/K).
+TEST_F(Spectra, OfAMotionThatTurnsOver) {
+  const double energy = 1.8, k = std::sqrt(2 / (energy + 1)), K = std::comp_ellint_1(k);
+  const double omega = pi / (k * K), nome = std::exp(-pi * std::comp_ellint_1(std::sqrt(1 - k * k)) / K);
+  const MotionSpectrum found = lines_of(
+      study(fmt::format("[system]\ncoordinates = [\"a\"]\nlagrangian = \"a'^2/2 + cos(a)\"\n[boundary]\n"
+                        "start = {{ a = 0, p_a = {:.17g} }}\nduration = 300\n[solve]\ntolerance = 1e-11\n"
+                        "[spectrum]\nlines = 4\n",
+                        std::sqrt(2 * (energy + 1)))));
+  EXPECT_NEAR(found.drift[0], omega, 1e-10);
+  ASSERT_GE(found.coordinates[0].lines.size(), 3u);
+  for (const SpectralLine& line : found.coordinates[0].lines) {
+    const double n = std::round(line.frequency / omega);
+    if (n == 0) continue;
+    EXPECT_NEAR(line.frequency, n * omega, 1e-9);
+    EXPECT_NEAR(line.amplitude, 4 * std::pow(nome, n) / (n * (1 + std::pow(nome, 2 * n))), 1e-8);
+  }
+}
+
 TEST_F(Spectra, AgainstAnother) {
   write("other.json", R"({"spectrum": {"q": [{"frequency": 1.25, "amplitude": 1, "phase": 0}]}})");
   const Study s = study(oscillator_by(60.3 * 2 * pi, "quadratic", 8000) + "against = \"other.json\"\n");
