@@ -216,12 +216,16 @@ void explain_nullity(const Problem& problem, Solution& solution) {
   solution.message += family_of_symmetries;
 }
 
-/// A shift in time is a symmetry of L. Other fields across the path may be as soft: between long rests
-/// elimination alone does not tell on which side of zero these are.
+/// A shift in time is a symmetry of L. Other fields across the path may be as soft: between long rests a
+/// negative sign that elimination finds may be that of roundoff. Where it finds none there is none.
 void read_soft_shift(const Problem& problem, const Outcome& found, double size, SecondVariation& variation,
                      Solution& solution) {
-  if (problem.ends.free == 0 && !solution.windows.empty())
-    read_index(problem, variation, size > 0 ? solution.error_estimate / size : 0, solution);
+  if (problem.ends.free == 0 && !solution.windows.empty()) {
+    const double error = size > 0 ? solution.error_estimate / size : 0;
+    const std::optional<OrbitIndex> by_eigenvalues =
+        orbit_index(problem, variation, solution.trajectory, error);
+    if (by_eigenvalues || solution.morse_index.value_or(0) > 0) tell_index(by_eigenvalues, solution);
+  }
   solution.minimizing = solution.morse_index == 0;
   solution.message +=
       "; a shift in time between the rests of this path changes the action by hardly more than roundoff: of "

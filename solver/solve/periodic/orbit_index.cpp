@@ -93,8 +93,7 @@ std::optional<OrbitIndex> orbit_index(const Problem& problem, SecondVariation& v
                                                                                               : std::nullopt;
 }
 
-void read_index(const Problem& problem, SecondVariation& variation, double error, Solution& solution) {
-  const std::optional<OrbitIndex> found = orbit_index(problem, variation, solution.trajectory, error);
+void tell_index(const std::optional<OrbitIndex>& found, Solution& solution) {
   solution.morse_index = solution.nullity = std::nullopt;
   if (found) {
     solution.morse_index = found->negative;
@@ -105,6 +104,10 @@ void read_index(const Problem& problem, SecondVariation& variation, double error
         "path";
   }
   solution.minimizing = solution.morse_index == 0;
+}
+
+void read_index(const Problem& problem, SecondVariation& variation, double error, Solution& solution) {
+  tell_index(orbit_index(problem, variation, solution.trajectory, error), solution);
 }
 
 /// The ends are those of the orbit, one of them turned.

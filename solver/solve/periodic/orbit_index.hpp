@@ -23,6 +23,7 @@ std::optional<OrbitIndex> orbit_index(const Problem& problem, SecondVariation& v
                                       const Trajectory& path, double error);
 
 /// Sets both numbers of a converged solution, or says in its message that they are not told.
+void tell_index(const std::optional<OrbitIndex>& found, Solution& solution);
 void read_index(const Problem& problem, SecondVariation& variation, double error, Solution& solution);
 
 /// Negative squares on fields that turn their sign after a period: it changes where a pair of multipliers
