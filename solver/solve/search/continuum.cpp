@@ -112,15 +112,11 @@ FamilySearch nearest_of_family(const Problem& problem, const SolveOptions& optio
     ExtremalFamily family(problem, count);
     family.reset(tables, guess);
     const FamilySearch reached = reach_nearest(family, path, unit_of(path, tables));
+    if (reached == FamilySearch::not_reached) return reached;
     w.resolution.measure(path, tables);
     const Scales size = scales(path, tables);
     const Resolution::Error error = w.resolution.at(family_degree);
     const double allowed = family_share * options.tolerance, unit = unit_of(guess, tables);
-    if (reached == FamilySearch::not_reached) {
-      // Elements that do not resolve a member have no null directions there.
-      if (error.q > allowed * size.q && error.q < unresolved * size.q) continue;
-      return reached;
-    }
     // A path of roundoff is at rest, and has no size.
     const bool at_rest = size.q <= roundoff_of_guess * unit;
     const double extent = at_rest ? unit : size.q;

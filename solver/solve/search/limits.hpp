@@ -306,8 +306,6 @@ inline constexpr double least_relaxation = 0.1, largest_relaxation = 10;
 inline constexpr double dependent = 0.1;
 /// A path so small by the guess is roundoff.
 inline constexpr double roundoff_of_guess = 1e-13;
-/// A path whose elements miss more than this part of it is near no member.
-inline constexpr double unresolved = 0.1;
 /// Part of the tolerance that the elements may take.
 inline constexpr double family_share = 0.3;
 
