@@ -245,24 +245,27 @@ class InfiniteSolve {
   /// of a bubble with a thin wall is, the way over the pass moves the wall alone.
   std::optional<SampledPath> moved(const SampledPath& guess) const {
     if (!allows_rest() || infinite(0) == infinite(1)) return std::nullopt;
-    const auto action = [&](double later) { return action_of(later_by(guess, later, scan_samples)); };
-    const double T = guess.duration();
+    const double T = guess.duration(), shortest = infinite(0) ? most_shift * T : -most_shift * T;
+    const auto action_at = [&](double later) { return action_of(later_by(guess, later, scan_samples)); };
     // Of the shortest path nearly all of the action is kinetic.
-    const double sign = std::copysign(1, action(infinite(0) ? most_shift * T : -most_shift * T));
+    const double sign = std::copysign(1, action_at(shortest));
+    const auto action = [&](double later) { return sign * action_at(later); };
     double step = shift_step * T, best = 0, at_best = 0;
-    for (double later = -most_shift * T; later <= most_shift * T; later += step) {
-      const double here = sign * action(later);
-      const bool most = here > sign * action(later - step) && here > sign * action(later + step);
-      if (!(most && here > at_best)) continue;
-      best = later;
-      at_best = here;
+    double before = action(-most_shift * T), here = action(-most_shift * T + step);
+    for (double later = -most_shift * T + step; later < most_shift * T; later += step) {
+      const double after = action(later + step);
+      if (here > before && here > after && here > at_best) {
+        best = later;
+        at_best = here;
+      }
+      before = std::exchange(here, after);
     }
     if (!(at_best > 0)) return std::nullopt;
     for (; step > least_shift * T; step /= 2)
       for (const double later : {best - step / 2, best + step / 2})
-        if (const double here = sign * action(later); here > at_best) {
+        if (const double found = action(later); found > at_best) {
           best = later;
-          at_best = here;
+          at_best = found;
         }
     return later_by(guess, best, samples_of_resized);
   }
