@@ -402,7 +402,13 @@ bool move_corners(Path& path, std::span<const Corner> corners, std::span<const d
   bool any = false;
   for (std::size_t k = 0; k < shift.size(); ++k) any = any || far(k);
   if (any) spread(path.mesh(), surfaces, shift);
-  return path.slide(shift, most_stretch);
+  return path.slide(shift, most_stretch, surfaces);
+}
+
+bool forces_jump(std::span<const Corner> corners) {
+  return std::ranges::any_of(corners, [](const Corner& corner) {
+    return corner.stiffness != 0 || std::ranges::any_of(corner.sideways, [](double b) { return b != 0; });
+  });
 }
 
 void add_force(const Corner& corner, double u, double* gradient) {

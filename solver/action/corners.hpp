@@ -65,6 +65,9 @@ std::vector<Switch> switches_of(const Kinks& kinks, const Polynomials& path, con
 bool move_corners(Path& path, std::span<const Corner> corners, std::span<const double> node_step,
                   double factor);
 
+/// Whether forces jump at one of these corners.
+bool forces_jump(std::span<const Corner> corners);
+
 /// Adds the force of a corner if u is as given, n.
 void add_force(const Corner& corner, double u, double* gradient);
 /// Adds the matrix of a corner, n × n.

@@ -1,11 +1,20 @@
 #include "action/path.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "action/rule.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
+
+namespace {
+
+/// Beyond its end a polynomial of degree s is about (x + √(x² − 1))^s times as wrong as within, x = |2τ − 1|:
+/// so much at most.
+constexpr double most_growth = 1e6;
+
+}  // namespace
 
 void Path::reset(const ElementTables& tables, std::span<const double> mesh, double duration,
                  std::span<const double> lengths) {
@@ -49,7 +58,7 @@ bool Path::move_mesh(std::span<const double> times, double factor, double least)
   return true;
 }
 
-bool Path::slide(std::span<const double> shift, double most) {
+bool Path::slide(std::span<const double> shift, double most, std::span<const int> kinks) {
   std::vector<int> changed;
   for (int k = 0; k < elements_; ++k) {
     const double length = lengths_[k] + shift[k + 1] - shift[k];
@@ -57,15 +66,18 @@ bool Path::slide(std::span<const double> shift, double most) {
     if (shift[k] != 0 || shift[k + 1] != 0) changed.push_back(k);
   }
   const std::size_t count = degree_ + 1, size = count * n_;
-  std::vector<double> tau(count), transposed(size), q(changed.size() * size);
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    const int k = changed[i];
-    for (std::size_t j = 0; j < count; ++j)
-      tau[j] = lobatto_[j] + (shift[k] + lobatto_[j] * (shift[k + 1] - shift[k])) / lengths_[k];
-    values(k, static_cast<int>(count), tau.data(), transposed.data());
-    for (std::size_t j = 0; j < count; ++j)
-      for (int a = 0; a < n_; ++a) q[i * size + j * n_ + a] = transposed[a * count + j];
-  }
+  std::vector<double> q(changed.size() * size);
+  for (std::size_t i = 0; i < changed.size(); ++i)
+    for (std::size_t j = 0; j < count; ++j) {
+      int k = changed[i];
+      double tau = lobatto_[j] + (shift[k] + lobatto_[j] * (shift[k + 1] - shift[k])) / lengths_[k];
+      for (; tau > 1 && k + 1 < elements_ && kinks[k + 1] == 0; ++k)
+        tau = (tau - 1) * lengths_[k] / lengths_[k + 1];
+      for (; tau < 0 && k > 0 && kinks[k] == 0; --k) tau = 1 + tau * lengths_[k] / lengths_[k - 1];
+      const double x = std::max(std::abs(2 * tau - 1), 1.0);
+      if (!(std::pow(x + std::sqrt(x * x - 1), degree_) <= most_growth)) return false;
+      values(k, 1, &tau, q.data() + i * size + j * n_);
+    }
   // Of neighbours, the end of one and the start of the other.
   for (std::size_t i = 0; i + 1 < changed.size(); ++i)
     for (int a = 0; a < n_ && changed[i] + 1 == changed[i + 1]; ++a) {

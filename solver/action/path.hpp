@@ -44,10 +44,15 @@ class Path {
   /// values are kept. False, and nothing is done, if an element shrank to less than `least` of its length.
   bool move_mesh(std::span<const double> times, double factor, double least);
 
-  /// Mesh nodes move by `shift` (N + 1, in τ, nothing at the ends); the polynomial of each element stays as
-  /// it is, and where two meet their values are averaged. False, and nothing is done, if an element's length
-  /// changed by more than the factor `most`.
-  bool slide(std::span<const double> shift, double most);
+  /// Mesh nodes move by `shift` (N + 1, in τ, nothing at the ends) along the path. It is smooth at nodes that
+  /// are not in `kinks` (N + 1); a piece between two kinks goes on by the polynomial of its last element, and
+  /// where two meet their values are averaged. False, and nothing is done, if an element's length changed by
+  /// more than the factor `most`, or a piece went on far beyond its end.
+  bool slide(std::span<const double> shift, double most, std::span<const int> kinks);
+  /// The same with a kink at each node.
+  bool slide(std::span<const double> shift, double most) {
+    return slide(shift, most, std::vector<int>(shift.size(), 1));
+  }
 
   /// q at mesh node k (n entries), rounded to double.
   const double* node(int k) const { return high_.data() + static_cast<std::size_t>(k) * n_; }

@@ -273,3 +273,21 @@ TEST_F(Scenes, WhatBifurcatesFromOtherBranchesIsTold) {
   EXPECT_EQ(family.branches[0].message.find(told), std::string::npos);
   EXPECT_NE(family.branches[1].message.find(told), std::string::npos) << family.branches[1].message;
 }
+
+/// An oscillator that is four times as stiff on one side: beyond the fold of its resonance at half the
+/// frequency the orbit leaves x = 0, which it has crossed more often before. The folds are those of the
+/// return map, integrated from crossing to crossing, where one of its multipliers is 1.
+TEST_F(Scenes, ResponsesGrazeKinksWhereForcesDoNotJump) {
+  const FollowedBranch family = follow(study(
+      "[system]\ncoordinates = [\"x\"]\nparameters = { w = 0.48 }\n"
+      "lagrangian = \"x'^2/2 - x^2/2 - 3*max(0, x)^2/2 + 0.3*cos(w*t)*x\"\nforce = { x = \"-0.1*x'\" }\n"
+      "[boundary]\nperiodic = true\nduration = \"2*pi/w\"\n[guess]\nx = \"0.3*cos(w*t)\"\n[continuation]\n"
+      "parameter = \"w\"\nto = 0.3\npoints = 200\n"));
+  std::vector<double> folds;
+  for (const BranchPoint& point : family.points)
+    if (point.kind == PointKind::fold) folds.push_back(point.parameter);
+  ASSERT_EQ(folds.size(), 2u);
+  EXPECT_NEAR(folds[0], 0.45222126100, 1e-9);
+  EXPECT_NEAR(folds[1], 0.46078471509, 1e-9);
+  EXPECT_EQ(family.points.back().parameter, 0.3);
+}

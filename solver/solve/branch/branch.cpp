@@ -80,7 +80,8 @@ bool Branch::apply(const Move& move, double factor) {
   path_.add(move.step.nodes, move.step.inner, factor);
   if (!by_duration()) path_.set_duration(duration);
   path_.load_ends();
-  if (!move_corners(path_, corners, move.step.nodes, factor)) return false;
+  // A path may leave a surface that it has crossed twice. Forces that do not jump there need no corner.
+  if (!move_corners(path_, corners, move.step.nodes, factor) && forces_jump(corners)) return false;
   const std::vector<double> before = ends();
   if (!set_coordinate(coordinate)) return false;
   ends_ = ends();
