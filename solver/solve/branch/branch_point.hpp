@@ -68,6 +68,8 @@ BranchPoint read_point(Tracker& tracker, PointKind kind);
 /// NaN if they are not known.
 DoublingTests read_doubling_tests(Tracker& tracker);
 
+/// Whether the number that varies turns back on a step, by more than its error, as the ends of the step show.
+bool turns_back(const BranchStep& step);
 /// Folds on a step.
 std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step);
 /// Points where branches cross. Where they explain how the index changes along the step they are complete:

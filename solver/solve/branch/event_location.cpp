@@ -68,10 +68,13 @@ double find_rest(Tracker& tracker, const BranchState& from, const BranchState& t
   if (!problem.periodic || !problem.lagrangian->structure().autonomous) return NAN;
   const double size = swing(from.path, from.path), after = swing(to.path, from.path) / size;
   if (!(after < 0)) return NAN;
-  return root(
+  const double at = root(
       tracker, from, {0, 1 - nearly_rest}, {length, after - nearly_rest}, std::nullopt,
       [&] { return swing(tracker.state.path, from.path) / size - nearly_rest; },
       [](double off, double) { return std::abs(off) <= rest_located * nearly_rest; });
+  // Orbits that are shifted in time have nothing in common with those before either.
+  const Path& path = tracker.state.path;
+  return std::isfinite(at) && swing(path, path) <= nearly_rest * size ? at : NAN;
 }
 
 /// Mean of |q|² over τ, which a shift in time and a rotation leave as it is.
@@ -128,13 +131,14 @@ struct SpecialPoints {
 SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   SpecialPoints result;
   std::vector<Event> folds = find_folds(tracker, search, step);
+  result.leaps = folds.empty() && turns_back(step) && step.length > limits::continuation::shortest_leap;
   result.extremes.push_back({0, step.from.varied});
   for (const Event& fold : folds) result.extremes.push_back({fold.at, fold.found.point.parameter});
   result.extremes.push_back({step.length, step.to.varied});
   Crossings crossings = find_branch_points(tracker, search, step);
   result.index_change = crossings.change;
   result.index_known = crossings.complete;
-  result.leaps = crossings.leaps;
+  result.leaps = result.leaps || crossings.leaps;
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
   std::erase_if(folds, [&](const Event& fold) {
     return std::ranges::any_of(crossings.events, [&](const Event& crossing) {

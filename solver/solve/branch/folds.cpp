@@ -30,20 +30,37 @@ Rates rates_on(const BranchStep& step) {
           {0.5 * length, first + 0.5 * slope + 0.25 * bend}};
 }
 
+/// Of a step, the derivative of the number at both ends.
+std::vector<Sample> ends_of(const BranchStep& step) {
+  return {{0, step.from.rate}, {step.length, step.to.rate * step.to.back / step.length}};
+}
+
+/// Whether the number turns back between two samples of its derivative. |∂varied/∂s| times the distance from
+/// a fold bounds the error of the number there: a smaller extremum than that is none. Between samples r and s
+/// at the distance ℓ the number rises above its chord by |r − s|ℓ/8.
+enum class Turn { none, hidden, known };
+Turn turn_between(const BranchStep& step, const Sample& a, const Sample& b) {
+  if (!changes_sign(a.value, b.value)) return Turn::none;
+  const double error = std::max(step.from.varied_error, step.to.varied_error);
+  return std::abs(b.value - a.value) * (b.at - a.at) / 8 <= error ? Turn::hidden : Turn::known;
+}
+
 }  // namespace
+
+bool turns_back(const BranchStep& step) {
+  const std::vector<Sample> ends = ends_of(step);
+  return turn_between(step, ends[0], ends[1]) == Turn::known;
+}
 
 bool may_fold(const BranchStep& step) {
   const double first = step.from.rate;
   return first * step.to.rate < 0 || first * rates_on(step).extremum.value < 0;
 }
 
-/// |∂varied/∂s| times the distance from a fold bounds the error of the number there. Between two samples of
-/// the derivative, r and s at the distance ℓ, the number rises above its chord by |r − s|ℓ/8: a smaller
-/// extremum than the error of the number is none.
 std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   const BranchState &from = step.from, &to = step.to;
   const double length = step.length;
-  std::vector<Sample> samples = {{0, from.rate}, {length, to.rate * to.back / length}};
+  std::vector<Sample> samples = ends_of(step);
   const auto rate = [&] { return tracker.state.rate; };
   const auto [extremum, middle] = rates_on(step);
   if (from.rate * to.rate > 0 && from.rate * extremum.value < 0) {
@@ -52,11 +69,8 @@ std::vector<Event> find_folds(Tracker& tracker, const EventSearch& search, const
       return left > 0 && left-- && tracker.reach_smoothly(from, at) ? rate() : NAN;
     });
   }
-  const double error = std::max(from.varied_error, to.varied_error);
-  for (std::size_t k = 1; k < samples.size(); ++k) {
-    const Sample &a = samples[k - 1], &b = samples[k];
-    if (changes_sign(a.value, b.value) && std::abs(b.value - a.value) * (b.at - a.at) / 8 <= error) return {};
-  }
+  for (std::size_t k = 1; k < samples.size(); ++k)
+    if (turn_between(step, samples[k - 1], samples[k]) == Turn::hidden) return {};
   std::vector<Event> found;
   find_roots(tracker, search.family, from, samples, middle, rate, [&](double at) {
     found.push_back({at, {read_point(tracker, PointKind::fold)}});
