@@ -131,14 +131,15 @@ struct SpecialPoints {
 SpecialPoints find_special_points(Tracker& tracker, const EventSearch& search, const BranchStep& step) {
   SpecialPoints result;
   std::vector<Event> folds = find_folds(tracker, search, step);
-  result.leaps = folds.empty() && turns_back(step) && step.length > limits::continuation::shortest_leap;
   result.extremes.push_back({0, step.from.varied});
   for (const Event& fold : folds) result.extremes.push_back({fold.at, fold.found.point.parameter});
   result.extremes.push_back({step.length, step.to.varied});
   Crossings crossings = find_branch_points(tracker, search, step);
   result.index_change = crossings.change;
   result.index_known = crossings.complete;
-  result.leaps = result.leaps || crossings.leaps;
+  // Where the number turns back, a fold or a branch that crosses is on the step.
+  const bool unexplained = turns_back(step) && folds.empty() && crossings.events.empty();
+  result.leaps = crossings.leaps || (unexplained && step.length > limits::continuation::shortest_leap);
   // A branch that crosses where this one turns back explains the fold, as the half of a pitchfork does.
   std::erase_if(folds, [&](const Event& fold) {
     return std::ranges::any_of(crossings.events, [&](const Event& crossing) {
