@@ -70,7 +70,8 @@ void Branch::fit_path(const Problem& problem) {
 
 bool Branch::apply(const Move& move, double factor) {
   const double duration = path_.duration() + factor * move.step.duration;
-  if (!(duration > 0)) return false;
+  defined_ = duration > 0;
+  if (!defined_) return false;
   const double coordinate = this->coordinate() + factor * move.parameter;
   std::vector<Corner> corners;
   if (tables_->kinks()) {
@@ -83,7 +84,8 @@ bool Branch::apply(const Move& move, double factor) {
   // A path may leave a surface that it has crossed twice. Forces that do not jump there need no corner.
   if (!move_corners(path_, corners, move.step.nodes, factor) && forces_jump(corners)) return false;
   const std::vector<double> before = ends();
-  if (!set_coordinate(coordinate)) return false;
+  defined_ = set_coordinate(coordinate);
+  if (!defined_) return false;
   ends_ = ends();
   for (std::size_t e = 0; e < ends_.size(); ++e) ends_[e] -= before[e];
   stretch_ = by_duration() ? 0 : path_.duration() - duration;

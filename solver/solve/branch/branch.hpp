@@ -44,7 +44,7 @@ class Branch : public ExtremalCurve {
   void bind();
   /// The coordinate that Move::parameter changes: the parameter, or the duration.
   double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
-  /// Moves path and coordinate; false if there is no problem there.
+  /// Moves path and coordinate; false if there is no problem there, or corners cannot follow (see defined()).
   bool apply(const Move& move, double factor) override;
   /// Scalar product of a tangent with the nonlinear part of the last apply(): ends and durations that do not
   /// depend linearly on the parameter.
@@ -67,7 +67,8 @@ class Branch : public ExtremalCurve {
   void set_regular() { folds_ = true; }
   /// It is to be seen where the equations are linearised next.
   void ask_regular() { folds_.reset(); }
-  /// Whether there was a problem at, and next to, the coordinate that was linearised at last, with L finite.
+  /// Whether there was a problem at the coordinate to which the path was moved last and, if it was linearised
+  /// there, next to it, with L finite.
   bool defined() const { return defined_; }
   /// What had better close the equations near the path that was linearised at last, whose tangent is given:
   /// the energy, a displacement of the ends, or the duration.

@@ -27,7 +27,7 @@ Progress ChordSteps::take(bool solved, int k) {
   const double fastest = way > small_correction * length_ ? contraction : slowest;
   if (!noise && (!(way <= longest_correction * length_) || growth > fastest)) return Progress::failed;
   if (!branch_.apply(move, 1)) {
-    left_problem_ = true;
+    left_problem_ = !branch_.defined();
     return Progress::failed;
   }
   if (k > 0 && newton_) curvature_ = rate / before_;

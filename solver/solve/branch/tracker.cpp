@@ -81,7 +81,10 @@ bool Tracker::displace(const BranchState& from, const Move& by, double length, c
   state.units = from.units;
   landed_ = 0;
   failure_ = StepFailure::no_problem;
-  return return_to(from) && branch_.apply(by, 1) && correct(length, landing);
+  if (!return_to(from)) return false;
+  if (branch_.apply(by, 1)) return correct(length, landing);
+  if (branch_.defined()) failure_ = StepFailure::rough;
+  return false;
 }
 
 bool Tracker::reach(const BranchState& from, const Move& by) {
