@@ -19,6 +19,9 @@ using Eigen::MatrixXd;
 constexpr double momentum_error = 10;
 /// A symmetry has a double multiplier 1, which may be so many times farther off than its accuracy.
 constexpr double expected = 1e4;
+/// Pairs that nothing makes ±1 are so within their accuracy, and within this. Where an orbit is known badly
+/// the accuracy is far more than the error, and all pairs would be ±1: then each is what it is found to be.
+constexpr double most_uncertain = 1e-2;
 /// Of the shift in time after a part of the orbit.
 constexpr double same_shift = 0.1;
 /// Pieces are multiplied until their product is this large.
@@ -158,20 +161,17 @@ void sort_by_modulus(Floquet& floquet, const Modulus& modulus) {
 /// Multipliers as they are found, a pair or four at a time.
 class Collection {
  public:
-  /// The double multiplier 1 of the shift in time.
-  void add_shift() {
+  /// A double multiplier 1, as the shift in time has, or −1.
+  void add_double(double one) {
     ++result_.trivial_pairs;
-    add(1, 1, 0);
-    add(1, 1, 0);
+    add(one, 1, 0);
+    add(one, 1, 0);
   }
 
-  void add_sum(const ReciprocalPair& pair, double accuracy) {
+  /// By μ = λ + 1/λ, which is not ±2.
+  void add_sum(const ReciprocalPair& pair) {
     const Complex half = pair.sum / 2.0;
-    if (std::abs(std::abs(half.real()) - 1) <= accuracy / 2 && std::abs(half.imag()) <= accuracy / 2) {
-      ++result_.trivial_pairs;
-      add(std::copysign(1, half.real()), 1, 0);
-      add(std::copysign(1, half.real()), 1, 0);
-    } else if (half.imag() == 0 && std::abs(half.real()) < 1) {
+    if (half.imag() == 0 && std::abs(half.real()) < 1) {
       ++result_.circle_pairs;
       const double sine = std::sqrt((1 - half.real()) * (1 + half.real()));
       add({half.real(), sine}, 1, pair.sign);
@@ -269,7 +269,7 @@ std::optional<Floquet> floquet_of(const std::vector<Factor>& flow, int degrees, 
   std::vector<MatrixXd> parts;
   for (const Factor& factor : flow) parts.push_back(shifted ? factor.across_shift() : factor.flow);
   Collection found;
-  if (shifted) found.add_shift();
+  if (shifted) found.add_double(1);
   if (!parts.front().size()) return found.ordered();
   const Dichotomy split = separate(parts);
   for (const MatrixXd& block : split.growing) {
@@ -287,8 +287,14 @@ std::optional<Floquet> floquet_of(const std::vector<Factor>& flow, int degrees, 
       return std::abs(a.sum - 2.0) < std::abs(b.sum - 2.0);
     });
     const int trivial = orbit.symmetries + (orbit.autonomous && !shifted);
-    for (int k = 0; k < std::ssize(pairs); ++k)
-      found.add_sum(pairs[k], k < trivial ? expected * accuracy : accuracy);
+    for (int k = 0; k < std::ssize(pairs); ++k) {
+      const double one = std::copysign(1, pairs[k].sum.real());
+      const double within = k < trivial ? expected * accuracy : std::min(accuracy, most_uncertain);
+      if (std::abs(pairs[k].sum - 2 * one) <= within)
+        found.add_double(one);
+      else
+        found.add_sum(pairs[k]);
+    }
   }
   return found.ordered();
 }
