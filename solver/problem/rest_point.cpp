@@ -126,6 +126,29 @@ Matrix linear_motion(const PointValues& values, Eigen::Index n) {
   return a;
 }
 
+/// Of Mη'' = Kη + (Cᵀ − C)η', or of first order where there are no masses, as in phase space.
+Eigen::VectorXcd exponents_of_motion(const Lagrangian& lagrangian, std::span<const double> q,
+                                     bool two_copies) {
+  const auto all = std::ssize(q), n = two_copies ? all / 2 : all;
+  const PointValues values = AtRest(lagrangian, 0)(Eigen::Map<const Eigen::VectorXd>(q.data(), all));
+  // Equations are derivatives by the first copy, motions those of both.
+  const auto of_one = [&](const Matrix& both) -> Matrix {
+    return two_copies ? both.topLeftCorner(n, n) + both.topRightCorner(n, n) : both;
+  };
+  const Matrix c = square_matrix(values.vq, all), m = of_one(square_matrix(values.vv, all)),
+               k = of_one(square_matrix(values.qq, all)), slope = of_one(c.transpose()) - of_one(c);
+  Matrix a;
+  if (m.isZero(0)) {
+    a = -solved(slope, k);
+  } else {
+    a = Matrix::Zero(2 * n, 2 * n);
+    a.topRightCorner(n, n).setIdentity();
+    a.bottomRows(n) << solved(m, k), solved(m, slope);
+  }
+  if (!a.allFinite()) return Eigen::VectorXcd::Constant(a.rows(), NAN);
+  return general_eigenvalues(a);
+}
+
 double slowest_rate(const Lagrangian& lagrangian, std::span<const double> q, double t) {
   const Eigen::VectorXd point = Eigen::Map<const Eigen::VectorXd>(q.data(), std::ssize(q));
   AtRest at(lagrangian, t);

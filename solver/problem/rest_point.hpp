@@ -39,6 +39,12 @@ Eigen::MatrixXd linear_motion(const PointValues& values, Eigen::Index n);
 /// Beside the point that is given. Throws std::invalid_argument where L has no finite derivatives there.
 RestPoint rest_point(const Lagrangian& lagrangian, std::span<const double> near, double t);
 
+/// Exponents of the motions e^{λt} beside an equilibrium. With `two_copies` L is that of two copies of the
+/// coordinates (system/copies.hpp), and they are those of one copy with its forces. NaN where masses are
+/// singular and not zero.
+Eigen::VectorXcd exponents_of_motion(const Lagrangian& lagrangian, std::span<const double> q,
+                                     bool two_copies);
+
 /// Least |Re λ| of the linear equations at a point that need be no equilibrium.
 double slowest_rate(const Lagrangian& lagrangian, std::span<const double> q, double t);
 

@@ -28,5 +28,20 @@ TEST(BranchMultipliers, AreThoseOfTheTrajectory) {
   }
 }
 
+/// However little is known of an orbit, its multipliers are not all 1 for it.
+TEST(BranchMultipliers, AreNotOneWhereTheOrbitIsHardlyKnown) {
+  const Study study = load(bench_data("halo.toml"));
+  const Solution solution = solve(study.problem, within(1e-9));
+  SecondVariation variation;
+  ASSERT_TRUE(variation.assemble(study.problem.lagrangian, solution.trajectory));
+  const auto multipliers = [&](double error) {
+    return floquet(variation, {.map = {}, .relative_error = error, .autonomous = true});
+  };
+  const std::optional<Floquet> known = multipliers(1e-9), hardly = multipliers(1);
+  ASSERT_TRUE(known && hardly);
+  ASSERT_LT(known->trivial_pairs, 3);
+  EXPECT_EQ(hardly->multipliers, known->multipliers);
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -199,5 +199,18 @@ TEST(HalfPeriods, EndAFamilyThatTurnsBackThere) {
   EXPECT_GE(crossing, 2);
 }
 
+/// In a double well two families turn back at one energy where they meet an orbit run through twice. Roundoff
+/// hides where, as the equations are doubly singular.
+TEST(HalfPeriods, EndAFamilyWhereRoundoffHidesItsFold) {
+  const FollowedBranch found = follow(
+      study_of("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2 + x^2/2 - x^4/4 - "
+               "0.8*y^2 - x^2*y^2\"\n[boundary]\nperiodic = true\nduration = \"free\"\n"
+               "energy = 0.3132846854\n[guess]\nduration = 8.0\n"
+               "state = { x = 1.166356, y = 0.495685, \"x'\" = 0, \"y'\" = 0 }\n[continuation]\n"
+               "parameter = \"energy\"\nto = 2\npoints = 60\n"));
+  EXPECT_EQ(found.branches[0].end, BranchEnd::closed) << found.branches[0].message;
+  EXPECT_NEAR(found.points.back().parameter, 0.52740258, 1e-7);
+}
+
 }  // namespace
 }  // namespace extremal::laws

@@ -291,3 +291,22 @@ TEST_F(Scenes, ResponsesGrazeKinksWhereForcesDoNotJump) {
   EXPECT_NEAR(folds[1], 0.46078471509, 1e-9);
   EXPECT_EQ(family.points.back().parameter, 0.3);
 }
+
+/// Where canards of van der Pol's oscillator explode, the period grows as the number that varies hardly does,
+/// and orbits rest next to an equilibrium: a source, to which no orbit is homoclinic. Beyond are the cycles
+/// that shrink onto it at a = 1.
+TEST_F(Scenes, ExplodingCanardsAreNotHomoclinic) {
+  LONG_TEST();
+  const auto canards = [&](const std::string& tolerance) {
+    return follow(
+        study("[system]\ncoordinates = [\"x\"]\nparameters = { a = 0.0 }\nlagrangian = \"x'^2/2 - x^2/2\"\n"
+              "force = { x = \"5*(1 - x^2)*x' + a\" }\n[boundary]\nperiodic = true\nduration = \"free\"\n"
+              "[guess]\nx = \"2*cos(2*pi*t/T)\"\nduration = 11.6\n[solve]\ntolerance = " +
+              tolerance + "\n[continuation]\nparameter = \"a\"\nto = 1.1\npoints = 200\n"));
+  };
+  const FollowedBranch exact = canards("1e-9"), coarse = canards("1e-6");
+  EXPECT_EQ(exact.branches[0].end, BranchEnd::too_short) << exact.branches[0].message;
+  EXPECT_NEAR(exact.points.back().parameter, 0.9948377923, 1e-9);
+  EXPECT_EQ(coarse.branches[0].end, BranchEnd::rest) << coarse.branches[0].message;
+  EXPECT_NEAR(coarse.points.back().parameter, 1, 1e-6);
+}

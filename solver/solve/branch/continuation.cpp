@@ -9,9 +9,11 @@
 
 #include "problem/point_range.hpp"
 #include "solve/accept/acceptance.hpp"
+#include "solve/branch/approached.hpp"
 #include "solve/branch/common_symmetries.hpp"
 #include "solve/branch/half_period.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/branch/root.hpp"
 #include "solve/search/search.hpp"
 
 namespace extremal {
@@ -19,16 +21,6 @@ namespace extremal {
 using namespace limits::continuation;
 
 namespace {
-
-double grading(const Path& path) {
-  const std::span<const double> mesh = path.mesh();
-  double shortest = 1, longest = 0;
-  for (int k = 0; k < path.elements(); ++k) {
-    shortest = std::min(shortest, mesh[k + 1] - mesh[k]);
-    longest = std::max(longest, mesh[k + 1] - mesh[k]);
-  }
-  return longest / shortest;
-}
 
 double growth(const Tracker& tracker) {
   const double cosine = tracker.cosine();
@@ -78,21 +70,6 @@ bool shifts_in_time_beside(const ProblemFamily& family) {
   return !beside || beside->shifts_in_time();
 }
 
-/// Of a period, while the path hardly moves.
-double share_at_rest(const Path& path) {
-  const std::size_t n = path.coordinates();
-  const auto speed = [&](int k) {
-    double square = 0;
-    for (std::size_t a = 0; a < n; ++a) square += std::pow(path.node(k + 1)[a] - path.node(k)[a], 2);
-    return std::sqrt(square) / (path.mesh()[k + 1] - path.mesh()[k]);
-  };
-  double fastest = 0, rest = 0;
-  for (int k = 0; k < path.elements(); ++k) fastest = std::max(fastest, speed(k));
-  for (int k = 0; k < path.elements(); ++k)
-    if (speed(k) < slow * fastest) rest += path.mesh()[k + 1] - path.mesh()[k];
-  return rest;
-}
-
 /// Nothing where the period is given.
 Continuation::PeriodGrowth period_of(const ProblemFamily& family, const BranchState& state) {
   if (family.varied == Varied::duration || !family.problem.periodic || !family.problem.duration.free)
@@ -106,13 +83,16 @@ Continuation::PeriodGrowth period_of(const ProblemFamily& family, const BranchSt
 /// The value of the number that varies at which the period diverges. Next to a homoclinic or heteroclinic
 /// orbit the number approaches it as e^{−λT}: g = ∂varied/∂T falls as e^{−λT}, and g/λ is the rest of the
 /// way. Nothing unless that is less than `error`.
-std::optional<double> limit_of_period(const Continuation::PeriodGrowth& before,
-                                      const Continuation::PeriodGrowth& here, double error) {
+struct PeriodLimit {
+  double varied = 0, rate = 0;  ///< the limit, and λ
+};
+std::optional<PeriodLimit> limit_of_period(const Continuation::PeriodGrowth& before,
+                                           const Continuation::PeriodGrowth& here, double error) {
   const double longer = here.duration - before.duration;
   const double decay = std::log(before.slope / here.slope) / longer, rest = here.slope / decay;
   if (!(longer > 0 && decay * here.duration > lasting && here.at_rest > mostly)) return std::nullopt;
   if (!(std::abs(rest) <= error)) return std::nullopt;
-  return here.varied + rest;
+  return PeriodLimit{here.varied + rest, decay};
 }
 
 }  // namespace
@@ -296,7 +276,7 @@ bool Continuation::step() {
   std::swap(state, to_);
   // An eigenvalue that seems to pass zero where no branch crosses: a leap onto another branch.
   if (events.missed || (!events.index_known && length > shortest_leap)) return retry(length);
-  end_at_half_period(events);
+  end_at_half_period(length, events);
   for (FoundPoint& found : events.points) add(std::move(found));
   if (events.end != BranchEnd::none) {
     stop(events.end, std::move(events.message));
@@ -305,7 +285,7 @@ bool Continuation::step() {
     hidden_points_ += hidden;
   }
   before_ = std::exchange(here_, period_of(family_, state));
-  if (end_ == BranchEnd::none) end_where_period_diverges(here_.error);
+  if (end_ == BranchEnd::none) end_where_period_diverges(here_.error, state);
   return !found_.empty();
 }
 
@@ -370,7 +350,7 @@ bool Continuation::halves_period() {
 /// Where orbits meet those of half their period, run through twice, beyond are the same ones half a period
 /// later: what is left of them less themselves half a period later passes zero there. The point may be found
 /// a little beyond the step.
-void Continuation::end_at_half_period(StepEvents& events) {
+void Continuation::end_at_half_period(double length, StepEvents& events) {
   const Trajectory from = trajectory_of(from_.path), to = trajectory_of(tracker_.state.path);
   const double before = alternation(family_, from_.varied, from, from).value_or(0);
   if (before <= std::pow(half_distance(), 2)) return;
@@ -382,14 +362,37 @@ void Continuation::end_at_half_period(StepEvents& events) {
     return (point.kind == PointKind::branch || point.kind == PointKind::fold) &&
            has_half_period(family_, point.parameter, point.solution.trajectory, most);
   });
-  if (met == events.points.end()) return;
-  const double parameter = met->point.parameter;
-  events.points.erase(met + 1, events.points.end());
+  if (met != events.points.end()) {
+    events.points.erase(met + 1, events.points.end());
+  } else if (!passes || events.end != BranchEnd::none || !reach_half_period(length, before)) {
+    return;
+  } else {
+    events.points = {{read_point(tracker_, PointKind::regular)}};
+  }
   events.end = BranchEnd::closed;
   events.message = fmt::format(
       "the branch is closed: at {:.8g} its orbit repeats one of half the period, and beyond are the "
       "same ones half a period later",
-      parameter);
+      events.points.back().point.parameter);
+}
+
+/// To where the orbit repeats one of half the period, on a step of this length on which neither a fold nor a
+/// branch is known to be. Roundoff may hide where the number turns back; what alternates falls there as a
+/// line does. `before`: the alternation of the first orbit. The tracker is where it was if none is found.
+bool Continuation::reach_half_period(double length, double before) {
+  const BranchState to = tracker_.state;
+  const Trajectory first = trajectory_of(from_.path);
+  const auto left = [&] {
+    const BranchState& state = tracker_.state;
+    return *alternation(family_, state.varied, first, trajectory_of(state.path));
+  };
+  const double at = root(tracker_, from_, {0, before}, {length, left()}, std::nullopt, left,
+                         [&](double, double change) { return is_located(tracker_, family_, change); });
+  if (std::isfinite(at) &&
+      has_half_period(family_, tracker_.state.varied, trajectory_of(tracker_.state.path), half_distance()))
+    return true;
+  tracker_.state = to;
+  return false;
 }
 
 /// Along a step the index changes by the eigenvalues that pass zero, which are counted on one mesh. Where the
@@ -409,14 +412,20 @@ void Continuation::count_index(StepEvents& events, BranchPoint& next) {
   if (!family_.problem.paired && !family_.problem.phase) ++unknown_indices_;
 }
 
+std::optional<Problem> Continuation::problem_at(double value) const {
+  return family_.varied == Varied::parameter ? family_.at(value) : family_.problem;
+}
+
 /// Where the way that is left to the limit is no longer than `error`.
-bool Continuation::end_where_period_diverges(double error) {
-  const std::optional<double> limit = limit_of_period(before_, here_, error);
-  if (limit)
-    stop(BranchEnd::infinite_period,
-         fmt::format("the period diverges at {} {:.8g}: a homoclinic or heteroclinic orbit", family_.name,
-                     *limit));
-  return limit.has_value();
+bool Continuation::end_where_period_diverges(double error, const BranchState& last) {
+  const std::optional<PeriodLimit> limit = limit_of_period(before_, here_, error);
+  if (!limit) return false;
+  const std::optional<Problem> problem = problem_at(last.varied);
+  if (!problem || !passes_saddle(*problem, last.path, limit->rate)) return false;
+  stop(BranchEnd::infinite_period,
+       fmt::format("the period diverges at {} {:.8g}: a homoclinic or heteroclinic orbit", family_.name,
+                   limit->varied));
+  return true;
 }
 
 void Continuation::check_action() {
@@ -425,24 +434,21 @@ void Continuation::check_action() {
 }
 
 bool Continuation::give_up(const BranchState& from) {
-  if (end_where_period_diverges(hardly * std::abs(family_.to - family_.from))) return false;
-  const double varied = from.varied, graded = grading(from.path);
+  if (end_where_period_diverges(hardly * std::abs(family_.to - family_.from), from)) return false;
+  const double varied = from.varied;
   if (const Deadline& deadline = options_.solve.deadline; deadline.passed())
     return stop(BranchEnd::budget, fmt::format("at {:.8g} {} (solve.budget) is spent; raise it", varied,
                                                deadline.budget_text()));
-  StepFailure failure = tracker_.failure();
-  const bool unresolved = failure == StepFailure::rough || failure == StepFailure::hidden;
-  if (unresolved && graded > singular_grading) failure = StepFailure::crowded;
-  switch (failure) {
+  if (const std::optional<Problem> problem = problem_at(varied);
+      problem && tracker_.failure() != StepFailure::no_problem && near_singularity(*problem, from.path))
+    return stop(BranchEnd::collision,
+                fmt::format("at {:.8g} the path, whose shortest element is {:.0e} of its longest, needs ever "
+                            "more of them: it comes near a singularity; loosen the tolerance",
+                            varied, 1 / grading(from.path)));
+  switch (tracker_.failure()) {
     case StepFailure::crowded:
-      if (graded < mild_grading)
-        return stop(BranchEnd::too_short,
-                    fmt::format("at {:.8g} no number of elements meets the tolerance; loosen it", varied));
-      return stop(
-          BranchEnd::collision,
-          fmt::format("at {:.8g} the path, whose shortest element is {:.0e} of its longest, needs ever "
-                      "more of them: it comes near a singularity; loosen the tolerance",
-                      varied, 1 / graded));
+      return stop(BranchEnd::too_short,
+                  fmt::format("at {:.8g} no number of elements meets the tolerance; loosen it", varied));
     case StepFailure::no_problem:
       return stop(BranchEnd::limit,
                   fmt::format("at {:.8g} the branch cannot be followed: beyond, there is no such problem, or "

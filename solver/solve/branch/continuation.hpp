@@ -75,9 +75,11 @@ class Continuation {
   void check_action();
   double half_distance() const;
   bool halves_period();
-  void end_at_half_period(StepEvents& events);
+  void end_at_half_period(double length, StepEvents& events);
+  bool reach_half_period(double length, double before);
   void count_index(StepEvents& events, BranchPoint& next);
-  bool end_where_period_diverges(double error);
+  std::optional<Problem> problem_at(double value) const;
+  bool end_where_period_diverges(double error, const BranchState& last);
   void add(FoundPoint found);
   bool stop(BranchEnd end, std::string message);
   bool give_up(const BranchState& from);

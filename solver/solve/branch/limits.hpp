@@ -140,17 +140,26 @@ inline constexpr double rest = 1e-9;
 /// the difference is so small.
 inline constexpr int unchecked = 8;
 inline constexpr double probes[] = {1e-3, 1e-4, 1e-5}, exact = 1e-9;
-/// Next to a homoclinic orbit elements slower than the first share of the fastest make up more than the
-/// second share of the period, which is so many times the time in which the number that varies approaches its
-/// limit e-fold.
-inline constexpr double slow = 0.03, mostly = 0.25, lasting = 5;
+/// The period diverges after so many times the time in which the number that varies approaches its limit
+/// e-fold, if this share of the period is spent at rest.
+inline constexpr double lasting = 5, mostly = 0.25;
 /// Of the distance wanted: where steps fail so near to the limit it is the end.
 inline constexpr double hardly = 1e-6;
-/// Where steps fail and elements differ in length by more than this, the path comes near a singularity.
-/// Where they differ by less than this, there is none.
-inline constexpr double singular_grading = 100, mild_grading = 3;
 
 }  // namespace continuation
+
+namespace approached {
+
+/// Elements slower than this share of the fastest are at rest.
+inline constexpr double slow = 0.03;
+/// A path next to a homoclinic orbit is slowest at an equilibrium, within this share of its range. The number
+/// that varies approaches its limit no faster than the motion leaves the equilibrium, but for this factor.
+inline constexpr double beside_rest = 0.2, fastest_approach = 1.5;
+/// Next to a singularity elements differ in length by more than the first, and forces change e-fold on less
+/// than the second, of the range of the path.
+inline constexpr double singular_grading = 100, singular_length = 1e-2;
+
+}  // namespace approached
 
 namespace elements {
 
