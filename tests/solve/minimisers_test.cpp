@@ -403,6 +403,16 @@ TEST(Minimisers, FallsFromNearlyRest) {
   }
 }
 
+/// A rod of th'(1) = 0 that a load slightly off its axis buckles, from a guess that is all but straight: the
+/// minimiser, which is far from it. Integrated with the slope at 0 for which th'(1) = 0.
+TEST(Minimisers, FarFromASmallGuess) {
+  Problem rod = with_ends(
+      trace(1, [](auto q, auto v, auto) { return v[0] * v[0] / 2.0 + 3.0 * cos(q[0]) + 0.3 * sin(q[0]); }), 1,
+      [](BoundaryRelation& b) { b.fix(0, false, 0); });
+  rod = guessed(std::move(rod), [](double tau) { return Values{0.01 * tau}; });
+  expect_minimum(solve(rod, within(1e-9)), 2.693260443820, 1e-9);
+}
+
 /// A path of linear elements at the guess.
 struct Flow {
   explicit Flow(const Problem& given) : problem(given) {

@@ -49,13 +49,16 @@ Search::Pursuit Search::pursue(const char* strategy) {
   run_external_solver(options_.method, problem_, refinement_.tables(), path_, options_.deadline,
                       [this] { return refinement_.count_step(); });
   Refinement::Result result = refinement_.pursue();
-  // A path far from the guess may be wild, and resolved by accident only.
+  // A path far from the guess may be wild, and resolved by accident only. A minimiser is none.
+  const auto minimal = [&] {
+    return !problem_.paired && !problem_.phase && w_.iteration.model().inertia(0).negative == 0;
+  };
   const bool far = ran_away(problem_, magnitude_, scales(path_, refinement_.tables()).magnitude);
   if (result == Refinement::Result::converged && far && problem_.periodic) {
     outcome_.message = "the orbit moved far away, to where forces vanish";
     result = Refinement::Result::failed;
   } else if (result == Refinement::Result::converged && outcome_.elsewhere &&
-             (far || !refinement_.holds_on_other_elements())) {
+             ((far && !minimal()) || !refinement_.holds_on_other_elements())) {
     unheld_ = path_;
     result = Refinement::Result::failed;
   }
