@@ -83,6 +83,22 @@ TEST_F(ContactOrder, AnArcThatRests) {
   expect_minimum(found, 1.38604786, 1e-5);
 }
 
+/// Among five discs, those of least action of the 32 ways past them. Lengths are those of common tangents and
+/// arcs between.
+TEST_F(ContactOrder, WaysOfLeastActionAmongManyDiscs) {
+  LONG_TEST();
+  const Study s = study(
+      "[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x'^2 + y'^2)/2\"\n[path]\nconstraints = [\n"
+      "\"(x + 1.059)^2 + (y + 1.102)^2 >= 0.257^2\", \"(x - 1.441)^2 + (y - 0.991)^2 >= 0.523^2\",\n"
+      "\"(x - 1.453)^2 + (y + 1.193)^2 >= 0.636^2\", \"(x + 2.146)^2 + (y - 0.551)^2 >= 0.329^2\",\n"
+      "\"(x + 0.356)^2 + (y + 1.132)^2 >= 0.306^2\"]\n[boundary]\nstart = { x = -3, y = 0 }\n"
+      "end = { x = 3, y = 0 }\nduration = 1\n[search]\nsolutions = 5\n");
+  const std::vector<Solution> found = run_all(s);
+  const double actions[] = {18, 20.992221219, 22.7952857431, 22.81652927, 22.8262693834};
+  ASSERT_EQ(found.size(), std::size(actions)) << found.front().message;
+  for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k].action, actions[k], 1e-7);
+}
+
 TEST_F(ContactOrder, EachDiscIsPassedOnBothSides) {
   LONG_TEST();
   const Study s = study(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -61,7 +62,11 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
   const auto same = [&](const Solution& a, const Solution& b, bool continua) {
     return shifts || continua ? same_orbit(a, b, options.tolerance) : same_path(a, b, options.tolerance, 0);
   };
-  const auto enough = [&] { return static_cast<int>(found.size()) >= most || options.deadline.passed(); };
+  // As many as wanted of no more action than what a path would lead to.
+  const auto enough_below = [&](double action) {
+    const auto below = [&](const Solution& solution) { return solution.action <= action; };
+    return std::ranges::count_if(found, below) >= most || options.deadline.passed();
+  };
   const auto pursue = [&](const std::vector<double>& z) {
     ++tried;
     ++vain;
@@ -79,13 +84,17 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
     singular.push_back(search.singular());
   };
   pursue(first_path(problem, action));
-  for (const std::vector<double>& z : paths_by_sides(problem, action))
-    if (!enough()) pursue(z);
+  for (const FirstPath& path : paths_by_sides(problem, action)) {
+    const double estimate = path.action.value_or(INFINITY);
+    if (!enough_below(estimate + tight_action * std::abs(estimate))) pursue(path.nodes);
+  }
   vain = 0;
-  for (int number = 0; number < bent_paths(problem) && vain < most_in_vain && !enough(); ++number)
+  for (int number = 0; number < bent_paths(problem) && vain < most_in_vain && !enough_below(INFINITY);
+       ++number)
     if (const std::optional<std::vector<double>> z = bent_path(problem, action, number)) pursue(*z);
   if (found.empty()) return {std::move(failure)};
   sort_by_action(found);
+  if (static_cast<int>(found.size()) > most) found.resize(most);
   if (static_cast<int>(found.size()) < most)
     found.front().message += fmt::format(
         "; {} of {} local minimisers wanted were found from {} first paths; "

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <utility>
 
-#include "problem/manifold.hpp"
 #include "solve/contact/aside.hpp"
 #include "solve/contact/limits.hpp"
+#include "solve/contact/tight_path.hpp"
 #include "solve/guess/starting_ends.hpp"
 
 namespace extremal {
@@ -53,26 +53,11 @@ double size_of(const Nodes& z, int n) {
 
 /// Moves the nodes to where all inequalities hold; false where that fails.
 bool push(const Problem& problem, const CoarseAction& action, Nodes& z) {
-  const Inequalities& inequalities = *problem.inequalities;
   const std::size_t n = problem.coordinates();
-  for (std::size_t place = 0; place < action.places().size(); place += inequalities.count()) {
+  for (std::size_t place = 0; place < action.places().size(); place += problem.inequalities->count()) {
     const int node = action.places()[place].node;
     const std::span<double> q(z.data() + node * n, n);
-    bool kept = false;
-    for (int pass = 0; pass < most_pushes && !kept; ++pass) {
-      const ConstraintValues values = inequalities.all->at(q, action.time(node));
-      Eigen::Index worst = 0;
-      const double least = values.g.minCoeff(&worst);
-      kept = least >= 0;
-      if (kept) break;
-      const VectorXd slope = values.slopes.row(worst), across = inequalities.all->metric() * slope;
-      const double square = slope.dot(across);
-      if (!(square > 0)) return false;
-      // A step slightly beyond, so that rounding does not keep the node outside.
-      const VectorXd step = -(1 + 1e-6) * least / square * across;
-      for (std::size_t a = 0; a < n; ++a) q[a] += step[a];
-      if (problem.manifold && !problem.manifold->project(q, action.time(node))) return false;
-    }
+    if (!push_node(problem, q, action.time(node))) return false;
   }
   return true;
 }
@@ -102,90 +87,141 @@ constexpr int signs = 2, sizes = static_cast<int>(std::size(wave_sizes));
 /// Directions of the bends of a search.
 int directions(int n) { return n == 1 ? 1 : n == 2 ? 1 : n; }
 
-/// How far nodes are moved to one side of what an inequality forbids: the tent of least slope over it.
-struct Side {
-  bool needed = false;  ///< the unmoved path is forbidden
-  std::vector<double> distance;
+/// What an inequality forbids at each node: distances along a direction from the path that is not moved.
+struct Obstacle {
+  std::vector<double> low, high;              ///< infinite where nothing is forbidden
+  double nearest = INFINITY;                  ///< of them all
+  bool open_below = true, open_above = true;  ///< whether it ends there within reach
 };
 
-/// Raises neighbours so that the distance changes by no more than `step` from node to node, from zero at the
-/// ends.
-void make_tent(std::vector<double>& distance, double step) {
-  const std::size_t last = distance.size() - 1;
-  for (std::size_t k = 1; k <= last; ++k) distance[k] = std::max(distance[k], distance[k - 1] - step);
-  for (std::size_t k = last; k-- > 0;) distance[k] = std::max(distance[k], distance[k + 1] - step);
-  for (std::size_t k = 0; k <= last; ++k)
-    distance[k] = std::min(distance[k], step * static_cast<double>(std::min(k, last - k)));
+/// Those within reach, the nearest first.
+std::vector<Obstacle> obstacles(const Problem& problem, const CoarseAction& action, const Nodes& line,
+                                const VectorXd& direction, double size) {
+  const std::size_t n = problem.coordinates();
+  const int last = action.elements();
+  std::vector<Obstacle> all(problem.inequalities->count(), {std::vector<double>(last + 1, INFINITY),
+                                                            std::vector<double>(last + 1, -INFINITY)});
+  std::vector<double> q(n);
+  for (int node = 1; node < last; ++node)
+    for (int k = -side_points; k <= side_points; ++k) {
+      const double distance = size * k / side_points, beyond = size / side_points;
+      for (std::size_t a = 0; a < n; ++a) q[a] = line[node * n + a] + distance * direction[a];
+      const ConstraintValues values = problem.inequalities->all->at(q, action.time(node));
+      for (std::size_t c = 0; c < all.size(); ++c) {
+        if (!(values.g[static_cast<Eigen::Index>(c)] < 0)) continue;
+        Obstacle& obstacle = all[c];
+        obstacle.low[node] = std::min(obstacle.low[node], distance - beyond);
+        obstacle.high[node] = distance + beyond;
+        obstacle.nearest = std::min(obstacle.nearest, std::abs(distance));
+        if (k == -side_points) obstacle.open_below = false;
+        if (k == side_points) obstacle.open_above = false;
+      }
+    }
+  std::erase_if(all, [](const Obstacle& obstacle) { return obstacle.nearest == INFINITY; });
+  std::ranges::stable_sort(all, {}, &Obstacle::nearest);
+  return all;
 }
 
-/// The side of an inequality, where one is within reach: nodes go beyond all that it forbids there.
-std::optional<Side> side_of(const Problem& problem, const CoarseAction& action, const Nodes& line,
-                            const VectorXd& direction, double size, int constraint, double sign) {
-  const std::size_t n = problem.coordinates();
-  Side side{false, std::vector<double>(action.elements() + 1)};
-  std::vector<double> q(n);
-  bool within = false;
-  for (int node = 1; node < action.elements(); ++node)
-    for (int k = 0; k <= side_points; ++k) {
-      const double distance = size * k / side_points;
-      for (std::size_t a = 0; a < n; ++a) q[a] = line[node * n + a] + sign * distance * direction[a];
-      if (!(problem.inequalities->all->at(q, action.time(node)).g[constraint] < 0)) continue;
-      if (k == side_points) return std::nullopt;
-      within = true;
-      side.needed = side.needed || k == 0;
-      side.distance[node] = size * (k + 1) / side_points;
+/// Between what lies below it and what lies above it, a path is moved as little as may be, by no more than
+/// `step` from node to node and not at the ends.
+struct Corridor {
+  std::vector<double> low, high;
+
+  explicit Corridor(int last) : low(last + 1, -INFINITY), high(last + 1, INFINITY) {}
+
+  void keep_above(const Obstacle& obstacle) {
+    for (std::size_t k = 0; k < low.size(); ++k) low[k] = std::max(low[k], obstacle.high[k]);
+  }
+  void keep_below(const Obstacle& obstacle) {
+    for (std::size_t k = 0; k < low.size(); ++k) high[k] = std::min(high[k], obstacle.low[k]);
+  }
+  bool closed() const {
+    for (std::size_t k = 0; k < low.size(); ++k)
+      if (low[k] > high[k]) return true;
+    return false;
+  }
+  std::vector<double> distances(double step) const {
+    const std::size_t last = low.size() - 1;
+    std::vector<double> least = low, most = high, result(last + 1);
+    for (std::size_t k = 1; k <= last; ++k) {
+      least[k] = std::max(least[k], least[k - 1] - step);
+      most[k] = std::min(most[k], most[k - 1] + step);
     }
-  if (!within) return std::nullopt;
-  make_tent(side.distance, side_slope * size / action.elements());
-  return side;
+    for (std::size_t k = last; k-- > 0;) {
+      least[k] = std::max(least[k], least[k + 1] - step);
+      most[k] = std::min(most[k], most[k + 1] + step);
+    }
+    for (std::size_t k = 0; k <= last; ++k) {
+      const double reach = step * static_cast<double>(std::min(k, last - k));
+      const double wanted =
+          least[k] <= most[k] ? std::clamp(0.0, least[k], most[k]) : (least[k] + most[k]) / 2;
+      result[k] = std::clamp(std::clamp(wanted, low[k], high[k]), -reach, reach);
+    }
+    return result;
+  }
+};
+
+double largest_difference(const Nodes& a, const Nodes& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
 }
 
 }  // namespace
 
-std::vector<std::vector<double>> paths_by_sides(const Problem& problem, const CoarseAction& action) {
+std::vector<FirstPath> paths_by_sides(const Problem& problem, const CoarseAction& action) {
   const int n = problem.coordinates();
   if (problem.periodic) return {};
   const Nodes line = unbent(problem, action);
   const VectorXd direction = across_line(line, n, 0);
   const double size = size_of(line, n);
-  // Of each inequality the sides that may be chosen; one that is out of the way may be left as it is.
-  std::vector<std::vector<std::vector<double>>> choices;
-  std::size_t count = 1;
-  for (int c = 0; c < problem.inequalities->count(); ++c) {
-    std::vector<std::vector<double>> moves;
-    bool needed = false;
-    for (const double sign : {1.0, -1.0})
-      if (std::optional<Side> side = side_of(problem, action, line, direction, size, c, sign)) {
-        needed = needed || side->needed;
-        for (double& x : side->distance) x *= sign;
-        moves.push_back(std::move(side->distance));
-      }
-    if (!needed) moves.insert(moves.begin(), std::vector<double>(action.elements() + 1));
-    if (moves.size() < 2 || count * moves.size() > most_sides) continue;
-    count *= moves.size();
-    choices.push_back(std::move(moves));
+  const int last = action.elements();
+  const std::vector<Obstacle> all = obstacles(problem, action, line, direction, size);
+  // Those that leave no choice, and those beyond what can be combined, are passed on the side where they end,
+  // or on that on which the path moves less.
+  Corridor forced(last);
+  std::vector<Obstacle> chosen;
+  for (const Obstacle& obstacle : all) {
+    const bool choice = obstacle.open_below && obstacle.open_above;
+    if (choice && std::size_t(2) << chosen.size() <= most_sides) {
+      chosen.push_back(obstacle);
+    } else if (obstacle.open_above || obstacle.open_below) {
+      const double up = std::ranges::max(obstacle.high), down = -std::ranges::min(obstacle.low);
+      const bool above = obstacle.open_above && (!obstacle.open_below || up < down);
+      above ? forced.keep_above(obstacle) : forced.keep_below(obstacle);
+    }
   }
-  std::vector<std::pair<double, Nodes>> paths;
-  for (std::size_t number = 0; number < count && !choices.empty(); ++number) {
+  // Integrals and free waypoints are not kept while a path is pulled tight, nor are constraints.
+  const bool may_pull = !problem.extension && !problem.manifold;
+  std::vector<FirstPath> tight, loose;
+  for (std::size_t number = 0; number < std::size_t(1) << chosen.size() && !chosen.empty(); ++number) {
+    Corridor corridor = forced;
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      (number >> i) % 2 == 0 ? corridor.keep_above(chosen[i]) : corridor.keep_below(chosen[i]);
+    if (corridor.closed()) continue;
+    const std::vector<double> distances = corridor.distances(side_slope * size / last);
     Nodes z = line;
     double moved = 0;
-    for (int node = 0; node <= action.elements(); ++node) {
-      double up = 0, down = 0;
-      std::size_t rest = number;
-      for (const auto& moves : choices) {
-        const double by = moves[rest % moves.size()][node];
-        rest /= moves.size();
-        up = std::max(up, by);
-        down = std::min(down, by);
-      }
-      moved += std::abs(up + down);
-      for (int a = 0; a < n; ++a) z[static_cast<std::size_t>(node) * n + a] += (up + down) * direction[a];
+    for (int node = 0; node <= last; ++node) {
+      moved += std::abs(distances[node]);
+      for (int a = 0; a < n; ++a) z[static_cast<std::size_t>(node) * n + a] += distances[node] * direction[a];
     }
-    if (push(problem, action, z) && !jumps(z, n)) paths.emplace_back(moved, std::move(z));
+    if (!push(problem, action, z) || jumps(z, n)) continue;
+    std::optional<TightPath> pulled = may_pull ? pulled_tight(problem, action, z) : std::nullopt;
+    if (pulled)
+      tight.push_back({std::move(pulled->z), pulled->action});
+    else
+      loose.push_back({std::move(z), {}, moved});
   }
-  std::ranges::stable_sort(paths, {}, &std::pair<double, Nodes>::first);
-  std::vector<Nodes> sorted;
-  for (auto& [moved, z] : paths) sorted.push_back(std::move(z));
+  std::ranges::stable_sort(tight, {}, [](const FirstPath& path) { return *path.action; });
+  std::ranges::stable_sort(loose, {}, &FirstPath::moved);
+  std::vector<FirstPath> sorted;
+  for (FirstPath& path : tight)
+    if (std::ranges::none_of(sorted, [&](const FirstPath& other) {
+          return largest_difference(path.nodes, other.nodes) <= one_tight_path * size;
+        }))
+      sorted.push_back(std::move(path));
+  std::ranges::move(loose, std::back_inserter(sorted));
   return sorted;
 }
 
