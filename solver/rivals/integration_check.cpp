@@ -83,7 +83,9 @@ bool IntegrationCheck::state_at(double t, std::span<double> y) {
 
 std::string IntegrationCheck::sample() {
   const int points = 2 * trajectory_.degree;
-  std::vector<double> p_samples;
+  // The momenta that velocities make, less those of rest: most probable paths have velocities and no momenta.
+  std::vector<double> p_samples, made_samples;
+  const std::vector<double> rest(n_, 0);
   for (int k = 0; k < trajectory_.elements(); ++k) {
     const double start = trajectory_.times[k], end = trajectory_.times[k + 1];
     for (int i = k == 0 ? 0 : 1; i <= points; ++i) {
@@ -93,6 +95,8 @@ std::string IntegrationCheck::sample() {
       q_samples_.insert(q_samples_.end(), next_.begin(), next_.begin() + n_);
       p_samples.insert(p_samples.end(), next_.begin() + n_, next_.end());
       v_samples_.insert(v_samples_.end(), v_.begin(), v_.end());
+      if (flow_.momentum(std::span(next_).first(n_), rest, t, std::span(interpolated_).first(n_)))
+        for (std::size_t a = 0; a < n_; ++a) made_samples.push_back(next_[n_ + a] - interpolated_[a]);
     }
   }
   const auto row = [&](const std::vector<double>& rows, bool last) {
@@ -102,6 +106,8 @@ std::string IntegrationCheck::sample() {
            row(p_samples, true)};
   const Extents q = extents(q_samples_, n_), v = extents(v_samples_, n_), p = extents(p_samples, n_);
   scales_ = {q.size(), p.size(), v.size()};
+  if (made_samples.size() == p_samples.size())
+    scales_.p = std::max(scales_.p, extents(made_samples, n_).size());
   // A motion that is nearly uniform has hardly a range of velocity: its momenta are those of so much at
   // least.
   const double slowest = nearly_uniform * q.size() / trajectory_.duration();

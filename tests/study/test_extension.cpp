@@ -565,3 +565,58 @@ TEST_F(Scenes, PointsThatAreOneAreTold) {
   EXPECT_FALSE(found.converged());
   EXPECT_NE(found.message.find("waypoint 1 is where the start is"), std::string::npos) << found.message;
 }
+
+/// What is held and the action have units of their own, which no index depends on.
+TEST_F(Scenes, AnIndexDoesNotDependOnTheUnitOfTheAction) {
+  for (const double m : {1e-10, 1e-8, 1e-6, 1.0, 1e4, 1e6, 1e9}) {
+    const Solution integral =
+        run(study(system("[\"u\"]", fmt::format("{}*u'^2/2", m)) +
+                  "[boundary]\nstart = { u = 0 }\nend = { u = 0 }\nduration = 1\nintegrals = [\"u = 1\"]\n"));
+    ASSERT_TRUE(integral.converged()) << m << integral.message;
+    EXPECT_NEAR(integral.action, 6 * m, 1e-9 * m);
+    const Solution condition = run(
+        study(system("[\"x\", \"y\"]", fmt::format("{}*(x'^2 + y'^2)/2", m)) +
+              "[boundary]\nconditions = [\"x(0)^2 + y(0)^2 = 1\", \"x(T) = 3\", \"y(T) = 0\"]\nduration = "
+              "1\n[guess]\nx = \"1 + 2*t\"\ny = \"0.02*sin(pi*t)\"\n"));
+    ASSERT_TRUE(condition.converged()) << m << condition.message;
+    for (const Solution* s : {&integral, &condition}) {
+      EXPECT_EQ(s->morse_index, 0) << m;
+      EXPECT_EQ(s->nullity, 0) << m;
+      EXPECT_TRUE(s->minimizing) << m;
+    }
+  }
+}
+
+/// A flat arc over a chord encloses most, with a large multiplier. The chord alone is no extremal: along it
+/// the length does not change to first order.
+TEST_F(Scenes, FlatArcsAndTheChord) {
+  const auto arc = [&](double length) {
+    return run(
+        study(system("[\"y\"]", "-y") +
+              fmt::format("[boundary]\nstart = {{ y = 0 }}\nend = {{ y = 0 }}\nduration = 1\nintegrals = "
+                          "[\"sqrt(1 + y'^2) = {}\"]\n",
+                          length)));
+  };
+  const Solution flat = arc(1 + 1e-7);
+  ASSERT_TRUE(flat.converged()) << flat.message;
+  EXPECT_EQ(flat.morse_index, 0);
+  EXPECT_EQ(flat.nullity, 0);
+  // y = h 4t(1 − t) has the length 1 + 8h²/3 and the area 2h/3, but for h⁴ and h³.
+  EXPECT_NEAR(flat.action, -2.0 / 3 * std::sqrt(3e-7 / 8), 1e-9);
+  const Solution chord = arc(1);
+  EXPECT_FALSE(chord.converged());
+  EXPECT_NE(chord.message.find("does not change with the path to first order"), std::string::npos)
+      << chord.message;
+}
+
+/// Two integrals of an indefinite quadratic L, which roundoff of a path of large values alone leaves unmet.
+TEST_F(Scenes, IntegralsOfLargePathsAreMetToRoundoff) {
+  const Solution s = run(study(
+      system("[\"a\", \"b\"]", "(a'^2 + b'^2)/2 + 0.13077175*a^2 + 0.59556794*a*b - 1.18340589*b^2") +
+      "[boundary]\nstart = { a = -0.566 }\nend = { a = -0.598 }\nduration = 3.149743460239177\nintegrals = "
+      "[\"cos(1.672*t)*(a + b) = 0.812\", \"cos(2.243*t)*b = -0.321\"]\n[[waypoints]]\nat = 0.932\n"
+      "a = 0.993\n"));
+  ASSERT_TRUE(s.converged()) << s.message;
+  EXPECT_NEAR(s.extension->integral_multipliers[0], -322.2, 0.5);
+  EXPECT_NEAR(s.extension->integral_multipliers[1], 281.8, 0.5);
+}

@@ -386,6 +386,28 @@ std::vector<double> BorderedEquations::units_of_times() const {
   return units;
 }
 
+/// What is held has multipliers of its own units, in which its derivatives may be large or small beside the
+/// second variation: in units in which both are as large, neither counts for the other's roundoff. Entries of
+/// the second variation are those of numbers below `varied`. Returns its largest.
+double BorderedEquations::unite_conditions(int varied, const std::vector<int>& number,
+                                           std::vector<double>& units) const {
+  double largest = 0;
+  std::vector<double> slopes(unknowns_);
+  const auto measure = [&](const Eigen::Triplet<double>& e) {
+    const int r = number[e.row()], c = number[e.col()];
+    if (r < 0 || c < 0) return;
+    const double size = std::abs(units[e.row()] * units[e.col()] * e.value());
+    if (r < varied && c < varied) largest = std::max(largest, size);
+    if (r >= varied && c < varied) slopes[e.row()] = std::max(slopes[e.row()], size);
+  };
+  for (const auto& e : symmetric_) measure(e);
+  for (const auto& e : entries_)
+    if (e.row() >= first_held()) measure(e);
+  for (int row = 0; row < unknowns_; ++row)
+    if (slopes[row] > 0 && largest > 0) units[row] *= largest / slopes[row];
+  return largest;
+}
+
 Inertia BorderedEquations::inertia() const {
   // Columns of the matrix that are kept: the path, times of waypoints, ν, η and the directions held.
   std::vector<int> number(unknowns_, -1);
@@ -397,20 +419,19 @@ Inertia BorderedEquations::inertia() const {
   for (int u = first_constant() + extension().unknowns(); u < first_time(); ++u) number[u] = size++;
   const int conditions = size - varied;
   const int held = phases_.count;
-  const std::vector<double> units = units_of_times();
+  for (int j = 0; j < held; ++j) number[first_held() + j] = size++;
+  std::vector<double> units = units_of_times();
+  const double largest = unite_conditions(varied, number, units);
   std::vector<int> rows, columns;
   std::vector<double> values;
-  double largest = 0;
   const auto take = [&](const Eigen::Triplet<double>& e) {
     const int r = number[e.row()], c = number[e.col()];
     if (r < 0 || c < 0 || r < c) return;  // the other triangle is its mirror image
     rows.push_back(r);
     columns.push_back(c);
     values.push_back(units[e.row()] * units[e.col()] * e.value());
-    largest = std::max(largest, std::abs(values.back()));
   };
   for (const auto& e : symmetric_) take(e);
-  for (int j = 0; j < held; ++j) number[first_held() + j] = size++;
   if (held > 0)
     for (const auto& e : entries_)
       if (e.row() >= first_held() && e.row() < first_held() + held) take(e);

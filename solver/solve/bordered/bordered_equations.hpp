@@ -118,6 +118,7 @@ class BorderedEquations {
   void add_held(const BorderedState& state);
   /// Of each unknown, so that entries in the rows of times are as large as those of the path.
   std::vector<double> units_of_times() const;
+  double unite_conditions(int varied, const std::vector<int>& number, std::vector<double>& units) const;
 
   const Problem* problem_ = nullptr;
   const ElementTables *tables_ = nullptr, *own_ = nullptr;

@@ -11,6 +11,7 @@
 #include "linear/dense.hpp"
 #include "solve/bordered/bordered_newton.hpp"
 #include "solve/bordered/limits.hpp"
+#include "solve/mesh/roundoff.hpp"
 
 namespace extremal {
 
@@ -22,10 +23,12 @@ namespace {
 struct Targets {
   Eigen::MatrixXd columns;  ///< their derivatives, of length one, or zero where terms cancel
   Eigen::VectorXd missed;   ///< what they are missed by, over the lengths of their derivatives
+  Eigen::VectorXd unknown;  ///< roundoff of their terms, likewise
 };
 
 Targets targets_at(const BorderedEquations& equations, int first, int count) {
-  Targets at{Eigen::MatrixXd::Zero(equations.of_path(), count), equations.values().segment(first, count)};
+  Targets at{Eigen::MatrixXd::Zero(equations.of_path(), count), equations.values().segment(first, count),
+             Eigen::VectorXd::Zero(count)};
   Eigen::MatrixXd terms = at.columns;
   for (const auto& e : equations.entries()) {
     const int j = e.col() - first;
@@ -38,6 +41,7 @@ Targets targets_at(const BorderedEquations& equations, int first, int count) {
     if (length > dependent * terms.col(j).norm()) {
       at.columns.col(j) /= length;
       at.missed[j] /= length;
+      at.unknown[j] = unit_roundoff * equations.target_sizes()[j] / length;
     } else {
       at.columns.col(j).setZero();
     }
@@ -118,12 +122,18 @@ std::string dependence(BorderedEquations& equations, const BorderedState& state,
   Eigen::VectorXd step = Eigen::VectorXd::Zero(equations.unknowns());
   step.head(at.columns.rows()) = -u * sizes.cwiseInverse().asDiagonal() * v.transpose() * at.missed;
   const double missed = missed_by(equations, first, count), distance = step.lpNorm<Eigen::Infinity>();
+  // A target at its extremum is met to the last digit beside it, by whatever path.
+  const double undetermined = (u * sizes.cwiseInverse().asDiagonal() * v.transpose().cwiseAbs() * at.unknown)
+                                  .lpNorm<Eigen::Infinity>();
   const auto is_met = [&] {
     BorderedState moved = state;
     return equations.apply(moved, step, 1) && equations.evaluate(moved, false) &&
            missed_by(equations, first, count) <= std::max(met, corrected * missed);
   };
-  if (distance <= accuracy && (missed <= met || is_met())) return {};
+  const double size = path_size(state, equations.coordinates()).value;
+  const bool shortest = distance <= unit_roundoff * shortest_step * size;
+  if (undetermined <= determined * size && distance <= accuracy && (shortest || missed <= met || is_met()))
+    return {};
   return fmt::format(
       "the path runs into a point at which {} to first order, and is {:.1e} away from meeting {}: "
       "multipliers "
@@ -131,7 +141,7 @@ std::string dependence(BorderedEquations& equations, const BorderedState& state,
       "are independent",
       names.size() > 1 ? fmt::format("{} depend on each other", fmt::join(names, ", "))
                        : fmt::format("{} does not change with the path", names[0]),
-      distance, names.size() > 1 ? "them" : "it");
+      std::max(distance, undetermined), names.size() > 1 ? "them" : "it");
 }
 
 }  // namespace extremal

@@ -78,6 +78,11 @@ inline constexpr double dependent = 1e-6, takes_part = 1e-3;
 /// method for them alone leaves the second at most: next to a point where they depend on each other a
 /// quarter.
 inline constexpr double met = 1e-15, corrected = 0.1;
+/// Of the size of a path: where roundoff of integrals and conditions moves it by more, they do not determine
+/// it.
+inline constexpr double determined = 1e-2;
+/// In roundoffs of the size of a path: a shorter step to meet them is none.
+inline constexpr double shortest_step = 16;
 
 /// States about the guess at which the equations are compared: their distances, relative to it, and elements
 /// of each leg. Lines of length one that depend on each other in all of them leave at most so much: the
