@@ -85,6 +85,21 @@ bool Manifold::regular(std::span<const double> q, double t) const {
   return values[constraints() - 1] > dependence * values[0];
 }
 
+double Manifold::radius(std::span<const double> q, double t) const {
+  const Index n = coordinates(), m = constraints(), all = n + 1 + m;
+  const std::vector<double> rest(all);
+  Scratch scratch;
+  double largest = 0;
+  for (Index k = 0; k < m; ++k) {
+    const std::vector<double> point = extended(q, t, static_cast<int>(m), static_cast<int>(k));
+    const PointValues values = evaluate_at(*parts_.forms, point, rest, 0, Order::hessian, scratch);
+    const double bend = square(values.qq, all).topLeftCorner(n, n).norm(),
+                 slope = vector(values.dq).head(n).norm();
+    if (bend > 0 && std::isfinite(slope / bend)) largest = std::max(largest, slope / bend);
+  }
+  return largest;
+}
+
 bool Manifold::project(std::span<double> q, double t) const {
   Eigen::Map<VectorXd> point(q.data(), static_cast<Index>(q.size()));
   ConstraintValues values = at(q, t);
@@ -101,7 +116,7 @@ bool Manifold::project(std::span<double> q, double t) const {
     }
     if (!nearer) {
       point = from;
-      return length <= rounded_step * point.norm();
+      return length <= rounded_step * std::max(point.norm(), radius(q, t));
     }
     if (length <= last_step * point.norm()) return true;
   }

@@ -59,6 +59,10 @@ class Manifold {
   /// |g| as a distance, in the units of q: the step of one iteration onto the manifold.
   double distance(std::span<const double> q, double t) const;
 
+  /// The largest radius of curvature of a constraint at a point, |∂g/∂q| over |∂²g/∂q²|; 0 of planes. Terms
+  /// of g that cancel are that large, wherever the origin is.
+  double radius(std::span<const double> q, double t) const;
+
   /// The projection (∂P/∂x)ᵀ p of a momentum, which L̃ has where L has p.
   std::vector<double> projected_momentum(std::span<const double> q, double t,
                                          std::span<const double> p) const;

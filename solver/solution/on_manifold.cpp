@@ -39,8 +39,9 @@ double move_nodes(const Manifold& manifold, Trajectory& trajectory) {
 }
 
 /// By how far the nodes of a solution were moved.
-void refuse_off_manifold(double moved, Solution& solution) {
-  double size = 0;
+void refuse_off_manifold(const Manifold& manifold, double moved, Solution& solution) {
+  const std::size_t n = solution.trajectory.coordinates;
+  double size = n > 0 ? manifold.radius({solution.trajectory.nodes.data(), n}, 0) : 0;
   for (const double x : solution.trajectory.nodes) size = std::max(size, std::abs(x));
   if (moved <=
       limits::on_manifold::most_moved * solution.error_estimate + limits::on_manifold::roundings * size)
@@ -132,14 +133,14 @@ void leave_out_normal(const Problem& problem, const Trajectory& trajectory, Floq
 
 void check_on_manifold(const Problem& problem, Solution& solution) {
   Trajectory trajectory = solution.trajectory;
-  refuse_off_manifold(move_nodes(*problem.manifold, trajectory), solution);
+  refuse_off_manifold(*problem.manifold, move_nodes(*problem.manifold, trajectory), solution);
 }
 
 void move_onto_manifold(const Problem& problem, Solution& solution) {
   if (!solution.converged()) return;
   Trajectory& trajectory = solution.trajectory;
   const Manifold& manifold = *problem.manifold;
-  refuse_off_manifold(move_nodes(manifold, trajectory), solution);
+  refuse_off_manifold(manifold, move_nodes(manifold, trajectory), solution);
   if (!solution.converged()) return;
   if (solution.floquet) leave_out_normal(problem, trajectory, *solution.floquet);
   convert(manifold, trajectory, 0, solution.momentum_start);

@@ -202,6 +202,20 @@ TEST_F(PathConstraints, AContactThatLastsFromTheStart) {
   EXPECT_EQ(found.contacts->contacts.front().from, 0);
 }
 
+/// A disc that touches the straight line at the origin, or reaches beyond it by little: where a contact lies
+/// does not change what is roundoff of it.
+TEST_F(PathConstraints, ADiscIsGrazedAtTheOrigin) {
+  for (const double depth : {0.0, 1e-6, 1e-4}) {
+    const double y = 1 - depth;
+    const Solution found = run(study(
+        particle(fmt::format("\"x^2 + (y - {})^2 >= 1\"", y), "x = -2.0, y = 0.0", "x = 2.0, y = 0.0")));
+    ASSERT_TRUE(found.converged()) << depth << found.message;
+    const double away = std::hypot(2, y),
+                 length = depth > 0 ? length_round_disc(away, away, 2 * std::atan(2 / y)) : 4;
+    EXPECT_NEAR(found.action, length * length / 2, 1e-8) << depth;
+  }
+}
+
 TEST_F(PathConstraints, ASphereIsPassedAlongAGeodesic) {
   const Study s = study(particle("\"x^2 + y^2 + z^2 >= 1\"", "x = -2.0, y = 0.1, z = 0.2",
                                  "x = 2.0, y = 0.3, z = -0.1", 1, true));
