@@ -94,9 +94,9 @@ struct Obstacle {
   bool open_below = true, open_above = true;  ///< whether it ends there within reach
 };
 
-/// Those within reach, the nearest first.
-std::vector<Obstacle> obstacles(const Problem& problem, const CoarseAction& action, const Nodes& line,
-                                const VectorXd& direction, double size) {
+/// Those within reach.
+std::vector<Obstacle> obstacles_within(double size, const Problem& problem, const CoarseAction& action,
+                                       const Nodes& line, const VectorXd& direction) {
   const std::size_t n = problem.coordinates();
   const int last = action.elements();
   std::vector<Obstacle> all(problem.inequalities->count(), {std::vector<double>(last + 1, INFINITY),
@@ -118,6 +118,22 @@ std::vector<Obstacle> obstacles(const Problem& problem, const CoarseAction& acti
       }
     }
   std::erase_if(all, [](const Obstacle& obstacle) { return obstacle.nearest == INFINITY; });
+  return all;
+}
+
+/// Those within the size of the path, the nearest first. What does not end within it may do so farther away,
+/// as far as `reach` then is.
+std::vector<Obstacle> obstacles(const Problem& problem, const CoarseAction& action, const Nodes& line,
+                                const VectorXd& direction, double& reach) {
+  const auto ends = [](const Obstacle& obstacle) { return obstacle.open_below && obstacle.open_above; };
+  std::vector<Obstacle> all = obstacles_within(reach, problem, action, line, direction);
+  double farther = reach;
+  for (int k = 0; k < most_reaches && !std::ranges::all_of(all, ends); ++k) {
+    std::vector<Obstacle> more = obstacles_within(farther *= 2, problem, action, line, direction);
+    if (std::ranges::count_if(more, ends) <= std::ranges::count_if(all, ends)) continue;
+    all = std::move(more);
+    reach = farther;
+  }
   std::ranges::stable_sort(all, {}, &Obstacle::nearest);
   return all;
 }
@@ -176,7 +192,8 @@ std::vector<FirstPath> paths_by_sides(const Problem& problem, const CoarseAction
   const VectorXd direction = across_line(line, n, 0);
   const double size = size_of(line, n);
   const int last = action.elements();
-  const std::vector<Obstacle> all = obstacles(problem, action, line, direction, size);
+  double reach = size;
+  const std::vector<Obstacle> all = obstacles(problem, action, line, direction, reach);
   // Those that leave no choice, and those beyond what can be combined, are passed on the side where they end,
   // or on that on which the path moves less.
   Corridor forced(last);
@@ -199,7 +216,7 @@ std::vector<FirstPath> paths_by_sides(const Problem& problem, const CoarseAction
     for (std::size_t i = 0; i < chosen.size(); ++i)
       (number >> i) % 2 == 0 ? corridor.keep_above(chosen[i]) : corridor.keep_below(chosen[i]);
     if (corridor.closed()) continue;
-    const std::vector<double> distances = corridor.distances(side_slope * size / last);
+    const std::vector<double> distances = corridor.distances(side_slope * reach / last);
     Nodes z = line;
     double moved = 0;
     for (int node = 0; node <= last; ++node) {

@@ -106,9 +106,9 @@ inline constexpr double shift = 1e-3;
 inline constexpr int variation_elements[] = {384, 1536}, least_arc_elements = 4;
 /// In contacts, by the cube root of how short they are.
 inline constexpr double turn_elements = 1.0 / 96;
-/// Points at which an inequality is looked for aside of a path, as far as the path is long; steepest slope of
-/// a path that goes round it, by its length; combinations of sides.
-inline constexpr int side_points = 96;
+/// Points at which an inequality is looked for aside of a path, as far as the path is long, and how often
+/// that is doubled; steepest slope of a path that goes round it, by its length; combinations of sides.
+inline constexpr int side_points = 96, most_reaches = 7;
 inline constexpr double side_slope = 4;
 inline constexpr std::size_t most_sides = 64;
 /// Sweeps over the nodes that pull a path tight, the last of them without over-relaxation; it is tight where
