@@ -62,7 +62,7 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
   const auto same = [&](const Solution& a, const Solution& b, bool continua) {
     return shifts || continua ? same_orbit(a, b, options.tolerance) : same_path(a, b, options.tolerance, 0);
   };
-  // As many as wanted of no more action than what a path would lead to.
+  // As many as wanted of less action than what a path leads to at the least.
   const auto enough_below = [&](double action) {
     const auto below = [&](const Solution& solution) { return solution.action <= action; };
     return std::ranges::count_if(found, below) >= most || options.deadline.passed();
@@ -85,8 +85,8 @@ std::vector<Solution> minimisers(const Problem& problem, const SolveOptions& opt
   };
   pursue(first_path(problem, action));
   for (const FirstPath& path : paths_by_sides(problem, action)) {
-    const double estimate = path.action.value_or(INFINITY);
-    if (!enough_below(estimate + tight_action * std::abs(estimate))) pursue(path.nodes);
+    const double least = path.action ? *path.action - tight_action * std::abs(*path.action) : INFINITY;
+    if (!enough_below(least)) pursue(path.nodes);
   }
   vain = 0;
   for (int number = 0; number < bent_paths(problem) && vain < most_in_vain && !enough_below(INFINITY);

@@ -115,7 +115,7 @@ inline constexpr std::size_t most_sides = 64;
 /// nodes move by less than this part of its size. Then estimates of actions are this good; paths that differ
 /// by less than that part of their size are one.
 inline constexpr int most_sweeps = 100, plain_sweeps = 5;
-inline constexpr double tight = 1e-4, tight_action = 0.02, one_tight_path = 2e-3;
+inline constexpr double tight = 1e-4, tight_action = 2e-3, one_tight_path = 2e-3;
 /// Waves of first paths of a search, their sizes, and starts in vain after which it ends.
 inline constexpr int waves = 4;
 inline constexpr double wave_sizes[] = {0.35, 0.8, 1.6};
