@@ -19,6 +19,7 @@
 #include "study/minimal_family.hpp"
 #include "study/modelling.hpp"
 #include "study/study.hpp"
+#include "study/system_form.hpp"
 
 namespace extremal {
 namespace {
@@ -68,21 +69,15 @@ bool same_coefficients(const EndMap& a, const EndMap& b) {
          });
 }
 
-Assignment* find_parameter(SystemTable& table, const std::string& name) {
-  const auto found = std::find_if(table.parameters.begin(), table.parameters.end(),
-                                  [&](const Assignment& a) { return a.name == name; });
-  return found == table.parameters.end() ? nullptr : &*found;
-}
-
 /// A scene whose parameter can be given any value.
 class VariedScene {
  public:
-  VariedScene(const Scene& scene, Problem problem, std::string parameter)
+  VariedScene(const Scene& scene, Problem problem, const std::string& parameter)
       : scene_(scene),
+        form_(scene.system, parameter, problem.phase ? Formulation::phase_space : Formulation::legendre),
         near_(end_points(problem)),
         guess_(problem.guess),
-        problem_(std::move(problem)),
-        parameter_(std::move(parameter)) {
+        problem_(std::move(problem)) {
     problem_.guess = {};
   }
 
@@ -109,8 +104,9 @@ class VariedScene {
 
  private:
   System put(double value) {
-    find_parameter(scene_.system, parameter_)->values.front().value = value;
-    return make_system(scene_.system, {}, problem_.phase ? Formulation::phase_space : Formulation::legendre);
+    System system = form_.at(value);
+    scene_.system = form_.table();
+    return system;
   }
 
   /// But for constraints.
@@ -142,10 +138,10 @@ class VariedScene {
   }
 
   Scene scene_;
+  SystemForm form_;
   EndPoints near_;  ///< where the family begins
   Guess guess_;
   Problem problem_;
-  std::string parameter_;
 };
 
 /// A map must leave L unchanged, and a duration must be one that L repeats after, along the whole family.

@@ -11,6 +11,7 @@
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
 #include "study/boundary.hpp"
+#include "study/dependence.hpp"
 #include "study/modelling.hpp"
 #include "study/naming.hpp"
 
@@ -26,22 +27,6 @@ constexpr std::array<double, 4> places = {-2, -1, 1, 2};
 constexpr std::array<double, 4> quotient_weights = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
 
 double size_of(double value) { return value == 0 ? 1 : std::abs(value); }
-
-bool names_any(const std::string& formula, const std::set<std::string>& names) {
-  return std::ranges::any_of(names_in(formula),
-                             [&](const std::string& name) { return names.contains(name); });
-}
-
-bool names_any(const Quantity& quantity, const std::set<std::string>& names) {
-  const auto* formula = std::get_if<std::string>(&quantity.value);
-  return formula && names_any(*formula, names);
-}
-
-bool names_any(const std::vector<Assignment>& assignments, const std::set<std::string>& names) {
-  return std::ranges::any_of(assignments, [&](const Assignment& a) {
-    return std::ranges::any_of(a.values, [&](const Quantity& q) { return names_any(q, names); });
-  });
-}
 
 bool depends(const BoundaryTable& boundary, const std::set<std::string>& names) {
   return names_any(boundary.start, names) || names_any(boundary.end, names) ||
@@ -124,22 +109,15 @@ void FittedScene::read_parameters(const Scene& scene, const System& system) {
 
 /// What depends on the parameters through formulas; numbers among it are active parameters as well.
 void FittedScene::find_dependent(const Scene& scene) {
-  dependent_.insert(parameters_.begin(), parameters_.end());
+  dependent_ = with_dependent({parameters_.begin(), parameters_.end()}, table_);
   active_ = parameters_;
-  for (bool more = true; more;) {
-    more = false;
-    for (const Definition& definition : table_.definitions)
-      if (!dependent_.contains(definition.name) && names_any(definition.formula.value, dependent_))
-        more = dependent_.insert(definition.name).second;
-    for (const Assignment& parameter : table_.parameters) {
-      if (dependent_.contains(parameter.name) || !names_any({parameter}, dependent_)) continue;
-      if (parameter.list)
-        throw SceneError(fit_.at, fmt::format("the list '{}' is computed from a fitted parameter; write its "
-                                              "elements as parameters or definitions of their own",
-                                              parameter.name));
-      more = dependent_.insert(parameter.name).second;
-      active_.push_back(parameter.name);
-    }
+  for (const Assignment& parameter : table_.parameters) {
+    if (!dependent_.contains(parameter.name) || std::ranges::count(parameters_, parameter.name) > 0) continue;
+    if (parameter.list)
+      throw SceneError(fit_.at, fmt::format("the list '{}' is computed from a fitted parameter; write its "
+                                            "elements as parameters or definitions of their own",
+                                            parameter.name));
+    active_.push_back(parameter.name);
   }
   boundary_depends_ = depends(scene.boundary, dependent_);
 }

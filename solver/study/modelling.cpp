@@ -86,11 +86,12 @@ FaultyFormula at_its_place(const SystemTable& table, const FormulaError& e) {
   return {place == places.end() ? table.at : position(place->second, e.offset), e.what()};
 }
 
-System make_system(const SystemTable& table, const std::vector<std::string>& active,
-                   Formulation formulation) {
+System make_system(const SystemTable& table, const std::vector<std::string>& active, Formulation formulation,
+                   bool replaceable) {
   try {
     SystemText text = system_text(table);
     text.active = active;
+    text.replaceable = replaceable;
     System system = compile(text, formulation);
     if (!table.force.empty() && formulation == Formulation::phase_space)
       throw SceneError(

@@ -21,9 +21,9 @@ struct NoLegendreTransform : SceneError {
 };
 
 /// Throws SceneError at the place in the scene or system file where a formula is wrong. `active`: parameters
-/// that derivatives are asked for. A Hamiltonian may have no Legendre transform.
+/// that stay symbolic, for derivatives or to be replaced. A Hamiltonian may have no Legendre transform.
 System make_system(const SystemTable& table, const std::vector<std::string>& active = {},
-                   Formulation formulation = Formulation::legendre);
+                   Formulation formulation = Formulation::legendre, bool replaceable = false);
 
 /// The Lagrangian of two copies of a system with forces, of which the last coordinates are constants. Throws
 /// SceneError likewise.

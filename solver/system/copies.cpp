@@ -28,6 +28,7 @@ class Doubling {
       : n_(lagrangian.coordinates), own_(n_ - shared), all_(n_ + own_), l_(lagrangian), power_(power) {
     result_.coordinates = static_cast<int>(all_);
     result_.parameters = lagrangian.parameters;
+    result_.replaceable = lagrangian.replaceable;
     result_.uniforms = lagrangian.uniforms;
     result_.uniforms.insert(result_.uniforms.end(), power.uniforms.begin() + power.parameters,
                             power.uniforms.end());

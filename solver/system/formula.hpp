@@ -77,7 +77,10 @@ struct SystemText {
   std::map<std::string, std::string> definitions{};
   std::string lagrangian{};
   std::optional<std::string> hamiltonian{};  ///< instead of the Lagrangian
-  std::vector<std::string> active{};         ///< scalar parameters that derivatives are asked for
+  std::vector<std::string> active{};         ///< parameters that stay symbolic
+  /// Active ones are there for Lagrangian::with() and may be lists. Else they are there for derivatives, and
+  /// are single numbers.
+  bool replaceable = false;
 };
 
 /// Of a Hamiltonian: by its Legendre transform, or in phase space, where momenta are coordinates.

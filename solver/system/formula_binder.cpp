@@ -25,6 +25,7 @@ Binder::Binder(const Names& names, LagrangianGraph& target)
   target.coordinates = names.elements;
   target.uniforms = names.active;
   target.parameters = static_cast<int>(names.active.size());
+  target.replaceable = names.replaceable;
 }
 
 NodeId Binder::bind(TermBuilder& builder, const Formula& formula, std::uint32_t id, const Scope& scope) {
@@ -149,7 +150,8 @@ NodeId Binder::reference(TermBuilder& builder, const Formula& formula, const Syn
     case Meaning::time:
       return same_input(builder, 2 * n);
     case Meaning::active:
-      return same_input(builder, 2 * n + 1 + node.id);
+      return element(builder, formula, node, 2 * n + 1 + node.id, names_.find(formula.name(node))->count,
+                     scope);
     case Meaning::definition: {
       const NodeId value = definition(builder, node.id, at_end_);
       return node.velocity ? velocity(builder, value) : value;
@@ -192,12 +194,18 @@ NodeId Binder::coordinate(TermBuilder& builder, const Formula& formula, const Sy
                           const Scope& scope) {
   const Coordinate& declared = names_.coordinates[node.id];
   const bool second = node.velocity || node.momentum || node.meaning == Meaning::end || at_end_;
-  const std::uint32_t base = declared.first + (second ? names_.elements : 0);
-  if (!node.indexed) return same_input(builder, base);
+  const std::uint32_t first = declared.first + (second ? names_.elements : 0);
+  return element(builder, formula, node, first, declared.count, scope);
+}
+
+/// Of an array whose first element is the global input `first`; if the node has no index, that itself.
+NodeId Binder::element(TermBuilder& builder, const Formula& formula, const Syntax& node, std::uint32_t first,
+                       int count, const Scope& scope) {
+  if (!node.indexed) return same_input(builder, first);
   std::vector<std::uint32_t> column(builder.rows());
   for (std::size_t row = 0; row < column.size(); ++row) {
     builder.read(scope, row, indices_);
-    column[row] = base + evaluator_.element(formula, node, declared.count, indices_);
+    column[row] = first + evaluator_.element(formula, node, count, indices_);
   }
   return builder.input(std::move(column));
 }

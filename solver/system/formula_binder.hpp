@@ -51,6 +51,8 @@ class Binder {
   NodeId definition(TermBuilder& builder, int id, bool at_end);
   NodeId velocity(TermBuilder& builder, NodeId value);
   NodeId coordinate(TermBuilder& builder, const Formula& formula, const Syntax& node, const Scope& scope);
+  NodeId element(TermBuilder& builder, const Formula& formula, const Syntax& node, std::uint32_t first,
+                 int count, const Scope& scope);
   NodeId series(TermBuilder& builder, const Formula& formula, const Syntax& node, const Scope& scope);
   NodeId same_input(TermBuilder& builder, std::uint32_t global);
   template <class ValueOfRow>

@@ -58,7 +58,7 @@ void declare_coordinate(Names& names, const SystemText& system, std::size_t k) {
   if (root.indexed) {
     formula.root = formula.children(root)[0].node;
     Names constants;
-    constants.declare(system.parameters, system.active);
+    constants.declare(system.parameters, system.active, system.replaceable);
     for (const Coordinate& earlier : names.coordinates) constants.declare(earlier, where);
     constants.declare(system.definitions);
     std::vector<double> indices = resolve_at(formula, constants, 0);
@@ -129,18 +129,21 @@ void Names::declare(const std::map<std::string, std::string>& texts) {
   }
 }
 
-void Names::declare(const std::map<std::string, ParameterText>& texts,
-                    std::span<const std::string> symbolic) {
+void Names::declare(const std::map<std::string, ParameterText>& texts, std::span<const std::string> symbolic,
+                    bool to_replace) {
+  replaceable = to_replace;
   for (std::size_t k = 0; k < symbolic.size(); ++k) {
     const std::string& name = symbolic[k];
     const std::string where = fmt::format("active[{}]", k);
     const auto it = texts.find(name);
     if (it == texts.end()) throw FormulaError(fmt::format("there is no parameter '{}'", name), where, 0);
-    if (it->second.list)
+    const auto& [value, list] = it->second;
+    if (list && !replaceable)
       throw FormulaError(fmt::format("'{}' is a list; only single parameters can be active", name), where, 0);
     check_value(name, it->second, "parameters." + name);
-    declare(name, {Meaning::active, static_cast<int>(k)}, where);
-    active.push_back(it->second.value[0]);
+    declare(name, {Meaning::active, static_cast<int>(active.size()), static_cast<int>(value.size()), list},
+            where);
+    active.insert(active.end(), value.begin(), value.end());
   }
   for (const auto& [name, text] : texts) {
     if (find(name) != nullptr && find(name)->meaning == Meaning::active) continue;
@@ -153,7 +156,7 @@ void Names::declare(const std::map<std::string, ParameterText>& texts,
 
 Names names_of(const SystemText& text) {
   Names names;
-  names.declare(text.parameters, text.active);
+  names.declare(text.parameters, text.active, text.replaceable);
   for (std::size_t k = 0; k < text.coordinates.size(); ++k) declare_coordinate(names, text, k);
   if (names.elements == 0) throw FormulaError("no coordinates; need at least 1", "coordinates", 0);
   names.kind = text.hamiltonian ? Kind::hamiltonian : Kind::lagrangian;

@@ -48,7 +48,8 @@ struct Names {
   std::vector<Coordinate> coordinates;
   int elements = 0;                          ///< of all coordinates together
   std::vector<const Parameter*> parameters;  ///< by Known::id; those of the vocabulary, which outlives this
-  std::vector<double> active;                ///< values, by Known::id
+  std::vector<double> active;                ///< values; Known::id is the place of the first of a list
+  bool replaceable = false;                  ///< see SystemText
   std::vector<Formula> definitions;          ///< by Known::id; without nodes: not parsed yet
   std::map<std::string, Known, std::less<>> table;
   std::vector<std::string> indices;  ///< known outside every sum: i in formulas of an array
@@ -64,7 +65,8 @@ struct Names {
   /// Declares definitions, not parsed.
   void declare(const std::map<std::string, std::string>& definitions);
   /// Declares parameters; those of `active` stay symbolic.
-  void declare(const std::map<std::string, ParameterText>& texts, std::span<const std::string> active);
+  void declare(const std::map<std::string, ParameterText>& texts, std::span<const std::string> active,
+               bool replaceable = false);
 };
 
 /// Coordinates, parameters and parsed definitions of a system. Throws FormulaError.

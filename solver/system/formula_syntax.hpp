@@ -29,7 +29,7 @@ enum class Meaning : std::uint8_t {
   none,
   coordinate,  ///< id in Names::coordinates
   parameter,   ///< id in Names::parameters
-  active,      ///< a parameter that stays symbolic; id in the order of SystemText::active
+  active,      ///< a parameter that stays symbolic; id in Names::active
   definition,  ///< id in Names::definitions
   index,       ///< id counts the enclosing sums of the formula from outside
   time,

@@ -105,6 +105,8 @@ std::shared_ptr<const Lagrangian> as_lagrangian(const LagrangianGraph& l, const 
   result.coordinates = l.coordinates;
   result.graph = body.graph;
   result.uniforms = l.uniforms;
+  result.parameters = l.replaceable ? l.parameters : 0;
+  result.replaceable = l.replaceable;
   result.terms.push_back({value, static_cast<int>(row.size()), {row.begin(), row.end()}});
   return std::make_shared<TapeLagrangian>(result);
 }
@@ -119,6 +121,14 @@ NodeId by_time(const LagrangianGraph& l, Body& body, NodeId u, std::span<const s
 }
 
 }  // namespace
+
+std::shared_ptr<const Kinks> Kinks::with(std::span<const double> parameters) const {
+  std::vector<KinkSurface> surfaces = surfaces_;
+  for (KinkSurface& surface : surfaces)
+    for (auto* function : {&surface.u, &surface.u_by_time, &surface.odd})
+      if (!(*function = (*function)->with(parameters))) return nullptr;
+  return std::make_shared<const Kinks>(std::move(surfaces));
+}
 
 std::shared_ptr<const Kinks> find_kinks(const LagrangianGraph& l) {
   NodeId first = 0;

@@ -28,6 +28,8 @@ class Kinks {
  public:
   explicit Kinks(std::vector<KinkSurface> surfaces) : surfaces_(std::move(surfaces)) {}
   std::span<const KinkSurface> surfaces() const { return surfaces_; }
+  /// See Lagrangian::with().
+  std::shared_ptr<const Kinks> with(std::span<const double> parameters) const;
 
  private:
   std::vector<KinkSurface> surfaces_;

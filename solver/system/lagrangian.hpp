@@ -112,6 +112,13 @@ class Lagrangian {
     return false;
   }
 
+  /// The same with other values of the active parameters, where it was made for that. Null where values
+  /// cannot be put in.
+  virtual std::shared_ptr<const Lagrangian> with(std::span<const double> parameters) const {
+    (void)parameters;
+    return nullptr;
+  }
+
   int rows(Order order) const {
     const int g = static_cast<int>(structure_.gradient.size()),
               h = static_cast<int>(structure_.hessian.size());

@@ -52,6 +52,7 @@ class Transform {
     l_.coordinates = h.coordinates;
     l_.uniforms = h.uniforms;
     l_.parameters = h.parameters;
+    l_.replaceable = h.replaceable;
   }
 
   std::optional<LagrangianGraph> run();

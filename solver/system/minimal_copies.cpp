@@ -10,6 +10,7 @@ namespace extremal {
 
 MinimalCopies::MinimalCopies(std::shared_ptr<const MinimalLagrangian> one, const MinimalExpressions& made)
     : one_(std::move(one)) {
+  const auto kernel = std::make_shared<const Kernel>(made.kernel);
   const int d = one_->chart().free;
   structure_.coordinates = 2 * d;
   structure_.autonomous = structure_.harmonic = made.autonomous && made.autonomous_forces;
@@ -20,12 +21,12 @@ MinimalCopies::MinimalCopies(std::shared_ptr<const MinimalLagrangian> one, const
     const Scaled first = made.motion[z / (2 * d) * d + z % d];
     roots.push_back(z / d % 2 == 0 ? first : -first);
   }
-  motion_ = tape_of(made.kernel, roots);
+  motion_ = tape_of(kernel, roots);
   for (const auto& [row, column, value] : made.copies_hessian) {
     structure_.hessian.push_back({row, column});
     roots.push_back(value);
   }
-  hessian_ = tape_of(made.kernel, roots);
+  hessian_ = tape_of(kernel, roots);
 }
 
 bool MinimalCopies::agree(const Points& points) const {

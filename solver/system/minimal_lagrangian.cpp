@@ -19,34 +19,35 @@ constexpr double last_step_of_w = 1e-9;
 
 }  // namespace
 
-Tape tape_of(const Kernel& kernel, const std::vector<Scaled>& roots) {
+Tape tape_of(const std::shared_ptr<const Kernel>& kernel, const std::vector<Scaled>& roots) {
   std::vector<int> rows(roots.size());
   for (std::size_t k = 0; k < roots.size(); ++k) rows[k] = static_cast<int>(k);
-  const Tape::Contribution all[] = {{&kernel, roots, std::move(rows)}};
+  const Tape::Contribution all[] = {{kernel, roots, std::move(rows)}};
   return Tape(all, static_cast<int>(roots.size()), {});
 }
 
 MinimalLagrangian::MinimalLagrangian(const MinimalExpressions& made, Chart chart) : chart_(std::move(chart)) {
+  const auto kernel = std::make_shared<const Kernel>(made.kernel);
   structure_.coordinates = chart_.free;
   structure_.autonomous = structure_.harmonic = made.autonomous;
   std::vector<Scaled> roots{made.value};
-  orders_[0] = tape_of(made.kernel, roots);
+  orders_[0] = tape_of(kernel, roots);
   for (const Partial& p : made.gradient) {
     structure_.gradient.push_back(static_cast<int>(p.input));
     roots.push_back(p.value);
   }
-  orders_[1] = tape_of(made.kernel, roots);
+  orders_[1] = tape_of(kernel, roots);
   for (const auto& [row, column, value] : made.hessian) {
     structure_.hessian.push_back({row, column});
     roots.push_back(value);
   }
-  orders_[2] = tape_of(made.kernel, roots);
+  orders_[2] = tape_of(kernel, roots);
   roots = made.steps;
   roots.insert(roots.end(), made.pivots.begin(), made.pivots.end());
-  moves_ = tape_of(made.kernel, roots);
-  start_ = tape_of(made.kernel, made.start);
-  rates_ = tape_of(made.kernel, made.rates);
-  slopes_ = tape_of(made.kernel, made.slopes);
+  moves_ = tape_of(kernel, roots);
+  start_ = tape_of(kernel, made.start);
+  rates_ = tape_of(kernel, made.rates);
+  slopes_ = tape_of(kernel, made.slopes);
   for (Tape* tape : {&orders_[0], &orders_[1], &orders_[2], &start_, &moves_, &rates_, &slopes_})
     for (const Tape* other : {&orders_[2], &moves_}) tape->fit(*other);
 }

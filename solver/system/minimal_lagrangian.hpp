@@ -9,7 +9,7 @@
 namespace extremal {
 
 /// What these expressions are, a row of output for each.
-Tape tape_of(const Kernel& kernel, const std::vector<Scaled>& roots);
+Tape tape_of(const std::shared_ptr<const Kernel>& kernel, const std::vector<Scaled>& roots);
 
 /// L̂(u, u', t) of minimal_expressions.hpp. w is found at each point by Newton's method from the same start:
 /// nothing is kept between evaluations. Not a number beyond the chart, where a pivot of A vanishes.

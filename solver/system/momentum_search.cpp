@@ -98,8 +98,9 @@ MomentumSearch::MomentumSearch(const LagrangianGraph& hamiltonian) : n_(hamilton
   }
 
   std::vector<Tape::Contribution> all;
-  for (const Kernel& kernel : analysis.kernels) {
-    Tape::Contribution c{&kernel, {}, {}};
+  for (const auto& shared : analysis.kernels) {
+    const Kernel& kernel = *shared;
+    Tape::Contribution c{shared, {}, {}};
     std::vector<const SecondPartial*> seconds;
     std::vector<const Partial*> firsts;
     for (const Partial& p : kernel.gradient)

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "system/kernel.hpp"
@@ -7,10 +11,37 @@
 
 namespace extremal {
 
+/// The numbers of a structure, M, C, a and the frequencies, as expressions of the uniforms.
+class StructureNumbers {
+ public:
+  /// Puts their values into the structure. False where not all are finite; then M, C and a are empty.
+  bool put(std::span<const double> uniforms, Structure& s) const;
+
+  /// Adds second derivatives with a velocity. False, and nothing is added, if one is not constant.
+  bool add_second(const std::shared_ptr<const Kernel>& kernel);
+  /// Adds a = ∂L/∂q' where q = q' = 0. False, and nothing is added, if it is not constant or a momentum
+  /// jumps: then second derivatives do not tell the first ones.
+  bool add_first(const Kernel& kernel);
+  /// Adds the frequencies of sin, cos and tan. Returns whether t stands in them alone.
+  bool add_frequencies(const Kernel& kernel);
+  /// Leaves the frequencies alone.
+  void clear_form() { second_.clear(), first_.clear(); }
+
+ private:
+  /// Expressions in the rows of a kernel.
+  struct Expressions {
+    std::shared_ptr<const Kernel> kernel;
+    std::vector<Scaled> values;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> inputs;  ///< that each is a derivative by
+  };
+  std::vector<Expressions> second_, first_, frequencies_;
+};
+
 /// A Lagrangian taken apart: what is known of it, and kernels whose sum is its remainder.
 struct Analysis {
   Structure structure;
-  std::vector<Kernel> kernels;
+  StructureNumbers numbers;
+  std::vector<std::shared_ptr<const Kernel>> kernels;
 };
 
 /// Throws std::invalid_argument for a malformed Lagrangian.

@@ -33,18 +33,35 @@ struct Tape::Chunk {
 
 Tape::Tape(std::span<const Contribution> contributions, int outputs, std::span<const double> uniforms) {
   std::vector<bool> touched(outputs);
+  std::vector<Track> tracks;
   for (const Contribution& c : contributions) {
-    tracks_.push_back(track(c, touched, uniforms));
-    slots_ = std::max(slots_, tracks_.back().program.slots);
-    operands_ = std::max(operands_, tracks_.back().program.operands());
+    tracks.push_back(track(c, touched));
+    slots_ = std::max(slots_, tracks.back().program.slots);
+    operands_ = std::max(operands_, tracks.back().program.operands());
   }
+  tracks_ = std::make_shared<const std::vector<Track>>(std::move(tracks));
+  put(uniforms);
   widest_ = std::clamp(cache_doubles / simd_lanes() / std::max(operands_, 1), fewest_batches, most_batches);
   for (int row = 0; row < outputs; ++row)
     if (!touched[row]) untouched_.push_back(row);
 }
 
+void Tape::put(std::span<const double> uniforms) {
+  scalars_.clear();
+  for (const Track& track : *tracks_) {
+    scalars_.push_back(row_numbers(*track.kernel, track.program.scalars, uniforms));
+    if (scalars_.back().values.empty()) scalars_.back().values.push_back(0);
+  }
+}
+
+Tape Tape::with(std::span<const double> uniforms) const {
+  Tape other = *this;
+  other.put(uniforms);
+  return other;
+}
+
 /// A root is direct if every row of the kernel is the first to reach its row of output.
-Tape::Track Tape::track(const Contribution& c, std::vector<bool>& touched, std::span<const double> uniforms) {
+Tape::Track Tape::track(const Contribution& c, std::vector<bool>& touched) {
   const std::size_t width = c.roots.size();
   std::vector<bool> first(c.rows.size()), direct(width, true);
   for (std::size_t e = 0; e < c.rows.size(); ++e) {
@@ -54,16 +71,9 @@ Tape::Track Tape::track(const Contribution& c, std::vector<bool>& touched, std::
   }
   std::vector<Root> roots;
   for (std::size_t k = 0; k < width; ++k) roots.push_back({c.roots[k], direct[k]});
-  Track result{.program = lower(*c.kernel, roots),
-               .rows = c.kernel->rows,
-               .kinds = c.kernel->kinds,
-               .sources = c.kernel->table,
-               .targets = {},
-               .scalars = {}};
+  Track result{.kernel = c.kernel, .program = lower(*c.kernel, roots), .targets = {}};
   for (std::size_t e = 0; e < c.rows.size(); ++e)
     result.targets.push_back({c.rows[e], first[e] && !direct[e % width]});
-  result.scalars = row_numbers(*c.kernel, result.program.scalars, uniforms);
-  if (result.scalars.values.empty()) result.scalars.values.push_back(0);
   return result;
 }
 
@@ -79,17 +89,18 @@ void Tape::fit(const Tape& other) {
   widest_ = std::min(widest_, other.widest_);
 }
 
-void Tape::play(const Track& track, const Chunk& chunk) {
+void Tape::play(const Track& track, const RowNumbers& scalars, const Chunk& chunk) {
   const Program& program = track.program;
+  const Kernel& kernel = *track.kernel;
   const std::size_t length = static_cast<std::size_t>(chunk.batches) * simd_lanes();
   double** const outputs = chunk.operands + program.inputs;
   double** const slots = outputs + program.outputs;
   for (int k = 0; k < program.slots; ++k) slots[k] = chunk.memory + k * length;
-  for (int r = 0; r < track.rows; ++r) {
-    const std::uint32_t* source = track.sources.data() + static_cast<std::size_t>(r) * program.inputs;
+  for (int r = 0; r < kernel.rows; ++r) {
+    const std::uint32_t* source = kernel.table.data() + static_cast<std::size_t>(r) * program.inputs;
     const Target* target = track.targets.data() + static_cast<std::size_t>(r) * program.outputs;
     for (int k = 0; k < program.inputs; ++k) {
-      const Variable kind = track.kinds[k];
+      const Variable kind = kernel.kinds[k];
       const double* base = kind == Variable::coordinate ? chunk.q
                            : kind == Variable::velocity ? chunk.v
                            : kind == Variable::time     ? chunk.t
@@ -101,8 +112,8 @@ void Tape::play(const Track& track, const Chunk& chunk) {
       outputs[k] = chunk.out + target[k].row * chunk.stride;
       if (target[k].clear) std::fill_n(outputs[k], length, 0.0);
     }
-    chunk.player(program.code.data(), static_cast<int>(program.code.size()), chunk.operands,
-                 track.scalars.row(r), chunk.batches);
+    chunk.player(program.code.data(), static_cast<int>(program.code.size()), chunk.operands, scalars.row(r),
+                 chunk.batches);
   }
 }
 
@@ -132,19 +143,19 @@ void Tape::play(const Points& points, double* out, Scratch& scratch) const {
                       .batches = std::min(width, batches - begin),
                       .memory = memory,
                       .operands = scratch.operands.data()};
-    for (const Track& track : tracks_) play(track, chunk);
+    for (std::size_t k = 0; k < tracks_->size(); ++k) play((*tracks_)[k], scalars_[k], chunk);
     for (const int row : untouched_) std::fill_n(chunk.out + row * chunk.stride, chunk.batches * lanes, 0.0);
   }
 }
 
 TapeSummary Tape::summary() const {
-  TapeSummary s{.kernels = static_cast<int>(tracks_.size())};
-  for (const Track& track : tracks_) {
+  TapeSummary s{.kernels = static_cast<int>(tracks_->size())};
+  for (const Track& track : *tracks_) {
     const auto length = static_cast<int>(track.program.code.size());
-    s.rows += track.rows;
+    s.rows += track.kernel->rows;
     s.instructions += length;
     s.slots = std::max(s.slots, track.program.slots);
-    s.played += static_cast<long long>(track.rows) * length;
+    s.played += static_cast<long long>(track.kernel->rows) * length;
   }
   return s;
 }

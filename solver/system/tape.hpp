@@ -33,6 +33,7 @@ struct LagrangianGraph {
   std::vector<Term> terms;
   std::vector<double> uniforms;
   int parameters = 0;        ///< active ones: the first uniforms
+  bool replaceable = false;  ///< active ones are there for Lagrangian::with(), not for derivatives
   bool first_order = false;  ///< of a system in phase space, see phase_space.hpp
 };
 

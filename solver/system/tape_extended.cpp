@@ -159,15 +159,17 @@ void Tape::play_extended(const Number* q, const Number* v, const Number& t, Numb
   scratch.memory.resize(std::max<std::size_t>(scratch.memory.size(), slots_));
   scratch.operands.resize(std::max<std::size_t>(scratch.operands.size(), operands_));
   Number** const operands = scratch.operands.data();
-  for (const Track& track : tracks_) {
+  for (std::size_t j = 0; j < tracks_->size(); ++j) {
+    const Track& track = (*tracks_)[j];
     const Program& program = track.program;
+    const Kernel& kernel = *track.kernel;
     Number **outputs = operands + program.inputs, **slots = outputs + program.outputs;
     for (int k = 0; k < program.slots; ++k) slots[k] = scratch.memory.data() + k;
-    for (int r = 0; r < track.rows; ++r) {
-      const std::uint32_t* source = track.sources.data() + static_cast<std::size_t>(r) * program.inputs;
+    for (int r = 0; r < kernel.rows; ++r) {
+      const std::uint32_t* source = kernel.table.data() + static_cast<std::size_t>(r) * program.inputs;
       const Target* target = track.targets.data() + static_cast<std::size_t>(r) * program.outputs;
       for (int k = 0; k < program.inputs; ++k) {
-        const Variable kind = track.kinds[k];
+        const Variable kind = kernel.kinds[k];
         operands[k] = const_cast<Number*>(kind == Variable::coordinate ? q + source[k]
                                           : kind == Variable::velocity ? v + source[k]
                                                                        : &t);
@@ -177,7 +179,7 @@ void Tape::play_extended(const Number* q, const Number* v, const Number& t, Numb
         if (target[k].clear) *outputs[k] = Number(0);
       }
       extremal::play_extended(program.code.data(), static_cast<int>(program.code.size()), operands,
-                              track.scalars.row(r));
+                              scalars_[j].row(r));
     }
   }
   for (const int row : untouched_) out[row] = Number(0);

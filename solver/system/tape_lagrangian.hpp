@@ -7,6 +7,7 @@
 #include "system/extended_hessian.hpp"
 #include "system/kinks.hpp"
 #include "system/lagrangian.hpp"
+#include "system/structure.hpp"
 #include "system/tape_program.hpp"
 
 namespace extremal {
@@ -25,13 +26,15 @@ class Tape {
  public:
   /// What a kernel adds to the output.
   struct Contribution {
-    const Kernel* kernel;
+    std::shared_ptr<const Kernel> kernel;
     std::vector<Scaled> roots;
     std::vector<int> rows;  ///< the kernel's rows × roots: the row of output
   };
   Tape() = default;
   Tape(std::span<const Contribution> contributions, int outputs, std::span<const double> uniforms);
 
+  /// The same with other values of the uniforms.
+  Tape with(std::span<const double> uniforms) const;
   /// Writes every row of output at every point.
   void play(const Points& points, double* out, Scratch& scratch) const;
   /// The same at one point, in extended precision.
@@ -49,25 +52,23 @@ class Tape {
     int row;
     bool clear;  ///< before it is added to
   };
-  /// A kernel's program and where its rows read and write.
+  /// A kernel's program and where its rows write.
   struct Track {
+    std::shared_ptr<const Kernel> kernel;
     Program program;
-    int rows;
-    std::vector<Variable> kinds;
-    std::vector<std::uint32_t> sources;  ///< rows × inputs: index among its kind
-    std::vector<Target> targets;         ///< rows × outputs
-    RowNumbers scalars;
+    std::vector<Target> targets;  ///< rows × outputs
   };
   struct Chunk;
-  static Track track(const Contribution& contribution, std::vector<bool>& touched,
-                     std::span<const double> uniforms);
-  static void play(const Track& track, const Chunk& chunk);
+  static Track track(const Contribution& contribution, std::vector<bool>& touched);
+  static void play(const Track& track, const RowNumbers& scalars, const Chunk& chunk);
+  void put(std::span<const double> uniforms);
   int width(int batches) const;
 
-  std::vector<Track> tracks_;
-  std::vector<int> untouched_;    ///< rows of output that no track writes
-  int slots_ = 0, operands_ = 0;  ///< of the track that needs most
-  int widest_ = 1;                ///< batches played together
+  std::shared_ptr<const std::vector<Track>> tracks_ = std::make_shared<const std::vector<Track>>();
+  std::vector<RowNumbers> scalars_;  ///< of the programs
+  std::vector<int> untouched_;       ///< rows of output that no track writes
+  int slots_ = 0, operands_ = 0;     ///< of the track that needs most
+  int widest_ = 1;                   ///< batches played together
 };
 
 /// A Lagrangian from an expression graph.
@@ -78,6 +79,7 @@ class TapeLagrangian final : public Lagrangian, public ExtendedHessian {
 
   const Kinks* kinks() const override { return kinks_.get(); }
 
+  std::shared_ptr<const Lagrangian> with(std::span<const double> parameters) const override;
   void evaluate(const Points& points, Order order, double* out, Scratch& scratch) const override;
   void sensitivity(const Points& points, int parameter, double* out, Scratch& scratch) const override;
   bool evaluate_extended(const Extended* q, const Extended* v, const Extended& t, Extended* out,
@@ -97,6 +99,8 @@ class TapeLagrangian final : public Lagrangian, public ExtendedHessian {
   Tape orders_[3];
   std::vector<Tape> sensitivities_;  ///< by parameter
   std::shared_ptr<const Kinks> kinks_;
+  std::vector<double> uniforms_;
+  std::shared_ptr<const StructureNumbers> numbers_;  ///< null where values cannot be put in
 };
 
 }  // namespace extremal

@@ -25,6 +25,9 @@ class Sorter {
 
  private:
   Origin origin(std::uint32_t global) const;
+  bool active(std::uint32_t uniform) const { return uniform < static_cast<std::uint32_t>(l_.parameters); }
+  /// Whether the value may stand in the expressions.
+  bool is_number(const Origin& o) const { return o.kind == Variable::uniform && !active(o.index); }
   void check(const Term& term, const std::vector<std::uint32_t>& used) const;
   const std::uint32_t* row(const Term& term, int r) const {
     return term.table.data() + std::size_t(r) * term.arity;
@@ -47,7 +50,7 @@ Origin Sorter::origin(std::uint32_t global) const {
   if (global < 2 * n) return {Variable::velocity, global - n};
   if (global == 2 * n) return {Variable::time, 0};
   const std::uint32_t k = global - 2 * n - 1;
-  return {k < static_cast<std::uint32_t>(l_.parameters) ? Variable::parameter : Variable::uniform, k};
+  return {active(k) && !l_.replaceable ? Variable::parameter : Variable::uniform, k};
 }
 
 void Sorter::check(const Term& term, const std::vector<std::uint32_t>& used) const {
@@ -86,7 +89,7 @@ void Sorter::write_out(const Term& term, const std::vector<std::uint32_t>& used,
   for (const std::uint32_t m : used) {
     const std::uint32_t global = row(term, r)[m];
     const Origin o = origin(global);
-    if (o.kind == Variable::uniform) {
+    if (is_number(o)) {
       part.inputs[m] = {true, l_.uniforms[o.index], 0};
       continue;
     }
@@ -111,8 +114,10 @@ Group Sorter::tabulate(const Term& term, const std::vector<std::uint32_t>& used,
     const std::uint32_t global = row(term, rows[0])[m];
     const Origin o = origin(global);
     const auto value = [&](int r) { return l_.uniforms[origin(row(term, r)[m]).index]; };
-    if (o.kind == Variable::uniform &&
-        std::all_of(rows.begin(), rows.end(), [&](int r) { return value(r) == value(rows[0]); })) {
+    if (std::all_of(rows.begin(), rows.end(), [&](int r) {
+          const Origin at = origin(row(term, r)[m]);
+          return is_number(at) && value(r) == value(rows[0]);
+        })) {
       part.inputs[m] = {true, value(rows[0]), 0};
       continue;
     }

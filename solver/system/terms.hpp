@@ -9,7 +9,8 @@
 
 namespace extremal {
 
-/// What an input of a kernel stands for. A parameter is an active uniform; the same for all rows.
+/// What an input of a kernel stands for. A parameter is an active uniform that derivatives are asked for; the
+/// same for all rows.
 enum class Variable : std::uint8_t { coordinate, velocity, time, parameter, uniform };
 
 /// What a body's input is bound to: a number or an input of the group. What is not read is 0.
@@ -34,8 +35,9 @@ struct Group {
 };
 
 /// Rows of a term that differ in which inputs coincide go to different groups. Uniforms that do not vary
-/// between the rows of a group become numbers. All that stands in a few rows is collected in one group
-/// of one row, so that it shares subexpressions. Throws std::invalid_argument for a malformed table.
+/// between the rows of a group become numbers, but for those that other values may be put in for. All that
+/// stands in a few rows is collected in one group of one row, so that it shares subexpressions. Throws
+/// std::invalid_argument for a malformed table.
 std::vector<Group> group_terms(const LagrangianGraph& lagrangian);
 
 }  // namespace extremal
