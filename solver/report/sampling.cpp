@@ -124,7 +124,7 @@ Samples sampled(const Trajectory& trajectory, int count) {
 
 void add_spectrum(const Study& study, const SpectrumRequest& request, Result& result) {
   result.spectrum = spectrum_of(study, request, result.solution);
-  result.solution.message += unresolved_lines(study, *result.spectrum);
+  result.solution.message += unresolved_lines(study, *result.spectrum, result.solution.duration());
 }
 
 void bound_ends(Samples& samples) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "study/files/json_file.hpp"
 #include "study/guess.hpp"
@@ -15,8 +16,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Lines that leave more than this of the largest do not describe a motion.
-constexpr double resolved_part = 0.01;
+/// Lines that leave more than this of the largest do not describe a motion. Where none turns once along the
+/// arc they must leave no more than so many tolerances: a constant and a drift are near any short arc.
+constexpr double resolved_part = 1e-3, resolved_tolerances = 100;
 
 /// Nodes of a scheme are what it computes; samples are at equal steps.
 bool samples_nodes(const SolveOptions& options) { return options.elements > 0 && !options.free_steps; }
@@ -32,6 +34,14 @@ double part_left(const Spectrum& spectrum) {
   double largest = 0;
   for (const SpectralLine& line : spectrum.lines) largest = std::max(largest, line.amplitude);
   return largest > 0 ? spectrum.residual / largest : 0;
+}
+
+bool resolved(const Spectrum& spectrum, double duration, double tolerance) {
+  const bool turns = std::ranges::any_of(spectrum.lines, [&](const SpectralLine& line) {
+    return std::abs(line.frequency) * duration >= 0.999 * 2 * std::numbers::pi;
+  });
+  return part_left(spectrum) <=
+         (turns ? resolved_part : std::min(resolved_part, resolved_tolerances * tolerance));
 }
 
 double finite(const Json& line, const char* key, const Location& whole) {
@@ -98,14 +108,15 @@ SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request,
   return result;
 }
 
-std::string unresolved_lines(const Study& study, const SolutionSpectrum& spectrum) {
+std::string unresolved_lines(const Study& study, const SolutionSpectrum& spectrum, double duration) {
   std::string text;
   for (std::size_t a = 0; a < spectrum.motion.coordinates.size(); ++a)
-    if (const double left = part_left(spectrum.motion.coordinates[a]); left > resolved_part)
+    if (const Spectrum& lines = spectrum.motion.coordinates[a];
+        !resolved(lines, duration, study.options.tolerance))
       text += fmt::format(
           "; the lines of {} leave {:.2g} of the largest: too short an arc, too few lines, or a motion "
           "without lines",
-          study.problem.names[a], left);
+          study.problem.names[a], part_left(lines));
   return text;
 }
 

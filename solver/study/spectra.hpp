@@ -38,6 +38,6 @@ SolutionSpectrum spectrum_of(const Study& study, const SpectrumRequest& request,
 
 /// What is to be added to the message of the solution: of which coordinates the lines do not describe the
 /// motion.
-std::string unresolved_lines(const Study& study, const SolutionSpectrum& spectrum);
+std::string unresolved_lines(const Study& study, const SolutionSpectrum& spectrum, double duration);
 
 }  // namespace extremal

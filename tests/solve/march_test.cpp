@@ -492,6 +492,25 @@ TEST(MarchedMotion, TooFewElementsAreRefused) {
   EXPECT_NE(s.message.find("raise solve.elements"), std::string::npos) << s.message;
 }
 
+/// Over long elements the equations have several solutions: an element of 400 has seven. The one that the
+/// motion tends to keeps it between the turning points 0 and 2; one of 300 has none near the motion.
+TEST(MarchedMotion, TakesTheSolutionNearTheMotion) {
+  const Problem problem = from(marched_system({"x"}, "x'^2*(1 + x^2)/2 - 1e4*(x - 1)^2/2"), {0}, {0}, 5);
+  const Solution exact = solve(problem, within(1e-10)), s = solve(problem, pinned(scheme("gauss(3)"), 400));
+  ASSERT_TRUE(exact.converged()) << exact.message;
+  ASSERT_TRUE(s.converged()) << s.message;
+  Values q(1), near(1), v(1);
+  for (const double t : s.trajectory.times) {
+    s.trajectory.at(t, q, v);
+    exact.trajectory.at(t, near, v);
+    EXPECT_NEAR(q[0], near[0], 0.1) << t;
+  }
+  Solver solver;
+  const Solution none = solver.solve(problem, pinned(scheme("gauss(2)"), 300));
+  EXPECT_EQ(none.status, Status::not_converged);
+  EXPECT_NE(none.message.find("no solution near the motion"), std::string::npos) << none.message;
+}
+
 TEST(MarchedMotion, LatticesOfManyCoordinates) {
   const int n = 60;
   const auto chain =

@@ -170,6 +170,22 @@ TEST_F(Spectra, OfAMotionThatTurnsOver) {
   }
 }
 
+/// A constant, a drift and a line that does not turn are near half an oscillation: it is told that they leave
+/// something. Of a free motion the drift leaves nothing.
+TEST_F(Spectra, OfArcsThatAreTooShort) {
+  const auto told = [&](const std::string& lagrangian, double duration) {
+    const Study study =
+        load(fmt::format("[system]\ncoordinates = [\"x\"]\nlagrangian = \"{}\"\n[boundary]\n"
+                         "start = {{ x = 1, p_x = 0.5 }}\nduration = {}\n[spectrum]\n",
+                         lagrangian, duration));
+    return unresolved_lines(arc, spectrum_of(arc, *arc.spectrum, solved(arc)), duration);
+  };
+  for (const double duration : {0.1, 0.5, 1.0, 3.0})
+    EXPECT_NE(told("x'^2/2 - x^2/2", duration).find("too short an arc"), std::string::npos) << duration;
+  EXPECT_EQ(told("x'^2/2 - x^2/2", 30), "");
+  EXPECT_EQ(told("x'^2/2", 3), "");
+}
+
 TEST_F(Spectra, AgainstAnother) {
   write("other.json", R"({"spectrum": {"q": [{"frequency": 1.25, "amplitude": 1, "phase": 0}]}})");
   const Study s = study(oscillator_by(60.3 * 2 * pi, "quadratic", 8000) + "against = \"other.json\"\n");

@@ -8,7 +8,7 @@
 
 #include "solve/accept/limits.hpp"
 #include "solve/adapt/finer_elements.hpp"
-#include "solve/newton/least_eigenvalue.hpp"
+#include "solve/newton/resolve.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 
 namespace extremal {
@@ -17,66 +17,12 @@ using namespace limits::isolation;
 
 namespace {
 
-/// At the nodes of the path, in time: steps with 106 bits move those of the other.
-double largest_change(const Path& path, const Path& finer) {
-  const Trajectory there = trajectory_of(finer);
-  std::vector<double> q(path.coordinates()), v(q);
-  double most = 0;
-  for (int k = 0; k <= path.elements(); ++k) {
-    there.at(path.mesh()[k] * path.duration(), q, v);
-    for (int a = 0; a < path.coordinates(); ++a) most = std::max(most, std::abs(q[a] - path.node(k)[a]));
-  }
-  return most;
-}
-
-/// What a step of Newton's method leaves.
-struct Stepped {
-  bool contracted;    ///< the next step is shorter by as much as Kantorovich asks for, or below all roundoff
-  double eigenvalue;  ///< the least one
-};
-
-std::optional<Stepped> take_step(NewtonIteration& newton, Path& path) {
-  if (newton.full_step(path, 0) != StepResult::ok) return std::nullopt;
-  const bool contracted = newton.contraction() <= most_change || newton.norm() <= last_step;
-  if (!newton.factor(path)) return std::nullopt;
-  const std::optional<double> eigenvalue = least_eigenvalue(newton, path);
-  return eigenvalue ? std::optional(Stepped{contracted, *eigenvalue}) : std::nullopt;
-}
-
-bool agree(double eigenvalue, double next) {
-  return std::abs(next - eigenvalue) < most_change * std::abs(next);
-}
-
 /// With doubles, where roundoff does not hide the eigenvalue. Beside a path at which it vanishes a step
 /// halves it.
 bool isolated_to_roundoff(NewtonIteration& newton, Path& path, double eigenvalue) {
   const std::optional<Stepped> next = take_step(newton, path);
   return next && next->contracted && std::abs(next->eigenvalue) > roundoff &&
-         agree(eigenvalue, next->eigenvalue);
-}
-
-/// Where Newton's method ends on elements of a degree.
-struct Resolved {
-  int degree;
-  double eigenvalue;
-  int index;
-};
-
-/// With 106 bits. The first steps mend what doubles have made of the path; they need not contract.
-std::optional<Resolved> resolved(NewtonIteration& newton, Path& path) {
-  newton.double_digits();
-  newton.extend();                                            // of the gradient
-  newton.extend();                                            // of the factors
-  if (!newton.in_twice_the_precision()) return std::nullopt;  // the system has no such factors
-  std::optional<double> before;
-  for (int k = 0; k < most_steps; ++k) {
-    const std::optional<Stepped> next = take_step(newton, path);
-    if (!next) return std::nullopt;
-    if (next->contracted && before && agree(*before, next->eigenvalue))
-      return Resolved{path.degree(), next->eigenvalue, newton.model().inertia(0).negative};
-    before = next->eigenvalue;
-  }
-  return std::nullopt;
+         same_eigenvalue(eigenvalue, next->eigenvalue);
 }
 
 /// `index` was computed with 106 bits. If that of doubles differs by one, roundoff has changed the sign of
@@ -119,14 +65,14 @@ void judge_isolation(const Problem& problem, const Path& path, const Outcome& ou
   if (!found) {
     const auto resolved_on = [&](int by) {
       begin(by);
-      return resolved(w.iteration, finer);
+      return resolve(w.iteration, finer);
     };
     // An eigenvalue that depends on the elements is theirs. One of doubles may be roundoff, which tells
     // nothing.
     const std::optional<Resolved> other =
         std::abs(eigenvalue) > roundoff ? Resolved{path.degree(), eigenvalue, 0} : resolved_on(2 * raised);
     const std::optional<Resolved> own = other ? resolved_on(raised) : std::nullopt;
-    found = own && own->degree != other->degree && agree(other->eigenvalue, own->eigenvalue);
+    found = own && own->degree != other->degree && same_eigenvalue(other->eigenvalue, own->eigenvalue);
     if (found) index = own->index;
   }
   const double change = largest_change(path, finer);

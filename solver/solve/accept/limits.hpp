@@ -96,14 +96,10 @@ namespace isolation {
 
 /// Errors are estimates: they may be larger by so much.
 inline constexpr double honest = 10;
-/// Newton's method converges where the second variation changes by less than this part along a step; the next
-/// step is then shorter by as much (Kantorovich). With 106 bits it takes so many steps at most.
-inline constexpr double most_change = 0.25;
-inline constexpr int most_steps = 12;
 /// Of the degree of elements that decide.
 inline constexpr int raised = 2;
-/// An eigenvalue, by the diagonal, that may be of roundings; and a step, by the path, that is none of them.
-inline constexpr double roundoff = 64 * unit_roundoff, last_step = unit_roundoff / 64;
+/// An eigenvalue, by the diagonal, that may be of roundings.
+inline constexpr double roundoff = 64 * unit_roundoff;
 
 }  // namespace isolation
 

@@ -183,6 +183,7 @@ ElementSolver::Step ElementSolver::measure() {
     step.by_extent = std::max(step.by_extent, change / extent);
     step.by_value = std::max(step.by_value, change / (extent + std::abs(q_[a])));
   }
+  step.leaps = widest_ > 0 && largest > widest_;
   // Coordinates that move by the roundoff of others never settle by themselves.
   if (largest > 0) step.by_value = std::min(step.by_value, largest / widest);
   return step;
@@ -219,11 +220,13 @@ ElementSolver::Result ElementSolver::solve(const MotionState& state, double h) {
 ElementSolver::Result ElementSolver::iterate(const MotionState& state, double h) {
   for (int a = 0; a < shape_.n; ++a) q_[a] = state.q[a].high;
   double before = INFINITY;
+  bool leapt = false;
   bool renew = !kinetic_ && !(factored_ && reuse_ && h == factored_h_ && size_ > few_unknowns);
   const double stagnant_at = kinetic_ ? kinetic_stagnation : stagnation;
   if (kinetic_) factored_h_ = h;
   const double negligible = push_ <= weak_force ? weak_factor * negligible_step : negligible_step;
   reuse_ = true;
+  wandered_ = false;
   for (steps_ = 1; steps_ <= (kinetic_ ? most_cheap_steps : most_steps); ++steps_) {
     const bool fresh = renew;
     if (!evaluate(state, h, renew ? Order::hessian : Order::gradient)) {
@@ -233,7 +236,7 @@ ElementSolver::Result ElementSolver::iterate(const MotionState& state, double h)
     if (renew && !factor(h)) return Result::singular;
     renew = false;
     correct();
-    const auto [step, by_value] = measure();
+    const auto [step, by_value, leaps] = measure();
     if (step == INFINITY) {
       factored_ = false;
       return Result::not_finite;
@@ -255,6 +258,10 @@ ElementSolver::Result ElementSolver::iterate(const MotionState& state, double h)
     }
     const double contraction = step / before;
     if (kinetic_ && !(step < divergence)) return Result::not_converged;
+    // Of explicit schemes the equations are linear, and one step solves them.
+    wandered_ = wandered_ || (step > near && contraction > (kinetic_ ? 1 : straight)) ||
+                (leapt && contraction > linear);
+    leapt = leaps;
     if (steps_ == 2 && contraction > good_contraction) reuse_ = false;
     // Far from the solution, a matrix is worth a new one wherever it shrinks steps little.
     if (steps_ > 1 && contraction > poor_contraction && step > small_step) renew = true;

@@ -63,6 +63,9 @@ class ElementSolver {
   /// The largest component of δS_h that is left, and its place in the iteration.
   double residual() const { return residual_; }
   int steps() const { return steps_; }
+  /// Whether steps did not shrink at first: equations may have several solutions, and the one that was found
+  /// may be another than that which the motion tends to for small h.
+  bool wandered() const { return wandered_; }
 
   /// To the end of the element.
   void advance(MotionState& state, double time) const;
@@ -77,6 +80,7 @@ class ElementSolver {
   void correct_by_kinetic_energy();
   struct Step {
     double by_extent = 0, by_value = 0;
+    bool leaps = false;  ///< farther than any element before
   };
   Step measure();
   bool within_roundings(const MotionState& state);
@@ -91,6 +95,7 @@ class ElementSolver {
   std::vector<double> x_, q_, force_, extent_, largest_;
   Scratch scratch_;
   double action_ = 0, residual_ = 0;
+  bool wandered_ = false;
   int steps_ = 0;
   bool factored_ = false, reuse_ = false;
   double push_ = 0, momentum_ = 0;  ///< largest change of p in an element, relative; largest |p|

@@ -25,6 +25,10 @@ inline constexpr int few_unknowns = 12;
 /// A kept matrix serves as long as it shrinks a step to less than this; an element begins with it where it
 /// shrank the first of the last one to less than the second.
 inline constexpr double poor_contraction = 0.1, good_contraction = 0.02;
+/// A step that is longer, relative to the extent of the element, and does not shrink by so much, may lead to
+/// another solution of the equations than the nearest. So may one that is longer than all elements before, if
+/// it does not solve linear equations.
+inline constexpr double near = 1e-2, straight = 0.5, linear = 1e-6;
 /// Steps by the kinetic energy alone shrink regularly; beyond the second they do not converge. After so many
 /// elements where they did not they are not tried again.
 inline constexpr double kinetic_stagnation = 0.7, divergence = 1e3;

@@ -60,7 +60,7 @@ void join_pieces(const StepTables& tables, const std::vector<double>& parts, std
   }
 }
 
-/// Where Newton's method finds no element from the guess, it starts from shorter ones.
+/// Where Newton's method finds no element near the guess, it starts from shorter ones.
 Result solve_by_pieces(ElementSolver& solver, UniformMotion& uniform, const MotionState& state, double h,
                        int cuts) {
   const StepTables& tables = solver.tables();
@@ -289,7 +289,10 @@ March march_uniform(const InitialData& start, double duration, const StepTables&
       differences.predict(solver.x());
     Result result = solver.solve(record.state(), h);
     record.count(solver.steps());
-    if (result != Result::solved) result = solve_by_pieces(solver, uniform, record.state(), h, most_cuts);
+    if (result != Result::solved || solver.wandered()) {
+      result = solve_by_pieces(solver, uniform, record.state(), h, most_cuts);
+      if (result == Result::solved && solver.wandered()) result = Result::not_converged;
+    }
     if (result != Result::solved) {
       record.march().reason = result;
       record.march().wanted = h;
@@ -299,6 +302,11 @@ March march_uniform(const InitialData& start, double duration, const StepTables&
     differences.add(solver.x());
     const double time = k + 1 == elements ? duration : duration * (static_cast<double>(k + 1) / elements);
     record.add(solver, solver.x(), h, time);
+    if (!record.finite()) {
+      record.march().reason = Result::not_finite;
+      record.march().wanted = h;
+      return record.finish(March::End::no_element);
+    }
   }
   return record.finish(March::End::complete);
 }

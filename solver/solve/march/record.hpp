@@ -19,6 +19,7 @@ class MarchRecord {
   const MotionState& state() const { return state_; }
   /// The element that was solved; it ends at `time`.
   void add(const ElementSolver& solver, std::span<const double> x, double h, double time);
+  bool finite() const { return std::isfinite(action_.high); }
   void add_finer(double action) { finer_action_.add(action); }
   void count(int steps) { march_.steps += steps; }
   bool full() const;

@@ -40,6 +40,17 @@ inline constexpr double worth_taking = 0.3;
 
 }  // namespace iteration
 
+namespace resolve {
+
+/// Newton's method converges where the second variation changes by less than this part along a step; the next
+/// step is then shorter by as much (Kantorovich). It takes so many steps at most.
+inline constexpr double most_change = 0.25;
+inline constexpr int most_steps = 12;
+/// A step, by the path, that is no roundoff.
+inline constexpr double last_step = unit_roundoff / 64;
+
+}  // namespace resolve
+
 namespace iteration_measures {
 
 /// Time of one more damping tried, by that of a step.

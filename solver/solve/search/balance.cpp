@@ -167,11 +167,13 @@ std::optional<Balance::Rest> Balance::measure(const Lagrangian& lagrangian, Spee
 
 /// A tail of speed a has weights w + c₁ a + c₂ a² + …, since its equations are not linear; tails of a, 2a,
 /// 4a, … determine the cᵢ. The result with the least doubt is taken: slow tails have more of the errors of
-/// the path.
+/// the path. Where motions turn about the equilibrium the cᵢ may depend on the phase. A result may then have
+/// little doubt by chance, and must agree with the one before.
 RestEnergy Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& speeds, std::size_t slowest,
                                 double fastest, double least, const Tails& measured) {
   const double length = measured.span.length(), exponent = -measured.energy.log_size(length);
   RestEnergy best = measured.energy;
+  std::optional<RestEnergy> before;
   std::vector<Tails> all;
   all.reserve(most_tails);
   std::vector<RestEnergy::OfTail> tails_of_all;
@@ -181,10 +183,15 @@ RestEnergy Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& spee
     all.push_back(*std::move(found));
     tails_of_all.push_back({&all.back().energy, all.back().span.length() - length});
     if (all.size() < 3) continue;
-    const std::optional<RestEnergy> extrapolated =
+    std::optional<RestEnergy> extrapolated =
         RestEnergy::extrapolated(std::span(tails_of_all).last(std::min(most_extrapolated, all.size())),
                                  path_roundoff * speeds.fastest / speed);
     if (!extrapolated) continue;
+    if (equilibrium.turns()) {
+      const RestEnergy own = *extrapolated;
+      extrapolated->doubt_changes(before ? *before : measured.energy);
+      before = own;
+    }
     if (extrapolated->action(length, exponent).doubt < best.action(length, exponent).doubt)
       best = *extrapolated;
   }

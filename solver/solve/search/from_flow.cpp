@@ -5,6 +5,7 @@
 
 #include "solve/adapt/finer_elements.hpp"
 #include "solve/newton/converge.hpp"
+#include "solve/newton/resolve.hpp"
 #include "solve/search/balance.hpp"
 #include "solve/search/gradient_flow.hpp"
 #include "solve/search/limits.hpp"
@@ -150,6 +151,25 @@ double Search::displaced_by_finer_elements() {
   return balance.exists() ? balance.displacement() : INFINITY;
 }
 
+/// Moves the path to where 106 bits know it, on elements of a higher degree. Returns what those of a still
+/// higher one change of it; nothing where it is not isolated.
+std::optional<double> Search::moved_with_more_digits() {
+  const auto found = [&](int by) -> std::optional<Path> {
+    Path finer = on_finer_elements(problem_, path_, refinement_.tables(), by, w_);
+    if (!refinement_.count_step() || !resolve(w_.iteration, finer)) return std::nullopt;
+    return finer;
+  };
+  const std::optional<Path> finest = found(2 * rest_limits::finer_by), finer = found(rest_limits::finer_by);
+  if (!finest || !finer || finest->degree() == finer->degree()) return std::nullopt;
+  const double T = path_.duration();
+  const Trajectory there = trajectory_of(*finer);
+  std::vector<double> v(path_.coordinates());
+  fill_path(ends_, refinement_.tables(), path_, [&](double tau, double* q) {
+    there.at(std::min(tau, 1.0) * T, {q, v.size()}, v);
+  });
+  return largest_change(*finer, *finest);
+}
+
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
 /// shifted to where the action of all rests is least, and tried without or, where roundoff hides their
 /// energy, with its shifts held.
@@ -196,9 +216,17 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
     path_ = balanced_path;
     refinement_.take(tables);
   }
-  outcome_.shift_error += displaced_by_finer_elements();
-  // Beside the largest energy of a rest, as those have that paths turn about, its length holds nothing.
   const double range = scales(path_, refinement_.tables()).range;
+  // Elements err in energies by about the square of their error.
+  const double part = outcome_.error / range;
+  renew();
+  if (const std::optional<double> change = energy > std::max(rest_limits::least_resolved, part * part)
+                                               ? moved_with_more_digits()
+                                               : std::nullopt)
+    outcome_.shift_error = *change;
+  else
+    outcome_.shift_error += displaced_by_finer_elements();
+  // Beside the largest energy of a rest, as those have that paths turn about, its length holds nothing.
   const bool known =
       shift <= rest_limits::most_error && outcome_.shift_error <= rest_limits::most_error * range;
   const bool result = known && again(true);

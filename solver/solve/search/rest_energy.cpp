@@ -45,6 +45,11 @@ RestEnergy RestEnergy::known() const {
   return result;
 }
 
+void RestEnergy::doubt_changes(const RestEnergy& other) {
+  for (std::size_t i = 0; i < terms_.size(); ++i)
+    terms_[i].doubt = std::max(terms_[i].doubt, std::abs(terms_[i].weight - other.terms_[i].weight));
+}
+
 RestEnergy::Action RestEnergy::action(double length, double exponent) const {
   Action sum;
   for (const Term& term : terms_) {
@@ -152,6 +157,12 @@ NearEquilibrium::NearEquilibrium(const Lagrangian& lagrangian, std::span<const d
   unstable_ = eigen.vectors(Eigen::all, rising);
   decays_ = -eigen.values(falling);
   growths_ = eigen.values(rising);
+}
+
+bool NearEquilibrium::turns() const {
+  Eigen::Index slowest = 0;
+  decays_.real().minCoeff(&slowest);
+  return std::abs(decays_[slowest].imag()) > least_rate * decays_[slowest].real();
 }
 
 VectorXcd NearEquilibrium::deviation(const Passage& passage) const {

@@ -40,6 +40,8 @@ class RestEnergy {
   double fastest_rate() const;
   /// Without the weights that are less than their doubts.
   RestEnergy known() const;
+  /// Doubts each weight as much as it differs from that of the other, which has the same terms.
+  void doubt_changes(const RestEnergy& other);
   /// The length next to this one at which the energy is positive and falls as the rest becomes longer.
   /// Motions that turn about the equilibrium have many such lengths.
   std::optional<double> held_near(double length) const;
@@ -70,6 +72,8 @@ class NearEquilibrium {
 
   /// Whether all motions approach or leave.
   bool hyperbolic() const { return stable_.cols() > 0 && stable_.cols() == unstable_.cols(); }
+  /// Whether the slowest motions turn about it.
+  bool turns() const;
   /// L at the equilibrium.
   double cost() const { return values_.value; }
 

@@ -107,6 +107,7 @@ class Search {
   bool flow_from(double away, double side, bool staged = false);
   void leave_saddles();
   double displaced_by_finer_elements();
+  std::optional<double> moved_with_more_digits();
   bool held_in_time(const char* strategy, const std::function<void()>& renew);
   bool descend(int most, double close);
   bool by_descent(const std::vector<double>& mesh);
