@@ -38,7 +38,8 @@ double part_left(const Spectrum& spectrum) {
 
 bool resolved(const Spectrum& spectrum, double duration, double tolerance) {
   const bool turns = std::ranges::any_of(spectrum.lines, [&](const SpectralLine& line) {
-    return std::abs(line.frequency) * duration >= 0.999 * 2 * std::numbers::pi;
+    return line.amplitude > spectrum.residual &&
+           std::abs(line.frequency) * duration >= 0.999 * 2 * std::numbers::pi;
   });
   return part_left(spectrum) <=
          (turns ? resolved_part : std::min(resolved_part, resolved_tolerances * tolerance));

@@ -174,8 +174,8 @@ TEST_F(Spectra, OfAMotionThatTurnsOver) {
 /// something. Of a free motion the drift leaves nothing.
 TEST_F(Spectra, OfArcsThatAreTooShort) {
   const auto told = [&](const std::string& lagrangian, double duration) {
-    const Study study =
-        load(fmt::format("[system]\ncoordinates = [\"x\"]\nlagrangian = \"{}\"\n[boundary]\n"
+    const Study arc =
+        study(fmt::format("[system]\ncoordinates = [\"x\"]\nlagrangian = \"{}\"\n[boundary]\n"
                          "start = {{ x = 1, p_x = 0.5 }}\nduration = {}\n[spectrum]\n",
                          lagrangian, duration));
     return unresolved_lines(arc, spectrum_of(arc, *arc.spectrum, solved(arc)), duration);
