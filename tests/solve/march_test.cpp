@@ -371,6 +371,22 @@ double driven_between_kinks(double x, double duration) {
 }
 
 /// Where a kink is crossed the force jumps, which elements that end there do not overlook.
+/// A mass that doubles at t = 0.7: the momentum is continuous, the velocity jumps.
+TEST(MarchedMotion, VelocitiesJumpWithTheMass) {
+  const Problem problem = from(marched_system({"x"}, "x'^2*(1 + step(t - 0.7))/2 - x^2/2"), {0.4}, {0.3}, 3);
+  const Solution s = solve(problem, within(1e-11));
+  ASSERT_TRUE(s.converged()) << s.message;
+  const double c = std::cos(0.7), sine = std::sin(0.7), x = 0.4 * c + 0.3 * sine, p = 0.3 * c - 0.4 * sine,
+               w = std::sqrt(0.5);
+  Values q(1), v(1);
+  s.trajectory.at(3, q, v);
+  EXPECT_NEAR(q[0], x * std::cos(w * 2.3) + p / (2 * w) * std::sin(w * 2.3), 1e-11);
+  s.trajectory.at(0.7 - 1e-9, q, v);
+  EXPECT_NEAR(v[0], p, 1e-8);
+  s.trajectory.at(0.7 + 1e-9, q, v);
+  EXPECT_NEAR(v[0], p / 2, 1e-8);
+}
+
 TEST(MarchedMotion, CrossesKinksUnderADrive) {
   const auto lagrangian = marched_system({"x"}, "x'^2/2 - abs(x) + 0.3*x*sin(t)");
   for (const double duration : {5.0, 10.0, 30.0}) {

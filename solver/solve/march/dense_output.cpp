@@ -1,8 +1,10 @@
 #include "solve/march/dense_output.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "action/rule.hpp"
+#include "solve/march/limits.hpp"
 
 namespace extremal {
 
@@ -57,14 +59,21 @@ void DenseOutput::read(const MotionState& state, std::span<const double> x, cons
   const int n = tables_.coordinates(), s = tables_.degree(), inner = s - 1;
   const double rate = 1 / h;
   bool recovers = flow_.has_value();
-  const auto velocity = [&](const MotionState& at, std::vector<double>& found) {
+  // At a time at which L jumps, so do velocities of the same momenta: those of the element are within.
+  const double within = tables_.lagrangian().kinks()
+                            ? std::max(limits::march::instant * h, limits::march::instant_digits * end.time)
+                            : 0;
+  const auto velocity = [&](const MotionState& at, double time, std::vector<double>& found) {
     for (int a = 0; a < n; ++a) {
       position_[a] = at.q[a].high;
       momentum_[a] = at.p[a].high;
     }
-    return flow_->velocity(position_, momentum_, at.time, found);
+    return flow_->velocity(position_, momentum_, time, found);
   };
-  if (recovers) recovers = (known_ || velocity(state, first_)) && velocity(end, last_);
+  const bool known = known_ && within == 0;
+  if (recovers)
+    recovers =
+        (known || velocity(state, state.time + within, first_)) && velocity(end, end.time - within, last_);
   for (int a = 0; a < n; ++a) {
     const double* const own = x.data() + static_cast<std::size_t>(a) * s;
     const double start = state.q[a].high, rest = state.q[a].low, delta = own[s - 1];

@@ -6,6 +6,7 @@
 #include "action/rule.hpp"
 #include "machine/aligned.hpp"
 #include "solution/element_point.hpp"
+#include "solve/march/limits.hpp"
 #include "solve/march/nodal_values.hpp"
 #include "solve/mesh/limits.hpp"
 
@@ -179,7 +180,10 @@ MotionDeviation deviation(const Lagrangian& lagrangian, const Trajectory& motion
     for (std::size_t i = 0; i < std::size(places); ++i) {
       const double t =
           e + 1 == better.elements() && places[i] == 1 ? better.duration() : start + places[i] * h;
-      while (k < last && motion.times[k + 1] < t) ++k;
+      // Where both end elements on a kink, they differ by roundoff, and velocities may jump.
+      while (k < last && motion.times[k + 1] <
+                             t - std::max(limits::march::instant * h, limits::march::instant_digits * t))
+        ++k;
       element_point(better, e, basis.row(i), comparer.better(), comparer.better() + comparer.velocities(),
                     batch);
       read(motion, k, (t - motion.times[k]) / motion.length(k), comparer.motion());

@@ -190,6 +190,14 @@ class InitialMotion {
           options_.tolerance, apart.range.q, apart.magnitude);
       return;
     }
+    if (!std::isfinite(until) && survey_) {  // it is the energy that does not meet the tolerance
+      solution_.message = fmt::format(
+          "the energy drifts by {:.1e}, more than the tolerance {:.1e} allows: L has a singularity or a kink "
+          "on "
+          "the way that the elements do not resolve; try another tolerance",
+          survey_->energy_drift, options_.tolerance);
+      return;
+    }
     const MotionDeviation::Part worst = apart.worst(options_.tolerance);
     solution_.message = fmt::format(
         "{}: the tolerance {:.1e} holds until t = {:.6g}; after that {} are known "

@@ -89,6 +89,8 @@ inline constexpr int most_kink_tries = 12;
 /// then no longer than so many. Momenta are known to the last number.
 inline constexpr int least_force_steps = 4096, force_steps_an_element = 4;
 inline constexpr double steps_an_element = 4, momentum_noise = 1e-6;
+/// An instant beside the end of an element at which L jumps, by its length and by the time.
+inline constexpr double instant = 1e-12, instant_digits = 16 * unit_roundoff;
 /// Points of an exact quadrature.
 inline constexpr int most_points = 20;
 inline constexpr double exact = 1e-15;
