@@ -13,6 +13,8 @@ namespace {
 /// Beyond its end a polynomial of degree s is about (x + √(x² − 1))^s times as wrong as within, x = |2τ − 1|:
 /// so much at most.
 constexpr double most_growth = 1e6;
+/// Elements of a piece of which the one that goes on best is looked for.
+constexpr int most_inward = 64;
 
 }  // namespace
 
@@ -58,6 +60,29 @@ bool Path::move_mesh(std::span<const double> times, double factor, double least)
   return true;
 }
 
+/// Beyond the end of a piece, which is that of element k at `tau` out of [0, 1], a longer element of the
+/// piece may be worth more than a short one at its end: that whose polynomial may grow least there. False
+/// where it may grow too much.
+bool Path::goes_on(std::span<const int> kinks, int& k, double& tau) const {
+  const auto growth = [this](double at) {
+    const double x = std::max(std::abs(2 * at - 1), 1.0);
+    return std::pow(x + std::sqrt(x * x - 1), degree_);
+  };
+  double least = growth(tau), at = tau;
+  if (least > 1)
+    for (int e = k; std::abs(e - k) < most_inward;) {
+      const bool back = at > 1;
+      if (back ? e == 0 || kinks[e] > 0 : e + 1 == elements_ || kinks[e + 1] > 0) break;
+      at = back ? 1 + at * lengths_[e] / lengths_[e - 1] : (at - 1) * lengths_[e] / lengths_[e + 1];
+      e += back ? -1 : 1;
+      if (!(growth(at) < least)) continue;
+      least = growth(at);
+      k = e;
+      tau = at;
+    }
+  return least <= most_growth;
+}
+
 bool Path::slide(std::span<const double> shift, double most, std::span<const int> kinks) {
   std::vector<int> changed;
   for (int k = 0; k < elements_; ++k) {
@@ -74,8 +99,7 @@ bool Path::slide(std::span<const double> shift, double most, std::span<const int
       for (; tau > 1 && k + 1 < elements_ && kinks[k + 1] == 0; ++k)
         tau = (tau - 1) * lengths_[k] / lengths_[k + 1];
       for (; tau < 0 && k > 0 && kinks[k] == 0; --k) tau = 1 + tau * lengths_[k] / lengths_[k - 1];
-      const double x = std::max(std::abs(2 * tau - 1), 1.0);
-      if (!(std::pow(x + std::sqrt(x * x - 1), degree_) <= most_growth)) return false;
+      if (!goes_on(kinks, k, tau)) return false;
       values(k, 1, &tau, q.data() + i * size + j * n_);
     }
   // Of neighbours, the end of one and the start of the other.

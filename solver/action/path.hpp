@@ -97,6 +97,7 @@ class Path {
 
  private:
   void values(int k, int count, const double* tau, double* q) const;
+  bool goes_on(std::span<const int> kinks, int& k, double& tau) const;
   void measure_mesh();
   void set_inner(int k, const double* q);
   void repeat_last();

@@ -223,6 +223,21 @@ TEST_F(Scenes, OrbitsFromStatesOfFiveDigits) {
   }
 }
 
+/// Motions across kinks whose ends miss those wanted, by more and more: Newton's method leads to the extremal
+/// beside each. It starts at rest from x = 1 and falls to and fro, x = 1 − t²/2 at first.
+TEST_F(Scenes, GuessFromAStateAcrossKinks) {
+  const double period = 4 * std::sqrt(2), left = 5 - period;
+  for (const char* speed : {"1e-4", "0.01", "0.03", "0.1"}) {
+    const Solution s = run(study(fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 - abs(x)\"\n[boundary]\nstart = {{ x = 1 }}\n"
+        "end = {{ x = {:.17g} }}\nduration = 5\n[guess.state]\nx = 1\n\"x'\" = {}\n",
+        1 - left * left / 2, speed)));
+    ASSERT_TRUE(s.converged()) << speed << ": " << s.message;
+    EXPECT_NEAR(s.momentum_start[0], 0, 1e-12) << speed;
+    EXPECT_EQ(s.strategy, "newton from the guess") << speed;
+  }
+}
+
 TEST_F(Scenes, GuessFromAStateNeedsARegularMass) {
   EXPECT_EQ(message("[system]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"(x' + y')^2/2\"\n[boundary]\n"
                     "duration = 1\n[guess]\nstate = { x = 1 }\n")

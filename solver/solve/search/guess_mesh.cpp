@@ -65,7 +65,14 @@ void Search::end_at_kinks_of_guess() {
   const std::vector<double> mesh(path_.mesh().begin(), path_.mesh().end());
   const int degree = path_.degree(), samples = static_cast<int>(guess_->guess.tau.size());
   start(uniform_mesh(std::clamp(samples / degree, least_sampled, most_sampled)), bend_, degree);
-  mesh_ = with_nodes(mesh, crossings(*kinks, path_));
+  const std::vector<double> times = crossings(*kinks, path_);
+  mesh_ = with_nodes(mesh, times);
+  start(mesh_, bend_, degree);
+  if (times.empty() || refinement_.mesh_kept()) return;
+  // Forces that jump inside an element look like a high frequency there.
+  measure_frequency(problem_, w_.iteration.action(), refinement_.tables(), path_, w_.frequency);
+  if (!w_.frequency.finite()) return;
+  mesh_ = with_nodes(w_.frequency.mesh(first_elements(w_.frequency), guess_floor), times);
   start(mesh_, bend_, degree);
 }
 
