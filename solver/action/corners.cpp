@@ -57,12 +57,14 @@ struct State {
   double t = 0;
 };
 
-State state_at(const Polynomials& path, int element, double tau) {
+/// Into `state`, by the values of the basis at τ.
+void read_state(const Polynomials& path, int element, double tau, const double* value,
+                const double* derivative, State& state) {
   const int n = path.coordinates, count = path.degree + 1;
   const double start = path.times[element], h = path.times[element + 1] - start;
-  std::array<double, max_degree + 1> value, derivative;
-  lobatto_basis_at(path.degree, tau, value.data(), derivative.data());
-  State state{std::vector<double>(n), std::vector<double>(n), start + tau * h};
+  state.q.assign(n, 0);
+  state.v.assign(n, 0);
+  state.t = start + tau * h;
   const double* nodes = path.nodes.data() + static_cast<std::size_t>(element) * count * n;
   for (int j = 0; j < count; ++j)
     for (int a = 0; a < n; ++a) {
@@ -70,7 +72,25 @@ State state_at(const Polynomials& path, int element, double tau) {
       // Differences from the first node keep the digits of small ones.
       state.v[a] += derivative[j] / h * (nodes[j * n + a] - nodes[a]);
     }
+}
+
+void read_state(const Polynomials& path, int element, double tau, State& state) {
+  std::array<double, max_degree + 1> value, derivative;
+  lobatto_basis_at(path.degree, tau, value.data(), derivative.data());
+  read_state(path, element, tau, value.data(), derivative.data(), state);
+}
+
+State state_at(const Polynomials& path, int element, double tau) {
+  State state;
+  read_state(path, element, tau, state);
   return state;
+}
+
+/// 0, 1/2s, …, 1.
+std::vector<double> scanned(int degree) {
+  std::vector<double> places;
+  for (int i = 0; i <= 2 * degree; ++i) places.push_back(static_cast<double>(i) / (2 * degree));
+  return places;
 }
 
 /// q(T + t) = R q(t) + c.
@@ -85,12 +105,16 @@ void continue_beyond(const Polynomials& path, const ClosingMap& closed, State& s
 /// Values of the surfaces along a path.
 class Along {
  public:
-  explicit Along(const Polynomials& path) : path_(path) {}
+  explicit Along(const Polynomials& path)
+      : path_(path), places_(scanned(path.degree)), basis_(lobatto_basis(path.degree, places_)) {}
 
   double at(const Lagrangian& f, const State& s) {
     return evaluate_at(f, s.q, s.v, s.t, Order::value, scratch_).value;
   }
-  double at(const Lagrangian& f, int element, double tau) { return at(f, state_at(path_, element, tau)); }
+  double at(const Lagrangian& f, int element, double tau) {
+    read_state(path_, element, tau, state_);
+    return at(f, state_);
+  }
   PointValues gradient(const Lagrangian& f, const State& s) {
     return evaluate_at(f, s.q, s.v, s.t, Order::gradient, scratch_);
   }
@@ -109,6 +133,10 @@ class Along {
   void about_minimum(const Lagrangian& u, int element, Interval in, std::vector<double>& times);
 
   const Polynomials& path_;
+  std::vector<double> places_;  ///< where elements are looked at
+  Basis basis_;
+  std::vector<State> states_;
+  State state_;
   Scratch scratch_;
 };
 
@@ -142,17 +170,19 @@ void Along::about_minimum(const Lagrangian& u, int element, Interval in, std::ve
 }
 
 void Along::find(const Kinks& kinks, int element, std::vector<double>& times) {
-  const int parts = 2 * path_.degree;
-  std::vector<State> states;
-  for (int i = 0; i <= parts; ++i) states.push_back(state_at(path_, element, static_cast<double>(i) / parts));
-  std::vector<double> value(states.size());
+  const int parts = static_cast<int>(places_.size()) - 1;
+  states_.resize(places_.size());
+  for (int i = 0; i <= parts; ++i) {
+    const Basis::Row row = basis_.row(i);
+    read_state(path_, element, places_[i], row.value, row.derivative, states_[i]);
+  }
+  std::vector<double> value(states_.size());
   const auto interval = [&](int from, int to) {
-    return Interval{static_cast<double>(from) / parts, static_cast<double>(to) / parts, value[from],
-                    value[to]};
+    return Interval{places_[from], places_[to], value[from], value[to]};
   };
   for (const KinkSurface& surface : kinks.surfaces()) {
     const Lagrangian& u = *surface.u;
-    for (int i = 0; i <= parts; ++i) value[i] = at(u, states[i]);
+    for (int i = 0; i <= parts; ++i) value[i] = at(u, states_[i]);
     for (int i = 0; i < parts; ++i) {
       between(u, element, interval(i, i + 1), times);
       if (i == 0) continue;
@@ -197,19 +227,24 @@ void for_crossed(const Kinks& kinks, const Polynomials& path, const ClosingMap* 
   const int s = path.degree, elements = path.elements();
   if (s < 2) return;
   const std::vector<double>& lobatto = lobatto_barycentric(s).nodes;
+  State left, right;
   for (int k = 1; k < elements + (closed != nullptr); ++k) {
     const bool at_end = k == elements;
-    const State left = state_at(path, k - 1, lobatto[s - 1]);
-    State right = state_at(path, at_end ? 0 : k, lobatto[1]);
-    Sides at{.node = k, .before = state_at(path, k - 1, 1), .after = state_at(path, at_end ? 0 : k, 0)};
-    if (at_end)
-      for (State* state : {&right, &at.after}) continue_beyond(path, *closed, *state);
-    at.shorter = std::min(path.times[k] - path.times[k - 1],
-                          at_end ? path.times[1] : path.times[k + 1] - path.times[k]);
+    read_state(path, k - 1, lobatto[s - 1], left);
+    read_state(path, at_end ? 0 : k, lobatto[1], right);
+    if (at_end) continue_beyond(path, *closed, right);
     for (const KinkSurface& surface : kinks.surfaces()) {
-      at.u_left = along.at(*surface.u, left);
-      at.u_right = along.at(*surface.u, right);
-      if ((at.u_left < 0) != (at.u_right < 0)) take(surface, at, at.u_right > at.u_left);
+      const double u_left = along.at(*surface.u, left), u_right = along.at(*surface.u, right);
+      if ((u_left < 0) == (u_right < 0)) continue;
+      Sides at{.node = k,
+               .before = state_at(path, k - 1, 1),
+               .after = state_at(path, at_end ? 0 : k, 0),
+               .u_left = u_left,
+               .u_right = u_right,
+               .shorter = std::min(path.times[k] - path.times[k - 1],
+                                   at_end ? path.times[1] : path.times[k + 1] - path.times[k])};
+      if (at_end) continue_beyond(path, *closed, at.after);
+      take(surface, at, u_right > u_left);
     }
   }
 }
