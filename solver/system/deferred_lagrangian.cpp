@@ -19,7 +19,8 @@ std::shared_ptr<const Lagrangian> DeferredLagrangian::made() const {
   return made_;
 }
 
-void DeferredLagrangian::evaluate(const Points& points, Order order, double* out, Scratch& scratch) const {
+void DeferredLagrangian::evaluate(const Points& points, Order order, double* out, Scratch&) const {
+  Scratch scratch;  // that of the caller may hold the points
   const int n = structure_.coordinates;
   std::vector<double> q(n), v(n);
   for (int i = 0; i < points.count; ++i) {

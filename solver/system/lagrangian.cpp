@@ -5,12 +5,20 @@
 #include <stdexcept>
 #include <string>
 
-#include "machine/aligned.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
 
 namespace {
+
+/// So many doubles of a vector, from a multiple of 64 bytes on.
+double* aligned(std::vector<double>& memory, std::size_t doubles) {
+  constexpr std::uintptr_t alignment = 64;
+  const std::size_t needed = doubles + alignment / sizeof(double);
+  if (memory.size() < needed) memory.resize(needed);
+  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+  return memory.data() + (alignment - address % alignment) % alignment / sizeof(double);
+}
 
 /// Adds ½ vᵀ M v + vᵀ C q + aᵀ v and its derivatives.
 void add_quadratic_form(const Structure& s, std::span<const double> q, std::span<const double> v, Order order,
@@ -51,13 +59,7 @@ void put_hessian(const Structure& s, const double* rows, int stride, PointValues
 
 }  // namespace
 
-double* Scratch::reserve(std::size_t doubles) {
-  constexpr std::uintptr_t alignment = 64;
-  const std::size_t needed = doubles + alignment / sizeof(double);
-  if (memory.size() < needed) memory.resize(needed);
-  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
-  return memory.data() + (alignment - address % alignment) % alignment / sizeof(double);
-}
+double* Scratch::reserve(std::size_t doubles) { return aligned(memory, doubles); }
 
 PointValues evaluate_at(const Lagrangian& lagrangian, std::span<const double> q, std::span<const double> v,
                         double t, Order order, Scratch& scratch) {
@@ -69,14 +71,17 @@ PointValues evaluate_at(const Lagrangian& lagrangian, std::span<const double> q,
                                 std::to_string(n));
   // One batch: the point in every lane.
   const int lanes = simd_lanes();
-  AlignedDoubles rows((2 * n + 1) * lanes), out(static_cast<std::size_t>(lagrangian.rows(order)) * lanes);
+  const std::size_t read = (2 * n + 1) * lanes,
+                    written = static_cast<std::size_t>(lagrangian.rows(order)) * lanes;
+  double* const rows = aligned(scratch.point, read + most_lanes + written);
+  double* const out = rows + (read + most_lanes - 1) / most_lanes * most_lanes;
   for (std::size_t a = 0; a < n; ++a) {
     std::fill_n(&rows[a * lanes], lanes, q[a]);
     std::fill_n(&rows[(n + a) * lanes], lanes, v[a]);
   }
   std::fill_n(&rows[2 * n * lanes], lanes, t);
-  const Points points{lanes, lanes, rows.data(), rows.data() + n * lanes, rows.data() + 2 * n * lanes};
-  lagrangian.evaluate(points, order, out.data(), scratch);
+  const Points points{lanes, lanes, rows, rows + n * lanes, rows + 2 * n * lanes};
+  lagrangian.evaluate(points, order, out, scratch);
 
   PointValues values{.value = out[0], .dq = {}, .dv = {}, .qq = {}, .vq = {}, .vv = {}};
   if (order != Order::value) {
@@ -91,7 +96,7 @@ PointValues evaluate_at(const Lagrangian& lagrangian, std::span<const double> q,
     values.qq.resize(n * n);
     values.vq.resize(n * n);
     values.vv.resize(n * n);
-    put_hessian(s, out.data() + (1 + s.gradient.size()) * lanes, lanes, values);
+    put_hessian(s, out + (1 + s.gradient.size()) * lanes, lanes, values);
   }
   add_quadratic_form(s, q, v, order, values);
   return values;

@@ -63,6 +63,7 @@ struct Points {
 struct Scratch {
   std::vector<double> memory;
   std::vector<double*> operands;
+  std::vector<double> point;             ///< of evaluate_at()
   double* reserve(std::size_t doubles);  ///< 64-byte aligned; contents undefined
 };
 
