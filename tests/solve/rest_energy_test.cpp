@@ -153,6 +153,41 @@ TEST(RestEnergy, MinimisersBetweenRestsThatTheyTurnAbout) {
   }
 }
 
+/// (a + b t) e^−rt approaches the equilibrium where two rates coincide. Its energy is the sum of the same
+/// with rates r ± δ, to second order in δ.
+TEST(RestEnergy, OfPowersOfTheLength) {
+  const double r = 1.3, delta = 1e-3, a = 0.7, b = -0.2;
+  const RestEnergy one({{a, r, 0, 0}, {b, r, 0, 1}}),
+      two({{0.5 * (a - b / delta), r + delta}, {0.5 * (a + b / delta), r - delta}});
+  for (const double length : {2.0, 5.0}) {
+    const RestEnergy::Action x = one.action(length, 3), y = two.action(length, 3);
+    EXPECT_NEAR(x.energy, y.energy, 1e-5 * std::abs(y.energy));
+    EXPECT_NEAR(x.value, y.value, 1e-5 * std::abs(y.value));
+    EXPECT_NEAR(x.stiffness, y.stiffness, 1e-5 * std::abs(y.stiffness));
+  }
+  const std::vector<Complex> later = RestEnergy::OfTail{&one, 0.4}.weights();
+  EXPECT_NEAR(later[0].real(), (a + 0.4 * b) * std::exp(-0.4 * r), 1e-15);
+  EXPECT_NEAR(later[1].real(), b * std::exp(-0.4 * r), 1e-15);
+}
+
+/// At this saddle the drift has rates ±λ, so that Hamilton's equations have each of them twice, with one
+/// eigenvector. Actions by minimisation of a finite-difference action, 0.18718.
+TEST(RestEnergy, MinimisersIntoASaddleWhoseRatesCoincide) {
+  const double c = 0.5, x = std::sqrt(1 - c * c);
+  for (const double k : {1.0, 1.01}) {
+    const auto drift = trace(2, [=](auto q, auto v, auto) {
+      const auto u = v[0] - q[0] + q[0] * q[0] * q[0] + c * q[1], w = v[1] + k * q[1] - k * c * q[0];
+      return (u * u + w * w) / 2.0;
+    });
+    for (const double T : {30.0, 50.0, 100.0}) {
+      const Solution s = solve(fixed_ends(drift, {x, c * x}, {0, 0}, T), within(1e-9));
+      ASSERT_TRUE(s.converged()) << k << " " << T << ": " << s.message;
+      EXPECT_NEAR(s.action, k == 1 ? 0.1871769763 : 0.1880234295, 1e-9) << k << " " << T;
+      EXPECT_EQ(s.morse_index, 0) << k << " " << T;
+    }
+  }
+}
+
 /// Lorenz's drift from a node that paths turn about, by phases on which their tails depend, into the saddle
 /// at 0. At T = 20 and 25 energies hold them beyond the digits of doubles, and 106 bits find where.
 TEST(RestEnergy, PathsThatMoreDigitsHold) {

@@ -66,6 +66,9 @@ inline constexpr double speed_roundoff = 1e-12;
 inline constexpr double path_roundoff = 4 * unit_roundoff;
 /// Slower than this, by the fastest, a motion near an equilibrium neither approaches nor leaves.
 inline constexpr double least_rate = 1e-8;
+/// Rates that differ less, by the fastest, may be one, of which roundoff makes several: the root of it. They
+/// are if their vectors, of length 1, are dependent but for this.
+inline constexpr double coinciding = 1e-5, parallel_vectors = 1e-6;
 /// Steps from a rest to the equilibrium; and roundoff of L there, by its size and the kinetic energy of the
 /// path.
 inline constexpr int newton_steps = 3;

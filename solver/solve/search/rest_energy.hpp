@@ -6,18 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "linear/dense.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file The energy of a motion that rests near an equilibrium, by the length of the rest.
 
 namespace extremal {
 
-/// A sum of exponential functions of the length of a rest.
+/// A sum of exponential functions of the length of a rest, times powers of it where rates coincide.
 class RestEnergy {
  public:
   struct Term {
-    std::complex<double> weight, rate;  ///< weight · e^−rate·length
+    std::complex<double> weight, rate;  ///< weight · length^power · e^−rate·length
     double doubt = 0;                   ///< of the weight
+    int power = 0;                      ///< after a term of power p − 1 of the same rate, or 0
   };
   struct Value {
     double log;        ///< of its size
@@ -50,6 +52,8 @@ class RestEnergy {
   struct OfTail {
     const RestEnergy* energy;
     double excess;  ///< of the length between the tails over that of which a result is a function
+    /// The weights by that length.
+    std::vector<std::complex<double>> weights() const;
   };
   /// Each weight is extrapolated to speed zero by a polynomial through the slowest of these tails, at least
   /// three. Its degree rises as long as each power changes the weight much less than the one before: a
@@ -71,7 +75,9 @@ class NearEquilibrium {
   NearEquilibrium(const Lagrangian& lagrangian, std::span<const double> q);
 
   /// Whether all motions approach or leave.
-  bool hyperbolic() const { return stable_.cols() > 0 && stable_.cols() == unstable_.cols(); }
+  bool hyperbolic() const {
+    return stable_.rates.size() > 0 && stable_.rates.size() == unstable_.rates.size();
+  }
   /// Whether the slowest motions turn about it.
   bool turns() const;
   /// L at the equilibrium.
@@ -89,16 +95,27 @@ class NearEquilibrium {
 
  private:
   Eigen::VectorXcd deviation(const Passage& passage) const;
-  std::vector<RestEnergy::Term> from_end(const Eigen::VectorXcd& leaving, const Eigen::VectorXcd& rates,
-                                         const Eigen::MatrixXcd& away, const Eigen::MatrixXcd& back,
-                                         const Eigen::VectorXcd& displaced, double nonlinear) const;
+  /// Motions that approach or leave, z = columns e^∓(rates + mixing)·t c. Where rates coincide and have fewer
+  /// motions of their own than there are, `mixing` couples them; it is nilpotent.
+  struct Motions {
+    Eigen::MatrixXcd columns;
+    Eigen::VectorXcd rates;  ///< with positive real parts
+    Eigen::MatrixXcd mixing;
+    int powers = 1;  ///< of the time, in c
+    /// What is left of c after a time, by powers of it and without the exponential functions.
+    std::vector<Eigen::VectorXcd> fading(const Eigen::VectorXcd& c) const;
+  };
+  static Motions motions(const Eigen::MatrixXd& system, const ComplexEigen& eigen,
+                         const std::vector<Eigen::Index>& of, bool leaving);
+  std::vector<RestEnergy::Term> from_end(const Eigen::VectorXcd& leaving, const Motions& away,
+                                         const Motions& back, const Eigen::VectorXcd& displaced,
+                                         double nonlinear) const;
 
   const Lagrangian& lagrangian_;
   std::vector<double> q_;
   PointValues values_;
-  Eigen::MatrixXd form_;                ///< W
-  Eigen::MatrixXcd stable_, unstable_;  ///< columns
-  Eigen::VectorXcd decays_, growths_;   ///< rates, with positive real parts
+  Eigen::MatrixXd form_;  ///< W
+  Motions stable_, unstable_;
 };
 
 }  // namespace extremal
