@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <vector>
 
-#include "solve/branch/continuation.hpp"
+#include "solve/branch/diagram.hpp"
 
 namespace bench {
 
 namespace {
+
+constexpr int most_points = 200;
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
@@ -17,16 +20,20 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-FamilyCost measure_family(const extremal::Study& study, double to, int repeat) {
+extremal::ProblemFamily by_energy(const extremal::Problem& problem, double to) {
+  return {.problem = problem,
+          .varied = extremal::Varied::energy,
+          .from = problem.duration.energy.value(),
+          .to = to};
+}
+
+FamilyCost measure_family(const extremal::ProblemFamily& family, const extremal::SolveOptions& options,
+                          int repeat) {
   using Clock = std::chrono::steady_clock;
-  const extremal::ProblemFamily family{.problem = study.problem,
-                                       .varied = extremal::Varied::energy,
-                                       .from = study.problem.duration.energy.value(),
-                                       .to = to};
   FamilyCost cost;
   std::vector<double> plain, locating;
   for (int k = 0; k < repeat; ++k) {
-    extremal::Continuation branch(family, {.solve = study.options});
+    extremal::Diagram branch(family, {.solve = options, .points = most_points});
     const bool begun = branch.advance();
     cost.points = cost.met = 0;
     double on_points = 0, on_met = 0;
@@ -43,9 +50,10 @@ FamilyCost measure_family(const extremal::Study& study, double to, int repeat) {
     }
     plain.push_back(on_points / std::max(cost.points, 1));
     locating.push_back(on_met / std::max(cost.met, 1));
-    cost.worst_action_slope = branch.worst_action_slope();
-    cost.worst_momentum = branch.worst_momentum();
-    cost.end = branch.message();
+    const extremal::BranchRecord& record = branch.branches().back();
+    cost.worst_action_slope = record.worst_action_slope.value_or(NAN);
+    cost.worst_momentum = record.worst_momentum.value_or(NAN);
+    cost.end = record.message;
   }
   cost.seconds = median(std::move(plain));
   cost.locating = median(std::move(locating));

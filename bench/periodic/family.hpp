@@ -17,7 +17,11 @@ struct FamilyCost {
   std::string end;                                    ///< why the family ended
 };
 
-/// From the orbit of a study, whose energy is given, to the energy `to`, `repeat` times.
-FamilyCost measure_family(const extremal::Study& study, double to, int repeat);
+/// From an orbit whose energy is given to the energy `to`.
+extremal::ProblemFamily by_energy(const extremal::Problem& problem, double to);
+
+/// Follows the family `repeat` times.
+FamilyCost measure_family(const extremal::ProblemFamily& family, const extremal::SolveOptions& options,
+                          int repeat);
 
 }  // namespace bench

@@ -76,24 +76,35 @@ void report(const std::string& name, const Options& options) {
   }
 }
 
-/// From the halo orbit on, as far as the energy that is asked for.
-void report_family(const Options& options) {
-  extremal::Study study = extremal::load(std::string(EXTREMAL_SOURCE_DIR) + "/bench/data/halo.toml");
+void report_family(const std::string& name, extremal::Study study, const extremal::ProblemFamily& family,
+                   const Options& options) {
   for (const double tolerance : options.tolerances) {
     study.options.tolerance = tolerance;
-    const FamilyCost cost = measure_family(study, options.family_to, std::max(options.repeat / 10, 1));
+    const FamilyCost cost = measure_family(family, study.options, std::max(options.repeat / 10, 1));
     fmt::print(
         "{:18} {:8.0e} {:8.1f} µs a point with index and multipliers, {} points; {:.0f} µs to locate a "
-        "bifurcation, {} of them; dS = -E dT to {:.0e}, dS/dq = p to {:.0e}; {}\n",
-        "halo family", tolerance, 1e6 * cost.seconds, cost.points, 1e6 * cost.locating, cost.met,
+        "bifurcation, {} of them; dS = -E dT + dS/dp dp to {:.0e}, dS/dq = p to {:.0e}; {}\n",
+        name, tolerance, 1e6 * cost.seconds, cost.points, 1e6 * cost.locating, cost.met,
         cost.worst_action_slope, cost.worst_momentum, cost.end);
+  }
+}
+
+/// From the halo orbit on, as far as the energy that is asked for; and families in a parameter, of a
+/// Lagrangian alone and with forces.
+void report_families(const Options& options) {
+  const std::string source = EXTREMAL_SOURCE_DIR;
+  const extremal::Study halo = extremal::load(source + "/bench/data/halo.toml");
+  report_family("halo family", halo, by_energy(halo.problem, options.family_to), options);
+  for (const char* name : {"choreography-family", "duffing-response"}) {
+    const extremal::Study study = extremal::load(source + "/problems/scenes/" + name + ".toml");
+    report_family(name, study, study.continuation->family, options);
   }
 }
 
 int run(const Options& options) {
   print_heading();
   for (const std::string& scene : options.scenes) report(scene, options);
-  report_family(options);
+  report_families(options);
   fmt::print(
       "\nMedians. distance: of the reference's initial state from the orbit, in phase space, but for "
       "symmetries.\n"

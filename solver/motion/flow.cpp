@@ -18,6 +18,8 @@ constexpr double least_part = 1e-10;
 constexpr double roundoff = 2e-15;
 /// From below the first of these the next step of Newton ends in roundoff, which is then below the second.
 constexpr double near = 1e-8, acceptable = 1e-12;
+/// Velocities along a momentum are tried from this size to its reciprocal.
+constexpr double smallest_start = 0x1p-40;
 
 double largest(std::span<const double> x) {
   double found = 0;
@@ -63,12 +65,28 @@ bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, 
   if (!solve_newton(q, p, t)) {
     // Where momenta have a bound, they hardly depend on a velocity that is too fast: no step leads back.
     std::ranges::fill(v_, nearly_at_rest);
-    if (hamiltonian_ || !solve_newton(q, p, t)) {
+    if (hamiltonian_ || !(solve_newton(q, p, t) || (begin_along(q, p, t) && solve_newton(q, p, t)))) {
       v_ = last_v_;
       return false;
     }
   }
   return order != Order::hessian || (point_.evaluate(q, v_, t, order) && mass_.factor(point_.vv()));
+}
+
+/// Where ∂²L/∂q'² vanishes at rest, as that of q'⁴, no step leads from there. The velocity along p whose
+/// momentum is about as large is left in v_; false if there is none.
+bool Flow::begin_along(std::span<const double> q, std::span<const double> p, double t) {
+  const double momentum = largest(p);
+  double best = 0, least = std::numeric_limits<double>::infinity();
+  for (double size = smallest_start; momentum > 0 && size <= 1 / smallest_start; size *= 2) {
+    for (int a = 0; a < n_; ++a) v_[a] = size * p[a] / momentum;
+    const double error = momentum_error(q, p, t);
+    if (!(error < least)) continue;
+    least = error;
+    best = size;
+  }
+  for (int a = 0; a < n_; ++a) v_[a] = best * p[a] / momentum;
+  return least < momentum;
 }
 
 /// p = M q' + C q + a.

@@ -42,6 +42,7 @@ class Flow {
   bool motion(double t, std::span<const double> y, std::span<double> slope, Order order);
   bool solve_velocity(std::span<const double> q, std::span<const double> p, double t, Order order);
   bool solve_linear(std::span<const double> q, std::span<const double> p, double t, Order order);
+  bool begin_along(std::span<const double> q, std::span<const double> p, double t);
   bool solve_newton(std::span<const double> q, std::span<const double> p, double t);
   double momentum_error(std::span<const double> q, std::span<const double> p, double t);
 

@@ -70,7 +70,7 @@ Figure layout(const Comparison& comparison) {
   figure.height = top + height + bottom;
   Panel panel;
   panel.x = decades("largest error of q", errors, [](int power) { return fmt::format("1e{}", power); });
-  panel.y = decades("", seconds, seconds_text);
+  panel.y = decades("time of a solve", seconds, seconds_text);
   for (std::size_t k = 0; k < all.size(); ++k) {
     panel.curves.push_back({all[k].error, all[k].seconds, colours[k]});
     for (std::size_t i = 0; i < all[k].error.size(); ++i)

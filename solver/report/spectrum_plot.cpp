@@ -69,7 +69,7 @@ Figure spectrum_layout(const Result& result) {
       frequencies.label = "frequency, radians per unit of time";
     else
       frequencies.numbered = false;
-    Panel panel = panel_of(result.names[a], spectra[a].lines, frequencies, {});
+    Panel panel = panel_of("amplitude of " + result.names[a], spectra[a].lines, frequencies, {});
     const double left = 44 + number_width(panel.y);
     panel.box = {left, top, figure.width - left - right_margin, panel_height};
     figure.panels.push_back(std::move(panel));

@@ -371,6 +371,18 @@ double driven_between_kinks(double x, double duration) {
 }
 
 /// Where a kink is crossed the force jumps, which elements that end there do not overlook.
+/// ∂²L/∂q'² vanishes at rest; with the momentum 1 the motion begins with the velocity 1.
+TEST(MarchedMotion, BeginsWhereRestIsDegenerate) {
+  const Solution s = solve(from(marched_system({"x"}, "x'^4/4 - x^2/2"), {0}, {1}, 1), within(1e-10));
+  ASSERT_TRUE(s.converged()) << s.message;
+  Values q(1), v(1);
+  for (const double t : {0.0, 0.3, 1.0}) {
+    s.trajectory.at(t, q, v);
+    EXPECT_NEAR(0.75 * std::pow(v[0], 4) + q[0] * q[0] / 2, 0.75, 1e-9) << t;
+    EXPECT_GT(v[0], 0.5) << t;
+  }
+}
+
 /// A mass that doubles at t = 0.7: the momentum is continuous, the velocity jumps.
 TEST(MarchedMotion, VelocitiesJumpWithTheMass) {
   const Problem problem = from(marched_system({"x"}, "x'^2*(1 + step(t - 0.7))/2 - x^2/2"), {0.4}, {0.3}, 3);

@@ -219,7 +219,9 @@ TEST(Minimisers, KinksBetweenRestsOfDifferentRates) {
       double x = 0, v = 0;
       s.trajectory.at(log2 - log_epsilon + c0, {&x, 1}, {&v, 1});
       EXPECT_NEAR(x, 0.5, 1e-8 * std::max(1.0, v)) << k << ", " << tolerance;
-      EXPECT_LE(std::abs(x - 0.5), 10 * s.error_estimate) << k << ", " << tolerance;
+      // These times leave out about ε.
+      EXPECT_LE(std::abs(x - 0.5), 10 * s.error_estimate + std::exp(log_epsilon) * std::max(1.0, v))
+          << k << ", " << tolerance;
       EXPECT_EQ(s.morse_index, 0);
       EXPECT_TRUE(s.conjugate_times.empty()) << k << ", " << tolerance;
     }

@@ -133,6 +133,13 @@ bool Search::flow_from(double away, double side, bool staged) {
   renew();
   if (found(strategy)) return true;
   reopen(Refinement::first_degree);
+  // Minimisers that are a family, as arcs in all planes through both ends, are one degenerate minimum.
+  if (!std::exchange(flowed_to_family_, true) && !problem_.guess.given()) {
+    const bool none = no_family_;
+    if (on_family(false)) return true;
+    no_family_ = none;
+    reopen(Refinement::first_degree);
+  }
   if (held_in_time(strategy, renew)) return true;
   // Linear elements hold a path where forces are smaller than their errors.
   reopen(flow_limits::finishing_degree);
@@ -151,15 +158,16 @@ double Search::displaced_by_finer_elements() {
   return balance.exists() ? balance.displacement() : INFINITY;
 }
 
-/// Moves the path to where 106 bits know it, on elements of a higher degree. Returns what those of a still
-/// higher one change of it; nothing where it is not isolated.
-std::optional<double> Search::moved_with_more_digits() {
+/// Moves the path to where 106 bits know it, on elements of a higher degree. Returns it on these, and what
+/// those of a still higher one change of it; nothing where it is not isolated.
+std::optional<Search::Placed> Search::moved_with_more_digits() {
   const auto found = [&](int by) -> std::optional<Path> {
     Path finer = on_finer_elements(problem_, path_, refinement_.tables(), by, w_);
     if (!refinement_.count_step() || !resolve(w_.iteration, finer)) return std::nullopt;
     return finer;
   };
-  const std::optional<Path> finest = found(2 * rest_limits::finer_by), finer = found(rest_limits::finer_by);
+  const std::optional<Path> finest = found(2 * rest_limits::finer_by);
+  std::optional<Path> finer = found(rest_limits::finer_by);
   if (!finest || !finer || finest->degree() == finer->degree()) return std::nullopt;
   const double T = path_.duration();
   const Trajectory there = trajectory_of(*finer);
@@ -167,7 +175,8 @@ std::optional<double> Search::moved_with_more_digits() {
   fill_path(ends_, refinement_.tables(), path_, [&](double tau, double* q) {
     there.at(std::min(tau, 1.0) * T, {q, v.size()}, v);
   });
-  return largest_change(*finer, *finest);
+  const double change = largest_change(*finer, *finest);
+  return Placed{*std::move(finer), change};
 }
 
 /// A path between equilibria that its ends hardly hold in time: converged across its shifts first, then
@@ -220,12 +229,16 @@ bool Search::held_in_time(const char* strategy, const std::function<void()>& ren
   // Elements err in energies by about the square of their error.
   const double part = outcome_.error / range;
   renew();
-  if (const std::optional<double> change = energy > std::max(rest_limits::least_resolved, part * part)
+  if (const std::optional<Placed> placed = energy > std::max(rest_limits::least_resolved, part * part)
                                                ? moved_with_more_digits()
-                                               : std::nullopt)
-    outcome_.shift_error = *change;
-  else
+                                               : std::nullopt) {
+    acceptance_ = nullptr;
+    again(true);  // elements of its own degree shift it a little
+    acceptance_ = acceptance;
+    outcome_.shift_error = placed->change + largest_change(path_, placed->path);
+  } else {
     outcome_.shift_error += displaced_by_finer_elements();
+  }
   // Beside the largest energy of a rest, as those have that paths turn about, its length holds nothing.
   const bool known =
       shift <= rest_limits::most_error && outcome_.shift_error <= rest_limits::most_error * range;

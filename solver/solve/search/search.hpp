@@ -107,7 +107,11 @@ class Search {
   bool flow_from(double away, double side, bool staged = false);
   void leave_saddles();
   double displaced_by_finer_elements();
-  std::optional<double> moved_with_more_digits();
+  struct Placed {
+    Path path;
+    double change;  ///< of q, absolute
+  };
+  std::optional<Placed> moved_with_more_digits();
   bool held_in_time(const char* strategy, const std::function<void()>& renew);
   bool descend(int most, double close);
   bool by_descent(const std::vector<double>& mesh);
@@ -131,11 +135,12 @@ class Search {
   Acceptance* acceptance_ = nullptr;
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
-  double magnitude_ = 0;        ///< of the guess
-  int allowance_ = 0;           ///< of Newton steps
-  Bend bend_;                   ///< of the default guess, where L is not finite on it
-  std::optional<Path> unheld_;  ///< found on some elements, but not on others
-  bool no_family_ = false;      ///< the ends are conjugate near the guess, without a family
+  double magnitude_ = 0;           ///< of the guess
+  int allowance_ = 0;              ///< of Newton steps
+  Bend bend_;                      ///< of the default guess, where L is not finite on it
+  std::optional<Path> unheld_;     ///< found on some elements, but not on others
+  bool flowed_to_family_ = false;  ///< it was tried whether the flow ends at a family
+  bool no_family_ = false;         ///< the ends are conjugate near the guess, without a family
   unsigned seed_ = 0;
   std::set<Met> met_;
 };
