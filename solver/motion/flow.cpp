@@ -20,6 +20,14 @@ constexpr double roundoff = 2e-15;
 constexpr double near = 1e-8, acceptable = 1e-12;
 /// Velocities along a momentum are tried from this size to its reciprocal.
 constexpr double smallest_start = 0x1p-40;
+/// Of ∂²L/∂q'² at a velocity, what is left of one that vanishes at rest.
+constexpr double degenerate = 1e-6;
+
+double largest_entry(std::span<const Triplet> m) {
+  double found = 0;
+  for (const Triplet& entry : m) found = std::max(found, std::abs(entry.value));
+  return found;
+}
 
 double largest(std::span<const double> x) {
   double found = 0;
@@ -74,9 +82,11 @@ bool Flow::solve_velocity(std::span<const double> q, std::span<const double> p, 
 }
 
 /// Where ∂²L/∂q'² vanishes at rest, as that of q'⁴, no step leads from there. The velocity along p whose
-/// momentum is about as large is left in v_; false if there is none.
+/// momentum is about as large is left in v_; false if there is none, or if it does not vanish.
 bool Flow::begin_along(std::span<const double> q, std::span<const double> p, double t) {
-  const double momentum = largest(p);
+  std::ranges::fill(v_, nearly_at_rest);
+  if (!point_.evaluate(q, v_, t, Order::hessian)) return false;
+  const double at_rest = largest_entry(point_.vv()), momentum = largest(p);
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (double size = smallest_start; momentum > 0 && size <= 1 / smallest_start; size *= 2) {
     for (int a = 0; a < n_; ++a) v_[a] = size * p[a] / momentum;
@@ -86,7 +96,8 @@ bool Flow::begin_along(std::span<const double> q, std::span<const double> p, dou
     best = size;
   }
   for (int a = 0; a < n_; ++a) v_[a] = best * p[a] / momentum;
-  return least < momentum;
+  return least < momentum && point_.evaluate(q, v_, t, Order::hessian) &&
+         at_rest < degenerate * largest_entry(point_.vv());
 }
 
 /// p = M q' + C q + a.
