@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <vector>
 
 #include "solve/branch/diagram.hpp"
@@ -51,8 +50,8 @@ FamilyCost measure_family(const extremal::ProblemFamily& family, const extremal:
     plain.push_back(on_points / std::max(cost.points, 1));
     locating.push_back(on_met / std::max(cost.met, 1));
     const extremal::BranchRecord& record = branch.branches().back();
-    cost.worst_action_slope = record.worst_action_slope.value_or(NAN);
-    cost.worst_momentum = record.worst_momentum.value_or(NAN);
+    cost.worst_action_slope = record.worst_action_slope;
+    cost.worst_momentum = record.worst_momentum;
     cost.end = record.message;
   }
   cost.seconds = median(std::move(plain));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "study/study.hpp"
@@ -13,8 +14,8 @@ struct FamilyCost {
   double seconds = 0;   ///< median for one of them, with its index and multipliers
   int met = 0;          ///< folds, crossings and period doublings
   double locating = 0;  ///< median for one of them, with its share of the step
-  double worst_action_slope = 0, worst_momentum = 0;  ///< see extremal::Continuation
-  std::string end;                                    ///< why the family ended
+  std::optional<double> worst_action_slope, worst_momentum;  ///< see extremal::BranchRecord
+  std::string end;                                           ///< why the family ended
 };
 
 /// From an orbit whose energy is given to the energy `to`.

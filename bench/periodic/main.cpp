@@ -76,6 +76,11 @@ void report(const std::string& name, const Options& options) {
   }
 }
 
+/// With forces there is no action.
+std::string checked(const char* law, const std::optional<double>& worst) {
+  return worst ? fmt::format("; {} to {:.0e}", law, *worst) : "";
+}
+
 void report_family(const std::string& name, extremal::Study study, const extremal::ProblemFamily& family,
                    const Options& options) {
   for (const double tolerance : options.tolerances) {
@@ -83,9 +88,10 @@ void report_family(const std::string& name, extremal::Study study, const extrema
     const FamilyCost cost = measure_family(family, study.options, std::max(options.repeat / 10, 1));
     fmt::print(
         "{:18} {:8.0e} {:8.1f} µs a point with index and multipliers, {} points; {:.0f} µs to locate a "
-        "bifurcation, {} of them; dS = -E dT + dS/dp dp to {:.0e}, dS/dq = p to {:.0e}; {}\n",
+        "bifurcation, {} of them{}{}; {}\n",
         name, tolerance, 1e6 * cost.seconds, cost.points, 1e6 * cost.locating, cost.met,
-        cost.worst_action_slope, cost.worst_momentum, cost.end);
+        checked("dS = -E dT + dS/dp dp", cost.worst_action_slope), checked("dS/dq = p", cost.worst_momentum),
+        cost.end);
   }
 }
 

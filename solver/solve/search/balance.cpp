@@ -189,8 +189,9 @@ RestEnergy Balance::extrapolate(const NearEquilibrium& equilibrium, Speeds& spee
     if (!extrapolated) continue;
     if (equilibrium.turns()) {
       const RestEnergy own = *extrapolated;
-      extrapolated->doubt_changes(before ? *before : measured.energy);
+      const bool comparable = extrapolated->doubt_changes(before ? *before : measured.energy);
       before = own;
+      if (!comparable) continue;
     }
     if (extrapolated->action(length, exponent).doubt < best.action(length, exponent).doubt)
       best = *extrapolated;

@@ -46,9 +46,11 @@ RestEnergy RestEnergy::known() const {
   return result;
 }
 
-void RestEnergy::doubt_changes(const RestEnergy& other) {
+bool RestEnergy::doubt_changes(const RestEnergy& other) {
+  if (other.terms_.size() != terms_.size()) return false;
   for (std::size_t i = 0; i < terms_.size(); ++i)
     terms_[i].doubt = std::max(terms_[i].doubt, std::abs(terms_[i].weight - other.terms_[i].weight));
+  return true;
 }
 
 RestEnergy::Action RestEnergy::action(double length, double exponent) const {

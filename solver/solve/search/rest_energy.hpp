@@ -42,8 +42,9 @@ class RestEnergy {
   double fastest_rate() const;
   /// Without the weights that are less than their doubts.
   RestEnergy known() const;
-  /// Doubts each weight as much as it differs from that of the other, which has the same terms.
-  void doubt_changes(const RestEnergy& other);
+  /// Doubts each weight as much as it differs from that of the other. False if that has other terms, as
+  /// where a tail begins at an end of the path.
+  bool doubt_changes(const RestEnergy& other);
   /// The length next to this one at which the energy is positive and falls as the rest becomes longer.
   /// Motions that turn about the equilibrium have many such lengths.
   std::optional<double> held_near(double length) const;
