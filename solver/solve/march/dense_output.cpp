@@ -59,7 +59,7 @@ void DenseOutput::read(const MotionState& state, std::span<const double> x, cons
   const int n = tables_.coordinates(), s = tables_.degree(), inner = s - 1;
   const double rate = 1 / h;
   bool recovers = flow_.has_value();
-  // At a time at which L jumps, so do velocities of the same momenta: those of the element are within.
+  // Where L jumps with time, an element that ends there has the velocities of just before.
   const double within = tables_.lagrangian().kinks()
                             ? std::max(limits::march::instant * h, limits::march::instant_digits * end.time)
                             : 0;

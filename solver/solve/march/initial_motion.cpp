@@ -192,9 +192,8 @@ class InitialMotion {
     }
     if (!std::isfinite(until) && survey_) {  // it is the energy that does not meet the tolerance
       solution_.message = fmt::format(
-          "the energy drifts by {:.1e}, more than the tolerance {:.1e} allows: L has a singularity or a kink "
-          "on "
-          "the way that the elements do not resolve; try another tolerance",
+          "the energy drifts by {:.1e}, more than the tolerance {:.1e} allows: elements do not resolve a "
+          "singularity or a kink of L on the way; try another tolerance",
           survey_->energy_drift, options_.tolerance);
       return;
     }
