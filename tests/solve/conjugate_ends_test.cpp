@@ -109,6 +109,19 @@ TEST(ConjugateEnds, OfAntipodes) {
   }
 }
 
+/// Over 180 degrees about a centre of gravity, the plane is free, and the straight line hits the centre. In
+/// half the period of an ellipse of major semi-axis a it is that ellipse's half, along which S = ∫ (−1/2a +
+/// 2/r) dt = 3/2 π √a.
+TEST(ConjugateEnds, OfHohmannsTransferInSpace) {
+  const auto kepler = trace(3, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2 + 1 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+  });
+  const double a = 1.25;
+  for (const auto& u : {Values{1, 0, 0}, Values{0, 0, 1}, Values{0.6, 0.8, 0}})
+    expect_member(fixed_ends(kepler, u, {-1.5 * u[0], -1.5 * u[1], -1.5 * u[2]}, pi * std::pow(a, 1.5)),
+                  within(1e-9), 0, 1.5 * pi * std::sqrt(a));
+}
+
 /// Exactly so many elements do not hide it.
 TEST(ConjugateEnds, OfAPinnedScheme) {
   expect_refused(fixed_ends(systems::oscillator(1), {0}, {0}, pi), pinned(lobatto(6), 8));

@@ -134,9 +134,9 @@ bool Search::flow_from(double away, double side, bool staged) {
   if (found(strategy)) return true;
   reopen(Refinement::first_degree);
   // Minimisers that are a family, as arcs in all planes through both ends, are one degenerate minimum.
-  if (!std::exchange(flowed_to_family_, true) && !problem_.guess.given()) {
+  if (family_steps_of_flows_ > 0) {
     const bool none = no_family_;
-    if (on_family(false)) return true;
+    if (on_family(false, family_steps_of_flows_)) return true;
     no_family_ = none;
     reopen(Refinement::first_degree);
   }

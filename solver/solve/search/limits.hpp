@@ -287,7 +287,7 @@ inline constexpr int inverse_iterations = 4;
 /// A step is at most this part of the range.
 inline constexpr double longest_family_step = 0.5;
 inline constexpr int most_family_steps = 60, most_null_rounds = 12;
-/// Of both attempts, from the path that was found and from the guess.
+/// Of both attempts, from the path that was found and from the guess; and of all from flows.
 inline constexpr int most_steps_in_all = 800;
 /// Whole steps from where no direction is null, until they are this part of the range.
 inline constexpr int whole_steps = 4;

@@ -32,7 +32,8 @@ Search::Search(const Problem& problem, const SolveOptions& options, Workspace& w
       guess_(&problem),
       options_(options),
       w_(workspace),
-      refinement_(problem, options, workspace, outcome_) {
+      refinement_(problem, options, workspace, outcome_),
+      family_steps_of_flows_(limits::continuum::most_steps_in_all) {
   std::swap(path_, w_.spare);
 }
 
@@ -219,7 +220,7 @@ bool Search::may_be_family() const {
 }
 
 /// Where the second variation is singular: the member nearest to the guess, if there is a family.
-bool Search::on_family(bool resolved) {
+bool Search::on_family(bool resolved, int& steps_left) {
   if (problem_.duration.free || (!problem_.infinite && !may_be_family())) return false;
   if (problem_.lagrangian->kinks()) return false;
   if (refinement_.tables().unknowns() > most_dense_unknowns) return false;
@@ -231,11 +232,9 @@ bool Search::on_family(bool resolved) {
   };
   outcome_.strategy = "newton across a family from the guess";
   outcome_.elsewhere = false;
-  // What the path before has spent does not count.
-  int left = limits::continuum::most_steps_in_all;
   const auto count = [&] {
     refinement_.count_step();
-    return --left > 0 && !options_.deadline.passed();
+    return --steps_left > 0 && !options_.deadline.passed();
   };
   const Path found = path_;
   const auto resample = [&](const ElementTables& tables, const std::vector<double>& mesh, Path& path) {
@@ -287,7 +286,8 @@ void Search::nearest_to_guess() {
       problem_.phase || outcome_.shifts_held)
     return;
   const Outcome accepted = outcome_;
-  if (on_family(true)) return;
+  int steps = limits::continuum::most_steps_in_all;
+  if (on_family(true, steps)) return;
   outcome_ = accepted;
   refinement_.rebind();
 }
@@ -364,7 +364,8 @@ const Outcome& Search::run_near_guess() {
   auto [result, doubtful] = pursue_guess(from_guess);
   if (problem_.infinite) {
     const bool converged = result == Refinement::Result::converged;
-    if ((!converged || leaves_open()) && on_family(converged)) result = Refinement::Result::converged;
+    int steps = limits::continuum::most_steps_in_all;
+    if ((!converged || leaves_open()) && on_family(converged, steps)) result = Refinement::Result::converged;
   }
   outcome_.hidden = result == Refinement::Result::unreachable && !doubtful;
   if (result == Refinement::Result::converged && !outcome_.elsewhere) outcome_.status = Status::converged;
@@ -376,7 +377,9 @@ const Outcome& Search::run(Acceptance* acceptance) {
   if (guess == GuessKind::undefined) return unless_spent();
   acceptance_ = acceptance;
   auto [result, doubtful] = pursue_guess(from_guess);
-  if (result != Refinement::Result::converged && on_family(false)) {
+  // What the path before has spent does not count.
+  int steps = limits::continuum::most_steps_in_all;
+  if (result != Refinement::Result::converged && on_family(false, steps)) {
     result = Refinement::Result::converged;
     doubtful = false;
   } else if (result == Refinement::Result::converged) {

@@ -122,7 +122,7 @@ class Search {
   bool from_settled_motion();
   bool from_noise(unsigned tries);
   bool may_be_family() const;
-  bool on_family(bool resolved);
+  bool on_family(bool resolved, int& steps_left);
   bool leaves_open();
   void nearest_to_guess();
 
@@ -135,12 +135,12 @@ class Search {
   Acceptance* acceptance_ = nullptr;
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
-  double magnitude_ = 0;           ///< of the guess
-  int allowance_ = 0;              ///< of Newton steps
-  Bend bend_;                      ///< of the default guess, where L is not finite on it
-  std::optional<Path> unheld_;     ///< found on some elements, but not on others
-  bool flowed_to_family_ = false;  ///< it was tried whether the flow ends at a family
-  bool no_family_ = false;         ///< the ends are conjugate near the guess, without a family
+  double magnitude_ = 0;        ///< of the guess
+  int allowance_ = 0;           ///< of Newton steps
+  Bend bend_;                   ///< of the default guess, where L is not finite on it
+  std::optional<Path> unheld_;  ///< found on some elements, but not on others
+  int family_steps_of_flows_;   ///< left to families that flows end at
+  bool no_family_ = false;      ///< the ends are conjugate near the guess, without a family
   unsigned seed_ = 0;
   std::set<Met> met_;
 };
