@@ -5,18 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "motion/dop853_steps.hpp"
 #include "motion/dop853_tableau.hpp"
 
 namespace extremal {
 
 namespace {
-
-constexpr double safety = 0.9;
-constexpr double most_growth = 6, most_shrinking = 1.0 / 3;
-/// Shortening where the right-hand side cannot be evaluated.
-constexpr double retreat = 0.25;
-/// Of the time ahead, for the first step.
-constexpr double shortest_start = 1e-6;
 
 int controlled_size(const IntegrationOptions& options, int size) {
   return options.controlled > 0 ? std::min(options.controlled, size) : size;
@@ -62,7 +56,6 @@ bool DormandPrince<T>::step(T t, std::span<const T> y, T h) {
   return std::all_of(next_.begin(), next_.end(), [](T x) { return std::isfinite(x); });
 }
 
-/// Hairer, Nørsett and Wanner (10.17): |h| e5² / √(e5² + 0.01 e3²), in units of the tolerance.
 template <class T>
 T DormandPrince<T>::error_norm(std::span<const T> y, T h, const IntegrationOptions& options) const {
   const int size = controlled_size(options, size_), block = block_size(options, size);
@@ -83,7 +76,7 @@ T DormandPrince<T>::error_norm(std::span<const T> y, T h, const IntegrationOptio
       sum3 += (e3 / scale) * (e3 / scale);
     }
   }
-  return sum5 == 0 ? 0 : std::abs(h) * sum5 / std::sqrt((sum5 + 0.01 * sum3) * size);
+  return dop853::error_norm(sum5, sum3, h, size);
 }
 
 /// A hundredth of the time in which a block would change by its own size, but where that is all but zero, as
@@ -96,9 +89,9 @@ T DormandPrince<T>::first_step(T t, std::span<const T> y, T span, const Integrat
   for (int begin = 0; begin < size; begin += block) {
     const int end = std::min(begin + block, size);
     const T value = largest(y, begin, end), slope = largest<T>(stage_, begin, end);
-    if (value > 0 && slope > 0) h = std::min(h, 0.01 * value / slope);
+    if (value > 0 && slope > 0) h = std::min(h, dop853::first_change * value / slope);
   }
-  h = std::max(h, shortest_start * std::abs(span));
+  h = std::max(h, dop853::shortest_start * std::abs(span));
   return std::copysign(h, span);
 }
 
@@ -113,16 +106,15 @@ Integrated DormandPrince<T>::accept_step(T& t, std::span<T> y, T end, const Inte
     const T h = last ? end - t : h_;
     if (!last && std::abs(h_) <= least) return Integrated::step_underflow;
     if (!step(t, y, h)) {
-      h_ = h * retreat;
+      h_ = h * dop853::retreat;
       if (t + h_ == t) return Integrated::step_underflow;
       ++rejected_;
       continue;
     }
     const T error = error_norm(y, h, options);
-    const T best = error > 0 ? safety * std::pow(error, T(-1) / 8) : most_growth;
-    const T factor = std::clamp<T>(best, most_shrinking, most_growth);
+    const T factor = dop853::growth(error);
     if (error > 1) {
-      h_ = h * std::min<T>(factor, safety);
+      h_ = h * std::min<T>(factor, dop853::safety);
       ++rejected_;
       continue;
     }

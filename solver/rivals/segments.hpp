@@ -6,7 +6,7 @@
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
 #include "rivals/almost_block_diagonal.hpp"
-#include "rivals/batch_dop853.hpp"
+#include "motion/batch_dop853.hpp"
 #include "rivals/conditions.hpp"
 
 /// \file A motion in segments, each from a state of its own: the equations of single and multiple shooting.

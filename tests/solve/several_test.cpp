@@ -290,6 +290,91 @@ TEST(Several, PairsNearTheSeparatrixOfADrivenPendulum) {
   }
 }
 
+/// Actions of two oscillators with V = (x² + y²)/2 + x² y², from `start` to `end` in T: where a triangle of a
+/// grid of velocities goes round the end, Newton's method follows.
+Values coupled_actions(const Eigen::Vector2d& start, const Eigen::Vector2d& end, double duration,
+                       double fastest) {
+  constexpr int steps = 300, grid = 150;
+  const auto force = [](const Eigen::Vector2d& q) {
+    return Eigen::Vector2d(-q[0] - 2 * q[0] * q[1] * q[1], -q[1] - 2 * q[0] * q[0] * q[1]);
+  };
+  const auto lagrangian = [](const Eigen::Vector2d& q, const Eigen::Vector2d& v) {
+    return (v.squaredNorm() - q.squaredNorm()) / 2 - q[0] * q[0] * q[1] * q[1];
+  };
+  const auto miss = [&](const Eigen::Vector2d& velocity, double* action) -> Eigen::Vector2d {
+    Eigen::Vector2d q = start, v = velocity;
+    const double h = duration / steps;
+    constexpr double w = 1.3512071919596578;  // Yoshida (1990), as for the double well
+    double s = 0;
+    for (int k = 0; k < steps; ++k) {
+      s += lagrangian(q, v) * (k == 0 ? 1 : k % 2 == 0 ? 2 : 4) * h / 3;
+      for (const double part : {w, 1 - 2 * w, w}) {
+        q += part * h / 2 * v;
+        v += part * h * force(q);
+        q += part * h / 2 * v;
+      }
+    }
+    if (action) *action = s + lagrangian(q, v) * h / 3;
+    return q - end;
+  };
+  const auto at = [&](int k) { return fastest * (2.0 * k / grid - 1); };
+  std::vector<Eigen::Vector2d> misses;
+  for (int i = 0; i <= grid; ++i)
+    for (int j = 0; j <= grid; ++j) misses.push_back(miss({at(i), at(j)}, nullptr));
+  const auto goes_round = [&](int a, int b, int c) {
+    const auto turn = [&](int m, int n) {
+      return misses[m][0] * misses[n][1] - misses[m][1] * misses[n][0] > 0;
+    };
+    return turn(a, b) == turn(b, c) && turn(b, c) == turn(c, a);
+  };
+  Values actions;
+  for (int i = 0; i < grid; ++i)
+    for (int j = 0; j < grid; ++j) {
+      const int a = i * (grid + 1) + j, b = a + 1, c = a + grid + 1, d = c + 1;
+      if (!goes_round(a, b, c) && !goes_round(b, c, d)) continue;
+      Eigen::Vector2d v(at(i) + fastest / grid, at(j) + fastest / grid), step(1, 1);
+      for (int k = 0; k < 12 && step.norm() > 1e-9; ++k) {
+        const Eigen::Vector2d here = miss(v, nullptr);
+        Eigen::Matrix2d slope;
+        for (int m = 0; m < 2; ++m)
+          slope.col(m) = (miss(v + 1e-6 * Eigen::Vector2d::Unit(m), nullptr) -
+                          miss(v - 1e-6 * Eigen::Vector2d::Unit(m), nullptr)) /
+                         2e-6;
+        step = -slope.inverse() * here;
+        v += step * std::min(1.0, 0.1 / step.norm());
+      }
+      double action = 0;
+      miss(v, &action);
+      const auto same = [&](double other) { return std::abs(other - action) < 1e-5; };
+      if (step.norm() <= 1e-9 && v.cwiseAbs().maxCoeff() <= fastest && std::ranges::none_of(actions, same))
+        actions.push_back(action);
+    }
+  std::ranges::sort(actions);
+  return actions;
+}
+
+/// In two coordinates: between those that are listed there is all that a dense scan by shooting finds.
+TEST(Several, NoneIsMissingBetweenThoseOfCoupledOscillators) {
+  LONG_TEST();
+  const auto coupled = trace(2, [](auto q, auto v, auto) {
+    return (v[0] * v[0] + v[1] * v[1] - q[0] * q[0] - q[1] * q[1]) / 2 - q[0] * q[0] * q[1] * q[1];
+  });
+  for (const double duration : {5.0, 7.0}) {
+    const std::vector<Solution> found = solve_all(fixed_ends(coupled, {-0.5, 0.3}, {0.6, 0.2}, duration), 12);
+    ASSERT_EQ(found.size(), 12u);
+    const Values actions = coupled_actions({-0.5, 0.3}, {0.6, 0.2}, duration, 3);
+    int compared = 0;
+    for (const double action : actions) {
+      if (action > found.back().action + 1e-5) break;
+      ++compared;
+      EXPECT_TRUE(
+          std::ranges::any_of(found, [&](const Solution& s) { return std::abs(s.action - action) < 1e-4; }))
+          << duration << ": " << action;
+    }
+    EXPECT_GE(compared, 6) << duration;
+  }
+}
+
 /// Those of least action, without a gap, as many as are asked for.
 TEST(Several, NoneIsMissingBetweenThoseOfADoubleWell) {
   LONG_TEST();

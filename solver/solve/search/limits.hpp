@@ -173,6 +173,8 @@ inline constexpr double off_manifold = 1e-9;
 inline constexpr int first_levels = 8, further_levels = 5, denser_in_one = 3;
 /// Steps of integrators for one of these lengths at most.
 inline constexpr int most_sweep_steps = 100000;
+/// Of those from one arrival to the next, where some motions do not last.
+inline constexpr int most_vain_steps = 100000;
 /// Times, by the duration, until which curves are looked for, and followed where times grow along them; and
 /// velocities, by the reach.
 inline constexpr double seed_until = 1.5, follow_until = 1.1, follow_beyond = 100;
@@ -394,7 +396,7 @@ inline constexpr int most_rows = 12;
 inline constexpr int motions_each = 8, least_motions = 24;
 /// Motions for each extremal that is wanted: of chaotic systems there are always more.
 inline constexpr int most_motions_each = 60;
-/// Of integrators, in all, of the search for all motions that arrive; and its part of the time there is.
+/// Of integrators, of a scan; and its part of the time there is.
 inline constexpr int most_scan_steps = 1500000;
 /// So many of them may find nothing new.
 inline constexpr int most_quiet_steps = most_scan_steps / 16;
@@ -447,6 +449,9 @@ inline constexpr double fine_step = 1e-8, coarse_step = 1e-5;
 inline constexpr int cells_in_one = 192, cells_in_two = 16;
 inline constexpr int halvings_in_one = 20, halvings_in_two = 4, further_halvings = 6;
 inline constexpr double nearly_linear = 0.1;
+/// Cells sampled together; and steps side by side that cost as much as one alone, with four lanes.
+inline constexpr std::size_t cells_at_once = 256;
+inline constexpr double abreast = 3;
 /// Of a velocity at which L is not finite, halved until it is: the unit of momenta.
 inline constexpr double least_part = 1e-9;
 /// A value that keeps its sign by so many times its curvature has no zero in the cell. Beside a separatrix

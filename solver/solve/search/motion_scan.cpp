@@ -210,24 +210,32 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
   // Slow motions fall into what attracts them, and take most steps: so the fast ones come first, and no level
   // takes the steps of all. Those slower than all that arrive need not be looked at to the end.
   bool complete = true, arrived = false;
-  for (int k = levels - 1; k >= 0 && more(0); --k) {
+  // Where motions do not last, others may be missing, and curves may not end.
+  int vain_steps = 0;
+  const auto follow = [&](int steps) {
+    vain_steps += steps;
+    return more(steps) && (vain_steps < most_vain_steps || arrivals_->all_last());
+  };
+  for (int k = levels - 1; k >= 0 && follow(0); --k) {
     // Denser towards the least energies, where motions take longest.
     const double root_part = (k + 0.5) / levels, part = root_part * root_part;
     const double speed = std::sqrt(nearest * nearest + part * (farthest * farthest - nearest * nearest));
     int steps_here = 0;
     arrivals_->count_by([&](int steps) {
       steps_here += steps;
-      return more(steps) && steps_here < most_sweep_steps;
+      return follow(steps) && steps_here < most_sweep_steps;
     });
     const std::vector<Arrivals::Arrival> seeds = arrivals_->sweep(speed, seed_until * given.value);
     complete = complete && (steps_here < most_sweep_steps || (arrived && seeds.empty()));
     arrived = arrived || !seeds.empty();
-    arrivals_->count_by(more);
+    arrivals_->count_by(follow);
     for (const Arrivals::Arrival& seed : seeds)
-      if (more(0) && !arrivals_->followed(seed))
+      if (follow(0) && !arrivals_->followed(seed))
         for (const Arrivals::Arrival& arrival :
-             arrivals_->along(seed, follow_beyond * farthest, follow_until * given.value))
+             arrivals_->along(seed, follow_beyond * farthest, follow_until * given.value)) {
           take(arrival);
+          vain_steps = 0;
+        }
   }
   return more(0) && complete && arrivals_->all_last();
 }

@@ -45,9 +45,10 @@ bool Several::reaches_known() {
          }) >= 0;
 }
 
-/// Whether integrators may take so many more steps, of all those there are for scans a part.
+/// Whether integrators may take so many more steps, of those that a scan may take a part.
 std::function<bool(int)> Several::scan_budget(double part) {
   const auto most = static_cast<long>(part * most_scan_steps);
+  scan_steps_ = 0;
   return [this, most, deadline = options_.deadline.share(part * arrivals_share)](int steps) {
     scan_steps_ += steps;
     return scan_steps_ < most && !deadline.passed();
@@ -68,7 +69,7 @@ bool Several::trace_arrivals() {
       ++scanned_;
       if (search_.refine_motion(motion, duration, from_arrival)) keep();
     });
-    if (!more(0)) return false;
+    if (!more(0) || (!complete && found_.size() == before)) return false;
     told = told && complete;
     const bool enough = static_cast<int>(found_.size()) >= most_;
     nearest = farthest;
@@ -80,7 +81,7 @@ bool Several::trace_arrivals() {
 }
 
 /// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.
-/// Whether that can be told.
+/// Whether that can be told: not where a motion that meets the end leads to no extremal.
 bool Several::scan_starts() {
   const std::function<bool(int)> more = scan_budget();
   const double cycles = std::max(1.0, w_.frequency.phase());
@@ -101,6 +102,7 @@ bool Several::scan_starts() {
   // Where motions are cheap, as those of slow starts, the next extremal may be far.
   long steps_before = scan_steps_;
   const auto cheap = [&](int steps) { return more(steps) && scan_steps_ - steps_before <= most_quiet_steps; };
+  bool all_led = true;
   for (int growths = 0; growths < most_growths * dimension || (growths < most_cheap_growths && cheap(0));) {
     const bool near = growths < most_growths * dimension;
     std::vector<Eigen::VectorXd> zeros;
@@ -114,20 +116,21 @@ bool Several::scan_starts() {
                                        limits::from_motions::step_error, [] { return true; });
       search_.renew(patience);
       ++scanned_;
-      if (motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start)) keep();
+      const bool led = motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start);
+      all_led = (led && keep() >= 0) && all_led;
     }
     // Beyond the last extremals it has been looked in vain.
-    if (!complete) return growths > 0;
+    if (!complete) return growths > 0 && all_led;
     const bool news = found_.size() > before;
     growths = news ? 0 : growths + 1;
     if (news) steps_before = scan_steps_;
     const bool enough = static_cast<int>(found_.size()) >= most_;
     const double wanted = wanted_reach(1, reach_of);
     shell.nearest = shell.farthest;
-    if (enough && shell.farthest >= wanted) return true;
+    if (enough && shell.farthest >= wanted) break;
     shell.farthest = enough ? reach_beyond * wanted : shell.farthest * growth;
   }
-  return true;
+  return all_led;
 }
 
 /// From motions that nearly close. False if none leads to an orbit.

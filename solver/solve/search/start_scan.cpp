@@ -43,6 +43,8 @@ StartScan::StartScan(const Problem& problem)
     return;
   }
   flow_.emplace(*problem.lagrangian);
+  lane_flow_.emplace(*problem.lagrangian);
+  integrator_.emplace(*lane_flow_);
   cells_ = unknowns_ == 1 ? cells_in_one : cells_in_two;
 }
 
@@ -87,38 +89,48 @@ std::optional<StartScan::State> StartScan::state(const Vector& w) {
   return state;
 }
 
-/// From y to T; false if there is no motion until then.
-template <class Slope>
-bool StartScan::integrate(const Slope& slope, Vector& y, double tolerance, int cost) {
-  return move_state(slope, n_, problem_.duration.value, tolerance, cost * cost_, more_, y);
+/// Of samples.
+double StartScan::step_error() const { return unknowns_ == 1 ? fine_step : coarse_step; }
+
+/// Columns of states, perhaps with their variations, to T, side by side. Those of motions that do not last
+/// until then become not finite.
+void StartScan::move(Eigen::MatrixXd& states, double tolerance) {
+  const double T = problem_.duration.value;
+  const auto variations = static_cast<int>(states.rows() / (2 * n_)) - 1;
+  const double cost = cost_ * (variations > 0 ? variations_cost : 1);
+  double spent = 0;
+  const auto count = [&](int steps) {
+    spent += cost / abreast * steps;
+    const auto whole = static_cast<int>(spent);
+    spent -= whole;
+    return more_(whole);
+  };
+  Eigen::MatrixXd ends(states.rows(), states.cols());
+  std::vector<MotionSpan> spans(states.cols());
+  for (Eigen::Index k = 0; k < states.cols(); ++k)
+    spans[k] = {.end = T, .initial = states.col(k).data(), .final = ends.col(k).data()};
+  integrator_->run_each(spans, variations, tolerance, limits::scanned_motions::most_integrator_steps, count);
+  const auto slope = [&](double t, std::span<const double> x, std::span<double> s) {
+    return variations > 0 ? flow_->slope_with_variations(t, x, s) : flow_->slope(t, x, s);
+  };
+  const bool alone = !problem_.lagrangian->structure().quadratic;
+  for (Eigen::Index k = 0; k < states.cols(); ++k) {
+    if (spans[k].complete) continue;
+    // Where momenta hardly depend on velocities, these are found with shorter steps of Newton's method.
+    Vector y = states.col(k);
+    const bool lasts =
+        alone && more_(0) && move_state(slope, n_, T, tolerance, static_cast<int>(cost), more_, y);
+    ends.col(k) = lasts ? y : Vector::Constant(y.size(), NAN);
+  }
+  states.swap(ends);
 }
 
-/// The miss of a motion, and its state at T by units; not finite where there is none until T.
-Vector StartScan::fly(const Vector& w) {
+/// Of a motion, with one unknown.
+double StartScan::miss(const Vector& w) {
   const Vector start = conditions_->start(w);
-  Vector y = start;
-  const auto slope = [this](double t, std::span<const double> x, std::span<double> s) {
-    return flow_->slope(t, x, s);
-  };
-  const bool lasts = integrate(slope, y, unknowns_ == 1 ? fine_step : coarse_step, 1);
-  Vector values = Vector::Constant(unknowns_ + 2 * n_, NAN);
-  if (lasts) values << conditions_->miss(start, y), y.cwiseQuotient(shell_.state_unit);
-  return values;
-}
-
-/// With its derivatives by w.
-bool StartScan::fly(const Vector& w, Vector& miss, Eigen::MatrixXd& derivatives) {
-  const int states = 2 * n_;
-  const Vector start = conditions_->start(w);
-  Vector y(states * (1 + unknowns_));
-  y << start, conditions_->variations().reshaped();
-  const auto slope = [this](double t, std::span<const double> x, std::span<double> s) {
-    return flow_->slope_with_variations(t, x, s);
-  };
-  if (!integrate(slope, y, fine_step, variations_cost)) return false;
-  miss = conditions_->miss(start, y.head(states));
-  derivatives = conditions_->derivatives(y.tail(states * unknowns_).reshaped(states, unknowns_));
-  return miss.allFinite() && derivatives.allFinite();
+  Eigen::MatrixXd end = start;
+  move(end, fine_step);
+  return conditions_->miss(start, end)[0];
 }
 
 /// A length on the finest lattice.
@@ -133,11 +145,6 @@ Vector StartScan::at(Place place) const {
   return w;
 }
 
-const Vector& StartScan::sample(Place place) {
-  const auto known = samples_.find(place);
-  return known != samples_.end() ? known->second : samples_.emplace(place, fly(at(place))).first->second;
-}
-
 /// The corners of a cell and the points in the middle between them, three along each coordinate.
 std::vector<StartScan::Place> StartScan::lattice(const Cell& cell) const {
   std::vector<Place> places;
@@ -146,11 +153,36 @@ std::vector<StartScan::Place> StartScan::lattice(const Cell& cell) const {
   return places;
 }
 
+/// The values of motions from the corners and middles of cells, the miss and the state at T by units: those
+/// that are not known yet. Not finite where there is no motion until T. False if there were not enough steps.
+bool StartScan::sample_all(std::span<const Cell> cells) {
+  std::vector<Place> places;
+  for (const Cell& cell : cells)
+    for (const Place place : lattice(cell))
+      if (samples_.try_emplace(place).second) places.push_back(place);
+  Eigen::MatrixXd starts(2 * n_, places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) starts.col(k) = conditions_->start(at(places[k]));
+  Eigen::MatrixXd ends = starts;
+  move(ends, step_error());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    Vector& values = samples_[places[k]];
+    values.resize(unknowns_ + 2 * n_);
+    values << conditions_->miss(starts.col(k), ends.col(k)), ends.col(k).cwiseQuotient(shell_.state_unit);
+  }
+  return more_(0);
+}
+
+std::vector<const double*> StartScan::samples(const std::vector<Place>& places) const {
+  std::vector<const double*> values;
+  for (const Place place : places) values.push_back(samples_.at(place).data());
+  return values;
+}
+
 /// How far one of the values of a cell is off what its corners tell.
-double StartScan::bend(const std::vector<Place>& places, int value) {
-  const auto of = [&](int k) { return sample(places[k])[value]; };
+double StartScan::bend(const std::vector<const double*>& samples, int value) const {
+  const auto of = [&](int k) { return samples[k][value]; };
   double bend = 0;
-  for (int k = 0; k < static_cast<int>(places.size()); ++k) {
+  for (int k = 0; k < static_cast<int>(samples.size()); ++k) {
     const int column = k % 3, row = unknowns_ == 1 ? 0 : k / 3 * 3;
     // The mean of the corners on whose side, edge or face the point is; a corner itself.
     const int left = column == 1 ? 0 : column, right = column == 1 ? 2 : column;
@@ -162,63 +194,71 @@ double StartScan::bend(const std::vector<Place>& places, int value) {
   return bend;
 }
 
-/// Halves a cell until the function is nearly linear. Few values of it may be on a line by chance: so the
+/// Cells so large are searched, whatever the function is like in them; so small, they are not divided
+/// further.
+std::int64_t StartScan::fine() const {
+  return finest >> (unknowns_ == 1 ? halvings_in_one : halvings_in_two);
+}
+std::int64_t StartScan::finest_searched() const {
+  return unknowns_ == 1 ? fine() : fine() >> further_halvings;
+}
+
+/// A cell is halved until the function is nearly linear. Few values of it may be on a line by chance: so the
 /// whole state at T must be. Between its samples it is off a line by the curvature that they show; where a
 /// value keeps its sign by more than that, the cell holds no zero, nor where there are no motions until T.
-void StartScan::divide(const Cell& cell, std::deque<Cell>& cells, std::vector<Vector>& found) {
-  const std::vector<Place> places = lattice(cell);
-  const auto lasts = [&](Place place) { return sample(place).allFinite(); };
+StartScan::Verdict StartScan::judge(const Cell& cell) const {
+  const std::vector<const double*> values = samples(lattice(cell));
+  const auto lasts = [&](const double* sample) { return std::isfinite(sample[unknowns_]); };
   const double sure = unknowns_ == 1 ? sure_in_one : sure_in_two;
   double state_bend = 0;
   for (int entry = 0; entry < 2 * n_; ++entry)
-    state_bend = std::max(state_bend, bend(places, unknowns_ + entry));
+    state_bend = std::max(state_bend, bend(values, unknowns_ + entry));
   const Vector by_state = state_bend * conditions_->miss_unit(shell_.state_unit);
-  bool straight = state_bend <= nearly_linear, may_vanish = std::ranges::any_of(places, lasts);
+  bool straight = state_bend <= nearly_linear, may_vanish = std::ranges::any_of(values, lasts);
   for (int value = 0; value < unknowns_; ++value) {
     double least = INFINITY, most = -INFINITY;
-    for (Place place : places) {
-      least = std::min(least, sample(place)[value]);
-      most = std::max(most, sample(place)[value]);
+    for (const double* sample : values) {
+      least = std::min(least, sample[value]);
+      most = std::max(most, sample[value]);
     }
-    const double own = bend(places, value), margin = sure * std::max(own, by_state[value]);
+    const double own = bend(values, value), margin = sure * std::max(own, by_state[value]);
     straight = straight && own <= nearly_linear * (most - least);
     may_vanish = may_vanish && !(least > margin) && !(-most > margin);
   }
-  if (!may_vanish) return;
-  const std::int64_t fine = finest >> (unknowns_ == 1 ? halvings_in_one : halvings_in_two);
-  const std::int64_t finer = unknowns_ == 1 ? fine : fine >> further_halvings;
-  if ((straight || cell.width <= fine) && (search(cell, places, found) || cell.width <= finer)) return;
-  const std::int64_t half = cell.width / 2;
-  for (int k = 0; k < (1 << unknowns_); ++k)
-    cells.push_back({{cell.corner[0] + k % 2 * half, cell.corner[1] + k / 2 * half}, half});
+  if (!may_vanish) return Verdict::empty;
+  return straight || cell.width <= fine() ? Verdict::search : Verdict::divide;
 }
 
-/// Zeros in a cell that is not divided further: between samples of other signs, or of the linear functions of
-/// the triangles that its samples make. False if Newton's method leads from one to none.
-bool StartScan::search(const Cell& cell, const std::vector<Place>& places, std::vector<Vector>& found) {
-  if (unknowns_ == 1) {
-    for (int k = 0; k < 2; ++k) {
-      const double a = sample(places[k])[0], b = sample(places[k + 1])[0];
-      if (std::isfinite(a) && std::isfinite(b) && (a < 0) != (b < 0))
-        enclose({at(places[k]), a}, {at(places[k + 1]), b}, found);
-    }
-    return true;
+/// Zeros between samples of other signs, with one unknown.
+void StartScan::search_between(const Cell& cell, std::vector<Vector>& found) {
+  const std::vector<Place> places = lattice(cell);
+  const std::vector<const double*> values = samples(places);
+  for (int k = 0; k < 2; ++k) {
+    const double a = values[k][0], b = values[k + 1][0];
+    if (std::isfinite(a) && std::isfinite(b) && (a < 0) != (b < 0))
+      enclose({at(places[k]), a}, {at(places[k + 1]), b}, found);
   }
-  bool led = true;
+}
+
+/// Zeros of the linear functions of the triangles that samples make, with two.
+void StartScan::add_candidates(std::size_t number, const Cell& cell,
+                               std::vector<Candidate>& candidates) const {
+  const std::vector<Place> places = lattice(cell);
+  const std::vector<const double*> values = samples(places);
   // Around the middle, number 4.
   constexpr int ring[] = {0, 1, 2, 5, 8, 7, 6, 3, 0};
   for (int k = 0; k < 8; ++k) {
-    const Place corners[] = {places[4], places[ring[k]], places[ring[k + 1]]};
+    const int corners[] = {4, ring[k], ring[k + 1]};
     Eigen::Matrix3d linear;
-    for (int c = 0; c < 3; ++c) linear.col(c) << 1, sample(corners[c]).head(unknowns_);
+    for (int c = 0; c < 3; ++c) linear.col(c) << 1, values[corners[c]][0], values[corners[c]][1];
     if (!linear.allFinite()) continue;
     const Eigen::Vector3d weights = linear.partialPivLu().solve(Eigen::Vector3d::UnitX());
     if (!weights.allFinite() || weights.minCoeff() < -beyond_triangle) continue;
     Vector w = Vector::Zero(unknowns_);
-    for (int c = 0; c < 3; ++c) w += weights[c] * at(corners[c]);
-    led = approach(std::move(w), 2 * shell_.farthest * part_of_box(cell.width), found) && led;
+    for (int c = 0; c < 3; ++c) w += weights[c] * at(places[corners[c]]);
+    candidates.push_back(
+        {.cell = number, .w = w, .first = w, .width = 2 * shell_.farthest * part_of_box(cell.width)});
   }
-  return led;
 }
 
 /// The zero between two starts with values of other signs, by bisection and the secant in turn.
@@ -227,7 +267,7 @@ void StartScan::enclose(Side a, Side b, std::vector<Vector>& found) {
   for (int k = 0; k < most_sections && more_(0); ++k) {
     const double part = k % 2 == 0 ? a.miss / (a.miss - b.miss) : 0.5;
     const Vector w = a.w + part * (b.w - a.w);
-    const Side middle{w, fly(w)[0]};
+    const Side middle{w, miss(w)};
     // Next to rest a step's error by the momentum may be too large for the integrator.
     if (!std::isfinite(middle.miss)) {
       const Side& best = std::abs(a.miss) < std::abs(b.miss) ? a : b;
@@ -243,30 +283,54 @@ void StartScan::enclose(Side a, Side b, std::vector<Vector>& found) {
   }
 }
 
-/// Newton's method for a zero about as near as the width of a cell, by units. True if it leads to one, also
-/// of a family.
-bool StartScan::approach(Vector w, double width, std::vector<Vector>& found) {
-  const auto distance = [this](const Vector& d) { return (d.array() / shell_.unit.array()).matrix().norm(); };
-  const Vector first = w;
-  double last_step = INFINITY;
-  for (int k = 0; k < most_newton_steps && last_step > met * width && more_(0); ++k) {
-    Vector miss;
-    Eigen::MatrixXd slope;
-    if (!fly(w, miss, slope)) {
-      if (last_step > nearly_met * width) return false;
-      break;  // at rest, see enclose()
-    }
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(slope * shell_.unit.asDiagonal());
-    if (!(lu.rcond() > isolated)) return true;
-    const Vector step = -(shell_.unit.asDiagonal() * lu.solve(miss));
-    w += step;
-    last_step = distance(step);
-    if (!(distance(w - first) <= strays * width)) return false;
+/// By units.
+double StartScan::distance(const Vector& d) const {
+  return (d.array() / shell_.unit.array()).matrix().norm();
+}
+
+/// A step of Newton's method, from the state at T with its variations by w.
+void StartScan::approach(Candidate& c, const Vector& end) const {
+  const Vector miss = conditions_->miss(conditions_->start(c.w), end.head(2 * n_));
+  const Eigen::MatrixXd slope =
+      conditions_->derivatives(end.tail(2 * n_ * unknowns_).reshaped(2 * n_, unknowns_));
+  using Fate = Candidate::Fate;
+  if (!miss.allFinite() || !slope.allFinite()) {
+    // At rest, see enclose().
+    c.fate = c.last_step <= nearly_met * c.width ? Fate::found : Fate::lost;
+    return;
   }
-  const auto same = [&](const Vector& other) { return distance(other - w) <= nearly_met * width; };
-  if (!(last_step <= nearly_met * width)) return false;
-  if (std::ranges::none_of(found, same)) found.push_back(std::move(w));
-  return true;
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(slope * shell_.unit.asDiagonal());
+  if (!(lu.rcond() > isolated)) {
+    c.fate = Fate::of_family;
+    return;
+  }
+  const Vector step = -(shell_.unit.asDiagonal() * lu.solve(miss));
+  c.w += step;
+  c.last_step = distance(step);
+  if (!(distance(c.w - c.first) <= strays * c.width))
+    c.fate = Fate::lost;
+  else if (c.last_step <= met * c.width)
+    c.fate = Fate::found;
+}
+
+/// Newton's method from all candidates, until each has met its fate.
+void StartScan::approach(std::vector<Candidate>& candidates, std::vector<Vector>& found) {
+  using Fate = Candidate::Fate;
+  std::vector<Candidate*> open;
+  for (Candidate& c : candidates) open.push_back(&c);
+  for (int k = 0; k < most_newton_steps && !open.empty() && more_(0); ++k) {
+    Eigen::MatrixXd states(2 * n_ * (1 + unknowns_), open.size());
+    for (std::size_t j = 0; j < open.size(); ++j)
+      states.col(j) << conditions_->start(open[j]->w), conditions_->variations().reshaped();
+    move(states, fine_step);
+    for (std::size_t j = 0; j < open.size(); ++j) approach(*open[j], states.col(j));
+    std::erase_if(open, [](const Candidate* c) { return c->fate != Fate::open; });
+  }
+  for (Candidate* c : open) c->fate = c->last_step <= nearly_met * c->width ? Fate::found : Fate::lost;
+  for (Candidate& c : candidates) {
+    const auto same = [&](const Vector& other) { return distance(other - c.w) <= nearly_met * c.width; };
+    if (c.fate == Fate::found && std::ranges::none_of(found, same)) found.push_back(std::move(c.w));
+  }
 }
 
 bool StartScan::zeros(const Shell& shell, const std::function<bool(int steps)>& more,
@@ -286,7 +350,32 @@ bool StartScan::zeros(const Shell& shell, const std::function<bool(int steps)>& 
     cells.push_back({{number[0] * finest, unknowns_ == 1 ? 0 : number[1] * finest}, finest});
   }
   // Large cells first: what steps are enough for is then spread over the box.
-  for (; !cells.empty() && more(0); cells.pop_front()) divide(Cell(cells.front()), cells, found);
+  while (!cells.empty()) {
+    const auto last = cells.begin() + static_cast<std::ptrdiff_t>(std::min(cells.size(), cells_at_once));
+    const std::vector<Cell> next(cells.begin(), last);
+    cells.erase(cells.begin(), last);
+    if (!sample_all(next)) return false;
+    std::vector<Candidate> candidates;
+    std::vector<bool> divided(next.size(), false);
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      const Verdict verdict = judge(next[k]);
+      divided[k] = verdict == Verdict::divide;
+      if (verdict != Verdict::search) continue;
+      if (unknowns_ == 1)
+        search_between(next[k], found);
+      else
+        add_candidates(k, next[k], candidates);
+    }
+    approach(candidates, found);
+    for (const Candidate& c : candidates)
+      if (c.fate == Candidate::Fate::lost) divided[c.cell] = next[c.cell].width > finest_searched();
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      if (!divided[k]) continue;
+      const std::int64_t half = next[k].width / 2;
+      for (int part = 0; part < (1 << unknowns_); ++part)
+        cells.push_back({{next[k].corner[0] + part % 2 * half, next[k].corner[1] + part / 2 * half}, half});
+    }
+  }
   return more(0);
 }
 

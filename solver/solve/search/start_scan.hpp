@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "motion/batch_dop853.hpp"
 #include "motion/flow.hpp"
 #include "problem/problem.hpp"
 #include "solve/search/motion_conditions.hpp"
@@ -58,31 +60,48 @@ class StartScan {
     Place corner;
     std::int64_t width;
   };
+  /// A place from which Newton's method looks for a zero about as near as the width of a cell.
+  struct Candidate {
+    enum class Fate { open, found, of_family, lost };
+    std::size_t cell;
+    Vector w, first;
+    double width;  ///< by units
+    double last_step = std::numeric_limits<double>::infinity();
+    Fate fate = Fate::open;
+  };
   struct Side {
     Vector w;
     double miss;
   };
 
+  double step_error() const;
   double momentum_unit(std::span<const double> q, int coordinate, double speed);
   double part_of_box(std::int64_t length) const;
   Vector at(Place place) const;
-  const Vector& sample(Place place);
-  Vector fly(const Vector& w);
-  bool fly(const Vector& w, Vector& miss, Eigen::MatrixXd& derivatives);
-  template <class Slope>
-  bool integrate(const Slope& slope, Vector& y, double tolerance, int cost);
-  double bend(const std::vector<Place>& places, int value);
+  bool sample_all(std::span<const Cell> cells);
+  double miss(const Vector& w);
+  void move(Eigen::MatrixXd& states, double tolerance);
+  double bend(const std::vector<const double*>& samples, int value) const;
+  std::vector<const double*> samples(const std::vector<Place>& places) const;
   std::vector<Place> lattice(const Cell& cell) const;
-  void divide(const Cell& cell, std::deque<Cell>& cells, std::vector<Vector>& found);
-  bool search(const Cell& cell, const std::vector<Place>& lattice, std::vector<Vector>& found);
+  enum class Verdict { empty, divide, search };
+  Verdict judge(const Cell& cell) const;
+  std::int64_t fine() const;
+  std::int64_t finest_searched() const;
+  void search_between(const Cell& cell, std::vector<Vector>& found);
+  void add_candidates(std::size_t number, const Cell& cell, std::vector<Candidate>& candidates) const;
   void enclose(Side a, Side b, std::vector<Vector>& found);
-  bool approach(Vector w, double width, std::vector<Vector>& found);
+  void approach(Candidate& c, const Vector& end) const;
+  void approach(std::vector<Candidate>& candidates, std::vector<Vector>& found);
+  double distance(const Vector& d) const;
 
   const Problem& problem_;
   int n_, cost_;
   std::optional<MotionConditions> conditions_;
   int unknowns_ = 0;
   std::optional<Flow> flow_;
+  std::optional<LaneFlow> lane_flow_;
+  std::optional<BatchDop853> integrator_;
   Shell shell_;
   int cells_ = 0;  ///< of the box, along each coordinate
   std::map<Place, Vector> samples_;

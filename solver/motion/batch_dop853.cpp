@@ -1,18 +1,15 @@
-#include "rivals/batch_dop853.hpp"
+#include "motion/batch_dop853.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "motion/dop853_steps.hpp"
+
 namespace extremal {
 
 namespace {
 
-constexpr double safety = 0.9, most_growth = 6, most_shrinking = 1.0 / 3;
-/// Shortening where the slope cannot be evaluated.
-constexpr double retreat = 0.25;
-/// Of the time ahead, for the first step: q or p may be all but zero.
-constexpr double shortest_start = 1e-6;
 /// The error of a step is of this order in its length.
 constexpr double order = 8;
 /// So many steps before the end of a span, what is left is divided evenly.
@@ -33,21 +30,15 @@ constexpr dop853::Row<double> error3 = third_order_error();
 BatchDop853::BatchDop853(LaneFlow& flow)
     : flow_(flow), kernels_(flow.kernels()), t_(lanes_), h_(lanes_), stage_t_(lanes_), sums_(2 * lanes_) {}
 
-void BatchDop853::resize(int columns) {
-  rows_ = static_cast<std::size_t>(2 * flow_.coordinates()) * (1 + columns);
-  y_.resize(rows_ * lanes_);
-  next_.resize(rows_ * lanes_);
-  k_.resize(rows_ * lanes_ * dop853::stages);
-}
-
 bool BatchDop853::under_way() const {
   return std::any_of(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.span != nullptr; });
 }
 
-bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
-                      const Deadline& deadline) {
-  if (spans.empty()) return true;
-  resize(columns);
+void BatchDop853::begin(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps) {
+  rows_ = static_cast<std::size_t>(2 * flow_.coordinates()) * (1 + columns);
+  y_.resize(rows_ * lanes_);
+  next_.resize(rows_ * lanes_);
+  k_.resize(rows_ * lanes_ * dop853::stages);
   tolerance_ = tolerance;
   most_steps_ = most_steps;
   failed_ = false;
@@ -61,16 +52,45 @@ bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance
     if (idle) lane_[l].span = nullptr;
   }
   choose_first_steps();
+}
+
+/// A step of all lanes; returns how many have taken one.
+int BatchDop853::advance(int columns) {
+  const auto taken =
+      std::count_if(lane_, lane_ + lanes_, [](const Lane& lane) { return lane.span != nullptr; });
+  plan_steps();
+  step(columns);
+  judge();
+  return static_cast<int>(taken);
+}
+
+bool BatchDop853::run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
+                      const Deadline& deadline) {
+  if (spans.empty()) return true;
+  each_ = false;
+  begin(spans, columns, tolerance, most_steps);
   while (under_way()) {
-    plan_steps();
-    step(columns);
-    judge();
+    advance(columns);
     if (deadline.passed()) {
       failed_ = true;
-      fail();
+      stop();
     }
   }
   return !failed_;
+}
+
+bool BatchDop853::run_each(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
+                           const std::function<bool(int steps)>& more) {
+  for (MotionSpan& span : spans) span.complete = false;
+  if (spans.empty()) return true;
+  each_ = true;
+  begin(spans, columns, tolerance, most_steps);
+  while (under_way())
+    if (!more(advance(columns))) {
+      stop();
+      return false;
+    }
+  return true;
 }
 
 void BatchDop853::take_span(int l) {
@@ -102,7 +122,7 @@ void BatchDop853::choose_first_steps() {
       if (value > 0 && slope > 0)
         lane.h = std::min(lane.h, 2 * std::pow(tolerance_, 1 / order) * value / slope);
     }
-    lane.h = std::max(lane.h, shortest_start * (lane.span->end - lane.t));
+    lane.h = std::max(lane.h, dop853::shortest_start * (lane.span->end - lane.t));
   }
 }
 
@@ -140,7 +160,6 @@ void BatchDop853::step(int columns) {
   ++steps_;
 }
 
-/// Hairer, Nørsett and Wanner (10.17): |h| e5² / √(e5² + 0.01 e3²), in units of the tolerance.
 void BatchDop853::judge() {
   const int n = flow_.coordinates();
   std::fill(sums_.begin(), sums_.end(), 0.0);
@@ -156,9 +175,11 @@ void BatchDop853::judge() {
   bool taken = false;
   for (int l = 0; l < lanes_; ++l) {
     if (!lane_[l].span) continue;
-    const double sum5 = sums_[l], sum3 = sums_[lanes_ + l];
-    judge_lane(l, sum5 == 0 ? 0 : h_[l] * sum5 / std::sqrt((sum5 + 0.01 * sum3) * 2 * n));
-    if (failed_) return fail();
+    if (!judge_lane(l, dop853::error_norm(sums_[l], sums_[lanes_ + l], h_[l], 2 * n))) {
+      failed_ = true;
+      if (!each_) return stop();
+      lane_[l].span = nullptr;
+    }
     if (!lane_[l].span && !waiting_.empty()) {
       take_span(l);
       taken = true;
@@ -167,19 +188,17 @@ void BatchDop853::judge() {
   if (taken) choose_first_steps();
 }
 
-void BatchDop853::judge_lane(int l, double error) {
+/// Takes or rejects the step of a lane; false if its span cannot be completed.
+bool BatchDop853::judge_lane(int l, double error) {
   Lane& lane = lane_[l];
   const double h = h_[l];
-  failed_ =
-      h <= 4 * std::numeric_limits<double>::epsilon() * std::abs(lane.t) || ++lane.span->steps > most_steps_;
-  if (failed_) return;
-  const bool known = std::isfinite(error);
-  const double best = !known ? retreat : error > 0 ? safety * std::pow(error, -1 / order) : most_growth;
-  const double factor = known ? std::clamp(best, most_shrinking, most_growth) : retreat;
-  if (!known || error > 1) {
-    lane.h = h * std::min(factor, safety);
+  if (h <= 4 * std::numeric_limits<double>::epsilon() * std::abs(lane.t) || ++lane.span->steps > most_steps_)
+    return false;
+  const double factor = std::isfinite(error) ? dop853::growth(error) : dop853::retreat;
+  if (!std::isfinite(error) || error > 1) {
+    lane.h = h * std::min(factor, dop853::safety);
     lane.rejected = true;
-    return;
+    return true;
   }
   const double planned = h * (lane.rejected ? std::min(factor, 1.0) : factor);
   if (lane.t == lane.span->start) {
@@ -190,6 +209,7 @@ void BatchDop853::judge_lane(int l, double error) {
   lane.rejected = false;
   lane.t = lane.last ? lane.span->end : lane.t + h;
   accept(l);
+  return true;
 }
 
 void BatchDop853::accept(int l) {
@@ -203,7 +223,7 @@ void BatchDop853::accept(int l) {
   lane.span = nullptr;
 }
 
-void BatchDop853::fail() {
+void BatchDop853::stop() {
   for (Lane& lane : lane_) lane.span = nullptr;
   waiting_.clear();
 }

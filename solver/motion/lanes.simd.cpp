@@ -1,4 +1,4 @@
-#include "rivals/lanes.hpp"
+#include "motion/lanes.hpp"
 
 #include "machine/lanes.hpp"
 

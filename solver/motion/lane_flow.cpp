@@ -1,4 +1,4 @@
-#include "rivals/lane_flow.hpp"
+#include "motion/lane_flow.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,10 @@ namespace extremal {
 
 namespace {
 
-constexpr int most_iterations = 20;
-/// ∂L/∂q' agrees with p to roundoff; from below `quadratic` the next step of Newton ends in it.
-constexpr double roundoff = 2e-15, quadratic = 1e-8, acceptable = 1e-12;
+constexpr int most_corrections = 20;
+/// ∂L/∂q' agrees with p to roundoff; from below `nearly` the next step of Newton ends in it, or in what is
+/// taken.
+constexpr double agrees = 2e-15, nearly = 1e-8, taken = 1e-12;
 
 }  // namespace
 
@@ -142,7 +143,7 @@ void LaneFlow::solve_velocity(const double* t, const double* y, Order order) {
         v_.begin(), v_.end(), [](double v) { return !std::isfinite(v); }, 0.0);
   }
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most_iterations; ++i) {
+  for (int i = 0; i < most_corrections; ++i) {
     evaluate(t, y, Order::hessian);
     if (!correct_velocity(p, before)) break;
   }
@@ -169,7 +170,7 @@ bool LaneFlow::correct_velocity(const double* p, double& before) {
   for (const LaneEntry& e : vv_)
     std::copy_n(e.value, lanes_, factors_.data() + static_cast<std::size_t>(e.row * n_ + e.column) * lanes_);
   kernels_.factor(factors_.data(), n_);
-  if (worst <= roundoff || (before <= quadratic && worst <= acceptable)) return false;
+  if (worst <= agrees || (before <= nearly && worst <= taken)) return false;
   before = worst;
   kernels_.solve(factors_.data(), n_, work_.data(), 1, 0);
   for (int i = 0; i < n_ * lanes_; ++i) {
@@ -220,7 +221,7 @@ void LaneFlow::slope(const double* t, const double* y, int columns, double* slop
   solve_velocity(t, y, columns > 0 ? Order::hessian : Order::gradient);
   std::copy_n(v_.data(), half, slope);
   for (int lane = 0; lane < lanes_ && !structure_.quadratic; ++lane)
-    if (!(residual_[lane] <= acceptable)) slope[lane] = std::numeric_limits<double>::quiet_NaN();
+    if (!(residual_[lane] <= taken)) slope[lane] = std::numeric_limits<double>::quiet_NaN();
   write_force(slope + half);
   if (columns > 0) vary(y + 2 * half, columns, slope + 2 * half);
 }

@@ -5,7 +5,7 @@
 
 #include "machine/aligned.hpp"
 #include "machine/simd.hpp"
-#include "rivals/lanes.hpp"
+#include "motion/lanes.hpp"
 #include "system/lagrangian.hpp"
 
 /// \file The motion of the states in all lanes at once, as a flow in (q, p), p = ∂L/∂q'.

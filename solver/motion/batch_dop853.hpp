@@ -1,12 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "machine/aligned.hpp"
 #include "machine/deadline.hpp"
 #include "motion/dop853_tableau.hpp"
-#include "rivals/lane_flow.hpp"
+#include "motion/lane_flow.hpp"
 
 /// \file Many pieces of motion integrated by the method of Dormand and Prince, one in each lane.
 
@@ -35,6 +36,11 @@ class BatchDop853 {
   bool run(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
            const Deadline& deadline = {});
 
+  /// The same, but the others go on where a span cannot be completed. `more` is told how many steps lanes
+  /// have taken; once it is false, no more spans are completed. Returns whether it stayed true.
+  bool run_each(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps,
+                const std::function<bool(int steps)>& more);
+
   int steps() const { return steps_; }  ///< of all lanes together, in all
 
  private:
@@ -44,15 +50,16 @@ class BatchDop853 {
     bool last = false;    ///< the step being taken ends the span
     bool rejected = false;
   };
-  void resize(int columns);
+  void begin(std::span<MotionSpan> spans, int columns, double tolerance, int most_steps);
+  int advance(int columns);
   void take_span(int l);
   void choose_first_steps();
   void plan_steps();
   void step(int columns);
   void judge();
-  void judge_lane(int l, double error);
+  bool judge_lane(int l, double error);
   void accept(int l);
-  void fail();
+  void stop();
   bool under_way() const;
   void list(const dop853::Row<double>& row, std::vector<LaneStage>& stages) const;
 
@@ -66,7 +73,8 @@ class BatchDop853 {
   std::size_t rows_ = 0;
   double tolerance_ = 0;
   int most_steps_ = 0, steps_ = 0;
-  bool failed_ = false;
+  bool each_ = false;    ///< others go on where a span fails
+  bool failed_ = false;  ///< a span could not be completed
 };
 
 }  // namespace extremal
