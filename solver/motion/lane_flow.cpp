@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "linear/dense.hpp"
+#include "motion/flow.hpp"
 #include "system/hamiltonian.hpp"
 
 namespace extremal {

@@ -66,6 +66,30 @@ TEST_F(PhaseSpaceScenes, FromInitialData) {
   }
 }
 
+/// Without a guess, from the position at the start and the momentum at the end of a motion: that motion, or
+/// another one with the same.
+TEST_F(PhaseSpaceScenes, MomentumAtTheEndOfAMotion) {
+  for (const char* hamiltonian : {"p_x*sin(x) + 0.1*p_x^3", "p_x^4/4 + x^2/2", "p_x*x - p_x^3*x/5"})
+    for (const double momentum : {0.25, 0.4}) {
+      const std::string system =
+          fmt::format("[system]\ncoordinates = [\"x\"]\nhamiltonian = \"{}\"\n", hamiltonian);
+      const auto end_from = [&](double p) {
+        const Study s = study(
+            system + fmt::format("[boundary]\nstart = {{ x = 0.5, p_x = {:.17g} }}\nduration = 2\n", p));
+        return at(s, run(s), 2);
+      };
+      const double end = end_from(momentum).p[0];
+      const Study s = study(
+          system +
+          fmt::format("[boundary]\nstart = {{ x = 0.5 }}\nend = {{ p_x = {:.17g} }}\nduration = 2\n", end));
+      const Solution solution = run(s);
+      ASSERT_TRUE(solution.converged()) << hamiltonian << momentum << solution.message;
+      const Point there = end_from(at(s, solution, 0).p[0]);
+      EXPECT_NEAR(there.p[0], end, 1e-7) << hamiltonian;
+      EXPECT_NEAR(there.q[0], at(s, solution, 2).q[0], 1e-7) << hamiltonian;
+    }
+}
+
 TEST_F(PhaseSpaceScenes, EndsThatContradictTheMotionAreNoSolution) {
   const Solution solution =
       run(study(logistic + "[boundary]\nstart = { x = 0.1 }\nend = { x = 0.2 }\nduration = 5\n"));
