@@ -70,8 +70,9 @@ inline constexpr int most_marches = 10;
 /// Part of the duration that tells how errors grow, where it takes so many elements.
 inline constexpr double pilot_part = 1.0 / 32;
 inline constexpr int least_pilot = 64;
-/// Of the time until which a tolerance holds, what is advised: ranges are smaller then.
-inline constexpr double shorter = 0.9;
+/// Of the time until which a tolerance holds, what is advised: ranges are smaller then, and what roundoff
+/// leaves differs from march to march.
+inline constexpr double shorter = 0.4;
 /// An error that another march with a smaller truncation does not lower to this part is roundoff, where it is
 /// below the second part of the range: there it tells motions apart that are near each other.
 inline constexpr double stagnant = 0.5, near_motions = 0.1;
