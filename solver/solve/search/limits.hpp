@@ -405,6 +405,8 @@ inline constexpr double arrivals_share = 0.3;
 /// there are not enough in it; more where curves of arrivals are followed, for few of fast motions are
 /// costly.
 inline constexpr double reach_beyond = 1.1, growth_of_reach = 1.4, growth_of_arrivals = 2.5;
+/// The same of a box of starts: actions do not grow in the order of velocities.
+inline constexpr double starts_beyond = 1.6;
 inline constexpr int most_growths = 4, most_cheap_growths = 24;
 /// Of the effort of one solve, for a motion that nearly closes; points of the first lattice of starts, whose
 /// box grows so often in vain, times its dimensions.
@@ -446,9 +448,13 @@ inline constexpr int most_unknowns = 2;
 inline constexpr double fine_step = 1e-8, coarse_step = 1e-5;
 /// Cells of a box along a coordinate, and how often they are halved where values are off what the corners
 /// tell by more than this part of their range; and how often besides where Newton's method fails from them.
-inline constexpr int cells_in_one = 192, cells_in_two = 16;
-inline constexpr int halvings_in_one = 20, halvings_in_two = 4, further_halvings = 6;
+inline constexpr int cells_in_one = 192, cells_in_two = 32;
+inline constexpr int halvings_in_one = 20, halvings_in_two = 3, further_halvings = 6;
 inline constexpr double nearly_linear = 0.1;
+/// Motions along a coordinate of a box that tell whether all are alike: none takes more steps than so many
+/// times the mean.
+inline constexpr int even_places = 9;
+inline constexpr double uneven = 3;
 /// Cells sampled together; and steps side by side that cost as much as one alone, with four lanes.
 inline constexpr std::size_t cells_at_once = 256;
 inline constexpr double abreast = 3;
@@ -456,7 +462,7 @@ inline constexpr double abreast = 3;
 inline constexpr double least_part = 1e-9;
 /// A value that keeps its sign by so many times its curvature has no zero in the cell. Beside a separatrix
 /// all of the curvature may be in a part of the cell; of two unknowns finer cells cost too much.
-inline constexpr double sure_in_one = 8, sure_in_two = 2;
+inline constexpr double sure_in_one = 8, sure_in_two = 4;
 /// Zeros are known to this part of a cell, or of the values at its corners; where the integrator fails, at
 /// least to the second, and those nearer to each other are one.
 inline constexpr double met = 1e-7, nearly_met = 1e-3;

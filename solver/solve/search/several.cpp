@@ -155,7 +155,10 @@ std::vector<Solution> Several::run(int most) {
   bool told = false;
   if (most_ > 1 || !begun) {
     const bool by_openings = closing_.usable() && scan_openings();
-    told = (motions_.has_curves() && trace_arrivals()) || (starts_.usable() && scan_starts()) || by_openings;
+    // Curves of arrivals unfold what passages by a singularity fold; cells of starts need no curves.
+    const bool starts_first = even_starts();
+    told = (starts_first && scan_starts()) || (motions_.has_curves() && trace_arrivals()) ||
+           (!starts_first && starts_.usable() && scan_starts()) || by_openings;
   }
   if (!told && (!found_.empty() || loops_.usable())) {
     search_.renew(patience);

@@ -66,6 +66,8 @@ class Several {
   void load(const Solution& solution);
   std::function<bool(int)> scan_budget(double part = 1);
   bool trace_arrivals();
+  StartScan::Shell first_starts();
+  bool even_starts();
   bool scan_starts();
   bool scan_openings();
   void scan();

@@ -80,12 +80,25 @@ bool Several::trace_arrivals() {
   return told;
 }
 
+/// Starts as far away and as fast as the guess suggests.
+StartScan::Shell Several::first_starts() {
+  const double cycles = std::max(1.0, w_.frequency.phase());
+  return starts_.around(search_.ends(), scale_, cycles * scale_ / problem_.duration.value);
+}
+
+/// Whether the first box of starts holds no motion that is hard to follow.
+bool Several::even_starts() {
+  if (!starts_.usable()) return false;
+  StartScan::Shell shell = first_starts();
+  shell.farthest = reach_beyond;
+  return shell.state_unit.minCoeff() > 0 && shell.state_unit.allFinite() && starts_.even(shell);
+}
+
 /// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.
 /// Whether that can be told: not where a motion that meets the end leads to no extremal.
 bool Several::scan_starts() {
   const std::function<bool(int)> more = scan_budget();
-  const double cycles = std::max(1.0, w_.frequency.phase());
-  StartScan::Shell shell = starts_.around(search_.ends(), scale_, cycles * scale_ / problem_.duration.value);
+  StartScan::Shell shell = first_starts();
   if (!(shell.state_unit.minCoeff() > 0) || !shell.state_unit.allFinite()) return false;
   const auto reach_of = [&](const Solution& s) {
     const auto n = static_cast<std::size_t>(problem_.coordinates());
@@ -125,10 +138,10 @@ bool Several::scan_starts() {
     growths = news ? 0 : growths + 1;
     if (news) steps_before = scan_steps_;
     const bool enough = static_cast<int>(found_.size()) >= most_;
-    const double wanted = wanted_reach(1, reach_of);
+    const double wanted = starts_beyond * wanted_reach(1, reach_of);
     shell.nearest = shell.farthest;
     if (enough && shell.farthest >= wanted) break;
-    shell.farthest = enough ? reach_beyond * wanted : shell.farthest * growth;
+    shell.farthest = enough ? std::min(wanted, shell.farthest * growth) : shell.farthest * growth;
   }
   return all_led;
 }

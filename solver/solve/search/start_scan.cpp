@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "linear/dense.hpp"
@@ -93,8 +94,8 @@ std::optional<StartScan::State> StartScan::state(const Vector& w) {
 double StartScan::step_error() const { return unknowns_ == 1 ? fine_step : coarse_step; }
 
 /// Columns of states, perhaps with their variations, to T, side by side. Those of motions that do not last
-/// until then become not finite.
-void StartScan::move(Eigen::MatrixXd& states, double tolerance) {
+/// until then become not finite. The steps that each has taken.
+std::vector<int> StartScan::move(Eigen::MatrixXd& states, double tolerance) {
   const double T = problem_.duration.value;
   const auto variations = static_cast<int>(states.rows() / (2 * n_)) - 1;
   const double cost = cost_ * (variations > 0 ? variations_cost : 1);
@@ -123,6 +124,25 @@ void StartScan::move(Eigen::MatrixXd& states, double tolerance) {
     ends.col(k) = lasts ? y : Vector::Constant(y.size(), NAN);
   }
   states.swap(ends);
+  std::vector<int> steps;
+  for (const MotionSpan& span : spans) steps.push_back(span.steps);
+  return steps;
+}
+
+bool StartScan::even(const Shell& shell) {
+  more_ = [](int) { return true; };
+  Eigen::MatrixXd states(2 * n_, unknowns_ == 1 ? even_places : even_places * even_places);
+  for (int k = 0; k < states.cols(); ++k) {
+    Vector w = shell.centre;
+    for (int a = 0; a < unknowns_; ++a) {
+      const int place = a == 0 ? k % even_places : k / even_places;
+      w[a] += shell.unit[a] * shell.farthest * (2.0 * place / (even_places - 1) - 1);
+    }
+    states.col(k) = conditions_->start(w);
+  }
+  const std::vector<int> steps = move(states, coarse_step);
+  const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
+  return states.allFinite() && std::ranges::max(steps) <= uneven * sum / static_cast<double>(steps.size());
 }
 
 /// Of a motion, with one unknown.

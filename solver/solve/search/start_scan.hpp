@@ -50,6 +50,9 @@ class StartScan {
   Vector unknown(std::span<const double> q, std::span<const double> v);
   /// The state of a motion at the start; nothing if no velocity belongs to w.
   std::optional<State> state(const Vector& w);
+  /// Whether all motions from a box last, and none is much harder to follow than the others: then no
+  /// singularity folds the function.
+  bool even(const Shell& shell);
   /// The w of motions that meet the conditions at the end; of families of such none. False if there were not
   /// enough integrator steps: `more` is told how many were taken.
   bool zeros(const Shell& shell, const std::function<bool(int steps)>& more, std::vector<Vector>& found);
@@ -80,7 +83,7 @@ class StartScan {
   Vector at(Place place) const;
   bool sample_all(std::span<const Cell> cells);
   double miss(const Vector& w);
-  void move(Eigen::MatrixXd& states, double tolerance);
+  std::vector<int> move(Eigen::MatrixXd& states, double tolerance);
   double bend(const std::vector<const double*>& samples, int value) const;
   std::vector<const double*> samples(const std::vector<Place>& places) const;
   std::vector<Place> lattice(const Cell& cell) const;
