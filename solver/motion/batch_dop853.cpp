@@ -17,14 +17,6 @@ constexpr double last_steps = 3;
 
 int count(const std::vector<LaneStage>& stages) { return static_cast<int>(stages.size()); }
 
-/// Order 8 less order 3.
-constexpr dop853::Row<double> third_order_error() {
-  dop853::Row<double> row{};
-  for (int i = 0; i < dop853::stages; ++i) row[i] = dop853::b<double>[i] - dop853::b3<double>[i];
-  return row;
-}
-constexpr dop853::Row<double> error3 = third_order_error();
-
 }  // namespace
 
 BatchDop853::BatchDop853(LaneFlow& flow)
@@ -164,7 +156,7 @@ void BatchDop853::judge() {
   const int n = flow_.coordinates();
   std::fill(sums_.begin(), sums_.end(), 0.0);
   list(dop853::error5<double>, stages_);
-  list(error3, others_);
+  list(dop853::error3<double>, others_);
   const std::size_t half = static_cast<std::size_t>(n) * lanes_;
   for (const std::size_t begin : {std::size_t(0), half}) {
     kernels_.add_errors(y_.data() + begin, next_.data() + begin, stages_.data(), count(stages_),

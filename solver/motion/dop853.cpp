@@ -70,7 +70,7 @@ T DormandPrince<T>::error_norm(std::span<const T> y, T h, const IntegrationOptio
       T e5 = 0, e3 = 0;
       for (int i = 0; i < dop853::stages; ++i) {
         e5 += dop853::error5<T>[i] * k_[i * size_ + m];
-        e3 += (dop853::b<T>[i] - dop853::b3<T>[i]) * k_[i * size_ + m];
+        e3 += dop853::error3<T>[i] * k_[i * size_ + m];
       }
       sum5 += (e5 / scale) * (e5 / scale);
       sum3 += (e3 / scale) * (e3 / scale);

@@ -94,6 +94,14 @@ inline constexpr Row<T> b3 = {
     0.244094488188976377952755905512L,   0, 0, 0, 0, 0, 0, 0, 0.733846688281611857341361741547L, 0, 0,
     0.220588235294117647058823529412e-1L};
 
+/// Order 8 less order 3.
+template <class T>
+inline constexpr Row<T> error3 = [] {
+  Row<T> row{};
+  for (int i = 0; i < stages; ++i) row[i] = b<T>[i] - b3<T>[i];
+  return row;
+}();
+
 /// Interpolation of order 7 within a step: the slope at its end is stage 12, three more follow.
 inline constexpr int interpolating_stages = 16;
 template <class T>

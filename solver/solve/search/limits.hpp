@@ -173,7 +173,7 @@ inline constexpr double off_manifold = 1e-9;
 inline constexpr int first_levels = 8, further_levels = 5, denser_in_one = 3;
 /// Steps of integrators for one of these lengths at most.
 inline constexpr int most_sweep_steps = 100000;
-/// Of those from one arrival to the next, where some motions do not last.
+/// Steps from one arrival to the next at most, where some motions do not last.
 inline constexpr int most_vain_steps = 100000;
 /// Times, by the duration, until which curves are looked for, and followed where times grow along them; and
 /// velocities, by the reach.
@@ -396,7 +396,7 @@ inline constexpr int most_rows = 12;
 inline constexpr int motions_each = 8, least_motions = 24;
 /// Motions for each extremal that is wanted: of chaotic systems there are always more.
 inline constexpr int most_motions_each = 60;
-/// Of integrators, of a scan; and its part of the time there is.
+/// Steps of integrators that one scan may take, and its part of the time there is.
 inline constexpr int most_scan_steps = 1500000;
 /// So many of them may find nothing new.
 inline constexpr int most_quiet_steps = most_scan_steps / 16;

@@ -45,7 +45,8 @@ bool Several::reaches_known() {
          }) >= 0;
 }
 
-/// Whether integrators may take so many more steps, of those that a scan may take a part.
+/// Tells whether integrators may take so many more steps. A scan may take this part of all, counted from
+/// here.
 std::function<bool(int)> Several::scan_budget(double part) {
   const auto most = static_cast<long>(part * most_scan_steps);
   scan_steps_ = 0;
@@ -91,7 +92,8 @@ bool Several::even_starts() {
   if (!starts_.usable()) return false;
   StartScan::Shell shell = first_starts();
   shell.farthest = reach_beyond;
-  return shell.state_unit.minCoeff() > 0 && shell.state_unit.allFinite() && starts_.even(shell);
+  return shell.state_unit.minCoeff() > 0 && shell.state_unit.allFinite() &&
+         starts_.even(shell, scan_budget());
 }
 
 /// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.

@@ -129,8 +129,8 @@ std::vector<int> StartScan::move(Eigen::MatrixXd& states, double tolerance) {
   return steps;
 }
 
-bool StartScan::even(const Shell& shell) {
-  more_ = [](int) { return true; };
+bool StartScan::even(const Shell& shell, const std::function<bool(int steps)>& more) {
+  more_ = more;
   Eigen::MatrixXd states(2 * n_, unknowns_ == 1 ? even_places : even_places * even_places);
   for (int k = 0; k < states.cols(); ++k) {
     Vector w = shell.centre;
@@ -214,11 +214,11 @@ double StartScan::bend(const std::vector<const double*>& samples, int value) con
   return bend;
 }
 
-/// Cells so large are searched, whatever the function is like in them; so small, they are not divided
-/// further.
+/// Cells of this width are searched, whatever the function is like in them.
 std::int64_t StartScan::fine() const {
   return finest >> (unknowns_ == 1 ? halvings_in_one : halvings_in_two);
 }
+/// Cells of this width are not divided, whatever a search of them leads to.
 std::int64_t StartScan::finest_searched() const {
   return unknowns_ == 1 ? fine() : fine() >> further_halvings;
 }

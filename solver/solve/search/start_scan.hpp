@@ -52,7 +52,7 @@ class StartScan {
   std::optional<State> state(const Vector& w);
   /// Whether all motions from a box last, and none is much harder to follow than the others: then no
   /// singularity folds the function.
-  bool even(const Shell& shell);
+  bool even(const Shell& shell, const std::function<bool(int steps)>& more);
   /// The w of motions that meet the conditions at the end; of families of such none. False if there were not
   /// enough integrator steps: `more` is told how many were taken.
   bool zeros(const Shell& shell, const std::function<bool(int steps)>& more, std::vector<Vector>& found);
