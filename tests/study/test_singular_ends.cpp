@@ -31,6 +31,19 @@ double time_of_fall(double x, double y) {
   return low * std::sqrt(y / (1 - std::cos(low)) / g);
 }
 
+/// From a depth h below rest, where it has its speed already, to (x, y + h): of the angle a of the cycloid at
+/// the end, that at the start is told by the depths.
+double time_of_fall_from(double h, double x, double y) {
+  const auto first = [&](double a) { return std::acos(1 - (1 - std::cos(a)) * h / (y + h)); };
+  const auto width = [&](double a) {
+    const double b = first(a), radius = (y + h) / (1 - std::cos(a));
+    return radius * (a - std::sin(a) - (b - std::sin(b)));
+  };
+  double low = 0.1, high = 2 * pi - 0.1;
+  for (int k = 0; k < 60; ++k) (width(0.5 * (low + high)) < x ? low : high) = 0.5 * (low + high);
+  return (low - first(low)) * std::sqrt((y + h) / (1 - std::cos(low)) / g);
+}
+
 /// ∫ of √(1 + y'²)/y^c over the arch from 0 back to 0 in T: by the first integral y^−c/√(1 + y'²).
 double action_of_arch(double c, double T) {
   const auto beta = [](double a, double b) { return std::tgamma(a) * std::tgamma(b) / std::tgamma(a + b); };
@@ -71,6 +84,19 @@ TEST_F(SingularEnds, FallsFromRestItself) {
     EXPECT_LT(*found.energy_drift, 1e-7) << c.boundary;
     EXPECT_NE(found.message.find("L is infinite at the"), std::string::npos) << found.message;
   }
+}
+
+/// The layer at the start is as wide as h^1.5; h = 1e-5 and below take paths from deeper starts.
+TEST_F(SingularEnds, FallsFromBesideRest) {
+  for (const double h : {1e-3, 1e-5, 1e-6})
+    for (const double depth : {0.1, 1.0, 2.0}) {
+      const std::string end = fmt::format("start = {{ y = 0 }}\nend = {{ y = {} }}\nduration = 1", depth);
+      const Solution found =
+          solved(singular_scene(fmt::format("sqrt((1 + y'^2)/(2*9.81*(y + {})))", h), end));
+      ASSERT_TRUE(found.converged()) << h << ' ' << depth << ": " << found.message;
+      EXPECT_NEAR(found.action, time_of_fall_from(h, 1, depth), 1e-9) << h << ' ' << depth;
+      EXPECT_EQ(found.morse_index, 0) << h << ' ' << depth;
+    }
 }
 
 /// The fastest tunnel through a ball is a hypocycloid, of time sqrt(π² − (π − θ)²), and has no conjugate

@@ -75,12 +75,26 @@ bool Search::through_other_ends() {
   return false;
 }
 
-/// From a path with other ends, on its own elements.
+/// From a path with other ends, on its own elements, or on fewer where it was sharper with ends before.
 bool Search::refine_from(const Path& other, const char* strategy) {
   const std::vector<double> mesh(other.mesh().begin(), other.mesh().end());
-  const ElementTables& tables = open(mesh, other.degree());
-  path_.copy_values(other);
-  refinement_.take(tables);
+  const ElementTables& own = open(mesh, other.degree());
+  w_.resolution.measure(other, own);
+  const Resolution::Error aim{finest * scales(other, own).q, INFINITY, INFINITY};
+  const Plan fewer = w_.planner.plan(w_.resolution, mesh, own,
+                                     {.aim = aim,
+                                      .tolerated = aim,
+                                      .raised_degree = other.degree(),
+                                      .least_degree = Refinement::first_degree + 1,
+                                      .highest_degree = other.degree(),
+                                      .most_elements = other.elements(),
+                                      .strongest_cut = 1,
+                                      .strongest_growth = strongest_growth});
+  if (lavish * fewer.degree * fewer.mesh.size() < other.degree() * mesh.size() && !fewer.mesh.empty())
+    path_.resample_from(other, open(fewer.mesh, fewer.degree), fewer.mesh);
+  else
+    path_.copy_values(other);
+  refinement_.take(tables());
   refinement_.rebind();
   return found(strategy);
 }

@@ -146,6 +146,9 @@ inline constexpr double first_part = 0.5, smallest_part = 0.25, largest_part = 0
 inline constexpr double nearer_by = 0.25;
 /// Tolerance of paths between, and of the effort of a solve what one may take.
 inline constexpr double between = 1e-6, effort = 0.1;
+/// Elements go on that resolve a path to `finest`: the next one is sharper. Where others do that with fewer
+/// unknowns by the factor `lavish`, nodes become at most so many times rarer.
+inline constexpr double finest = 1e-9, lavish = 2, strongest_growth = 4;
 
 }  // namespace from_other_ends
 
