@@ -54,8 +54,8 @@ class CommandLine {
   Action chosen_;
   SolveArguments solve_;
   ContinueArguments continue_;
-  CompareArguments compare_;
-  CompareArguments spectrum_;
+  SceneArguments compare_;
+  SceneArguments spectrum_;
   CheckArguments check_;
   InitArguments init_;
   ViewArguments view_;
@@ -183,7 +183,7 @@ void CommandLine::add_continue() {
 }
 
 void CommandLine::add_compare() {
-  CompareArguments& a = compare_;
+  SceneArguments& a = compare_;
   CLI::App& command =
       add("compare", "measure time against error on a scene, beside shooting",
           "compare double-pendulum.toml --plot compare.svg", [&a] { return app::compare(a); });
@@ -194,7 +194,7 @@ void CommandLine::add_compare() {
 }
 
 void CommandLine::add_spectrum() {
-  CompareArguments& a = spectrum_;
+  SceneArguments& a = spectrum_;
   CLI::App& command =
       add("spectrum", "solve a scene, then find frequencies and amplitudes of each coordinate",
           "spectrum henon-heiles.toml --plot spectrum.svg", [&a] { return app::spectrum(a); });

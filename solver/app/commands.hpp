@@ -27,20 +27,20 @@ struct SolveArguments {
   std::string scene;
   std::vector<std::string> sets;
   std::string output, csv, npz, oem, plot;  ///< paths, "-" for standard output; empty: not wanted
-  int samples = 0;                ///< 0: not wanted
-  std::string at;                 ///< "T1,T2,…"
+  int samples = 0;                          ///< 0: not wanted
+  std::string at;                           ///< "T1,T2,…"
   int repeat = 1;
   bool quiet = false;
 };
 int solve(const SolveArguments& arguments);
 
-struct CompareArguments {
+struct SceneArguments {
   std::string scene;
   std::vector<std::string> sets;
   std::string output, plot;
   bool quiet = false;
 };
-int compare(const CompareArguments& arguments);
+int compare(const SceneArguments& arguments);
 
 struct ContinueArguments {
   std::string scene;
@@ -52,8 +52,7 @@ struct ContinueArguments {
 };
 int follow(const ContinueArguments& arguments);
 
-/// Those of `compare` serve.
-int spectrum(const CompareArguments& arguments);
+int spectrum(const SceneArguments& arguments);
 
 struct CheckArguments {
   std::string scene;

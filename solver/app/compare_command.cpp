@@ -25,7 +25,7 @@ Comparison compared(const Study& study, bool quiet) {
 
 }  // namespace
 
-int compare(const CompareArguments& a) {
+int compare(const SceneArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
   const Study study = load(a.scene, a.sets, Purpose::comparison);
   outputs.keep(study.files);

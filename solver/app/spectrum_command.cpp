@@ -27,7 +27,7 @@ std::string spectrum_plot(const std::string& path, const Study& study, const Res
 
 }  // namespace
 
-int spectrum(const CompareArguments& a) {
+int spectrum(const SceneArguments& a) {
   const Outputs outputs({{"--output", a.output}, {"--plot", a.plot}});
   Study study = load(a.scene, a.sets, Purpose::solution);
   outputs.keep(study.files);

@@ -102,8 +102,7 @@ constexpr KeyRecord keys[] = {
      R"(map = { theta = "theta + 2*pi" })", true},
     {"boundary", "conditions", Kind::texts, "none",
      "Equations between end values, instead of `start` and `end`, linear or not. The directions that they "
-     "leave "
-     "free get the natural condition.",
+     "leave free get the natural condition.",
      "conditions = [\"x(0) = 1\", \"x(T)^2 + y(T)^2 = 4\"]"},
     {"boundary", "integrals", Kind::texts, "none",
      "Integrals that are given: the left side, a formula of coordinates, velocities, `t`, parameters and "
@@ -151,8 +150,7 @@ constexpr KeyRecord keys[] = {
      "Number of equal elements; with `scheme`, without `tolerance`.", "elements = 64"},
     {"solve", "steps", Kind::text, "equal",
      "`\"free\"`: with `elements`, the times of the nodes are unknowns in which the action is stationary "
-     "too. "
-     "All elements then have the same discrete energy.",
+     "too. All elements then have the same discrete energy.",
      R"(steps = "free")"},
     {"solve", "budget", Kind::number, "60",
      "Seconds after which nothing further is tried, and an attempt that does not converge is given up.",
@@ -189,20 +187,17 @@ constexpr KeyRecord keys[] = {
      R"(epoch = "2025-01-31T12:00:00")"},
     {"fit", "data", Kind::text, "required",
      "CSV with a column `t`, times from 0 to the duration, and columns of observations: named like "
-     "coordinates, "
-     "velocities (`x'`) or formulas of `observe`. A column `sigma x` has the standard deviations of column "
-     "`x`; "
-     "without it they are 1. An empty cell was not observed.",
+     "coordinates, velocities (`x'`) or formulas of `observe`. A column `sigma x` has the standard "
+     "deviations of column "
+     "`x`; without it they are 1. An empty cell was not observed.",
      R"(data = "observed.csv")"},
     {"fit", "observe", Kind::text, "none",
      "Observations as formulas of coordinates, velocities, `t`, parameters and definitions. One that is "
-     "`atan2`, "
-     "or a number times it, is an angle: whole turns do not count.",
+     "`atan2`, or a number times it, is an angle: whole turns do not count.",
      "observe = { angle = \"atan2(y, x)\" }", true},
     {"fit", "parameters", Kind::texts, "none",
      "Parameters to be found, beside the end coordinates that `[boundary]` leaves open. Their values in the "
-     "scene "
-     "are the first guess.",
+     "scene are the first guess.",
      R"(parameters = ["l", "g"])"},
     {"fit", "loss", Kind::text, R"("squared")",
      R"(ρ of the least sum Σ ρ((observed − computed)²/σ²): `"squared"`; `"huber"` or `"cauchy"`, which )"

@@ -11,6 +11,7 @@
 
 #include "action/rule.hpp"
 #include "problem/infinite_ends.hpp"
+#include "solution/guessed_by.hpp"
 #include "solve/limits.hpp"
 
 namespace extremal {
@@ -32,31 +33,13 @@ SampledPath sampled(const Guess& guess, double duration) {
 }
 
 SampledPath sampled(const Trajectory& trajectory) {
-  const std::size_t n = trajectory.coordinates;
-  SampledPath path;
-  std::vector<double> q(n), v(n);
-  const int points = trajectory.degree + 1;
-  for (int k = 0; k < trajectory.elements(); ++k)
-    for (int i = 0; i < points; ++i) {
-      const double tau = static_cast<double>(i) / points;
-      path.t.push_back(trajectory.times[k] + tau * trajectory.length(k));
-      trajectory.in_element(k, tau, q, v);
-      path.q.insert(path.q.end(), q.begin(), q.end());
-    }
-  trajectory.at(trajectory.duration(), q, v);
-  path.t.push_back(trajectory.duration());
-  path.q.insert(path.q.end(), q.begin(), q.end());
-  return path;
+  return sampled(guess_of(trajectory, trajectory.degree + 1), trajectory.duration());
 }
 
 class InfiniteSolve {
  public:
   InfiniteSolve(const Problem& problem, const SolveOptions& options, const FiniteSolve& solve)
-      : problem_(problem), options_(options), adaptive_(options), solve_(solve) {
-    adaptive_.scheme.reset();
-    adaptive_.elements = 0;
-    adaptive_.free_steps = false;
-  }
+      : problem_(problem), options_(options), adaptive_(options.adaptive()), solve_(solve) {}
 
   Solution run() {
     Solution solution = found();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "problem/extension.hpp"
+#include "solution/guessed_by.hpp"
 
 namespace extremal {
 
@@ -104,16 +105,13 @@ class Leg {
   double from_, to_;
 };
 
-/// Adds points of a leg to the guess of the whole; its first point is that which the leg before ends with.
+/// Adds a leg to the guess of the whole; its first point is that which the leg before ends with.
 void add_points(const Trajectory& leg, double from, double duration, Guess& guess) {
-  std::vector<double> q(leg.coordinates), v(q);
-  const int points = leg.degree * leg.elements();
-  for (int k = guess.given() ? 1 : 0; k <= points; ++k) {
-    const double t = k == points ? leg.duration() : leg.duration() * k / points;
-    leg.at(t, q, v);
-    guess.tau.push_back(std::min(1.0, (from + t) / duration));
-    guess.q.insert(guess.q.end(), q.begin(), q.end());
-  }
+  const Guess own = guess_of(leg);
+  const std::size_t n = leg.coordinates, first = guess.given() ? 1 : 0;
+  for (std::size_t k = first; k < own.tau.size(); ++k)
+    guess.tau.push_back(std::min(1.0, (from + own.tau[k] * leg.duration()) / duration));
+  guess.q.insert(guess.q.end(), own.q.begin() + static_cast<std::ptrdiff_t>(first * n), own.q.end());
 }
 
 }  // namespace

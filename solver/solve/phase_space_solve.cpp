@@ -11,9 +11,9 @@
 #include "problem/phase_space.hpp"
 #include "problem/point_range.hpp"
 #include "problem/reduction.hpp"
+#include "solution/guessed_by.hpp"
 #include "solution/in_phase_space.hpp"
 #include "solve/guess/hamilton_path.hpp"
-#include "solve/guessed_by.hpp"
 #include "solve/limits.hpp"
 #include "solve/periodic/equilibrium.hpp"
 
@@ -53,9 +53,7 @@ class PhaseSpaceSolve {
     midpoint.scheme = scheme("midpoint");
     Solution solution = PhaseSpaceSolve(shifted, midpoint, solve_).first();
     if (!solution.converged()) return solution;
-    SolveOptions adaptive = options_;
-    adaptive.scheme.reset();
-    adaptive.elements = 0;
+    const SolveOptions adaptive = options_.adaptive();
     const Problem near = problem_.initial ? problem_ : guessed_by(problem_, solution);
     const Solution motion = PhaseSpaceSolve(near, adaptive, solve_).first();
     if (!motion.converged()) {

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "solution/guessed_by.hpp"
 #include "solve/adapt/limits.hpp"
 #include "solve/adapt/pinned.hpp"
-#include "solve/guessed_by.hpp"
 
 namespace extremal {
 
 namespace {
 
-/// Of the time there is, where what a search finds is then to be solved for with a scheme.
+/// Of the time there is; the rest is for the scheme.
 constexpr double search_share = 0.7;
 
 class SchemeSolve {
@@ -112,12 +112,10 @@ class SchemeSolve {
 
 }  // namespace
 
-SolveOptions without_scheme(SolveOptions options) {
-  options.scheme.reset();
-  options.elements = 0;
-  options.free_steps = false;
-  options.deadline = options.deadline.share(search_share);
-  return options;
+SolveOptions for_guesses(const SolveOptions& options) {
+  SolveOptions own = options.adaptive();
+  own.deadline = options.deadline.share(search_share);
+  return own;
 }
 
 Solution solve_with_scheme(const Problem& problem, const SolveOptions& options, Workspace& workspace,
@@ -125,7 +123,7 @@ Solution solve_with_scheme(const Problem& problem, const SolveOptions& options, 
                            const std::function<Solution(const Problem&, const Outcome&)>& judge) {
   SchemeSolve solve(problem, options, workspace, judge);
   Solution solution = solve.from_guess();
-  return solve.astray() ? solve.from_others(std::move(solution), solve_freely(without_scheme(options)))
+  return solve.astray() ? solve.from_others(std::move(solution), solve_freely(for_guesses(options)))
                         : solution;
 }
 

@@ -11,8 +11,8 @@
 
 namespace extremal {
 
-/// For elements that are chosen, in a part of the time there is.
-SolveOptions without_scheme(SolveOptions options);
+/// For solutions without the scheme, from which it begins then: in a part of the time there is.
+SolveOptions for_guesses(const SolveOptions& options);
 
 /// `solve_freely` solves the problem without the scheme, `judge` makes a solution of a path.
 Solution solve_with_scheme(const Problem& problem, const SolveOptions& options, Workspace& workspace,

@@ -13,12 +13,12 @@
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
 #include "solution/extension_values.hpp"
+#include "solution/guessed_by.hpp"
 #include "solution/on_manifold.hpp"
 #include "solution/one_copy.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/bordered/bordered_solve.hpp"
 #include "solve/contact/contact_solve.hpp"
-#include "solve/guessed_by.hpp"
 #include "solve/infinite_solve.hpp"
 #include "solve/leg_solve.hpp"
 #include "solve/march/initial_motion.hpp"
@@ -180,9 +180,7 @@ Solution solve_any(const Problem& problem, const SolveOptions& options, Workspac
 }
 
 SolveOptions of_a_leg(const SolveOptions& options) {
-  SolveOptions own = options;
-  own.scheme.reset();
-  own.elements = 0;
+  SolveOptions own = options.adaptive();
   own.progress = nullptr;
   return own;
 }
@@ -364,7 +362,7 @@ std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptio
     return solve_bordered_all(problem, options, most, same_of(problem, options.tolerance));
   }
   w.levels.bind(problem.lagrangian);
-  const SolveOptions adaptive = options.scheme ? without_scheme(options) : options;
+  const SolveOptions adaptive = options.scheme ? for_guesses(options) : options;
   Several several(problem, adaptive, w);
   std::vector<Solution> found = several.run(most);
   if (several.too_loose()) found = Several(problem, isolating(adaptive), w).run(most);

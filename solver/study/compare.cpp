@@ -95,7 +95,7 @@ class Comparer {
 
   void find_reference() {
     Study study = study_;
-    study.options.scheme.reset();
+    study.options = study.options.adaptive();
     for (int power = tightest; power <= loosest && !deadline().passed(); ++power) {
       study.options.tolerance = std::pow(10.0, power);
       Solution solution = extremal::run(study);

@@ -13,6 +13,7 @@
 #include "problem/own_symmetries.hpp"
 #include "problem/singular_ends.hpp"
 #include "solution/extension_values.hpp"
+#include "solution/guessed_by.hpp"
 #include "solve/solve.hpp"
 
 namespace extremal {
@@ -56,31 +57,11 @@ std::pair<double, double> away_from_rest(const Problem& problem, const Trajector
   return {T * first / samples, T * last / samples};
 }
 
-/// A path in τ at points of each of its elements, which become short towards an end where L is infinite.
-Guess sampled_by_elements(const Trajectory& trajectory) {
-  const std::size_t n = trajectory.coordinates;
-  Guess guess;
-  std::vector<double> q(n), v(n);
-  for (int k = 0; k < trajectory.elements(); ++k)
-    for (int i = 0; i < element_samples; ++i) {
-      const double part = static_cast<double>(i) / element_samples;
-      const double tau = (trajectory.times[k] + part * trajectory.length(k)) / trajectory.duration();
-      if (!guess.tau.empty() && !(tau > guess.tau.back() && tau < 1)) continue;
-      trajectory.in_element(k, part, q, v);
-      guess.tau.push_back(tau);
-      guess.q.insert(guess.q.end(), q.begin(), q.end());
-    }
-  trajectory.at(trajectory.duration(), q, v);
-  guess.tau.push_back(1);
-  guess.q.insert(guess.q.end(), q.begin(), q.end());
-  return guess;
-}
-
 /// Gives a problem the part of a path that is away from rest as its guess.
 void guess_by(const Problem& before, const Trajectory& trajectory, Problem& problem) {
   if (!problem.infinite) {
     if (problem.duration.free) problem.duration.value = trajectory.duration();
-    problem.guess = sampled_by_elements(trajectory);
+    problem.guess = guess_of(trajectory, element_samples);
     return;
   }
   const auto [from, to] = away_from_rest(before, trajectory);

@@ -1,6 +1,7 @@
 #include "study/marched_state.hpp"
 
 #include "motion/flow.hpp"
+#include "solution/guessed_by.hpp"
 #include "solve/solve.hpp"
 
 namespace extremal {
@@ -23,22 +24,6 @@ Problem initial_problem_of(const Problem& problem, std::span<const double> q, st
   return make_problem(std::move(initial));
 }
 
-Guess sampled(const Trajectory& motion) {
-  Guess guess;
-  const std::size_t n = motion.coordinates;
-  std::vector<double> q(n), v(n);
-  for (int k = 0; k < motion.elements(); ++k)
-    for (int i = k == 0 ? 0 : 1; i <= samples_an_element; ++i) {
-      const double tau = static_cast<double>(i) / samples_an_element;
-      motion.in_element(k, tau, q, v);
-      guess.tau.push_back((motion.times[k] + tau * motion.length(k)) / motion.duration());
-      guess.q.insert(guess.q.end(), q.begin(), q.end());
-    }
-  guess.tau.back() = 1;
-  guess.samples_a_step = samples_an_element;
-  return guess;
-}
-
 }  // namespace
 
 std::optional<Guess> motion_across_kinks(const Problem& problem, std::span<const double> q,
@@ -50,7 +35,9 @@ std::optional<Guess> motion_across_kinks(const Problem& problem, std::span<const
   const Solution motion =
       Solver().solve(initial_problem_of(problem, q, p), {.tolerance = march_tolerance, .deadline = deadline});
   if (!motion.converged()) return std::nullopt;
-  return sampled(motion.trajectory);
+  Guess guess = guess_of(motion.trajectory, samples_an_element);
+  guess.samples_a_step = samples_an_element;
+  return guess;
 }
 
 }  // namespace extremal

@@ -92,8 +92,7 @@ std::string branches_apart(const Problem& problem) {
     if (met == Met::start) break;
   }
   return "the constraints leave a curve, and the part of it on which the start lies does not lead to the "
-         "end: "
-         "move an end";
+         "end: move an end";
 }
 
 }  // namespace extremal

@@ -21,6 +21,15 @@ struct SolveOptions {
   int max_iterations = 8000;  ///< Newton steps in all, restarts from other guesses included
   Deadline deadline = {};     ///< after which nothing further is tried
   std::function<void(const Iteration&)> progress;
+
+  /// The same without a scheme: elements are chosen for the tolerance.
+  SolveOptions adaptive() const {
+    SolveOptions own = *this;
+    own.scheme.reset();
+    own.elements = 0;
+    own.free_steps = false;
+    return own;
+  }
 };
 
 }  // namespace extremal

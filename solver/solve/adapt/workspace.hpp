@@ -21,7 +21,7 @@ struct Workspace {
   Recovery recovery;
   Resolution resolution;
   Planner planner;
-  Frequency frequency;
+  Frequency frequency;  ///< memory of a measurement
   SecondVariation variation;
   Path other, raised;  ///< while a path moves to other elements
   Scratch scratch;

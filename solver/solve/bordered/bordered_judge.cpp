@@ -69,8 +69,7 @@ std::string missed_condition(const Problem& problem, const BorderedState& state)
     if (!(std::abs(missed) <= largest_implied * size))
       return fmt::format(
           "'{}' is missed by {:.3g}: the constraints and what else is given at the ends determine what it "
-          "says; "
-          "leave it out, or leave out another condition",
+          "says; leave it out, or leave out another condition",
           implied.text, missed);
   }
   return {};

@@ -136,8 +136,8 @@ std::string dependence(BorderedEquations& equations, const BorderedState& state,
     return {};
   return fmt::format(
       "the path runs into a point at which {} to first order, and is {:.1e} away from meeting {}: "
-      "multipliers "
-      "grow without bound there, and it is no extremal; try another guess, or conditions whose derivatives "
+      "multipliers grow without bound there, and it is no extremal; try another guess, or conditions whose "
+      "derivatives "
       "are independent",
       names.size() > 1 ? fmt::format("{} depend on each other", fmt::join(names, ", "))
                        : fmt::format("{} does not change with the path", names[0]),

@@ -65,7 +65,7 @@ class Branch : public ExtremalCurve {
   /// Leaves nothing of a move along these.
   void take_across_phases(Move& move) const;
   void set_regular() { folds_ = true; }
-  /// It is to be seen where the equations are linearised next.
+  /// The next linearisation tells it.
   void ask_regular() { folds_.reset(); }
   /// Whether there was a problem at the coordinate to which the path was moved last and, if it was linearised
   /// there, next to it, with L finite.

@@ -157,9 +157,7 @@ bool Continuation::begin() {
 /// The extremal that a solve finds, with the branch's tangent there.
 bool Continuation::begin_from_solve() {
   tracker_.workspace().levels.bind(family_.problem.lagrangian);
-  SolveOptions adaptive = options_.solve;
-  adaptive.scheme.reset();
-  adaptive.elements = 0;
+  const SolveOptions adaptive = options_.solve.adaptive();
   Acceptance acceptance(family_.problem, adaptive, tracker_.workspace());
   Search search(family_.problem, adaptive, tracker_.workspace());
   const Outcome& outcome = search.run(&acceptance);

@@ -141,8 +141,7 @@ void Diagram::note() {
   if (record.end != BranchEnd::none && not_followed_ > 0)
     record.message +=
         "; what begins at its own branch points and period doublings is not followed: begin another family "
-        "with "
-        "one of its points";
+        "with one of its points";
   if (with_forces_)
     record.worst_action_slope.reset();
   else

@@ -7,6 +7,7 @@
 
 #include "action/rule.hpp"
 #include "problem/shift.hpp"
+#include "solution/guessed_by.hpp"
 #include "solve/contact/limits.hpp"
 
 namespace extremal {
@@ -64,20 +65,6 @@ Guess fitted(const PathArc& arc) {
 }
 
 }  // namespace
-
-Guess guess_of(const Trajectory& trajectory) {
-  const std::size_t n = trajectory.coordinates;
-  Guess guess;
-  std::vector<double> q(n), v(n);
-  const int points = std::max(8, trajectory.degree * trajectory.elements());
-  for (int k = 0; k <= points; ++k) {
-    const double tau = static_cast<double>(k) / points;
-    trajectory.at(tau * trajectory.duration(), q, v);
-    guess.tau.push_back(tau);
-    guess.q.insert(guess.q.end(), q.begin(), q.end());
-  }
-  return guess;
-}
 
 void put_guess(const SolvedArc& solved, PathArc& arc) {
   arc.guess = guess_of(solved.trajectory);

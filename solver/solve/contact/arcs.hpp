@@ -101,8 +101,6 @@ class Arcs {
   int iterations_ = 0;
 };
 
-/// The path of an arc as a guess for the same with other ends.
-Guess guess_of(const Trajectory& trajectory);
 /// An arc becomes the guess for the same with other ends.
 void put_guess(const SolvedArc& solved, PathArc& arc);
 

@@ -11,6 +11,7 @@
 #include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/point_range.hpp"
+#include "solution/guessed_by.hpp"
 #include "solution/path_contacts.hpp"
 #include "solve/contact/aside.hpp"
 #include "solve/contact/coarse_action.hpp"
@@ -347,7 +348,7 @@ std::optional<Solution> ContactSearch::accept(Junctions& path) {
 std::optional<Solution> ContactSearch::accept_free(const Junctions& path) {
   Problem free = problem_;
   free.inequalities = nullptr;
-  free.guess = extremal::guess_of(path.solved().front().trajectory);
+  free.guess = guess_of(path.solved().front().trajectory);
   Solution solution = solve_(free, options_);
   solution.iterations += arcs_.iterations();
   auto contacts = std::make_shared<PathContacts>();

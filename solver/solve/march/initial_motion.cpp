@@ -347,8 +347,7 @@ class InitialMotion {
       const double parts = problem_.duration.value / t;
       solution_.message = fmt::format(
           "the motion takes {} elements until t = {:.6g}, with {:.3g} oscillations; the duration {:.6g} "
-          "would "
-          "take about {:.2g} elements, more than can be kept; shorten it or loosen the tolerance",
+          "would take about {:.2g} elements, more than can be kept; shorten it or loosen the tolerance",
           march.trajectory.elements(), t, oscillations(march.trajectory), problem_.duration.value,
           march.trajectory.elements() * parts);
     } else if (refuse_jump(march.trajectory)) {
@@ -356,15 +355,13 @@ class InitialMotion {
     } else if (elements > 0) {
       solution_.message = fmt::format(
           "element {} has no solution near the motion: {} from t = {:.9g} over {:.3g}; raise solve.elements, "
-          "or "
-          "leave scheme and elements out",
+          "or leave scheme and elements out",
           march.trajectory.elements() + 1, reason(march.reason), t, march.wanted);
     } else if (runs_away(march.trajectory)) {
       solution_.status = Status::collision;
       solution_.message = fmt::format(
           "the motion runs into a collision or another singularity of L at t = {:.9g}, where q' grows "
-          "without "
-          "bound; end it before, at a shorter duration",
+          "without bound; end it before, at a shorter duration",
           t);
     } else {
       solution_.message = fmt::format(

@@ -114,8 +114,7 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
         one_of_a_family(problem, orbit, *solution.floquet))
       solution.message +=
           "; a multiplier beside that of the shift in time is 1: the orbit is one of a family, near the "
-          "guess, "
-          "and its period is not isolated";
+          "guess, and its period is not isolated";
     if (solution.floquet && vectors && !problem.paired && !problem.phase)
       add_vectors(variation, orbit, *solution.floquet);
   }

@@ -109,7 +109,7 @@ bool Search::from_motions() {
   if (problem_.paired || !Flow::suits(*problem_.lagrangian)) return false;
   refinement_.allow(std::min(allowance_, options_.max_iterations - outcome_.attempts - kept_for_forces()));
   const std::size_t n = problem_.coordinates();
-  const double frequency = std::max(1.0, w_.frequency.phase()) / given.value;
+  const double frequency = phase_ / given.value;
   const std::vector<double> extent = extents(path_, negligible_extent[0]);
   const std::vector<double> from(ends_.begin(), ends_.begin() + static_cast<std::ptrdiff_t>(n));
   const auto count = [this] { return refinement_.count_step(); };

@@ -55,6 +55,7 @@ Search::GuessKind Search::begin() {
   }
   if (guess_->guess.motion() && !mesh_of_motion()) resolve_guess();
   end_at_kinks_of_guess();
+  phase_ = std::max(1.0, w_.frequency.phase());
   return colliding ? GuessKind::colliding : GuessKind::usable;
 }
 

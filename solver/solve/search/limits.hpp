@@ -94,7 +94,7 @@ inline constexpr int most_balances = 8;
 inline constexpr int finer_steps = 12, finer_by = 2;
 /// A smaller energy in rests, by that of the motion, is none that 106 bits know.
 inline constexpr double least_resolved = 1e-24;
-/// Of what is not known of shifts, by the range of the path; and of the last shift, as above.
+/// What may be unknown of shifts, by the range of the path; and the last shift may be as large.
 inline constexpr double most_error = 1e-3;
 /// A smaller energy in rests, by that of the motion, holds what lies between them in time by roundoff.
 inline constexpr double loose = 1e-13;

@@ -428,17 +428,15 @@ const Outcome& Search::run(Acceptance* acceptance) {
             ? "the ends are conjugate along a path near the guess: its second variation is singular, and a "
               "force along its null directions remains that no step removes, so that there is neither an "
               "extremal nor a family of them near; move an end, change the duration, or try another guess"
-            : "the second variation is singular or nearly so: the ends may be conjugate, and there is no "
-              "extremal "
-              "or a family of them; move an end or change the duration";
+            : "the second variation is singular or nearly so: the ends may be conjugate: there may be no "
+              "extremal, or a whole family of them; move an end or change the duration";
   }
   if (result != Refinement::Result::converged && no_family_ && problem_.periodic) {
     outcome_.status = Status::no_solution_near;
     outcome_.message =
         "the second variation is singular, or nearly so, along a path near the guess, and a force along its "
         "null directions remains: what drives the motion is in resonance, and no orbit of this period is "
-        "found "
-        "near, nor a family of them; change the duration or the force, or try a better guess";
+        "found near, nor a family of them; change the duration or the force, or try a better guess";
   }
   acceptance_ = nullptr;
   return unless_spent();

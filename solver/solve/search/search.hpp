@@ -62,6 +62,8 @@ class Search {
   const Outcome& outcome() const { return outcome_; }
   const std::vector<double>& ends() const { return ends_; }
   const std::vector<double>& mesh() const { return mesh_; }
+  /// ∫ω dt along the guess, by the bound of Frequency; at least 1.
+  double phase() const { return phase_; }
 
  private:
   enum class GuessKind {
@@ -136,6 +138,7 @@ class Search {
   Refinement refinement_;
   std::vector<double> ends_, mesh_;
   double magnitude_ = 0;        ///< of the guess
+  double phase_ = 1;            ///< see phase()
   int allowance_ = 0;           ///< of Newton steps
   Bend bend_;                   ///< of the default guess, where L is not finite on it
   std::optional<Path> unheld_;  ///< found on some elements, but not on others

@@ -152,15 +152,15 @@ std::vector<Solution> Several::run(int most) {
   if (!begun && !loops_.usable() && !motions_.has_curves() && !starts_.usable()) return {std::move(*failed)};
   scale_ = size_of_guess();
   if (begun) descend();
-  bool told = false;
+  bool complete = false;
   if (most_ > 1 || !begun) {
     const bool by_openings = closing_.usable() && scan_openings();
     // Curves of arrivals unfold what passages by a singularity fold; cells of starts need no curves.
     const bool starts_first = even_starts();
-    told = (starts_first && scan_starts()) || (motions_.has_curves() && trace_arrivals()) ||
+    complete = (starts_first && scan_starts()) || (motions_.has_curves() && trace_arrivals()) ||
            (!starts_first && starts_.usable() && scan_starts()) || by_openings;
   }
-  if (!told && (!found_.empty() || loops_.usable())) {
+  if (!complete && (!found_.empty() || loops_.usable())) {
     search_.renew(patience);
     if (begun) deflate();
     guess();
@@ -177,7 +177,7 @@ std::vector<Solution> Several::run(int most) {
     failed->seconds_solve = solving();
     return {std::move(*failed)};
   }
-  if (most_ > 1 && motions_.usable() && !told) scan();
+  if (most_ > 1 && motions_.usable() && !complete) scan();
   sort_by_action(found_);
   const std::size_t all = found_.size();
   if (all > static_cast<std::size_t>(most_)) found_.resize(most_);

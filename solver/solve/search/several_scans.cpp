@@ -57,12 +57,12 @@ std::function<bool(int)> Several::scan_budget(double part) {
 }
 
 /// All motions that meet the end, of growing reach, until enough are found or no more seem to be in reach.
-/// Whether that can be told.
+/// Whether none seems to be missing.
 bool Several::trace_arrivals() {
   const std::function<bool(int)> more = scan_budget();
   double nearest = motions_.slowest();
   double farthest = reach_beyond * std::max(wanted_reach(), nearest);
-  bool told = true;
+  bool all_complete = true;
   for (int growths = 0; growths < most_growths;) {
     const std::size_t before = found_.size();
     const bool complete = motions_.all(nearest, farthest, more, [&](const Guess& motion, double duration) {
@@ -71,20 +71,19 @@ bool Several::trace_arrivals() {
       if (search_.refine_motion(motion, duration, from_arrival)) keep();
     });
     if (!more(0) || (!complete && found_.size() == before)) return false;
-    told = told && complete;
+    all_complete = all_complete && complete;
     const bool enough = static_cast<int>(found_.size()) >= most_;
     nearest = farthest;
-    if (enough && farthest >= wanted_reach()) return told;
+    if (enough && farthest >= wanted_reach()) return all_complete;
     farthest = enough ? reach_beyond * wanted_reach() : farthest * growth_of_arrivals;
     growths = found_.size() > before ? 0 : growths + 1;
   }
-  return told;
+  return all_complete;
 }
 
 /// Starts as far away and as fast as the guess suggests.
 StartScan::Shell Several::first_starts() {
-  const double cycles = std::max(1.0, w_.frequency.phase());
-  return starts_.around(search_.ends(), scale_, cycles * scale_ / problem_.duration.value);
+  return starts_.around(search_.ends(), scale_, search_.phase() * scale_ / problem_.duration.value);
 }
 
 /// Whether the first box of starts holds no motion that is hard to follow.
@@ -97,7 +96,7 @@ bool Several::even_starts() {
 }
 
 /// All motions from starts within a reach that grows until enough are found or no more seem to be in reach.
-/// Whether that can be told: not where a motion that meets the end leads to no extremal.
+/// Whether none seems to be missing: one may be where a motion that meets the end leads to no extremal.
 bool Several::scan_starts() {
   const std::function<bool(int)> more = scan_budget();
   StartScan::Shell shell = first_starts();
@@ -152,7 +151,7 @@ bool Several::scan_starts() {
 bool Several::scan_openings() {
   const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
   start_path(problem_, search_.ends(), tables, path_);
-  const double frequency = std::max(1.0, w_.frequency.phase()) / problem_.duration.value;
+  const double frequency = search_.phase() / problem_.duration.value;
   if (!closing_.around(search_.ends(), extents(path_, negligible_extent[0]), frequency)) return false;
   const std::function<bool(int)> more = scan_budget(openings_share);
   const int dimensions = closing_.dimensions();
