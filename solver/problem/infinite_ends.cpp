@@ -18,15 +18,6 @@ namespace {
 
 using About = InfiniteEndError::About;
 
-/// Whether single conditions fix every coordinate of an end.
-bool wholly_fixed(const EndMap& ends, bool at_end) {
-  const auto n = static_cast<std::ptrdiff_t>(ends.fixed.size() / 2), first = at_end ? n : 0;
-  const bool bound =
-      std::ranges::any_of(ends.z, [&](const Triplet& z) { return z.row >= first && z.row < first + n; });
-  return !bound && std::all_of(ends.fixed.begin() + first, ends.fixed.begin() + first + n,
-                               [](char fixed) { return fixed != 0; });
-}
-
 std::vector<double> values_of(const EndMap& ends, bool at_end) {
   const auto n = static_cast<std::ptrdiff_t>(ends.fixed.size() / 2), first = at_end ? n : 0;
   return {ends.offset.begin() + first, ends.offset.begin() + first + n};
@@ -77,7 +68,7 @@ bool has_rates(const Lagrangian& lagrangian, const RestPoint& rest, double t) {
 }
 
 End examine(const Lagrangian& lagrangian, const EndMap& ends, bool at_end) {
-  End end{.fixed = wholly_fixed(ends, at_end), .at_rest = false, .q = values_of(ends, at_end), .rest = {}};
+  End end{.fixed = ends.fixes(at_end), .at_rest = false, .q = values_of(ends, at_end), .rest = {}};
   if (!end.fixed) return end;
   const About about = at_end ? About::end : About::start;
   const bool autonomous = lagrangian.structure().autonomous;

@@ -195,10 +195,7 @@ class InChart {
     return m.size() == 0 || m.cwiseAbs().maxCoeff() <= limits::minimal::roundoff * size;
   }
 
-  bool fixed(int end) const {
-    const auto from = problem_.ends.fixed.begin() + end * chart_.coordinates;
-    return std::count(from, from + chart_.coordinates, char{1}) == chart_.coordinates;
-  }
+  bool fixed(int end) const { return problem_.ends.fixes(end == 1); }
 
   void put_fixed_ends(Problem& u) const {
     for (const int end : {0, 1}) {

@@ -45,6 +45,9 @@ struct EndMap {
   std::vector<Triplet> z;      ///< (e, f, coefficient); identity for an end coordinate that is free
   std::vector<char> fixed;     ///< 2n: the coordinate does not depend on y
   std::vector<int> home;       ///< y_f is this end coordinate
+
+  /// Whether it fixes every coordinate of an end.
+  bool fixes(bool at_end) const;
 };
 
 /// Throws RelationError if the rows contradict each other or one follows from the others.

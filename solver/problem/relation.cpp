@@ -289,6 +289,12 @@ int BoundaryRelation::add_row(double c) {
   return rows++;
 }
 
+bool EndMap::fixes(bool at_end) const {
+  const auto n = static_cast<std::ptrdiff_t>(fixed.size() / 2);
+  const auto begin = fixed.begin() + (at_end ? n : 0);
+  return std::all_of(begin, begin + n, [](char f) { return f; });
+}
+
 EndMap solve_relation(const BoundaryRelation& relation) {
   check_shape(relation);
   return Elimination(relation).solve();

@@ -22,10 +22,9 @@ bool reversible(const Structure& s) {
 
 /// 1/√(V''/M) at an end that is fixed, the shortest of the coordinates; 0 where it is free.
 double shortest_time(const Problem& problem, bool at_end, PointEvaluator& point) {
-  const std::size_t n = problem.coordinates(), first = at_end ? n : 0;
-  const std::span<const double> q(problem.ends.offset.data() + first, n);
-  for (std::size_t a = 0; a < n; ++a)
-    if (!problem.ends.fixed[first + a]) return 0;
+  if (!problem.ends.fixes(at_end)) return 0;
+  const std::size_t n = problem.coordinates();
+  const std::span<const double> q(problem.ends.offset.data() + (at_end ? n : 0), n);
   const std::vector<double> rest(n, 0);
   if (!point.evaluate(q, rest, 0, Order::hessian)) return 0;
   std::vector<double> stiffness(n, 0), mass(n, 0);

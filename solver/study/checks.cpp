@@ -24,12 +24,6 @@ std::string point_text(const Problem& problem, const double* q) {
   return text + (shown < problem.coordinates() ? ", …" : "");
 }
 
-bool wholly_fixed(const EndMap& ends, bool at_end) {
-  const std::size_t n = ends.fixed.size() / 2;
-  const auto begin = ends.fixed.begin() + (at_end ? n : 0);
-  return std::all_of(begin, begin + n, [](char fixed) { return fixed; });
-}
-
 /// Of the chord through the neighbours of sample k of the guess.
 double velocity_at(const Problem& problem, int k, int a) {
   const Guess& guess = problem.guess;
@@ -83,8 +77,8 @@ class GuessValues {
 /// The first sample of the guess where L is not finite, or -1.
 int first_not_finite(const Problem& problem) {
   const Guess& guess = problem.guess;
-  const int first = wholly_fixed(problem.ends, false),
-            after = static_cast<int>(guess.tau.size()) - wholly_fixed(problem.ends, true);
+  const int first = problem.ends.fixes(false),
+            after = static_cast<int>(guess.tau.size()) - problem.ends.fixes(true);
   return GuessValues(problem).first_not_finite(first, after - first);
 }
 
@@ -143,7 +137,7 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
   Scratch scratch;
   std::vector<double> unused, v, rest(n, 0);
   for (const bool end : {false, true}) {
-    if (!wholly_fixed(problem.ends, end)) continue;
+    if (!problem.ends.fixes(end)) continue;
     const double* q = problem.ends.offset.data() + (end ? n : 0);
     NearbyPoints points(problem);
     const auto convex = [&](const std::vector<double>& velocity) {

@@ -57,10 +57,7 @@ class ConstrainedEnds {
   }
   std::span<double> point(bool at_end) { return at_end ? near_.end : near_.start; }
   double time(bool at_end) const { return at_end ? problem_.duration.value : 0; }
-  bool fixed(bool at_end) const {
-    const auto begin = problem_.ends.fixed.begin() + (at_end ? n_ : 0);
-    return std::all_of(begin, begin + n_, [](char f) { return f; });
-  }
+  bool fixed(bool at_end) const { return problem_.ends.fixes(at_end); }
 
   /// Ends as the relation has them where it fixes them.
   void fit_fixed() {

@@ -51,13 +51,10 @@ PathPoints points_of(const Problem& problem) {
     path.q.emplace_back(Eigen::Map<const VectorXd>(guess.q.data() + k * n, n));
     path.times.push_back(guess.tau[k] * problem.duration.value);
   }
-  for (const bool at_end : {false, true}) {
-    const auto first = at_end ? static_cast<std::ptrdiff_t>(n) : 0;
-    const auto from = problem.ends.fixed.begin() + first;
-    if (std::all_of(from, from + n, [](char fixed) { return fixed; }))
+  for (const bool at_end : {false, true})
+    if (problem.ends.fixes(at_end))
       (at_end ? path.q.back() : path.q.front()) =
-          Eigen::Map<const VectorXd>(problem.ends.offset.data() + first, n);
-  }
+          Eigen::Map<const VectorXd>(problem.ends.offset.data() + (at_end ? n : 0), n);
   return path;
 }
 
@@ -149,8 +146,7 @@ class ChartChoice {
   /// What relations of an end read that they do not fix wholly is to be among u, as far as it is independent.
   void require_fixed(const Problem& problem) {
     for (const int end : {0, 1}) {
-      const auto from = problem.ends.fixed.begin() + end * n_;
-      if (std::all_of(from, from + n_, [](char fixed) { return fixed; })) continue;
+      if (problem.ends.fixes(end == 1)) continue;
       const MatrixXd& tangent = end ? tangents_.back() : tangents_.front();
       if (tangent.size() == 0) continue;
       for (const Triplet& entry : problem.boundary.matrix) {

@@ -103,12 +103,6 @@ const Location& place_of(const BoundaryTable& boundary, bool at_end) {
   return boundary.conditions.empty() ? boundary.at : boundary.conditions.front().at;
 }
 
-bool fixed(const Problem& problem, bool at_end) {
-  const int n = problem.coordinates();
-  const auto begin = problem.ends.fixed.begin() + (at_end ? n : 0);
-  return std::all_of(begin, begin + n, [](char f) { return f; });
-}
-
 /// A point that is fixed must keep the inequalities.
 void check_point(const Location& where, const char* name, const Inequalities& inequalities,
                  const std::vector<double>& q, double t, double size) {
@@ -131,7 +125,7 @@ void check_points(const Scene& scene, const Inequalities& inequalities, const Pr
   for (const double x : problem.ends.offset) size = std::max(size, std::abs(x));
   if (size == 0) size = 1;
   for (const bool at_end : {false, true}) {
-    if (!fixed(problem, at_end)) continue;
+    if (!problem.ends.fixes(at_end)) continue;
     const auto begin = problem.ends.offset.begin() + (at_end ? n : 0);
     check_point(place_of(scene.boundary, at_end), at_end ? "end" : "start", inequalities, {begin, begin + n},
                 at_end ? problem.duration.value : 0, size);

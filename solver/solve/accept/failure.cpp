@@ -53,9 +53,7 @@ std::vector<double> middle_of_guess(const Problem& problem) {
 /// The end, where every coordinate is fixed; else nothing.
 Point fixed_end(const Problem& problem, bool end) {
   const std::size_t n = problem.coordinates(), first = end ? n : 0;
-  const auto begin = problem.ends.fixed.begin() + static_cast<std::ptrdiff_t>(first);
-  const bool fixed = std::all_of(begin, begin + static_cast<std::ptrdiff_t>(n), [](char f) { return f; });
-  return fixed ? Point(problem.ends.offset).subspan(first, n) : Point();
+  return problem.ends.fixes(end) ? Point(problem.ends.offset).subspan(first, n) : Point();
 }
 
 std::string place_of(const Problem& problem, Point q) {

@@ -52,9 +52,7 @@ double CoarseAction::elements_in(double from, double to) const {
 
 bool CoarseAction::fixed(int node) const {
   if (std::ranges::count(waypoints_, node, &FixedCoordinate::node) == n_) return true;
-  if (node != 0 && node != elements_) return false;
-  const auto begin = problem_.ends.fixed.begin() + (node == 0 ? 0 : n_);
-  return std::all_of(begin, begin + n_, [](char f) { return f; });
+  return (node == 0 || node == elements_) && problem_.ends.fixes(node != 0);
 }
 
 void CoarseAction::midpoint(std::span<const double> z, int k, Point& point) const {

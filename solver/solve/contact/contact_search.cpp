@@ -72,13 +72,10 @@ std::string broken_end(const Problem& problem, double size) {
   constexpr double part = 1e-3;
   if (unknowns_of(problem).empty()) return {};
   const std::size_t n = problem.coordinates();
-  const auto ends = problem.ends.fixed.begin();
   for (const bool at_end : {false, true}) {
-    const auto first = static_cast<std::ptrdiff_t>(at_end ? n : 0);
-    const auto last = first + static_cast<std::ptrdiff_t>(n);
-    if (!std::all_of(ends + first, ends + last, [](char f) { return f; })) continue;
-    const ConstraintValues values = problem.inequalities->all->at({problem.ends.offset.data() + first, n},
-                                                                  at_end ? problem.duration.value : 0);
+    if (!problem.ends.fixes(at_end)) continue;
+    const ConstraintValues values = problem.inequalities->all->at(
+        {problem.ends.offset.data() + (at_end ? n : 0), n}, at_end ? problem.duration.value : 0);
     for (Eigen::Index k = 0; k < values.g.size(); ++k)
       if (values.g[k] < -part * size * values.slopes.row(k).norm())
         return fmt::format(

@@ -15,11 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-bool fixed(const Problem& problem, bool at_end) {
-  const auto begin = problem.ends.fixed.begin() + (at_end ? problem.coordinates() : 0);
-  return std::all_of(begin, begin + problem.coordinates(), [](char f) { return f; });
-}
-
 /// ∂e/∂(q(0), q(T)) of the terms of the action by momenta that unknowns give.
 VectorXd term_slopes(const Problem& problem, std::span<const double> constants, const VectorXd& ends) {
   VectorXd sum = VectorXd::Zero(ends.size()), slope = sum;
@@ -74,7 +69,7 @@ EndEquations::EndEquations(const Problem& problem, std::vector<EndContact> conta
       conditions_(problem.extension ? problem.extension->conditions.size() : 0) {
   for (const EndContact& contact : contacts)
     // The end of a closed path is its start.
-    if (!fixed(problem, contact.at_end) && !(problem.periodic && contact.at_end))
+    if (!problem.ends.fixes(contact.at_end) && !(problem.periodic && contact.at_end))
       contacts_.push_back(contact);
 }
 
