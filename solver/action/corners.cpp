@@ -11,6 +11,7 @@
 #include "action/rule.hpp"
 #include "action/tables.hpp"
 #include "machine/aligned.hpp"
+#include "machine/largest.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -198,12 +199,6 @@ double product(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
-}
-
-double largest(const std::vector<double>& x) {
-  double result = 0;
-  for (const double value : x) result = std::max(result, std::abs(value));
-  return result;
 }
 
 /// Moves a point along the slope of u by as much as changes u so, to first order.

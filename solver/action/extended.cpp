@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/largest.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -12,12 +13,6 @@ namespace {
 /// Of the largest coordinate, what paths are compared over: differences of gradients keep half the digits,
 /// and are linear as far.
 constexpr double small_part = 0x1p-56;
-
-double largest(std::span<const double> x) {
-  double most = 0;
-  for (double a : x) most = std::max(most, std::abs(a));
-  return most;
-}
 
 }  // namespace
 

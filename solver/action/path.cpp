@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "action/rule.hpp"
+#include "machine/long_sum.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -170,12 +171,10 @@ void Path::set_node(int k, int a, double high, double low) {
 
 void Path::add(std::span<const double> node_step, const AlignedDoubles& inner_step, double factor) {
   for (std::size_t k = 0; k < high_.size(); ++k) {
-    // Two-sum of high and the correction: what rounding drops goes to low.
-    const double correction = low_[k] + factor * node_step[k];
-    const double sum = high_[k] + correction;
-    const double part = sum - high_[k];
-    low_[k] = (high_[k] - (sum - part)) + (correction - part);
-    high_[k] = sum;
+    LongSum sum{high_[k], low_[k]};
+    sum.add(factor * node_step[k]);
+    high_[k] = sum.high;
+    low_[k] = sum.low;
   }
   const std::size_t inner = static_cast<std::size_t>(unknowns_ - 2 * n_) * lanes_;
   for (int b = 0; b < batches_; ++b) {

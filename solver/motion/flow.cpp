@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "machine/largest.hpp"
 #include "system/hamiltonian.hpp"
 
 namespace extremal {
@@ -26,12 +27,6 @@ constexpr double degenerate = 1e-6;
 double largest_entry(std::span<const Triplet> m) {
   double found = 0;
   for (const Triplet& entry : m) found = std::max(found, std::abs(entry.value));
-  return found;
-}
-
-double largest(std::span<const double> x) {
-  double found = 0;
-  for (const double a : x) found = std::max(found, std::abs(a));
   return found;
 }
 

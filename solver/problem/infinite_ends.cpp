@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "linear/dense.hpp"
+#include "machine/largest.hpp"
 #include "problem/limits.hpp"
+#include "problem/point_text.hpp"
 
 namespace extremal {
 
@@ -18,22 +20,12 @@ namespace {
 
 using About = InfiniteEndError::About;
 
+/// Of the points that are named.
+constexpr int digits = 10;
+
 std::vector<double> values_of(const EndMap& ends, bool at_end) {
   const auto n = static_cast<std::ptrdiff_t>(ends.fixed.size() / 2), first = at_end ? n : 0;
   return {ends.offset.begin() + first, ends.offset.begin() + first + n};
-}
-
-std::string point_text(const std::vector<std::string>& names, const std::vector<double>& q) {
-  std::string text;
-  for (std::size_t a = 0; a < std::min(q.size(), most_named); ++a)
-    text += fmt::format("{}{} = {:.10g}", a ? ", " : "", a < names.size() ? names[a] : "q", q[a]);
-  return text + (q.size() > most_named ? ", …" : "");
-}
-
-double largest(const std::vector<double>& x) {
-  double found = 0;
-  for (const double value : x) found = std::max(found, std::abs(value));
-  return found;
 }
 
 /// A time so late that the linear motion about q has decayed by then: where L depends on t, what L is like as
@@ -96,12 +88,12 @@ void check_hyperbolic(const End& end, bool at_end, const std::vector<std::string
         fmt::format("the equilibrium {} at the {} is not approached exponentially in all directions: "
                     "motions about it go as exp(λt) with λ = {}, and some λ are imaginary or zero; ends "
                     "at infinity need real parts. Give a finite duration",
-                    point_text(names, end.q), at_end ? "end" : "start", exponents_text(end.rest)));
+                    point_text(names, end.q, digits), at_end ? "end" : "start", exponents_text(end.rest)));
   if ((at_end ? end.rest.stable : end.rest.unstable).size() == 0)
     throw InfiniteEndError(
         about, fmt::format("motions that tend to the equilibrium {} do not have one momentum for each "
                            "displacement, so the {} cannot be at infinity; give a finite duration",
-                           point_text(names, end.q), at_end ? "end" : "start"));
+                           point_text(names, end.q, digits), at_end ? "end" : "start"));
 }
 
 [[noreturn]] void refuse_finite(const End& start, const End& end, bool autonomous,
@@ -113,7 +105,7 @@ void check_hyperbolic(const End& end, bool at_end, const std::vector<std::string
     const bool other_open = at == &end ? !start.fixed && autonomous : !end.fixed;
     const std::string nearest =
         std::isfinite(at->rest.distance)
-            ? fmt::format("the nearest one is {}; give that{}", point_text(names, at->rest.q),
+            ? fmt::format("the nearest one is {}; give that{}", point_text(names, at->rest.q, digits),
                           !other_open  ? ""
                           : at == &end ? " at the start"
                                        : " at the end")
@@ -121,7 +113,7 @@ void check_hyperbolic(const End& end, bool at_end, const std::vector<std::string
     throw InfiniteEndError(
         about, fmt::format("duration = \"infinite\" needs an end at an equilibrium of L; at the {}, {}, the "
                            "force ∂L/∂q at rest is {:.3g}, and {}, or a finite duration",
-                           text, point_text(names, at->q), at->rest.force, nearest));
+                           text, point_text(names, at->q, digits), at->rest.force, nearest));
   }
   if (!autonomous && start.fixed)
     throw InfiniteEndError(
@@ -150,7 +142,8 @@ void check_energies(const End& start, const End& end, const std::vector<std::str
       fmt::format("the energy of rest is {:.10g} at {} and {:.10g} at {}, and L conserves it: no "
                   "extremal leads from one to the other; choose equilibria of equal energy, or a "
                   "finite duration",
-                  -start.rest.value, point_text(names, start.q), -end.rest.value, point_text(names, end.q)));
+                  -start.rest.value, point_text(names, start.q, digits), -end.rest.value,
+                  point_text(names, end.q, digits)));
 }
 
 /// Relation without the conditions on an end.

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 /// \file The numbers by which problems are checked.
 
 namespace extremal::limits {
@@ -31,8 +29,6 @@ inline constexpr double decays = 12;
 inline constexpr int most_doublings = 40;
 /// Samples of the default guess.
 inline constexpr int samples = 1024;
-/// Coordinates of a place that are named.
-inline constexpr std::size_t most_named = 6;
 
 }  // namespace infinite_ends
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <utility>
 
 #include "action/scheme.hpp"
+#include "machine/clock.hpp"
 #include "problem/phase_space.hpp"
 #include "problem/point_range.hpp"
 #include "problem/reduction.hpp"
@@ -22,8 +22,6 @@ namespace extremal {
 using namespace limits::phase_space;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 bool is_rectangle(const Scheme& scheme) {
   return scheme.quadrature == Quadrature::left || scheme.quadrature == Quadrature::right;
@@ -103,7 +101,7 @@ class PhaseSpaceSolve {
     const auto start = Clock::now();
     std::optional<Problem> near = near_hamilton_path(problem_, options_.deadline);
     if (near) near->reduction = reduction_of(*near);
-    solution.seconds_solve += std::chrono::duration<double>(Clock::now() - start).count();
+    solution.seconds_solve += seconds_since(start);
     if (near) solution = after(solution, solved(*near, options_, false));
     // A named scheme has searched already.
     if (solution.converged() || options_.scheme || options_.deadline.passed()) return solution;

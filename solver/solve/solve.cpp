@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <utility>
 
+#include "machine/clock.hpp"
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
@@ -38,8 +38,6 @@
 namespace extremal {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// The largest of the values that a problem with an extension gives.
 double given_size(const Problem& problem) {
@@ -73,10 +71,6 @@ Outcome solve_part(const Reduction& reduction, const SolveOptions& options, Work
   std::swap(outcome.path, w.spare_whole);
   reconstruct_orbit(reduction, outcome.part, *outcome.tables, outcome.path);
   return outcome;
-}
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// The solution that a path is, or why there is none; found since `start`.

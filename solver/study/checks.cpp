@@ -11,18 +11,12 @@
 #include "machine/simd.hpp"
 #include "problem/manifold.hpp"
 #include "problem/nearby.hpp"
+#include "problem/point_text.hpp"
 #include "solve/bordered/limits.hpp"
 #include "solve/guess/starting_ends.hpp"
 
 namespace extremal {
 namespace {
-
-std::string point_text(const Problem& problem, const double* q) {
-  std::string text;
-  const int shown = std::min(problem.coordinates(), 6);
-  for (int a = 0; a < shown; ++a) text += fmt::format("{}{} = {:.6g}", a ? ", " : "", problem.names[a], q[a]);
-  return text + (shown < problem.coordinates() ? ", …" : "");
-}
 
 /// Of the chord through the neighbours of sample k of the guess.
 double velocity_at(const Problem& problem, int k, int a) {
@@ -117,7 +111,7 @@ void check_guess_finite(const Problem& given, const Location& at, bool by_moment
     throw SceneError(at,
                      fmt::format("the gradients of the constraints vanish, or depend on each other, on the "
                                  "guess at t = {:.6g}: {}; give one that goes past",
-                                 t, point_text(problem, q.data())));
+                                 t, point_text(problem.names, q)));
   // The Lagrangian of a Hamiltonian has the velocities in the range of H_p alone.
   std::string velocities;
   if (by_momenta)
@@ -125,7 +119,7 @@ void check_guess_finite(const Problem& given, const Location& at, bool by_moment
       velocities += fmt::format(", {}' = {:.6g}", problem.names[a], velocity_at(problem, k, a));
   throw SceneError(
       at,
-      fmt::format("L is not finite on the guess at t = {:.6g}: {}{}{}", t, point_text(problem, q.data()),
+      fmt::format("L is not finite on the guess at t = {:.6g}: {}{}{}", t, point_text(problem.names, q),
                   velocities, velocities.empty() ? "" : "; momenta may not reach these velocities, ∂H/∂p"));
 }
 
@@ -157,7 +151,7 @@ void check_energy_at_ends(const Problem& problem, const Location& at) {
           at, fmt::format(
                   "energy = {}, but at the {} ({}) it is at least {:.6g}, its value at rest; raise it, or "
                   "move this end",
-                  energy, end ? "end" : "start", point_text(problem, q), least));
+                  energy, end ? "end" : "start", point_text(problem.names, {q, n}), least));
   }
 }
 

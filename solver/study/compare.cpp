@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
+#include "machine/clock.hpp"
 #include "motion/dop853.hpp"
 #include "motion/flow.hpp"
 #include "rivals/shooting.hpp"
@@ -140,7 +140,6 @@ class Comparer {
   }
 
   ComparisonRow shoot_row(const ShootingMethod& method, double tolerance) {
-    using Clock = std::chrono::steady_clock;
     std::vector<double> seconds;
     Shot shot;
     double spent = 0;
@@ -148,7 +147,7 @@ class Comparer {
       const auto start = Clock::now();
       shot = shoot(study_.problem,
                    {.tolerance = tolerance, .segments = method.segments, .deadline = deadline()});
-      seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      seconds.push_back(seconds_since(start));
       spent += seconds.back();
     } while (spent < options_.row_seconds && seconds.size() < most_repeats);
     ComparisonRow row{method.name, tolerance, median(std::move(seconds)), std::nullopt, shot.status};
@@ -164,7 +163,6 @@ class Comparer {
 
   /// The motion by the method of Dormand and Prince, each step to the tolerance.
   ComparisonRow integrate_row(double tolerance) {
-    using Clock = std::chrono::steady_clock;
     const InitialData& initial = *study_.problem.initial;
     const std::size_t n = initial.q.size();
     const double duration = study_.problem.duration.value;
@@ -203,7 +201,7 @@ class Comparer {
       MotionSamples end;
       const auto start = Clock::now();
       done = integrate({}, end);
-      seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+      seconds.push_back(seconds_since(start));
       spent += seconds.back();
     } while (done && spent < options_.row_seconds && seconds.size() < most_repeats);
     row.seconds = median(std::move(seconds));

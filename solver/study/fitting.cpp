@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
+#include "machine/clock.hpp"
 #include "study/fit_data.hpp"
 #include "study/fitted_scene.hpp"
 #include "study/study.hpp"
@@ -217,7 +217,7 @@ FitResult run_fit(const Study& study, int repeat, const std::function<void(const
   std::vector<double> solving, analysing;
   for (int k = 0; k < repeat && !(k > 0 && options.deadline.passed()); ++k) {
     options.deadline = deadline_of(study);
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     result = fit_to(study.fit->task, options);
     if (!result.solution.converged() && !options.deadline.passed())
       if (const auto request = made(study.fit->from_data)) {
@@ -236,7 +236,7 @@ FitResult run_fit(const Study& study, int repeat, const std::function<void(const
               "[boundary]. Ends that are conjugate to each other, or nearly so, as those of half a period or "
               "a whole one, do not determine the motion between them",
               request->task.duration);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds = seconds_since(begin);
     solving.push_back(seconds - result.solution.seconds_analyse);
     analysing.push_back(result.solution.seconds_analyse);
   }

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 
 #include "linear/dense.hpp"
+#include "machine/clock.hpp"
 #include "machine/simd.hpp"
 #include "problem/extension.hpp"
 #include "problem/inequalities.hpp"
@@ -45,8 +45,6 @@
 
 namespace extremal {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 Method read_method(const Text& text) {
   Method method = Method::newton;
@@ -424,7 +422,7 @@ template <class Where>
 Study load_timed(const Where& where, const std::vector<std::string>& sets, Purpose purpose) {
   const auto begin = Clock::now();
   Study study = with_suggestion([&] { return load_checked(where, sets, purpose); });
-  study.seconds_read = std::chrono::duration<double>(Clock::now() - begin).count();
+  study.seconds_read = seconds_since(begin);
   return study;
 }
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "action/momentum_jump.hpp"
+#include "machine/clock.hpp"
 #include "problem/closing.hpp"
 #include "problem/symmetry.hpp"
 #include "solution/on_manifold.hpp"
@@ -30,12 +30,6 @@ namespace extremal {
 using namespace limits::acceptance;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Shifts in time and symmetries that steps leave out.
 int held_directions(const Problem& problem) {

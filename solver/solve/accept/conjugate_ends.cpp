@@ -7,6 +7,7 @@
 
 #include "analysis/windows.hpp"
 #include "solve/accept/limits.hpp"
+#include "solve/accept/refuse.hpp"
 #include "solve/adapt/finer_elements.hpp"
 #include "solve/newton/converge.hpp"
 
@@ -27,11 +28,6 @@ double moved_by_finer_elements(const Problem& problem, const Path& path, const E
   for (std::size_t k = 0; k < path.nodes().size(); ++k)
     moved = std::max(moved, std::abs(other.nodes()[k] - path.nodes()[k]));
   return moved;
-}
-
-void refuse(Solution& solution, Status status, std::string message) {
-  solution.status = status;
-  solution.message = std::move(message);
 }
 
 }  // namespace

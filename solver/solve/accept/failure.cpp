@@ -2,12 +2,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include "machine/clock.hpp"
+#include "machine/largest.hpp"
+#include "problem/point_text.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/accept/branches_apart.hpp"
 #include "solve/accept/conjugate_ends.hpp"
@@ -21,8 +23,6 @@ namespace extremal {
 using namespace limits::failure;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 using Point = std::span<const double>;
 
@@ -56,18 +56,9 @@ Point fixed_end(const Problem& problem, bool end) {
   return problem.ends.fixes(end) ? Point(problem.ends.offset).subspan(first, n) : Point();
 }
 
-std::string place_of(const Problem& problem, Point q) {
-  std::string place;
-  for (std::size_t a = 0; a < std::min<std::size_t>(q.size(), most_named); ++a)
-    place += fmt::format("{}{} = {:.6g}", a ? ", " : "",
-                         problem.names.empty() ? fmt::format("q[{}]", a + 1) : problem.names[a], q[a]);
-  return place + (q.size() > most_named ? ", …" : "");
-}
-
 /// A point at a thousandth of the coordinates from another, or of one where all are zero, to one side.
 std::vector<double> beside(Point q, double side) {
-  double size = 0;
-  for (const double x : q) size = std::max(size, std::abs(x));
+  const double size = largest(q);
   std::vector<double> result(q.begin(), q.end());
   for (double& x : result) x += side * 1e-3 * (size > 0 ? size : 1);
   return result;
@@ -112,7 +103,7 @@ std::string unreachable(const Problem& problem) {
         return fmt::format("L is not finite at t = {:.6g}; write t {} {:.1g} for t in L", time,
                            end ? '-' : '+', little);
       return fmt::format("L is not finite {} the {}, {}; move this end", within ? "at" : "about",
-                         end ? "end" : "start", place_of(problem, q));
+                         end ? "end" : "start", point_text(problem.names, q));
     }
   const Point start = fixed_end(problem, false), end = fixed_end(problem, true);
   if (start.empty() || end.empty() || problem.duration.free || open) return {};
@@ -142,7 +133,7 @@ std::string irregularity(const Problem& problem) {
     return fmt::format(
         "the mass matrix ∂²L/∂q'∂q' is singular at {}, a point of the {}, though not beside it: momenta do "
         "not determine velocities there; avoid it, or take other coordinates",
-        place_of(problem, q), where);
+        point_text(problem.names, q), where);
   }
   return {};
 }
@@ -174,7 +165,7 @@ Solution explain_failure(const Problem& problem, const SolveOptions& options, co
     solution.strategy += fmt::format(", led by {}", description(options.method));
   solution.iterations = last.iterations;
   w.iteration.forget();
-  solution.seconds_analyse = std::chrono::duration<double>(Clock::now() - start).count();
+  solution.seconds_analyse = seconds_since(start);
   return solution;
 }
 

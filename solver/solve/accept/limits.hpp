@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
 
@@ -73,8 +71,6 @@ namespace failure {
 inline constexpr int most_coordinates = 64;
 /// How far beside a point, relative, its mass matrix is looked at too.
 inline constexpr double aside = 0.01;
-/// Coordinates of a place that are named.
-inline constexpr std::size_t most_named = 6;
 
 }  // namespace failure
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solve/accept/limits.hpp"
+#include "solve/accept/refuse.hpp"
 #include "solve/accept/symmetries.hpp"
 #include "solve/mesh/conservation.hpp"
 #include "solve/mesh/roundoff.hpp"
@@ -53,11 +54,6 @@ double kick(const DiscreteAction& action, const Lagrangian& lagrangian, const So
   }
   if (!(largest > momentum_roundoff * action.momentum_scale())) return 0;
   return largest > momentum_roundoff * momentum_of_speed(lagrangian, solution) ? largest : 0;
-}
-
-void refuse(Solution& solution, Status status, std::string message) {
-  solution.status = status;
-  solution.message = std::move(message);
 }
 
 /// Refuses a solution of which `what`, relative to its range, is more than a tolerance allows.

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <utility>
 
+#include "machine/clock.hpp"
 #include "solve/adapt/element_count.hpp"
 #include "solve/adapt/limits.hpp"
 #include "solve/bordered/bordered_judge.hpp"
@@ -28,8 +28,6 @@ namespace extremal {
 using namespace limits::bordered;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Why an attempt found nothing.
 struct Failure {
@@ -107,10 +105,6 @@ class BorderedSolve {
       return fmt::format("; {} (solve.budget) is spent", options_.deadline.budget_text());
     if (spent()) return fmt::format("; {} steps of Newton's method are spent", iterations_);
     return {};
-  }
-
-  static double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
   bool has_targets() const {
@@ -437,7 +431,7 @@ class BorderedSolve {
     const auto start = Clock::now();
     equations_.reset(problem_, *found.tables, *found.own, found.state.mesh);
     Solution solution = judge(problem_, options_, equations_, found, measured);
-    seconds_analyse_ += std::chrono::duration<double>(Clock::now() - start).count();
+    seconds_analyse_ += seconds_since(start);
     refused_ = !solution.converged();
     return solution;
   }

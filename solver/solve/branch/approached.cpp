@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "machine/largest.hpp"
 #include "problem/point_range.hpp"
 #include "problem/rest_point.hpp"
 #include "solve/branch/limits.hpp"
@@ -12,12 +13,6 @@
 namespace extremal {
 
 namespace {
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double x : values) most = std::max(most, std::abs(x));
-  return most;
-}
 
 double length_of(const Path& path, int k) { return path.mesh()[k + 1] - path.mesh()[k]; }
 

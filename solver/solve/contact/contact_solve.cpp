@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "machine/clock.hpp"
 #include "problem/inequalities.hpp"
 #include "solve/contact/contact_search.hpp"
 #include "solve/contact/first_paths.hpp"
@@ -16,16 +16,7 @@
 
 namespace extremal {
 
-namespace {
-
 using namespace limits::contact;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
 
 Solution solve_with_inequalities(const Problem& problem, const SolveOptions& options, const ArcSolve& solve) {
   const auto start = Clock::now();

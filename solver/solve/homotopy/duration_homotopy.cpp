@@ -5,22 +5,13 @@
 #include <utility>
 
 #include "action/energies.hpp"
+#include "machine/largest.hpp"
 #include "solve/homotopy/limits.hpp"
 #include "solve/mesh/resolution.hpp"
 
 namespace extremal {
 
 using namespace limits::duration_homotopy;
-
-namespace {
-
-double largest(const std::vector<double>& values) {
-  double result = 0;
-  for (double x : values) result = std::max(result, std::abs(x));
-  return result;
-}
-
-}  // namespace
 
 std::vector<double> natural_durations(const Problem& problem, Path& path, Workspace& w,
                                       const ElementTables& tables) {

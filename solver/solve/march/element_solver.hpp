@@ -1,27 +1,15 @@
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "machine/long_sum.hpp"
 #include "solve/march/step_tables.hpp"
 
 /// \file One element of a motion: the discrete Euler-Lagrange equations solved forwards.
 
 namespace extremal {
-
-/// A sum of two doubles that is not evaluated: 10⁶ small changes lose no more than their own roundoff.
-struct LongSum {
-  double high = 0, low = 0;
-  void add(double change) {
-    const double correction = low + change;
-    const double sum = high + correction;
-    const double part = sum - high;
-    low = (high - (sum - part)) + (correction - part);
-    high = sum;
-  }
-};
 
 /// (q, p) at a time.
 struct MotionState {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <chrono>
 #include <climits>
 #include <cmath>
 #include <memory>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "action/momentum_jump.hpp"
+#include "machine/clock.hpp"
 #include "solution/broken_node.hpp"
 #include "solution/observe.hpp"
 #include "solve/march/deviation.hpp"
@@ -34,8 +34,6 @@ constexpr int velocity_steps = 20;
 constexpr double at_start = 1e-9;
 /// Of the sizes of what u is made of: a motion so near a surface is on it.
 constexpr double on_surface = 1e-8;
-
-using Clock = std::chrono::steady_clock;
 
 /// Coefficients of degree k fall like f^k, f = 1/(y + √(1 + y²)) with y = 2d/h, d the distance to the
 /// nearest singularity in complex time. So the truncation f^(s+1) gives the length that a degree s allows, in
@@ -83,10 +81,10 @@ class InitialMotion {
       run_scheme();
     else
       run_adaptive();
-    solution_.seconds_solve = std::chrono::duration<double>(Clock::now() - start).count();
+    solution_.seconds_solve = seconds_since(start);
     const auto analysis = Clock::now();
     if (solution_.converged() && !survey_) survey_ = observe_energy(lagrangian_, solution_);
-    solution_.seconds_analyse = std::chrono::duration<double>(Clock::now() - analysis).count();
+    solution_.seconds_analyse = seconds_since(analysis);
     return std::move(solution_);
   }
 

@@ -1,8 +1,8 @@
 #include "solve/mesh/conservation.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "machine/largest.hpp"
 #include "solve/mesh/limits.hpp"
 #include "solve/mesh/roundoff.hpp"
 
@@ -11,12 +11,6 @@ namespace extremal {
 using namespace limits::conservation;
 
 namespace {
-
-double largest(const std::vector<double>& values) {
-  double most = 0;
-  for (const double x : values) most = std::max(most, std::abs(x));
-  return most;
-}
 
 double shortest_element(const Trajectory& trajectory) {
   double shortest = trajectory.duration();

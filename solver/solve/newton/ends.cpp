@@ -3,20 +3,11 @@
 #include <cmath>
 
 #include "linear/dense.hpp"
+#include "machine/long_sum.hpp"
 
 namespace extremal {
 
 namespace {
-
-/// A sum and its rounding error.
-struct DoubleSum {
-  double high = 0, low = 0;
-  void add(double x) {
-    const double sum = high + x, part = sum - high;
-    low += (high - (sum - part)) + (x - part);
-    high = sum;
-  }
-};
 
 /// Where an end coordinate is among the nodes.
 int node_of(int e, const Path& path) { return e < path.coordinates() ? 0 : path.elements(); }
@@ -78,12 +69,12 @@ void keep_ends(const EndMap& ends, Path& path) {
       ++i;
       continue;
     }
-    DoubleSum sum{ends.offset[e], 0};
+    LongSum sum{ends.offset[e], 0};
     for (; i < ends.z.size() && ends.z[i].row == e; ++i) {
       const double factor = ends.z[i].value;
       const int free = ends.home[ends.z[i].column], k = node_of(free, path);
       const double y = path.node(k)[free % n], product = factor * y;
-      sum.add(product);
+      sum.add_term(product);
       sum.low += std::fma(factor, y, -product) + factor * path.rest(k)[free % n];
     }
     path.set_node(node_of(e, path), e % n, sum.high, sum.low);

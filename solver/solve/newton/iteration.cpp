@@ -18,7 +18,7 @@ using namespace limits::iteration;
 namespace {
 
 /// Largest |x|, or NaN if one is not finite, which the sum remembers and a maximum would not.
-double largest(std::span<const double> x) {
+double largest_if_finite(std::span<const double> x) {
   double part[8] = {}, sum[8] = {};
   std::size_t i = 0;
   for (; i + 8 <= x.size(); i += 8)
@@ -147,7 +147,7 @@ double NewtonIteration::solve_for_step(const Path& path, Step& step, bool refine
 
 /// The largest part of a step, q by the scale; NaN if one is not finite.
 double NewtonIteration::length(const Path& path, const Step& step) const {
-  const double nodes = largest(step.nodes), inner = largest(step.inner);
+  const double nodes = largest_if_finite(step.nodes), inner = largest_if_finite(step.inner);
   if (std::isnan(nodes) || std::isnan(inner)) return NAN;
   double size = std::max(nodes, inner) / (scale_ > 0 ? scale_ : 1);
   if (problem_->duration.free) size = std::max(size, std::abs(step.duration) / path.duration());
@@ -316,7 +316,7 @@ bool NewtonIteration::hold_softest(const Path& path) {
   model_->solve(action_, problem_->duration.free ? &closed : nullptr, step_);
   held_.add(direction_of(step_.nodes, path));
   predicted_ = 1;
-  return std::isfinite(largest(held_.directions));
+  return std::isfinite(largest_if_finite(held_.directions));
 }
 
 void NewtonIteration::release() {

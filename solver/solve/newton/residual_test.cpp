@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "machine/largest.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/limits.hpp"
 
@@ -26,11 +27,7 @@ std::vector<double> magnitudes(const Path& path) {
 
 }  // namespace
 
-double largest_coordinate(const Path& path) {
-  double largest = 0;
-  for (const double q : path.nodes()) largest = std::max(largest, std::abs(q));
-  return largest;
-}
+double largest_coordinate(const Path& path) { return largest(path.nodes()); }
 
 double natural_residual(const Problem& problem, const DiscreteAction& action, const Path& path,
                         double displacement) {

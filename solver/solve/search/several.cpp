@@ -15,12 +15,6 @@ namespace extremal {
 
 using namespace limits::several;
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-}  // namespace
-
 Several::Several(const Problem& problem, const SolveOptions& options, Workspace& workspace)
     : problem_(problem),
       options_(options),
@@ -68,7 +62,7 @@ int Several::keep() {
 /// The same for a solution that was accepted. Those whose shifts are `held` are members of a continuum each,
 /// but all of them were shifted to where energies agree.
 int Several::add(Solution candidate, bool held) {
-  candidate.seconds_solve = std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
+  candidate.seconds_solve = seconds_since(start_) - analysing_;
   if (repeats(candidate)) {
     if (!repeating_) repeating_ = std::move(candidate);
     return -1;
@@ -141,9 +135,7 @@ std::vector<Solution> Several::run(int most) {
   Solution solution = acceptance.result(first);
   too_loose_ = acceptance.too_loose();
   analysing_ = acceptance.seconds();
-  const auto solving = [&] {
-    return std::chrono::duration<double>(Clock::now() - start_).count() - analysing_;
-  };
+  const auto solving = [&] { return seconds_since(start_) - analysing_; };
   solution.seconds_solve = solving();
   families_ = 1 + (problem_.periodic ? 0 : std::min(problem_.boundary.rows, most_rows));
   const bool begun = converged && add(solution) >= 0;

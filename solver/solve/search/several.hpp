@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "machine/clock.hpp"
 #include "solve/accept/acceptance.hpp"
 #include "solve/search/closing_motions.hpp"
 #include "solve/search/loop_search.hpp"
@@ -101,7 +101,7 @@ class Several {
   std::size_t descended_ = 0;              ///< extremals that were left downhill where they are saddles
   int traced_count_ = 0;                   ///< families
   std::vector<std::vector<char>> traced_;  ///< for each extremal, whether each family of it was
-  std::chrono::steady_clock::time_point start_;
+  Clock::time_point start_;
   double analysing_ = 0;  ///< seconds
   bool too_loose_ = false;
 };
