@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "action/by_degree.hpp"
+#include "machine/roundoff.hpp"
 
 namespace extremal {
 
@@ -19,7 +19,7 @@ Real solve_node(Real u, Step step) {
   for (int i = 0; i < most; ++i) {
     const Real change = step(u);
     u += change;
-    if (abs(change) <= std::numeric_limits<double>::epsilon() * u) break;
+    if (abs(change) <= machine_epsilon * u) break;
   }
   return u;
 }

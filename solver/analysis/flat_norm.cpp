@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
+
+#include "machine/roundoff.hpp"
 
 namespace extremal {
 
@@ -98,7 +99,7 @@ double flat_norm(std::vector<PointMass> measure) {
   const std::complex<double> top = furthest(measure, {0, 1});
   double mass = 0;
   for (const PointMass& each : measure) mass += std::abs(each.weight);
-  const double roundoff = 4 * std::numeric_limits<double>::epsilon() * mass;
+  const double roundoff = 4 * machine_epsilon * mass;
   return std::max(beyond(measure, right, top, roundoff), beyond(measure, top, -right, roundoff));
 }
 

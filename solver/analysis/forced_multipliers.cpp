@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "analysis/multipliers.hpp"
 #include "analysis/symplectic.hpp"
 #include "linear/dense.hpp"
+#include "machine/roundoff.hpp"
 
 /// \file Floquet multipliers of orbits of systems with forces. The second variation of two copies,
 ///   u = (q₁ + q₂)/2 and λ = q₁ − q₂, has in (u, λ) the form 2 λᵀA u: the linearised equations of motion.
@@ -78,7 +78,7 @@ Saltation saltation(const Lagrangian& copies, const Switch& at, double length, c
   };
   const auto half = [&](const std::vector<double>& both) { return VectorXd::Map(both.data(), n); };
   // ∂p/∂t at given q and q'.
-  const double step = std::cbrt(std::numeric_limits<double>::epsilon()) * length;
+  const double step = std::cbrt(machine_epsilon) * length;
   const PointValues earlier = evaluate(near, at.t - step, Order::gradient),
                     later = evaluate(near, at.t + step, Order::gradient);
   const VectorXd drift = (half(later.dv) - half(earlier.dv)) / (2 * step);

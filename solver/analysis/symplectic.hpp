@@ -2,10 +2,10 @@
 
 #include <Eigen/Dense>
 #include <complex>
-#include <limits>
 #include <vector>
 
 #include "analysis/variation.hpp"
+#include "machine/roundoff.hpp"
 
 /// \file Symplectic matrices: those of pieces, and the eigenvalues of one, in pairs.
 
@@ -21,7 +21,7 @@ Eigen::MatrixXd transfer(const Piece& piece, const Eigen::VectorXd& unit);
 
 /// Errors of λ + 1/λ by roundoff, relative to the size of the matrix: measured at the double eigenvalues 1 of
 /// a hundred orbits they were at most a quarter of this.
-constexpr double sum_accuracy = 512 * std::numeric_limits<double>::epsilon();
+constexpr double sum_accuracy = 512 * machine_epsilon;
 
 /// Eigenvalues λ and 1/λ of a symplectic matrix.
 struct ReciprocalPair {

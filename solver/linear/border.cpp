@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "machine/roundoff.hpp"
+
 namespace extremal {
 
 namespace {

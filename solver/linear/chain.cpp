@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "linear/chain_scale.hpp"
+#include "machine/roundoff.hpp"
 #include "machine/simd.hpp"
 
 namespace extremal {
@@ -27,7 +27,7 @@ ChainKernels kernels(int size) {
 }
 
 /// Roundoff in a pivot relative to the terms it is the sum of, for `order` unknowns.
-double roundoff(int order) { return 64 * std::numeric_limits<double>::epsilon() * std::sqrt(double(order)); }
+double roundoff(int order) { return 64 * machine_epsilon * std::sqrt(double(order)); }
 
 double dot(const double* a, const double* b, int count) {
   double part[4] = {}, rest = 0;

@@ -9,6 +9,7 @@
 #include "linear/chain_pivoted.hpp"
 #include "linear/inertia.hpp"
 #include "machine/aligned.hpp"
+#include "machine/roundoff.hpp"
 
 /// \file The symmetric block-tridiagonal matrix of the nodes between elements, its factorisation with
 /// inertia, and solves with many right-hand sides. Bordered systems are solved with it by their

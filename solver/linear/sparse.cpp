@@ -13,6 +13,7 @@
 
 #include "linear/sparse_pattern.hpp"
 #include "linear/supernodal.hpp"
+#include "machine/roundoff.hpp"
 
 namespace extremal {
 

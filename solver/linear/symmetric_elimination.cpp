@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "machine/roundoff.hpp"
 
 namespace extremal {
 
@@ -35,7 +36,7 @@ bool SymmetricElimination::eliminate() {
   completed_ = kernels_.eliminate(shape_, m_.data(), v_.data(), work, work + shape_.stride, &monitor_);
   if (!completed_) return false;
   const double kept = std::pow(10.0, -least_digits);
-  return monitor_.cancellation * std::numeric_limits<double>::epsilon() <= kept;
+  return monitor_.cancellation * machine_epsilon <= kept;
 }
 
 void SymmetricElimination::substitute() { kernels_.substitute(shape_, m_.data(), v_.data()); }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "machine/roundoff.hpp"
 #include "motion/dop853_steps.hpp"
 
 namespace extremal {
@@ -184,8 +184,7 @@ void BatchDop853::judge() {
 bool BatchDop853::judge_lane(int l, double error) {
   Lane& lane = lane_[l];
   const double h = h_[l];
-  if (h <= 4 * std::numeric_limits<double>::epsilon() * std::abs(lane.t) || ++lane.span->steps > most_steps_)
-    return false;
+  if (h <= 4 * machine_epsilon * std::abs(lane.t) || ++lane.span->steps > most_steps_) return false;
   const double factor = std::isfinite(error) ? dop853::growth(error) : dop853::retreat;
   if (!std::isfinite(error) || error > 1) {
     lane.h = h * std::min(factor, dop853::safety);

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "linear/dense.hpp"
+#include "machine/roundoff.hpp"
 
 namespace extremal {
 
@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr int most_steps = 60;
 constexpr double least_factor = 1e-3;
 /// Steps below so many roundings of the point gain nothing more.
-constexpr double last_step = 4 * std::numeric_limits<double>::epsilon();
+constexpr double last_step = 4 * machine_epsilon;
 /// Where g cannot be made smaller, so long a step was one of roundoff.
 constexpr double rounded_step = 1e3 * last_step;
 

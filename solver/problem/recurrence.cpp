@@ -5,12 +5,12 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "machine/roundoff.hpp"
 #include "problem/closing.hpp"
 #include "problem/nearby.hpp"
 #include "problem/problem.hpp"
@@ -187,7 +187,7 @@ std::optional<ClosingChange> closing_change(const Problem& problem, double durat
   const double span = problem.duration.value, step = span / steps_a_duration;
   const double fastest = s.frequencies.empty() ? 0 : s.frequencies.back();
   // Roundoff of t acts on sin(ω t) as ω t ε does.
-  const double relative = unchanged + 8 * DBL_EPSILON * fastest * (duration + span);
+  const double relative = unchanged + 8 * machine_epsilon * fastest * (duration + span);
   NearbyPoints nearby(problem);
   PathSlopes slopes(*problem.lagrangian);
   Changes forces(n), momenta(n);

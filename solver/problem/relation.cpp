@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include "machine/roundoff.hpp"
 #include "problem/independence.hpp"
 #include "problem/limits.hpp"
 #include "problem/problem.hpp"
@@ -26,7 +26,7 @@ constexpr double consistency = 1e-10;
 /// a − b, exactly zero where only the rounding of the two is left.
 double subtract(double a, double b) {
   const double difference = a - b;
-  const bool noise = std::abs(difference) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(a);
+  const bool noise = std::abs(difference) <= 4 * machine_epsilon * std::abs(a);
   return noise ? 0 : difference;
 }
 

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "machine/roundoff.hpp"
 
 namespace extremal {
 
@@ -113,9 +114,8 @@ std::string IntegrationCheck::sample() {
   const double slowest = nearly_uniform * q.size() / trajectory_.duration();
   if (v.size() > 0) scales_.p *= std::max(1.0, slowest / v.size());
   reach_ = q.magnitude > 0 ? q.size() / q.magnitude : 1;
-  constexpr double eps = std::numeric_limits<double>::epsilon();
-  allowed_q_ = std::max(options_.tolerance * scales_.q, 16 * eps * q.magnitude);
-  allowed_v_ = std::max(velocity_factor * options_.tolerance * scales_.v, 16 * eps * v.magnitude);
+  allowed_q_ = std::max(options_.tolerance * scales_.q, 16 * machine_epsilon * q.magnitude);
+  allowed_v_ = std::max(velocity_factor * options_.tolerance * scales_.v, 16 * machine_epsilon * v.magnitude);
   for (double* scale : {&scales_.q, &scales_.p, &scales_.v})
     if (*scale == 0) *scale = 1;
   return {};

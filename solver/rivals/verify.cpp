@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "machine/roundoff.hpp"
 #include "rivals/conditions.hpp"
 #include "rivals/correction.hpp"
 #include "rivals/integration_check.hpp"
@@ -16,7 +16,7 @@ namespace extremal {
 namespace {
 
 /// Relations between the ends are imposed exactly; the duration likewise.
-constexpr double roundings = 64 * std::numeric_limits<double>::epsilon();
+constexpr double roundings = 64 * machine_epsilon;
 
 void check(const Problem& problem, const Trajectory& trajectory, const VerifyOptions& options) {
   const auto require = [](bool holds, const std::string& message) {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "action/path.hpp"
 #include "action/rule.hpp"
+#include "machine/roundoff.hpp"
 #include "solution/element_point.hpp"
 
 namespace extremal {
@@ -18,7 +18,7 @@ namespace {
 
 /// t within [0, T]; beyond it by rounding alone is taken to be the end.
 double checked_time(double t, double duration) {
-  const double slack = 4 * std::numeric_limits<double>::epsilon() * duration;
+  const double slack = 4 * machine_epsilon * duration;
   if (!(t >= -slack && t <= duration + slack))
     throw std::invalid_argument(fmt::format("t = {}; the trajectory runs from 0 to {}", t, duration));
   return std::clamp(t, 0.0, duration);

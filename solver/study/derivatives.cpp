@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "machine/roundoff.hpp"
 #include "machine/simd.hpp"
 #include "problem/nearby.hpp"
 
@@ -91,7 +92,7 @@ class PointCheck {
     const std::size_t g = structure_.gradient.size();
     const std::vector<double> column = hessian_column(k);
     std::vector<double> best(g + 1), error(g + 1, INFINITY);
-    const double unit = std::max(std::abs(z_[k]), 0.1), rounding = roundings * DBL_EPSILON / unit;
+    const double unit = std::max(std::abs(z_[k]), 0.1), rounding = roundings * machine_epsilon / unit;
     double relative = first_step;
     for (int taken = 0; taken < least_steps || *std::ranges::max_element(error) > most_hidden; ++taken) {
       const double value_roundoff = rounding * value_rounded_ / relative,

@@ -1,11 +1,13 @@
 #pragma once
 
-/// \file Roundoff: its unit, and the multiples of it that decide.
+#include "machine/roundoff.hpp"
+
+/// \file The multiples of roundoff that decide.
 
 namespace extremal {
 
-/// Relative error of one rounding to the nearest double; and of one operation on sums of two doubles.
-inline constexpr double unit_roundoff = 0x1p-53, extended_roundoff = 0x1p-106;
+/// The largest relative error of one operation on sums of two doubles.
+inline constexpr double extended_roundoff = 0x1p-106;
 
 /// Newton's method is asked for corrections no smaller than this, relative to the range of a path: about nine
 /// roundings, as many as the value of a polynomial of degree 8 sums up.

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
+
+#include "machine/roundoff.hpp"
 
 /// \file The numbers by which orbits are compared.
 
@@ -44,7 +45,7 @@ inline constexpr double largest_change = 1e-3;
 /// Squares of null fields differ: an eigenvalue may be so many times larger than those known and be zero.
 inline constexpr double most_squares = 10;
 /// Of an eigenvalue that is zero, relative to the sizes of pieces.
-inline constexpr double roundoff = 32 * std::numeric_limits<double>::epsilon();
+inline constexpr double roundoff = 32 * machine_epsilon;
 /// Eigenvalues that are zero, though nothing explains it, are so many times smaller than others.
 inline constexpr double apart = 30;
 /// A symmetry that moves a path by less than this, relative to the terms that it is the sum of, does not.
