@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "machine/bisect.hpp"
 #include "problem/limits.hpp"
 
 namespace extremal {
@@ -309,13 +310,11 @@ double EndVariables::rate(double s) const {
 double EndVariables::time_inverse(double t) const {
   if (!singular(true)) return duration * std::pow(std::clamp(t / duration, 0.0, 1.0), 1 / start);
   if (!singular(false)) return duration - remaining_inverse(duration - t);
-  double low = 0, high = duration;
-  for (int k = 0; k < bisections; ++k) {
-    const double middle = 0.5 * (low + high), x = middle / duration;
-    const double a = std::pow(x, start), b = std::pow(1 - x, end);
-    (duration * a / (a + b) < t ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  const auto earlier = [&](double s) {
+    const double x = s / duration, a = std::pow(x, start), b = std::pow(1 - x, end);
+    return duration * a / (a + b) < t;
+  };
+  return bisect(0, duration, bisections, earlier).middle();
 }
 
 double EndVariables::remaining_inverse(double rest) const {

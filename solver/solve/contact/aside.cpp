@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "linear/dense.hpp"
+#include "machine/bisect.hpp"
 #include "problem/inequalities.hpp"
 #include "problem/manifold.hpp"
 #include "problem/point_range.hpp"
@@ -118,11 +119,8 @@ bool leave(const Problem& problem, std::span<double> q, double t, const VectorXd
       return false;
     }
   }
-  for (int k = 0; k < aside_halvings; ++k) {
-    const double middle = (within + beyond) / 2;
-    (kept(middle) ? beyond : within) = middle;
-  }
-  return kept(beyond);
+  const auto broken = [&](double distance) { return !kept(distance); };
+  return kept(bisect(within, beyond, aside_halvings, broken).high);
 }
 
 }  // namespace

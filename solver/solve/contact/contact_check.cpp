@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/bisect.hpp"
 #include "solve/contact/coarse_action.hpp"
 #include "solve/contact/constraint_sets.hpp"
 #include "solve/contact/limits.hpp"
@@ -69,11 +70,7 @@ Least least_between(double a, double b, const Function& f) {
 /// Between a time at which f is not negative and one at which it is: the last of the first kind, about.
 template <class Function>
 double last_kept(double kept, double forbidden, const Function& f) {
-  for (int k = 0; k < 12; ++k) {
-    const double middle = (kept + forbidden) / 2;
-    (f(middle) < 0 ? forbidden : kept) = middle;
-  }
-  return kept;
+  return bisect(kept, forbidden, 12, [&](double t) { return !(f(t) < 0); }).low;
 }
 
 class LawCheck {

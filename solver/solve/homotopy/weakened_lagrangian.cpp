@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "machine/aligned.hpp"
+#include "machine/bisect.hpp"
 #include "machine/simd.hpp"
 #include "solve/homotopy/limits.hpp"
 
@@ -20,12 +21,10 @@ namespace {
 std::vector<double> quantiles(int count) {
   std::vector<double> result(count);
   for (int i = 0; i < count; ++i) {
-    double low = -1, high = 1;
-    for (int k = 0; k < bisections; ++k) {
-      const double z = 0.5 * (low + high);
-      (1 + z + std::sin(std::numbers::pi * z) / std::numbers::pi < (2 * i + 1.0) / count ? low : high) = z;
-    }
-    result[i] = 0.5 * (low + high);
+    const auto below = [&](double z) {
+      return 1 + z + std::sin(std::numbers::pi * z) / std::numbers::pi < (2 * i + 1.0) / count;
+    };
+    result[i] = bisect(-1, 1, bisections, below).middle();
   }
   return result;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "linear/dense.hpp"
+#include "machine/bisect.hpp"
 #include "solution/solution.hpp"
 #include "solve/search/limits.hpp"
 
@@ -73,11 +74,8 @@ class Balance::Speeds {
 
   /// Between the sample i, where the speed is less than `speed`, and a neighbour, where it is not.
   double crossing(std::size_t i, std::size_t neighbour, double speed) {
-    double slower = times[i], faster = times[neighbour];
-    for (int step = 0; step < halvings; ++step) {
-      const double middle = 0.5 * (slower + faster);
-      (at(middle) < speed ? slower : faster) = middle;
-    }
+    const auto slow = [&](double t) { return at(t) < speed; };
+    const double slower = bisect(times[i], times[neighbour], halvings, slow).low;
     at(slower);
     return slower;
   }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "machine/bisect.hpp"
 #include "motion/flow.hpp"
 #include "solve/homotopy/end_homotopy.hpp"
 #include "solve/search/limits.hpp"
@@ -87,12 +88,8 @@ bool Search::from_bracketed_motions(double mean, double fastest) {
   for (int k = 1; k <= velocities && more(); ++k) {
     const double high = mean + fastest * (2.0 * k / velocities - 1), high_miss = miss(high);
     if (low_miss * high_miss <= 0) {
-      double a = low, b = high;
-      for (int i = 0; i < most_bisections; ++i) {
-        const double middle = 0.5 * (a + b);
-        (miss(middle) * low_miss > 0 ? a : b) = middle;
-      }
-      const Guess arriving = motion(a);
+      const auto alike = [&](double v) { return miss(v) * low_miss > 0; };
+      const Guess arriving = motion(bisect(low, high, most_bisections, alike).low);
       if (arriving.given() && refine_motion(arriving, duration, from_arrival)) return true;
     }
     low = high;

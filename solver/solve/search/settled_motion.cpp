@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "linear/dense.hpp"
+#include "machine/bisect.hpp"
 #include "motion/sample.hpp"
 #include "problem/closing.hpp"
 #include "solve/search/limits.hpp"
@@ -108,11 +109,10 @@ bool SettledMotion::next_return(State& y, double& duration) {
     const bool passes = before > earliest_return * expected && before_side < 0 && now >= 0;
     before_side = now;
     if (!passes || !method_.prepare_interpolation({y.data(), size}, static_cast<int>(size))) return true;
-    double low = 0, high = 1;
-    for (int k = 0; k < bisections; ++k)
-      (interpolated(0.5 * (low + high)) < 0 ? low : high) = 0.5 * (low + high);
-    interpolated(high);
-    duration = before + high * (t - before);
+    const auto before_return = [&](double theta) { return interpolated(theta) < 0; };
+    const double returned_at = bisect(0, 1, bisections, before_return).high;
+    interpolated(returned_at);
+    duration = before + returned_at * (t - before);
     found = true;
     return false;
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/bisect.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -49,14 +50,12 @@ double TimeLaw::duration(double energy) const {
 std::optional<double> TimeLaw::energy_for(double T) const {
   double sum = 0;
   for (const double a : a_) sum += std::sqrt(a);
-  double high = 2 * std::log(sum / T), low = high;  // the lengths add up to less than T
+  const double high = 2 * std::log(sum / T);  // the lengths add up to less than T
+  double low = high;
   for (int k = 0; duration(std::exp(low)) < T; ++k, low -= 2)
     if (k == most_octaves) return std::nullopt;
-  for (int k = 0; k < limits::time_law::halvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    (duration(std::exp(middle)) > T ? low : high) = middle;
-  }
-  return std::exp(0.5 * (low + high));
+  const auto below = [&](double logarithm) { return duration(std::exp(logarithm)) > T; };
+  return std::exp(bisect(low, high, limits::time_law::halvings, below).middle());
 }
 
 bool TimeLaw::apply(Path& path, double T, double least_energy) {
