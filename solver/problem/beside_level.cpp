@@ -36,7 +36,7 @@ const BesideLevel::Values& BesideLevel::at(double distance, std::span<const doub
   std::ranges::copy(q, q_.begin());
   std::ranges::copy(v, v_.begin());
   distance_ = distance;
-  q_[a_] = DoubleDouble(level_) + side_ * distance_;
+  if (a_ >= 0) q_[a_] = DoubleDouble(level_) + side_ * distance_;
   t_ = t;
   if (!hessian_) {
     read_doubles(order);
@@ -106,13 +106,14 @@ void BesideLevel::add_quadratic_part() {
 
 /// With d' = ± q': dF/dt = C' f + C f' d', where f' = d^−γ. C changes by x² (3 − 2x), x = t/T.
 const BesideLevel::Values& BesideLevel::without(const LevelGauge& gauge) {
+  if (a_ < 0) return values_;
   const double g = gauge.exponent;
   const DoubleDouble change = gauge.end - gauge.start, x = t_ / gauge.duration,
                      c = gauge.start + change * x * x * (3.0 - 2.0 * x),
                      rate = change * 6.0 * x * (1.0 - x) / gauge.duration, f1 = power(distance_, -g),
                      f0 = f1 * distance_ / (1 - DoubleDouble(g)), f2 = -g * f1 / distance_,
                      f3 = -(1 + DoubleDouble(g)) * f2 / distance_, v = side_ * v_[a_];
-  const std::size_t aa = a_ * n_ + a_;
+  const std::size_t aa = a_ * (n_ + 1);
   values_.value -= rate * f0 + c * f1 * v;
   values_.q[a_] -= side_ * (rate * f1 + c * f2 * v);
   values_.v[a_] -= side_ * c * f1;

@@ -35,7 +35,7 @@ class BesideLevel {
     std::vector<DoubleDouble> q, v, qq, vq, vv;
   };
 
-  /// `lagrangian` must outlive it.
+  /// `lagrangian` must outlive it. Without a level (coordinate −1) points are given by q alone.
   BesideLevel(const Lagrangian& lagrangian, int coordinate, double level, double side);
 
   bool extended() const { return hessian_ != nullptr; }
@@ -56,7 +56,8 @@ class BesideLevel {
 
   const Lagrangian& lagrangian_;
   const ExtendedHessian* hessian_;
-  std::size_t n_, a_;
+  std::size_t n_;
+  int a_;
   double level_, side_;
   DoubleDouble distance_, t_;
   std::vector<DoubleDouble> q_, v_, rows_;

@@ -72,4 +72,20 @@ inline constexpr int most_quadruplings = 40;
 
 }  // namespace singular_ends
 
+namespace singular_times {
+
+/// Of the ends' size: a point in general position is so far from them.
+inline constexpr double general = 0.3;
+/// Times at which powers are read, by the duration: the shortest, the factor between them, and how many.
+inline constexpr double nearest = 1e-12, shorter = 10;
+inline constexpr int times = 4;
+/// A mass that vanishes by a lower power is taken for regular; exponents are known to `exact`.
+inline constexpr double least_exponent = 0.02, exact = 1e-3;
+/// Powers of s that are tried; that which is taken where none makes motions smooth: what is left then is that
+/// many times as smooth as in t.
+inline constexpr int largest_power = 6;
+inline constexpr double otherwise = 4;
+
+}  // namespace singular_times
+
 }  // namespace extremal::limits

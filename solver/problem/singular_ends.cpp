@@ -9,6 +9,7 @@
 
 #include "machine/bisect.hpp"
 #include "problem/limits.hpp"
+#include "problem/singular_times.hpp"
 
 namespace extremal {
 
@@ -269,6 +270,10 @@ std::optional<InfiniteLagrangian> infinite_lagrangian(const Problem& problem) {
     const End end = end_of(problem, at_end);
     if (!infinite_at(*problem.lagrangian, end, problem.duration.value)) continue;
     InfiniteLagrangian found{.at_end = at_end, .q = end.q};
+    if (powers_of_time(problem, at_end)) {
+      found.by_time = true;
+      return found;
+    }
     const auto [coordinate, side] = level_of(problem, end);
     found.coordinate = coordinate;
     // Where free coordinates are is not known.
@@ -330,15 +335,31 @@ double EndVariables::variable_at(double q) const {
   return std::pow(std::max(0.0, side * (q - level)), 1.0 / power);
 }
 
+namespace {
+
+/// The variable of the time alone, where that makes an end singular.
+std::optional<EndVariables> in_time(const Problem& problem) {
+  EndVariables variables{.duration = problem.duration.value};
+  for (const bool at_end : {false, true})
+    if (const auto powers = powers_of_time(problem, at_end);
+        powers && (powers->infinite || powers->mass < 1 - limits::singular_times::exact))
+      (at_end ? variables.end : variables.start) = smoothing_power(*powers);
+  if (!variables.singular(false) && !variables.singular(true)) return std::nullopt;
+  return variables;
+}
+
+}  // namespace
+
 std::optional<EndVariables> singular_ends(const Problem& problem) {
   if (!supported(problem)) return std::nullopt;
   const Lagrangian& lagrangian = *problem.lagrangian;
   const End ends[] = {end_of(problem, false), end_of(problem, true)};
-  std::optional<EndVariables> found;
+  std::optional<EndVariables> found = in_time(problem);
   for (const End& end : ends) {
+    if (found && !found->has_level() && found->singular(end.at_end)) continue;
     if (!infinite_at(lagrangian, end, problem.duration.value)) continue;
     const auto [coordinate, side] = level_of(problem, end);
-    if (coordinate < 0) return std::nullopt;
+    if (coordinate < 0 || (found && !found->has_level())) return std::nullopt;
     const auto a = static_cast<std::size_t>(coordinate);
     Departure departure(lagrangian, end, a, side, way_of(problem, a), problem.duration.value);
     const auto powers = powers_of(departure.exponent());
@@ -401,12 +422,12 @@ Guess guess_of(const Problem& problem, const EndVariables& variables, double siz
   Guess guess;
   std::vector<double> q(n);
   std::optional<ShapedGuess> shaped;
-  if (problem.guess.given()) shaped.emplace(problem, variables);
+  if (problem.guess.given() && variables.has_level()) shaped.emplace(problem, variables);
   for (int k = 0; k <= guess_samples; ++k) {
     const double tau = static_cast<double>(k) / guess_samples, t = variables.time(tau * T) / T;
-    if (shaped) {
+    if (problem.guess.given()) {
       problem.guess.at(t, q);
-      q[a] = shaped->variable(t);
+      if (shaped) q[a] = shaped->variable(t);
     } else {
       for (std::size_t b = 0; b < n; ++b) {
         const double from = fixed[b]       ? x[b]
@@ -415,6 +436,8 @@ Guess guess_of(const Problem& problem, const EndVariables& variables, double siz
                      to = fixed[n + b] ? x[n + b] : from;
         q[b] = from + t * (to - from);
       }
+    }
+    if (!problem.guess.given() && variables.has_level()) {
       const double far = std::pow(size, 1.0 / variables.power);
       const double ends[] = {fixed[a] ? variables.variable_at(x[a]) : far,
                              fixed[n + a] ? variables.variable_at(x[n + a]) : far};
@@ -453,7 +476,7 @@ double action_of(const Lagrangian& lagrangian, const Guess& guess, double durati
 
 /// How far the path leaves its level between the ends, or where it is free: with that the action is least.
 Guess best_guess(const Problem& problem, const EndVariables& variables, const Lagrangian& lagrangian) {
-  if (problem.guess.given()) return guess_of(problem, variables, 0);
+  if (problem.guess.given() || !variables.has_level()) return guess_of(problem, variables, 0);
   const std::size_t n = problem.coordinates(), a = variables.coordinate;
   const bool both = variables.singular(false) && variables.singular(true);
   const bool between = !both && problem.ends.fixed[a] && problem.ends.fixed[n + a];

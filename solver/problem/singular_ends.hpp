@@ -17,12 +17,14 @@
 /// make w(s) a smooth function, which rises like s, and L̃(w, w', s) = φ' (L − dF/dt) a smooth Lagrangian
 /// along it. F = C(t) d^(1−γ)/(1−γ) has the part of the momentum that is infinite, and is 0 at both ends: d
 /// is, or C. The extremals, the action and the momenta at ends stay as they are.
+///
+/// Where it is the time of the end that makes L infinite (singular_times.hpp), only t is replaced.
 
 namespace extremal {
 
-/// The variables (w, s) of one coordinate and of the time.
+/// The variables (w, s) of one coordinate and of the time, or of the time alone.
 struct EndVariables {
-  int coordinate = 0;
+  int coordinate = -1;                        ///< none is at a level
   double level = 0, side = 1;                 ///< q = level + side w^m
   double power = 1;                           ///< m
   double start = 1, end = 1;                  ///< exponents of φ at both ends; 1: that end is regular
@@ -30,11 +32,12 @@ struct EndVariables {
   double speed = 0;                           ///< γ
   DoubleDouble of_start = 0.0, of_end = 0.0;  ///< C at both ends
 
+  bool has_level() const { return coordinate >= 0; }
   bool singular(bool at_end) const { return (at_end ? end : start) > 1; }
   /// Whether L̃ vanishes at the start or at the end, and the second variation beside it.
   bool fades() const {
     const auto by = [this](double exponent) { return std::abs(2 * power - exponent - 1) > 1e-3; };
-    return (singular(false) && by(start)) || (singular(true) && by(end));
+    return has_level() && ((singular(false) && by(start)) || (singular(true) && by(end)));
   }
   LevelGauge gauge() const { return {speed, of_start, of_end, duration}; }
   double time(double s) const;
@@ -63,8 +66,9 @@ class SmoothedLagrangian : public Lagrangian, public OpenEnds {
 struct InfiniteLagrangian {
   bool at_end = false;
   std::vector<double> q;
-  int coordinate = -1;  ///< that is at a level; −1: not known
-  double beside = 0;    ///< where that is on the way, near the level
+  bool by_time = false;  ///< wherever the path is
+  int coordinate = -1;   ///< that is at a level; −1: not known
+  double beside = 0;     ///< where that is on the way, near the level
 };
 
 /// The first such end of a problem with ends that are fixed or free.

@@ -32,7 +32,9 @@ SmoothedLagrangian::SmoothedLagrangian(std::shared_ptr<const Lagrangian> base, c
 
 /// With r = φ', A = dq/dw, q' = A w'/r: ∂/∂w of q' is C/r, C = w' dA/dw.
 void SmoothedLagrangian::evaluate(const Points& points, Order order, double* out, Scratch&) const {
-  const std::size_t n = structure_.coordinates, a = variables_.coordinate;
+  const std::size_t n = structure_.coordinates;
+  const bool levelled = variables_.has_level();
+  const std::size_t a = levelled ? variables_.coordinate : n;
   const std::ptrdiff_t stride = points.stride;
   const double m = variables_.power, side = variables_.side;
   BesideLevel beside(*base_, variables_.coordinate, variables_.level, side);
@@ -43,11 +45,18 @@ void SmoothedLagrangian::evaluate(const Points& points, Order order, double* out
       q[b] = points.q[static_cast<std::ptrdiff_t>(b) * stride + i];
       v[b] = points.v[static_cast<std::ptrdiff_t>(b) * stride + i] / r;
     }
-    const double far = std::pow(q[a], m), distance = beside.rounded(far),
-                 w = distance == far ? q[a] : std::pow(distance, 1 / m), u = v[a] * r;
-    const double slope = term(side * m, w, m - 1), bend = term(side * m * (m - 1), w, m - 2),
-                 twist = term(side * m * (m - 1) * (m - 2), w, m - 3), c = bend * u;
-    v[a] *= slope;
+    double distance = 0, u = 0, slope = 1, bend = 0, twist = 0;
+    if (levelled) {
+      const double far = std::pow(q[a], m);
+      distance = beside.rounded(far);
+      const double w = distance == far ? q[a] : std::pow(distance, 1 / m);
+      u = v[a] * r;
+      slope = term(side * m, w, m - 1);
+      bend = term(side * m * (m - 1), w, m - 2);
+      twist = term(side * m * (m - 1) * (m - 2), w, m - 3);
+      v[a] *= slope;
+    }
+    const double c = bend * u;
     beside.at(distance, q, v, variables_.precise_time(s), order);
     const BesideLevel::Values& l = beside.without(variables_.gauge());
     double* to = out + i;

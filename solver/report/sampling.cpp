@@ -22,7 +22,7 @@ std::vector<double*> places(std::vector<Column>& columns) {
   return places;
 }
 
-/// Where L is infinite at an end, a solution has no momentum there, or one of its scheme alone.
+/// Where L is infinite at an end, a solution has no momentum there, or one of its action alone.
 void find_open_ends(const Solution& solution, Samples& samples) {
   const double duration = solution.duration();
   for (std::size_t k = 0; k < samples.count(); ++k) {
@@ -30,7 +30,7 @@ void find_open_ends(const Solution& solution, Samples& samples) {
     if (!start && !end) continue;
     const auto finite = [&](const Column& column) { return std::isfinite(column[k]); };
     const bool open = (start && solution.momentum_start.empty()) || (end && solution.momentum_end.empty()) ||
-                      (solution.pinned && !std::ranges::all_of(samples.p, finite));
+                      !std::ranges::all_of(samples.p, finite);
     if (!open) continue;
     (start ? samples.open_start : samples.open_end) = true;
     for (std::vector<Column>* part : {&samples.v, &samples.p})

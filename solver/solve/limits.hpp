@@ -72,6 +72,10 @@ inline constexpr double least_length = 1e-15;
 
 namespace singular_solve {
 
+/// Distances from an end, by the duration, between which s L̃ falls by less than this where L̃ has a pole. A
+/// logarithm falls so little that a power is told from it.
+inline constexpr double pole_part = 1e-6, pole_farther = 100, pole_fall = 0.3;
+
 /// Elements of a path in t towards a singular end: each is this part of the time to it, so that powers of
 /// the time are polynomials of this degree to 1e-12.
 inline constexpr double shrinking = 0.5;

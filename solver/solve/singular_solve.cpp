@@ -53,6 +53,21 @@ class InTime {
     return result;
   }
 
+  /// Whether ∫ L dt is finite towards an end: (dt/ds) L has a pole of the first order there at least where it
+  /// is not, and its product with s does not fall.
+  bool integrable(bool at_end) {
+    const double T = x_.duration;
+    Scratch scratch;
+    const auto product = [&](double part) {
+      const double s = at_end ? T - part * T : part * T;
+      read(s);
+      return part * T * x_.rate(s) *
+             std::abs(evaluate_at(*problem_.lagrangian, q_, v_, x_.time(s), Order::value, scratch).value);
+    };
+    const double near = product(pole_part), far = product(pole_farther * pole_part);
+    return near <= pole_fall * far || near <= pole_part * std::abs(smooth_.action);
+  }
+
   /// p·q' − L in the middle of the elements of w: at the last of them and its largest difference from others.
   void read_energy(Solution& solution) {
     solution.energy = solution.energy_drift = std::nullopt;
@@ -106,8 +121,9 @@ class InTime {
   void read(double s) {
     smooth_.trajectory.at(s, q_, v_);
     const double rate = x_.rate(s);
-    const std::size_t a = x_.coordinate;
     for (double& v : v_) v /= rate;
+    if (!x_.has_level()) return;
+    const std::size_t a = x_.coordinate;
     v_[a] *= x_.side * x_.power * std::pow(q_[a], x_.power - 1);
     distance_ = std::pow(q_[a], x_.power);
     q_[a] = x_.coordinate_at(q_[a]);
@@ -231,13 +247,26 @@ Solution in_time(const Problem& problem, const EndVariables& variables, const So
     return solution;
   }
   InTime in(problem, variables, smooth);
+  for (const bool at_end : {false, true})
+    if (!variables.has_level() && variables.singular(at_end) && !in.integrable(at_end)) {
+      Solution refused;
+      refused.iterations = smooth.iterations;
+      refused.seconds_solve = smooth.seconds_solve;
+      refused.message = fmt::format(
+          "the integral of L is infinite towards the {}, along the extremal that was found; leave out of L "
+          "what depends on t alone, or give the {} a value at which the rest vanishes",
+          at_end ? "end" : "start", at_end ? "end" : "start");
+      return refused;
+    }
   solution.trajectory = in.trajectory();
   in.read_energy(solution);
   // Of q = level + side w^m.
   double widest = 0;
-  for (std::size_t k = a; k < smooth.trajectory.nodes.size(); k += problem.coordinates())
+  for (std::size_t k = a; variables.has_level() && k < smooth.trajectory.nodes.size();
+       k += problem.coordinates())
     widest = std::max(widest, std::abs(smooth.trajectory.nodes[k]));
-  solution.error_estimate *= std::max(1.0, variables.power * std::pow(widest, variables.power - 1));
+  if (variables.has_level())
+    solution.error_estimate *= std::max(1.0, variables.power * std::pow(widest, variables.power - 1));
   for (std::array<double, 2>& window : solution.windows)
     for (double& t : window) t = variables.time(t);
   for (double& t : solution.conjugate_times) t = variables.time(t);
@@ -247,6 +276,7 @@ Solution in_time(const Problem& problem, const EndVariables& variables, const So
     solution.message += ", nor is the index, as the second variation vanishes there";
   }
   const auto in_q = [&](std::vector<double>& momentum, bool at_end) {
+    if (!variables.has_level()) return;  // ∂L̃/∂(dq/ds) = ∂L/∂q'
     if (variables.singular(at_end)) return momentum.clear();
     const double w = at_end
                          ? smooth.trajectory.nodes[smooth.trajectory.nodes.size() - problem.coordinates() + a]
@@ -255,10 +285,13 @@ Solution in_time(const Problem& problem, const EndVariables& variables, const So
   };
   in_q(solution.momentum_start, false);
   in_q(solution.momentum_end, true);
-  solution.message += fmt::format(
-      "; L is infinite at the {}, though not its integral, and so is {}' there",
-      variables.singular(false) ? variables.singular(true) ? "start and the end" : "start" : "end",
-      problem.names.empty() ? fmt::format("q[{}]", a + 1) : problem.names[a]);
+  const char* const ends =
+      variables.singular(false) ? variables.singular(true) ? "start and the end" : "start" : "end";
+  solution.message +=
+      variables.has_level()
+          ? fmt::format("; L is infinite at the {}, though not its integral, and so is {}' there", ends,
+                        problem.names.empty() ? fmt::format("q[{}]", a + 1) : problem.names[a])
+          : fmt::format("; at the {} L is singular in t, and elements are those of a power of t", ends);
   return solution;
 }
 

@@ -12,6 +12,7 @@
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
+#include "problem/singular_times.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/guessed_by.hpp"
 #include "solution/on_manifold.hpp"
@@ -159,11 +160,27 @@ Solution solve_singular(const Problem& problem, const EndVariables& variables, c
                                : at_given_duration(problem);
 }
 
+/// An extremal would have to begin with the very value that is given: one attempt shows whether it does.
+Solution solve_with_loose_end(const Problem& problem, const LooseEnd& loose, const SolveOptions& options,
+                              Workspace& w) {
+  Solution solution = solve_finite(problem, options, w, true);
+  if (solution.converged()) return solution;
+  solution.status = Status::no_solution_near;
+  solution.message = fmt::format(
+      "the mass vanishes at the {} like the power {:.3g} of the time from it, so that no force holds a value "
+      "there; leave the coordinates out of '{}', and those of the extremal are found",
+      loose.at_end ? "end" : "start", loose.mass, loose.at_end ? "end" : "start");
+  return solution;
+}
+
 /// On the whole time axis, where ends are at infinity.
 Solution solve_any(const Problem& problem, const SolveOptions& options, Workspace& w) {
   if (!options.scheme)
     if (const std::optional<EndVariables> variables = singular_ends(problem))
       return solve_singular(problem, *variables, options, w);
+  if (!options.scheme && problem.has_ends())
+    if (const std::optional<LooseEnd> loose = loose_end(problem))
+      return solve_with_loose_end(problem, *loose, options, w);
   if (!options.scheme && has_layer_at_end(problem))
     return reversed(problem, solve_once(reversed(problem), options, w));
   if (!problem.infinite) return solve_once(problem, options, w);

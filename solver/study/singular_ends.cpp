@@ -85,6 +85,9 @@ void check_singular_ends(const Scene& scene, Purpose purpose, const Problem& pro
   for (std::size_t a = 0; a < found->q.size() && a < names.size(); ++a)
     place += fmt::format("{}{} = {:.6g}", a > 0 ? ", " : "", names[a], found->q[a]);
   const std::string end = found->at_end ? "end" : "start";
+  if (found->by_time)
+    throw SceneError(request->at, fmt::format("L is infinite at the time of the {}, and there {}; {}", end,
+                                              request->what, request->mend));
   throw SceneError(
       request->at,
       fmt::format("L is infinite at the {}, {}, and there {}; {}, or move the {} aside, to {}", end, place,

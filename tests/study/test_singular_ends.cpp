@@ -299,26 +299,80 @@ TEST_F(SingularEnds, FamiliesFromValueToValue) {
   EXPECT_NEAR(branch.points.back().solution.action, time_of_fall(10, 5) / 2, 1e-9);
 }
 
-/// x'' = 1/√t: x = 4/3 t^(3/2) − t/3 and S = 19/18, to the order of the time that is added.
-TEST_F(SingularEnds, TimesAtWhichLIsInfiniteAreNamed) {
-  const std::string ends = "start = { x = 0 }\nend = { x = 1 }\nduration = 1";
-  const auto scene = [&](const std::string& t) {
-    return "[system]\ncoordinates = [\"x\"]\nlagrangian = \"x'^2/2 + x/sqrt(" + t + ")\"\n[boundary]\n" +
-           ends;
+/// x'' = 1/√t: x = 4/3 t^(3/2) − t/3 and S = 19/18. At either end, and in a motion x'' + w² x = 1/√t that has
+/// conjugate points at π/w, 2π/w, …
+TEST_F(SingularEnds, ForcesThatAreInfiniteAtATime) {
+  const std::string ends = "start = { x = 0 }\nend = { x = 1 }\nduration = 1",
+                    reversed = "start = { x = 1 }\nend = { x = 0 }\nduration = 1";
+  const auto scene = [&](const std::string& lagrangian, const std::string& boundary) {
+    return singular_scene(lagrangian, boundary, "", "\"x\"");
   };
-  const Solution failed = solved(scene("t"));
-  EXPECT_FALSE(failed.converged());
-  EXPECT_NE(failed.message.find("L is not finite at t = 0; write t + 1e-09 for t in L"), std::string::npos)
-      << failed.message;
+  const Solution late = solved(scene("x'^2/2 + x/sqrt(t)", ends)),
+                 early = solved(scene("x'^2/2 + x/sqrt(1 - t)", reversed));
+  for (const Solution* found : {&late, &early}) {
+    ASSERT_TRUE(found->converged()) << found->message;
+    EXPECT_NEAR(found->action, 19.0 / 18, 1e-12);
+    EXPECT_EQ(found->morse_index, 0);
+    EXPECT_NE(found->message.find("L is singular in t"), std::string::npos) << found->message;
+  }
+  std::vector<double> x(1), v(1);
+  late.trajectory.at(0.3, x, v);
+  EXPECT_NEAR(x[0], 4 / 3.0 * std::pow(0.3, 1.5) - 0.1, 1e-10);
+  EXPECT_NEAR(late.momentum_start.at(0), -1 / 3.0, 1e-10);
+  for (const auto& [w, index] : {std::pair(2.0, 0), {4.0, 1}, {7.0, 2}})
+    for (const char* force : {"x/sqrt(t)", "x/sqrt(t*(1 - t))", "x*log(t)", "x/t^0.4"}) {
+      const Solution found = solved(scene(fmt::format("x'^2/2 - {}*x^2/2 + {}", w * w, force), ends));
+      ASSERT_TRUE(found.converged()) << force << ": " << found.message;
+      EXPECT_EQ(found.morse_index, index) << force << ' ' << w;
+    }
   // A place that moves: singular at t = 0 for x = 0 alone.
-  std::string moving = scene("t");
-  moving.replace(moving.find("x/sqrt(t)"), 9, "log((x - t)^2)");
-  EXPECT_NE(solved(moving).message.find("L is not finite at the start, x = 0; move this end"),
-            std::string::npos)
-      << solved(moving).message;
-  const Solution mended = solved(scene("t + 1e-09"));
-  ASSERT_TRUE(mended.converged()) << mended.message;
-  EXPECT_NEAR(mended.action, 19.0 / 18, 2e-9);
+  const Solution moving = solved(scene("x'^2/2 + log((x - t)^2)", ends));
+  EXPECT_NE(moving.message.find("L is not finite at the start, x = 0; move this end"), std::string::npos)
+      << moving.message;
+}
+
+/// Radial Bessel functions: L = t u'²/2 − w² t u²/2 + u²/(2t), u = J₁(w t)/J₁(w) and S = u'(1)/2, with the
+/// zeros of J₁ at 3.83, 7.02 and 10.17.
+TEST_F(SingularEnds, CentrifugalTermsAreRegularAlongTheMotion) {
+  for (const auto& [w, index] : {std::pair(2.0, 0), {5.0, 1}, {8.0, 2}, {12.0, 3}}) {
+    const Solution found =
+        solved(singular_scene(fmt::format("t*u'^2/2 - {}*t*u^2/2 + u^2/(2*t)", w * w),
+                              "start = { u = 0 }\nend = { u = 1 }\nduration = 1", "", "\"u\""));
+    ASSERT_TRUE(found.converged()) << w << ": " << found.message;
+    const double slope = w * std::cyl_bessel_j(0, w) / std::cyl_bessel_j(1, w) - 1;
+    EXPECT_NEAR(found.action, slope / 2, 1e-11 * std::abs(slope)) << w;
+    EXPECT_EQ(found.morse_index, index) << w;
+    std::vector<double> u(1), v(1);
+    for (const double t : {1e-6, 0.01, 0.37}) {
+      found.trajectory.at(t, u, v);
+      EXPECT_NEAR(u[0], std::cyl_bessel_j(1, w * t) / std::cyl_bessel_j(1, w), 1e-9) << w << ' ' << t;
+    }
+  }
+}
+
+/// L = t^a u'²/2: u = 1 + c t^(1−a) and S = (1 − a) (u(1) − 1)²/2 for a < 1.
+TEST_F(SingularEnds, WeightsThatVanishAtATime) {
+  const std::string ends = "start = { u = 1 }\nend = { u = 0.3 }\nduration = 1";
+  for (const double a : {0.25, 0.5, 2.0 / 3, 0.8}) {
+    const Solution found = solved(singular_scene(fmt::format("t^{}*u'^2/2", a), ends, "", "\"u\""));
+    ASSERT_TRUE(found.converged()) << a << ": " << found.message;
+    EXPECT_NEAR(found.action, (1 - a) * 0.49 / 2, 1e-10) << a;
+  }
+  for (const char* weight : {"t", "t^2"}) {
+    const Solution found =
+        solved(singular_scene(fmt::format("{}*(u'^2 + u^2)/2", weight), ends, "", "\"u\""));
+    EXPECT_EQ(found.status, Status::no_solution_near) << weight;
+    EXPECT_NE(found.message.find("leave the coordinates out of 'start'"), std::string::npos) << found.message;
+  }
+}
+
+/// Extremals there are, but their actions are infinite.
+TEST_F(SingularEnds, ActionsThatDivergeAtATimeAreNone) {
+  for (const char* term : {"u^2/(2*t)", "1/t", "u^2/t^1.5"}) {
+    const Solution found = solved(singular_scene(
+        fmt::format("u'^2/2 + {}", term), "start = { u = 1 }\nend = { u = 2 }\nduration = 1", "", "\"u\""));
+    EXPECT_FALSE(found.converged()) << term << ": " << found.action;
+  }
 }
 
 /// Beside the start L is finite, about the end it is not.
