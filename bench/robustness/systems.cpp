@@ -1,7 +1,7 @@
 #include "systems.hpp"
 
 #include "scene/systems.hpp"
-#include "study/modelling.hpp"
+#include "study/model/modelling.hpp"
 
 namespace bench {
 

@@ -6,7 +6,7 @@
 #include "app/command_line.hpp"
 #include "app/commands.hpp"
 #include "app/terminal.hpp"
-#include "study/memory.hpp"
+#include "study/checks/memory.hpp"
 
 int main(int argc, char** argv) {
   using namespace extremal::app;

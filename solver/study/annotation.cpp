@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "study/naming.hpp"
+#include "study/model/naming.hpp"
 #include "study/study.hpp"
 #include "study/suggestion.hpp"
 
@@ -15,20 +15,20 @@ namespace extremal {
 namespace {
 
 /// A part of a text and where it begins, without blanks around it.
-struct Part {
+struct Listed {
   std::string text;
   std::size_t offset = 0;
 };
 
-Part trimmed(const std::string& text, std::size_t begin, std::size_t end) {
+Listed trimmed(const std::string& text, std::size_t begin, std::size_t end) {
   while (begin < end && text[begin] == ' ') ++begin;
   while (end > begin && text[end - 1] == ' ') --end;
   return {text.substr(begin, end - begin), begin};
 }
 
 /// Parts between commas outside parentheses, of the text from `begin` to `end`.
-std::vector<Part> parts(const std::string& text, std::size_t begin, std::size_t end) {
-  std::vector<Part> found;
+std::vector<Listed> parts(const std::string& text, std::size_t begin, std::size_t end) {
+  std::vector<Listed> found;
   int depth = 0;
   std::size_t from = begin;
   for (std::size_t k = begin; k < end; ++k) {
@@ -58,7 +58,7 @@ void read_axes(const Text& entry, const System& system, std::map<std::string, st
     throw SceneError(position(entry, 0),
                      "an entry of 'axes' names coordinates and their unit, as \"x, y: km\"");
   const std::vector<std::string> known = axis_names(system);
-  for (const Part& name : parts(entry.value, 0, colon)) {
+  for (const Listed& name : parts(entry.value, 0, colon)) {
     if (std::find(known.begin(), known.end(), name.text) == known.end())
       throw UnknownChoice(position(entry, name.offset), fmt::format("there is no axis '{}'", name.text),
                           name.text, known);
@@ -72,12 +72,12 @@ Centre read_centre(const Text& entry, const System& system, const Vocabulary& vo
   Centre centre;
   if (colon != std::string::npos) centre.name = trimmed(entry.value, 0, colon).text;
   const std::size_t begin = colon == std::string::npos ? 0 : colon + 1;
-  const std::vector<Part> formulas = parts(entry.value, begin, entry.value.size());
+  const std::vector<Listed> formulas = parts(entry.value, begin, entry.value.size());
   if (formulas.size() != system.coordinates.size())
     throw SceneError(position(entry, begin),
                      fmt::format("a centre has one formula for each coordinate: {} are wanted, {} given",
                                  system.coordinates.size(), formulas.size()));
-  for (const Part& formula : formulas) {
+  for (const Listed& formula : formulas) {
     try {
       centre.at.push_back(number(formula.text, vocabulary, ""));
     } catch (const FormulaError& e) {

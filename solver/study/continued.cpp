@@ -11,15 +11,15 @@
 #include "problem/manifold.hpp"
 #include "problem/phase_space.hpp"
 #include "problem/recurrence.hpp"
-#include "study/boundary.hpp"
-#include "study/constraints.hpp"
+#include "study/constraints/constraints.hpp"
 #include "study/continued_by_values.hpp"
 #include "study/extension.hpp"
 #include "study/infinite.hpp"
 #include "study/minimal_family.hpp"
-#include "study/modelling.hpp"
+#include "study/model/boundary.hpp"
+#include "study/model/modelling.hpp"
+#include "study/model/system_form.hpp"
 #include "study/study.hpp"
-#include "study/system_form.hpp"
 
 namespace extremal {
 namespace {

@@ -9,13 +9,13 @@
 
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
-#include "study/constrained_extension.hpp"
-#include "study/integrals.hpp"
-#include "study/modelling.hpp"
-#include "study/naming.hpp"
-#include "study/polyline.hpp"
-#include "study/unknown_constants.hpp"
-#include "study/waypoints.hpp"
+#include "study/constraints/constrained_extension.hpp"
+#include "study/guess/polyline.hpp"
+#include "study/model/integrals.hpp"
+#include "study/model/modelling.hpp"
+#include "study/model/naming.hpp"
+#include "study/model/unknown_constants.hpp"
+#include "study/model/waypoints.hpp"
 
 namespace extremal {
 

@@ -5,7 +5,7 @@
 
 #include "problem/problem.hpp"
 #include "scene/scene.hpp"
-#include "study/constraints.hpp"
+#include "study/constraints/constraints.hpp"
 #include "study/study.hpp"
 #include "system/formula.hpp"
 

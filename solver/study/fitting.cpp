@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "machine/clock.hpp"
-#include "study/fit_data.hpp"
-#include "study/fitted_scene.hpp"
+#include "study/fit/fit_data.hpp"
+#include "study/fit/fitted_scene.hpp"
 #include "study/study.hpp"
 
 namespace extremal {

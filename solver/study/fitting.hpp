@@ -8,6 +8,7 @@
 
 #include "scene/scene.hpp"
 #include "solve/fit/fit.hpp"
+#include "study/fit/fitted_scene.hpp"
 #include "system/formula.hpp"
 
 /// \file [fit]: what observations determine of a scene.
@@ -15,9 +16,6 @@
 namespace extremal {
 
 struct Study;
-
-/// The problem of a scene, with this guess in place of its own.
-using ProblemOf = std::function<Problem(const Scene& scene, const Guess& guess, double duration)>;
 
 /// What a scene asks for.
 struct FitRequest {

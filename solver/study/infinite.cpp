@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "problem/infinite_ends.hpp"
-#include "study/checks.hpp"
+#include "study/checks/checks.hpp"
 
 namespace extremal {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scene/systems.hpp"
-#include "study/derivatives.hpp"
+#include "study/checks/derivatives.hpp"
 #include "study/study.hpp"
 
 /// \file What was found in a scene, and what there is to write in one.

@@ -7,8 +7,8 @@
 #include "problem/manifold.hpp"
 #include "problem/minimal_problem.hpp"
 #include "solution/from_minimal.hpp"
-#include "study/limits.hpp"
-#include "study/polar_frames.hpp"
+#include "study/minimal/limits.hpp"
+#include "study/minimal/polar_frames.hpp"
 #include "study/study.hpp"
 #include "system/minimal_copies.hpp"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "study/files/json_file.hpp"
-#include "study/guess.hpp"
+#include "study/guess/guess.hpp"
 #include "study/study.hpp"
 
 namespace extremal {

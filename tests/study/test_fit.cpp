@@ -9,7 +9,7 @@
 #include <random>
 
 #include "solve/fit/fitted_path.hpp"
-#include "study/fit_data.hpp"
+#include "study/fit/fit_data.hpp"
 #include "study/phase.hpp"
 #include "study/scenes.hpp"
 

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "scenes.hpp"
-#include "study/derivatives.hpp"
-#include "study/memory.hpp"
+#include "study/checks/derivatives.hpp"
+#include "study/checks/memory.hpp"
 
 using namespace extremal;
 using namespace extremal::test;
