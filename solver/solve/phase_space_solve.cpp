@@ -79,11 +79,13 @@ class PhaseSpaceSolve {
     const double allowed = std::clamp(defect_tolerances * options.tolerance, least_defect, most_defect);
     if (defect <= allowed) return solution;
     return refused(
-        fmt::format(
-            "Hamilton's equations do not hold on the path found: q' and p' differ from them by {:.1e} "
-            "of the range in the duration; the conditions at the ends may contradict each other, else "
-            "try another guess",
-            defect),
+        fmt::format("Hamilton's equations do not hold on the path found: in the duration it would leave them "
+                    "by {:.1e} "
+                    "times its range; {}",
+                    defect,
+                    problem.periodic
+                        ? "try another guess, also one that turns the other way"
+                        : "the conditions at the ends may contradict each other, else try another guess"),
         solution);
   }
 

@@ -144,8 +144,8 @@ struct Unknown {
       return fmt::format("; of a point there are coordinates and velocities: {0}(0), {0}'(0)",
                          spelled(name.substr(2), known->array));
     return fmt::format(
-        "; conditions hold between coordinates; a momentum is given with 'start' and 'end' in place of "
-        "'conditions': start = {{ {} = … }}",
+        "; conditions hold between coordinates; a momentum is given in 'start' or 'end': start = {{ {} = … "
+        "}}",
         name);
   }
 

@@ -204,8 +204,8 @@ class Resolver {
                              index ? name : spelled(name, known->array)));
     if (node.velocity && kind_ == Kind::condition)
       stop(node,
-           fmt::format("\"{0}'\" is a velocity; conditions hold between coordinates; a momentum is given "
-                       "with 'start' and 'end' in place of 'conditions': start = {{ p_{0} = … }}",
+           fmt::format("\"{0}'\" is a velocity; conditions hold between coordinates; a momentum is given in "
+                       "'start' or 'end': start = {{ p_{0} = … }}",
                        name));
     if (node.indexed) visit(formula_.children(node)[0].node);
     check_index(node, name, *known);

@@ -349,6 +349,33 @@ TEST_F(Fits, FindDampingFromAForcedResponse) {
   EXPECT_LT(result.chi_squared, 130);
 }
 
+/// Elements end where L has a kink, at times that depend on the parameters: quadratic drag, whose force is
+/// smooth enough for that, and dry friction, whose force jumps.
+TEST_F(Fits, FindForcesWithKinks) {
+  LONG_TEST();
+  for (const char* drag : {"-c*x' - d*x'*abs(x')", "-c*x' - d*x'/abs(x')"}) {
+    const std::string scene = fmt::format(
+        "[system]\ncoordinates = [\"x\"]\nparameters = {{ b = 0.3, c = 0.05, d = 0.04 }}\n"
+        "lagrangian = \"x'^2/2 - x^2/2 - b*x^4/4 + 0.5*x*cos(1.3*t)\"\nforce = {{ x = \"{}\" }}\n",
+        drag);
+    const auto rows = samples(scene + "[boundary]\nstart = { x = 0.5, p_x = -1.0 }\nduration = 9.0\n", 61);
+    Noise random(5);
+    std::string text = "t,x,sigma x\n";
+    for (const auto& row : rows)
+      text += fmt::format("{},{:.17g},0.001\n", row[0], row[1] + 0.001 * random.next());
+    write("data.csv", text);
+    const FitResult result = fitted(
+        scene +
+            "[boundary]\nduration = 9.0\n[fit]\ndata = \"data.csv\"\nparameters = [\"b\", \"c\", \"d\"]\n",
+        {"system.parameters.b=0.28", "system.parameters.d=0.05"});
+    ASSERT_TRUE(result.solution.converged()) << drag << ": " << result.solution.message;
+    for (const auto& [k, truth] : {std::pair{0, 0.3}, {1, 0.05}, {2, 0.04}})
+      EXPECT_NEAR(result.values[k], truth, 4 * std::sqrt(result.covariance(k, k))) << drag << ' ' << k;
+    EXPECT_LT(std::sqrt(result.covariance(2, 2)), 0.02) << drag;
+    EXPECT_LT(result.chi_squared, 100) << drag;
+  }
+}
+
 /// Between the first value of the data and the last, no motion leads for the first values of the parameters
 /// (shooting from 481 velocities). With the path, which the data hold, their true values are found.
 TEST_F(Fits, BeginWhereNoMotionLeadsFromEndToEndOfTheData) {

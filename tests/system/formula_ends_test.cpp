@@ -80,8 +80,8 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   EXPECT_EQ(refused("x(t) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
   EXPECT_EQ(refused("x(0, T) = 1"), "write x(0) or x(T) for the value at an end | where | 0");
   EXPECT_EQ(refused("x'(0) = 1"),
-            "\"x'\" is a velocity; conditions hold between coordinates; a momentum is given with 'start' and "
-            "'end' in place of 'conditions': start = { p_x = … } | where | 0");
+            "\"x'\" is a velocity; conditions hold between coordinates; a momentum is given in 'start' or "
+            "'end': start = { p_x = … } | where | 0");
   EXPECT_EQ(refused("x(0) = T"),
             "unknown name 'T'; T is the duration only in a guess, and in x(T) in a condition | where | 7");
   EXPECT_EQ(refused("x(0) = t"), "unknown name 't'; the time cannot stand here | where | 7");
@@ -90,8 +90,8 @@ TEST(FormulaEnds, MalformedEquationsAreRefused) {
   EXPECT_EQ(refused("sine(x(0)) = 1"), "unknown function 'sine'; did you mean 'sin'? | where | 0");
   EXPECT_EQ(
       refused("p_x(T) = 1"),
-      "unknown function 'p_x'; conditions hold between coordinates; a momentum is given with 'start' and "
-      "'end' in place of 'conditions': start = { p_x = … } | where | 0");
+      "unknown function 'p_x'; conditions hold between coordinates; a momentum is given in 'start' or 'end': "
+      "start = { p_x = … } | where | 0");
 }
 
 TEST(FormulaEnds, MapsAreAffineInTheCoordinates) {

@@ -131,14 +131,25 @@ bool Continuation::advance() {
   if (!std::exchange(started_, true) && !begin() && found_.empty()) return false;
   if (count_ == options_.points) {
     found_.clear();
-    return stop(BranchEnd::points, fmt::format("{} points have been found; ask for more", count_));
+    return stop(BranchEnd::points, fmt::format("{} points have been found; {}", count_, onward()));
   }
   while (found_.empty())
     if (end_ != BranchEnd::none || !step()) return false;
   last_ = std::move(found_.front());
   found_.pop_front();
   ++count_;
+  if (last_.point.kind == PointKind::fold) turned_at_ = last_.point.parameter;
   return true;
+}
+
+/// What to do where points are spent.
+std::string Continuation::onward() const {
+  const double left = std::abs(family_.to - last_.point.parameter);
+  if (!turned_at_ || left <= std::abs(family_.to - *turned_at_)) return "ask for more";
+  return fmt::format(
+      "the branch has turned at {:.10g} and leads away from {:.10g}; ask for more points, if it may turn "
+      "again",
+      *turned_at_, family_.to);
 }
 
 bool Continuation::begin() {

@@ -83,6 +83,7 @@ class Continuation {
   void add(FoundPoint found);
   bool stop(BranchEnd end, std::string message);
   bool give_up(const BranchState& from);
+  std::string onward() const;
 
   ProblemFamily family_;
   ContinuationOptions options_;
@@ -95,6 +96,7 @@ class Continuation {
   BranchState from_, to_;  ///< of the last step, whose memory the next one uses
   double length_ = 0, longest_ = 0;
   int count_ = 0, steps_ = 0;
+  std::optional<double> turned_at_;  ///< the last fold
   bool started_ = false, singular_at_first_ = false;
   double worst_action_slope_ = 0, worst_momentum_ = 0;
   std::deque<FoundPoint> found_;

@@ -41,23 +41,36 @@ class Crossing {
     return false;
   }
 
-  /// How far L jumps at a state on the surface; nothing where it is continuous or infinite. Of a continuous
-  /// one the part that changes its sign with u vanishes towards the surface.
-  std::optional<double> jump(const State& at) {
+  /// How far L jumps at a state on the surface; nothing where it is continuous or infinite.
+  std::optional<double> jump(const State& at) { return jump_of(at, Order::value); }
+  /// The same of its first derivatives, the largest of them: then the force jumps, or the momentum.
+  std::optional<double> jump_of_derivatives(const State& at) { return jump_of(at, Order::gradient); }
+
+ private:
+  double size(const Lagrangian& l, const State& at, Order order) {
+    const PointValues values = evaluate_at(l, at.q, at.v, at.t, order, scratch_);
+    if (order == Order::value) return std::abs(values.value);
+    double most = 0;
+    for (const std::vector<double>* part : {&values.dq, &values.dv})
+      for (const double x : *part) most = std::isnan(x) ? x : std::max(most, std::abs(x));
+    return most;
+  }
+
+  /// Of what is continuous the part that changes its sign with u vanishes towards the surface.
+  std::optional<double> jump_of(const State& at, Order order) {
     double first = 0, last = 0;
     for (const double distance : {limits::continuity::farther, limits::continuity::nearer}) {
       State beside = at;
       move(beside, distance * size_of(at));
-      last = std::abs(evaluate_at(*surface_.odd, beside.q, beside.v, at.t, Order::value, scratch_).value);
+      last = size(*surface_.odd, beside, order);
       if (distance == limits::continuity::farther) first = last;
     }
-    const double l = evaluate_at(lagrangian_, at.q, at.v, at.t, Order::value, scratch_).value;
-    const double least = limits::continuity::least_jump * (std::isfinite(l) ? std::abs(l) : 1);
+    const double whole = size(lagrangian_, at, order);
+    const double least = limits::continuity::least_jump * (std::isfinite(whole) ? whole : 1);
     const bool stays = std::isfinite(first) && std::abs(last - first) <= limits::continuity::stays * first;
     return stays && first > least ? std::optional(last) : std::nullopt;
   }
 
- private:
   void move(State& at, double distance) const {
     for (std::size_t a = 0; a < at.q.size(); ++a) {
       at.q[a] += distance * normal_.q[a];
@@ -84,30 +97,54 @@ std::string state_text(const Problem& problem, const State& at) {
   return text + fmt::format("t = {:.4g}", at.t);
 }
 
-}  // namespace
-
-void check_continuous(const Problem& problem, const SystemTable& system) {
-  const Kinks* const kinks = problem.lagrangian->kinks();
+/// Calls `visit` with each surface and some states on it about the guess, with `copies` of the coordinates,
+/// until that returns false.
+template <class Visit>
+void visit_surfaces(const Problem& problem, const Lagrangian& lagrangian, int copies, const Visit& visit) {
+  const Kinks* const kinks = lagrangian.kinks();
   if (!kinks) return;
   for (const KinkSurface& surface : kinks->surfaces()) {
     NearbyPoints points(problem);
-    Crossing crossing(surface, *problem.lagrangian);
+    Crossing crossing(surface, lagrangian);
     int reached = 0;
     for (int k = 0; k < limits::continuity::tries && reached < limits::continuity::telling; ++k) {
       State at;
       at.t = points.next(at.q, at.v);
+      for (std::vector<double>* part : {&at.q, &at.v}) {
+        const std::vector<double> one = *part;
+        for (int copy = 1; copy < copies; ++copy) part->insert(part->end(), one.begin(), one.end());
+      }
       if (!crossing.reach(at)) continue;
       ++reached;
-      if (const auto jump = crossing.jump(at))
-        throw SceneError(
-            system.law().at,
-            fmt::format(
-                "{} jumps by {:.4g} where the argument of abs, or the difference of those of min or max, "
-                "passes 0 (near {}), and it must not jump along a motion; give the jump a width, as "
-                "tanh(u/0.1) has for u/abs(u)",
-                system.hamiltonian ? "H" : "L", *jump, state_text(problem, at)));
+      if (!visit(crossing, at)) return;
     }
   }
+}
+
+}  // namespace
+
+void check_continuous(const Problem& problem, const SystemTable& system) {
+  visit_surfaces(problem, *problem.lagrangian, 1, [&](Crossing& crossing, const State& at) {
+    if (const auto jump = crossing.jump(at))
+      throw SceneError(
+          system.law().at,
+          fmt::format(
+              "{} jumps by {:.4g} where the argument of abs, or the difference of those of min or max, "
+              "passes 0 (near {}), and it must not jump along a motion; give the jump a width, as "
+              "tanh(u/0.1) has for u/abs(u)",
+              system.hamiltonian ? "H" : "L", *jump, state_text(problem, at)));
+    return true;
+  });
+}
+
+bool forces_jump(const Problem& problem) {
+  bool found = false;
+  visit_surfaces(problem, problem.motion(), problem.motion_copies(),
+                 [&](Crossing& crossing, const State& at) {
+                   found = crossing.jump_of_derivatives(at).has_value();
+                   return !found;
+                 });
+  return found;
 }
 
 }  // namespace extremal

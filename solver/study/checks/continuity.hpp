@@ -11,4 +11,7 @@ namespace extremal {
 /// its action would jump with the time of the crossing. Surfaces are tried at points about the guess.
 void check_continuous(const Problem& problem, const SystemTable& system);
 
+/// Whether forces or momenta jump across such a surface, as dry friction does, not quadratic drag.
+bool forces_jump(const Problem& problem);
+
 }  // namespace extremal

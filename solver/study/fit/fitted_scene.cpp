@@ -10,6 +10,7 @@
 #include "problem/copies.hpp"
 #include "problem/extension.hpp"
 #include "problem/manifold.hpp"
+#include "study/checks/continuity.hpp"
 #include "study/model/boundary.hpp"
 #include "study/model/dependence.hpp"
 #include "study/model/modelling.hpp"
@@ -54,7 +55,8 @@ bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
 FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem, ProblemOf load)
     : scene_(scene),
       load_(std::move(load)),
-      made_anew_(problem.extension || (problem.manifold && problem.manifold->parts().only_minimal)),
+      made_anew_(problem.extension || forces_jump(problem) ||
+                 (problem.manifold && problem.manifold->parts().only_minimal)),
       fit_(*scene.fit),
       table_(scene.system),
       boundary_(scene.boundary),
@@ -73,9 +75,6 @@ FittedScene::FittedScene(const Scene& scene, const System& system, const Problem
         fit_.at,
         "a fit needs conditions at both ends, and 'start' gives initial data; leave what is to be "
         "found out of 'start', the fit finds it at both ends");
-  if (problem.motion().kinks())
-    throw SceneError(fit_.at,
-                     "a fit needs a smooth Lagrangian, and this one has abs, min, max or step of the motion");
   read_parameters(scene, system);
   find_dependent(scene);
   find_open(system);

@@ -36,8 +36,8 @@ class FittedScene {
   /// Of the parameters in the scene.
   std::vector<double> start() const;
 
-  /// Whether integrals, waypoints or ends in minimal coordinates alone ask for a problem that is made anew
-  /// for all values.
+  /// Whether integrals, waypoints, ends in minimal coordinates alone, or forces that jump, at times where
+  /// elements end, ask for a problem that is made anew for all values.
   bool made_anew() const { return made_anew_; }
 
   /// Values: those of the parameters, then of the ends. Throw SceneError, or FormulaError of a definition.
