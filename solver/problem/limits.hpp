@@ -76,15 +76,19 @@ namespace singular_times {
 
 /// Of the ends' size: a point in general position is so far from them.
 inline constexpr double general = 0.3;
-/// Times at which powers are read, by the duration: the shortest, the factor between them, and how many.
-inline constexpr double nearest = 1e-12, shorter = 10;
+/// Times at which powers are read, by the duration: the shortest, also from T, where times have few digits,
+/// the factor between them, and how many.
+inline constexpr double nearest = 1e-12, nearest_to_end = 1e-8, shorter = 10;
 inline constexpr int times = 4;
 /// A mass that vanishes by a lower power is taken for regular; exponents are known to `exact`.
-inline constexpr double least_exponent = 0.02, exact = 1e-3;
-/// Powers of s that are tried; that which is taken where none makes motions smooth: what is left then is that
-/// many times as smooth as in t.
-inline constexpr int largest_power = 6;
-inline constexpr double otherwise = 4;
+inline constexpr double least_exponent = 0.02, exact = 5e-4;
+/// k at least and at most; k |1 − a| at most, and as it is taken where no other serves.
+inline constexpr int least_power = 2, usual_power = 4;
+inline constexpr double most_power = 20, largest_power = 6;
+/// A power of s that elements resolve as if it was whole, and one whose integral Gauss's rule resolves.
+inline constexpr double smooth = 8, smooth_enough = 4;
+/// Momenta may be infinite by this power of s: errors of the path are then as small in the action.
+inline constexpr double steepest = 1.1;
 
 }  // namespace singular_times
 

@@ -270,10 +270,9 @@ std::optional<InfiniteLagrangian> infinite_lagrangian(const Problem& problem) {
     const End end = end_of(problem, at_end);
     if (!infinite_at(*problem.lagrangian, end, problem.duration.value)) continue;
     InfiniteLagrangian found{.at_end = at_end, .q = end.q};
-    if (powers_of_time(problem, at_end)) {
-      found.by_time = true;
-      return found;
-    }
+    const std::vector<SingularTime> times = singular_times(problem);
+    found.by_time = std::ranges::count(times, at_end, &SingularTime::at_end) > 0;
+    if (found.by_time) return found;
     const auto [coordinate, side] = level_of(problem, end);
     found.coordinate = coordinate;
     // Where free coordinates are is not known.
@@ -338,23 +337,29 @@ double EndVariables::variable_at(double q) const {
 namespace {
 
 /// The variable of the time alone, where that makes an end singular.
-std::optional<EndVariables> in_time(const Problem& problem) {
+std::optional<EndVariables> in_time(const Problem& problem, const std::vector<SingularTime>& times) {
   EndVariables variables{.duration = problem.duration.value};
-  for (const bool at_end : {false, true})
-    if (const auto powers = powers_of_time(problem, at_end);
-        powers && (powers->infinite || powers->mass < 1 - limits::singular_times::exact))
-      (at_end ? variables.end : variables.start) = smoothing_power(*powers);
-  if (!variables.singular(false) && !variables.singular(true)) return std::nullopt;
-  return variables;
+  for (const SingularTime& time : times) {
+    if (time.kind != SingularTime::Kind::powers) return std::nullopt;
+    (time.at_end ? variables.end : variables.start) = time.power;
+    (time.at_end ? variables.no_momentum_at_end : variables.no_momentum_at_start) = time.unknown_momentum;
+    variables.unknown_index = variables.unknown_index || time.unknown_index;
+  }
+  return times.empty() ? std::nullopt : std::optional(variables);
 }
 
 }  // namespace
 
 std::optional<EndVariables> singular_ends(const Problem& problem) {
   if (!supported(problem)) return std::nullopt;
+  return singular_ends(problem, singular_times(problem));
+}
+
+std::optional<EndVariables> singular_ends(const Problem& problem, const std::vector<SingularTime>& times) {
+  if (!supported(problem)) return std::nullopt;
   const Lagrangian& lagrangian = *problem.lagrangian;
   const End ends[] = {end_of(problem, false), end_of(problem, true)};
-  std::optional<EndVariables> found = in_time(problem);
+  std::optional<EndVariables> found = in_time(problem, times);
   for (const End& end : ends) {
     if (found && !found->has_level() && found->singular(end.at_end)) continue;
     if (!infinite_at(lagrangian, end, problem.duration.value)) continue;

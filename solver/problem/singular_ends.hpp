@@ -7,6 +7,7 @@
 
 #include "problem/beside_level.hpp"
 #include "problem/problem.hpp"
+#include "problem/singular_times.hpp"
 #include "system/open_ends.hpp"
 
 /// \file Ends at which L is infinite but its integral is not, as of a fall from rest itself.
@@ -24,12 +25,14 @@ namespace extremal {
 
 /// The variables (w, s) of one coordinate and of the time, or of the time alone.
 struct EndVariables {
-  int coordinate = -1;                        ///< none is at a level
-  double level = 0, side = 1;                 ///< q = level + side w^m
-  double power = 1;                           ///< m
-  double start = 1, end = 1;                  ///< exponents of φ at both ends; 1: that end is regular
-  double duration = 0;                        ///< T
-  double speed = 0;                           ///< γ
+  int coordinate = -1;         ///< none is at a level
+  double level = 0, side = 1;  ///< q = level + side w^m
+  double power = 1;            ///< m
+  double start = 1, end = 1;   ///< exponents of φ at both ends; 1: that end is regular
+  double duration = 0;         ///< T
+  double speed = 0;            ///< γ
+  /// Of the time alone: see SingularTime.
+  bool no_momentum_at_start = false, no_momentum_at_end = false, unknown_index = false;
   DoubleDouble of_start = 0.0, of_end = 0.0;  ///< C at both ends
 
   bool has_level() const { return coordinate >= 0; }
@@ -37,7 +40,11 @@ struct EndVariables {
   /// Whether L̃ vanishes at the start or at the end, and the second variation beside it.
   bool fades() const {
     const auto by = [this](double exponent) { return std::abs(2 * power - exponent - 1) > 1e-3; };
-    return has_level() && ((singular(false) && by(start)) || (singular(true) && by(end)));
+    if (!has_level()) return unknown_index;
+    return ((singular(false) && by(start)) || (singular(true) && by(end)));
+  }
+  bool infinite_momentum(bool at_end) const {
+    return has_level() ? singular(at_end) : at_end ? no_momentum_at_end : no_momentum_at_start;
   }
   LevelGauge gauge() const { return {speed, of_start, of_end, duration}; }
   double time(double s) const;
@@ -77,6 +84,8 @@ std::optional<InfiniteLagrangian> infinite_lagrangian(const Problem& problem);
 /// Nothing if L is finite at the ends, if its integral is not, or if more than one coordinate makes it
 /// infinite. Only between ends of which each coordinate is fixed or free. Of a free duration T is the guess.
 std::optional<EndVariables> singular_ends(const Problem& problem);
+/// The same, of a problem whose singular_times() are known.
+std::optional<EndVariables> singular_ends(const Problem& problem, const std::vector<SingularTime>& times);
 
 /// The problem in w and s, with its guess.
 Problem smoothed(const Problem& problem, const EndVariables& variables);

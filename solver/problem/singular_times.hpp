@@ -1,39 +1,38 @@
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "problem/problem.hpp"
 
 /// \file Ends at whose time L is infinite or the mass vanishes, wherever the path is there.
 ///
 /// As with a force like 1/√t, with a centrifugal term q²/t² in polar coordinates, or with a weight √t. With τ
-/// the time from such an end, ∂²L/∂q'² ~ τ^a and ∂L/∂q ~ τ^b, motions are sums of powers of τ: 1, that of a
-/// constant momentum, 1 − a, and that which forces add, 2 + b − a. With τ ~ s^k, where all of these times k
-/// are whole, they are smooth in s.
+/// the time from such an end, ∂²L/∂q'² ~ τ^a and ∂L/∂q ~ τ^b at the point where the path ends. Motions are
+/// sums of powers of τ: 0, that of a constant momentum, 1 − a, and that which forces add, 2 + b − a; their
+/// momenta have 1 + b, and the action 1 + a and 3 + 2b − a. Where ∂²L/∂q² ~ K τ^(a−2), with ∂²L/∂q'² ~ M τ^a,
+/// the power r of a motion solves Euler's equation, r (r − 1 + a) = K/M. With τ ~ s^k, where all of these
+/// times k are whole or large, motions and action are smooth in s.
 
 namespace extremal {
 
-/// Beside an end, at a point in general position.
-struct PowersOfTime {
-  double mass = 0;                ///< a
-  std::optional<double> force{};  ///< b; nothing where there is no force
-  bool infinite = false;          ///< L at the time of the end itself
-};
-
-/// Nothing where L is regular at the time of this end, or not by powers.
-std::optional<PowersOfTime> powers_of_time(const Problem& problem, bool at_end);
-
-/// k; at least 2, since elements reach the end with s at the rate of its power.
-double smoothing_power(const PowersOfTime& powers);
-
-/// An end at which no force holds a value: a motion that is not the one without momentum there leaves any
-/// bound, as the logarithm does beside a weight t.
-struct LooseEnd {
+/// An end of this kind.
+struct SingularTime {
   bool at_end = false;
-  double mass = 0;  ///< see PowersOfTime
+  double mass = 0;  ///< a
+  enum class Kind {
+    powers,     ///< motions are smooth in s
+    loose,      ///< a >= 1: no force holds the value that is given
+    divergent,  ///< the action is infinite, whatever the path
+    slow        ///< the action has a power that elements do not resolve
+  } kind = Kind::powers;
+  double power = 1;               ///< k
+  bool unknown_momentum = false;  ///< infinite, or of a power that elements do not resolve
+  /// ∂²L/∂q² is negative and grows like τ^(a−2), so that it and the mass have infinite parts of opposite
+  /// signs, or it grows faster.
+  bool unknown_index = false;
 };
 
-/// The first end that fixes all coordinates where no force can.
-std::optional<LooseEnd> loose_end(const Problem& problem);
+/// The ends of a problem that are such, the start first. Its ends are fixed or free.
+std::vector<SingularTime> singular_times(const Problem& problem);
 
 }  // namespace extremal

@@ -72,9 +72,9 @@ inline constexpr double least_length = 1e-15;
 
 namespace singular_solve {
 
-/// Distances from an end, by the duration, between which s L̃ falls by less than this where L̃ has a pole. A
-/// logarithm falls so little that a power is told from it.
-inline constexpr double pole_part = 1e-6, pole_farther = 100, pole_fall = 0.3;
+/// The nearer of two distances from an end, by the duration, and how much farther the other is: between them
+/// s L̃ falls by less than this where L̃ has a pole.
+inline constexpr double pole_part = 2e-3, pole_farther = 10, pole_fall = 0.5;
 
 /// Elements of a path in t towards a singular end: each is this part of the time to it, so that powers of
 /// the time are polynomials of this degree to 1e-12.

@@ -53,16 +53,16 @@ class InTime {
     return result;
   }
 
-  /// Whether ∫ L dt is finite towards an end: (dt/ds) L has a pole of the first order there at least where it
-  /// is not, and its product with s does not fall.
+  /// Whether ∫ L dt is finite towards an end: it is not where (dt/ds) L has a pole, so that its product with
+  /// s does not fall.
   bool integrable(bool at_end) {
     const double T = x_.duration;
-    Scratch scratch;
+    BesideLevel beside(*problem_.lagrangian, x_.coordinate, x_.level, x_.side);
     const auto product = [&](double part) {
       const double s = at_end ? T - part * T : part * T;
       read(s);
       return part * T * x_.rate(s) *
-             std::abs(evaluate_at(*problem_.lagrangian, q_, v_, x_.time(s), Order::value, scratch).value);
+             std::abs(to_double(beside.at(distance_, q_, v_, x_.precise_time(s), Order::value).value));
     };
     const double near = product(pole_part), far = product(pole_farther * pole_part);
     return near <= pole_fall * far || near <= pole_part * std::abs(smooth_.action);
@@ -238,6 +238,15 @@ Solution solve_for_duration(const Problem& problem, const SolveOptions& options,
   return without_duration(b, closing.solution);
 }
 
+std::string infinite_action(bool at_end) {
+  const char* const end = at_end ? "end" : "start";
+  return fmt::format(
+      "the integral of L is infinite towards the {}; leave out of L what depends on t alone, or give the {} "
+      "a "
+      "value at which the rest vanishes",
+      end, end);
+}
+
 Solution in_time(const Problem& problem, const EndVariables& variables, const Solution& smooth) {
   Solution solution = smooth;
   const std::size_t a = variables.coordinate;
@@ -252,10 +261,7 @@ Solution in_time(const Problem& problem, const EndVariables& variables, const So
       Solution refused;
       refused.iterations = smooth.iterations;
       refused.seconds_solve = smooth.seconds_solve;
-      refused.message = fmt::format(
-          "the integral of L is infinite towards the {}, along the extremal that was found; leave out of L "
-          "what depends on t alone, or give the {} a value at which the rest vanishes",
-          at_end ? "end" : "start", at_end ? "end" : "start");
+      refused.message = infinite_action(at_end);
       return refused;
     }
   solution.trajectory = in.trajectory();
@@ -276,8 +282,8 @@ Solution in_time(const Problem& problem, const EndVariables& variables, const So
     solution.message += ", nor is the index, as the second variation vanishes there";
   }
   const auto in_q = [&](std::vector<double>& momentum, bool at_end) {
+    if (variables.infinite_momentum(at_end)) return momentum.clear();
     if (!variables.has_level()) return;  // ∂L̃/∂(dq/ds) = ∂L/∂q'
-    if (variables.singular(at_end)) return momentum.clear();
     const double w = at_end
                          ? smooth.trajectory.nodes[smooth.trajectory.nodes.size() - problem.coordinates() + a]
                          : smooth.trajectory.nodes[a];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "problem/singular_ends.hpp"
 #include "solution/solution.hpp"
@@ -13,6 +14,9 @@ namespace extremal {
 /// The solution of a problem by that of its smoothed() one: the trajectory in q and t, on elements that
 /// become geometrically shorter towards singular ends.
 Solution in_time(const Problem& problem, const EndVariables& variables, const Solution& smooth);
+
+/// What to say where ∫ L dt is infinite towards an end.
+std::string infinite_action(bool at_end);
 
 /// Solves a problem of given duration.
 using FixedSolve = std::function<Solution(const Problem&)>;

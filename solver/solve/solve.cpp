@@ -160,27 +160,43 @@ Solution solve_singular(const Problem& problem, const EndVariables& variables, c
                                : at_given_duration(problem);
 }
 
-/// An extremal would have to begin with the very value that is given: one attempt shows whether it does.
-Solution solve_with_loose_end(const Problem& problem, const LooseEnd& loose, const SolveOptions& options,
-                              Workspace& w) {
-  Solution solution = solve_finite(problem, options, w, true);
-  if (solution.converged()) return solution;
+/// Where the action is infinite there is nothing to solve for. At a loose end an extremal would have to begin
+/// with the very value that is given: one attempt shows whether it does.
+Solution solve_with_singular_time(const Problem& problem, const SingularTime& time,
+                                  const SolveOptions& options, Workspace& w) {
+  Solution solution;
   solution.status = Status::no_solution_near;
+  solution.message = infinite_action(time.at_end);
+  if (time.kind == SingularTime::Kind::divergent) return solution;
+  if (time.kind == SingularTime::Kind::slow) {
+    solution.message = fmt::format(
+        "the integral of L converges too slowly towards the {} to be known to a tolerance; weaken its "
+        "singularity in t",
+        time.at_end ? "end" : "start");
+    return solution;
+  }
+  Solution attempt = solve_finite(problem, options, w, true);
+  if (attempt.converged()) return attempt;
+  solution.iterations = attempt.iterations;
+  solution.seconds_solve = attempt.seconds_solve;
+  const char* const end = time.at_end ? "end" : "start";
   solution.message = fmt::format(
       "the mass vanishes at the {} like the power {:.3g} of the time from it, so that no force holds a value "
       "there; leave the coordinates out of '{}', and those of the extremal are found",
-      loose.at_end ? "end" : "start", loose.mass, loose.at_end ? "end" : "start");
+      end, time.mass, end);
   return solution;
 }
 
 /// On the whole time axis, where ends are at infinity.
 Solution solve_any(const Problem& problem, const SolveOptions& options, Workspace& w) {
+  const std::vector<SingularTime> times = options.scheme || !problem.has_ends() || problem.copies
+                                              ? std::vector<SingularTime>{}
+                                              : singular_times(problem);
   if (!options.scheme)
-    if (const std::optional<EndVariables> variables = singular_ends(problem))
+    if (const std::optional<EndVariables> variables = singular_ends(problem, times))
       return solve_singular(problem, *variables, options, w);
-  if (!options.scheme && problem.has_ends())
-    if (const std::optional<LooseEnd> loose = loose_end(problem))
-      return solve_with_loose_end(problem, *loose, options, w);
+  for (const SingularTime& time : times)
+    if (time.kind != SingularTime::Kind::powers) return solve_with_singular_time(problem, time, options, w);
   if (!options.scheme && has_layer_at_end(problem))
     return reversed(problem, solve_once(reversed(problem), options, w));
   if (!problem.infinite) return solve_once(problem, options, w);
@@ -352,7 +368,7 @@ Solution Solver::solve(const Problem& problem, const SolveOptions& options) {
 }
 
 std::vector<Solution> Solver::solve_all(const Problem& problem, const SolveOptions& options, int most) {
-  const bool single = problem.manifold && problem.manifold->parts().only_minimal;
+  const bool single = problem.infinite || (problem.manifold && problem.manifold->parts().only_minimal);
   if (!problem.inequalities && (single || problem.initial || problem.phase)) return {solve(problem, options)};
   if (problem.pair) {
     std::vector<Solution> found = solve_all(*problem.pair, options, most);

@@ -353,7 +353,7 @@ TEST_F(SingularEnds, CentrifugalTermsAreRegularAlongTheMotion) {
 /// L = t^a u'²/2: u = 1 + c t^(1−a) and S = (1 − a) (u(1) − 1)²/2 for a < 1.
 TEST_F(SingularEnds, WeightsThatVanishAtATime) {
   const std::string ends = "start = { u = 1 }\nend = { u = 0.3 }\nduration = 1";
-  for (const double a : {0.25, 0.5, 2.0 / 3, 0.8}) {
+  for (const double a : {0.25, 0.5, 2.0 / 3, 0.8, 0.9}) {
     const Solution found = solved(singular_scene(fmt::format("t^{}*u'^2/2", a), ends, "", "\"u\""));
     ASSERT_TRUE(found.converged()) << a << ": " << found.message;
     EXPECT_NEAR(found.action, (1 - a) * 0.49 / 2, 1e-10) << a;
@@ -363,6 +363,52 @@ TEST_F(SingularEnds, WeightsThatVanishAtATime) {
         solved(singular_scene(fmt::format("{}*(u'^2 + u^2)/2", weight), ends, "", "\"u\""));
     EXPECT_EQ(found.status, Status::no_solution_near) << weight;
     EXPECT_NE(found.message.find("leave the coordinates out of 'start'"), std::string::npos) << found.message;
+  }
+}
+
+/// x'' = t^−a between x = 0 and 0: S = (1/(3 − 2a) − 1/(2 − a))/(2 (1 − a)(2 − a)), at either end. From a = 1
+/// on the momentum is infinite, and where the action hardly converges that is told.
+TEST_F(SingularEnds, ForcesOfAnyPowerOfTheTime) {
+  const std::string ends = "start = { x = 0 }\nend = { x = 0 }\nduration = 1";
+  for (const double a : {0.25, 1.0 / 3, 0.6, 0.85, 1.2})
+    for (const char* time : {"t", "(1 - t)"}) {
+      const Solution found =
+          solved(singular_scene(fmt::format("x'^2/2 + x*{}^(-{:.17g})", time, a), ends, "", "\"x\""));
+      ASSERT_TRUE(found.converged()) << a << ' ' << time << ": " << found.message;
+      EXPECT_NEAR(found.action, (1 / (3 - 2 * a) - 1 / (2 - a)) / (2 * (1 - a) * (2 - a)), 2e-10)
+          << a << time;
+      EXPECT_EQ(found.morse_index, 0) << a << ' ' << time;
+      const std::vector<double>& momentum = time[0] == 't' ? found.momentum_start : found.momentum_end;
+      EXPECT_EQ(momentum.empty(), a > 0.6) << a << ' ' << time;  // infinite, or of a slow power
+      if (!momentum.empty()) {
+        EXPECT_NEAR(std::abs(momentum[0]), 1 / ((1 - a) * (2 - a)), 1e-8) << a << ' ' << time;
+      }
+    }
+  const Solution slow = solved(singular_scene("x'^2/2 + x*t^(-1.45)", ends, "", "\"x\""));
+  EXPECT_NE(slow.message.find("converges too slowly towards the start"), std::string::npos) << slow.message;
+}
+
+/// Bessel functions of any order m, whose power t^m is that of Euler's equation; also where that attracts:
+/// L = x'²/2 − c x²/(2t²) has x = t^r, r = ½ + √(¼ − c), with the action r/2, and its index is not told.
+TEST_F(SingularEnds, PowersOfEulersEquation) {
+  for (const double m : {0.3, 0.5, 2.7}) {
+    const Solution found =
+        solved(singular_scene(fmt::format("t*u'^2/2 - 49*t*u^2/2 + {}*u^2/(2*t)", m * m),
+                              "start = { u = 0 }\nend = { u = 1 }\nduration = 1", "", "\"u\""));
+    ASSERT_TRUE(found.converged()) << m << ": " << found.message;
+    std::vector<double> u(1), v(1);
+    for (const double t : {0.01, 0.37}) {
+      found.trajectory.at(t, u, v);
+      EXPECT_NEAR(u[0], std::cyl_bessel_j(m, 7 * t) / std::cyl_bessel_j(m, 7.0), 1e-8) << m << ' ' << t;
+    }
+  }
+  for (const double c : {0.1, 0.1875, 0.2}) {
+    const Solution found =
+        solved(singular_scene(fmt::format("x'^2/2 - {}*x^2/(2*t^2)", c),
+                              "start = { x = 0 }\nend = { x = 1 }\nduration = 1", "", "\"x\""));
+    ASSERT_TRUE(found.converged()) << c << ": " << found.message;
+    EXPECT_NEAR(found.action, (0.5 + std::sqrt(0.25 - c)) / 2, 1e-9) << c;
+    EXPECT_FALSE(found.morse_index) << c;
   }
 }
 

@@ -43,15 +43,15 @@ class Crossing {
 
   /// How far L jumps at a state on the surface; nothing where it is continuous or infinite.
   std::optional<double> jump(const State& at) { return jump_of(at, Order::value); }
-  /// The same of its first derivatives, the largest of them: then the force jumps, or the momentum.
-  std::optional<double> jump_of_derivatives(const State& at) { return jump_of(at, Order::gradient); }
+  /// The same of its second derivatives, the largest of them.
+  std::optional<double> jump_of_derivatives(const State& at) { return jump_of(at, Order::hessian); }
 
  private:
   double size(const Lagrangian& l, const State& at, Order order) {
     const PointValues values = evaluate_at(l, at.q, at.v, at.t, order, scratch_);
     if (order == Order::value) return std::abs(values.value);
     double most = 0;
-    for (const std::vector<double>* part : {&values.dq, &values.dv})
+    for (const std::vector<double>* part : {&values.dq, &values.dv, &values.qq, &values.vq, &values.vv})
       for (const double x : *part) most = std::isnan(x) ? x : std::max(most, std::abs(x));
     return most;
   }
@@ -137,7 +137,7 @@ void check_continuous(const Problem& problem, const SystemTable& system) {
   });
 }
 
-bool forces_jump(const Problem& problem) {
+bool stiffness_jumps(const Problem& problem) {
   bool found = false;
   visit_surfaces(problem, problem.motion(), problem.motion_copies(),
                  [&](Crossing& crossing, const State& at) {

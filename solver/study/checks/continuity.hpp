@@ -11,7 +11,8 @@ namespace extremal {
 /// its action would jump with the time of the crossing. Surfaces are tried at points about the guess.
 void check_continuous(const Problem& problem, const SystemTable& system);
 
-/// Whether forces or momenta jump across such a surface, as dry friction does, not quadratic drag.
-bool forces_jump(const Problem& problem);
+/// Whether first or second derivatives of L jump across such a surface, as with dry friction or a wall, but
+/// not with quadratic drag. With forces these are those of both copies where they agree.
+bool stiffness_jumps(const Problem& problem);
 
 }  // namespace extremal

@@ -55,7 +55,7 @@ bool same_matrix(const std::vector<Triplet>& a, const std::vector<Triplet>& b) {
 FittedScene::FittedScene(const Scene& scene, const System& system, const Problem& problem, ProblemOf load)
     : scene_(scene),
       load_(std::move(load)),
-      made_anew_(problem.extension || forces_jump(problem) ||
+      made_anew_(problem.extension || stiffness_jumps(problem) ||
                  (problem.manifold && problem.manifold->parts().only_minimal)),
       fit_(*scene.fit),
       table_(scene.system),

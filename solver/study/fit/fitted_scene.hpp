@@ -36,7 +36,7 @@ class FittedScene {
   /// Of the parameters in the scene.
   std::vector<double> start() const;
 
-  /// Whether integrals, waypoints, ends in minimal coordinates alone, or forces that jump, at times where
+  /// Whether integrals, waypoints, ends in minimal coordinates alone, or kinks of forces, at times where
   /// elements end, ask for a problem that is made anew for all values.
   bool made_anew() const { return made_anew_; }
 
