@@ -297,7 +297,7 @@ Solution in_time(const Problem& problem, const EndVariables& variables, const So
       variables.has_level()
           ? fmt::format("; L is infinite at the {}, though not its integral, and so is {}' there", ends,
                         problem.names.empty() ? fmt::format("q[{}]", a + 1) : problem.names[a])
-          : fmt::format("; at the {} L is singular in t, and elements are those of a power of t", ends);
+          : fmt::format("; L is singular in t at the {}, and elements are polynomials in a power of t", ends);
   return solution;
 }
 

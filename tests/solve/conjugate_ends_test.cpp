@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 
 /// \file Ends that are conjugate, or nearly so: a clear answer, and an error that tells the conditioning.
@@ -113,6 +114,7 @@ TEST(ConjugateEnds, OfAntipodes) {
 /// half the period of an ellipse of major semi-axis a it is that ellipse's half, along which S = ∫ (−1/2a +
 /// 2/r) dt = 3/2 π √a.
 TEST(ConjugateEnds, OfHohmannsTransferInSpace) {
+  LONG_TEST();
   const auto kepler = trace(3, [](auto q, auto v, auto) {
     return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2 + 1 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
   });

@@ -117,6 +117,7 @@ TEST(Diagram, RestOverTheDuration) {
 /// A load across the rod, without a symmetry: branches pass near each other where they crossed, and none
 /// meet.
 TEST(Diagram, RodsUnderASmallLoadDoNotBranch) {
+  LONG_TEST();
   for (const double load : {1e-6, 1e-5, 1e-4, 1e-3}) {
     const auto problem = [load](double lambda) {
       const auto lagrangian = trace(1, [=](auto q, auto v, auto t) {

@@ -178,6 +178,7 @@ TEST(FreeTimes, WhereTheEnergyErrorChangesItsSign) {
 
 /// A search that has not found them when its steps are spent names the node at which it ends.
 TEST(FreeTimes, WhereNoneAreFound) {
+  LONG_TEST();
   SolveOptions options = free_steps(scheme("gauss(3)"), 12);
   options.max_iterations = 6000;
   Solver solver;

@@ -107,12 +107,14 @@ TEST(Loops, FigureEightFromACircle) {
 }
 
 TEST(Loops, ChoreographiesOfFourBodies) {
+  LONG_TEST();
   const std::vector<Solution> all = found(choreography(4), 4);
   EXPECT_EQ(all.size(), 4u);
   EXPECT_LT(nearest(all, polygon(4, 2 * pi / 4), action), 1e-7);
 }
 
 TEST(Loops, ChoreographiesOfFiveBodies) {
+  LONG_TEST();
   const std::vector<Solution> all = found(choreography(5), 5);
   EXPECT_EQ(all.size(), 5u);
   EXPECT_LT(nearest(all, polygon(5, 2 * pi / 5), action), 1e-7);

@@ -1,6 +1,7 @@
 #include <complex>
 #include <numbers>
 
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 #include "solve/search/rest_energy.hpp"
 
@@ -229,6 +230,7 @@ TEST(RestEnergy, PathsThatMoreDigitsHold) {
 /// and 1/ν: so the passage to the saddle is later by 1/2r of 1/r + 1/ν. At T = 36
 /// either way finds it.
 TEST(RestEnergy, SlowMotionsOfNoEnergyHoldNothing) {
+  LONG_TEST();
   const auto drift = trace(2, [](auto q, auto v, auto) {
     const auto x = v[0] - 2.0 * (q[0] - q[0] * q[0] * q[0]) - (0.5 * q[0] - q[1]),
                y = v[1] - 0.5 * (q[0] - 2.0 * q[1]);

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <string>
 
+#include "machine/long_test.hpp"
 #include "solve/laws.hpp"
 
 /// \file Ends that are free along directions which are nearly null: paths that come to rest beside the
@@ -64,6 +65,7 @@ TEST(SoftEnds, AmplifiedRoundoffIsToldOf) {
 
 /// A charge in the field of a dipole, which vanishes far away: so do all conditions on momenta.
 TEST(SoftEnds, FarAwayNothingIsAnExtremal) {
+  LONG_TEST();
   const auto dipole = trace(3, [](auto q, auto v, auto) {
     const auto r = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
     return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2.0 + (q[0] * v[1] - q[1] * v[0]) / (r * r * r);

@@ -14,6 +14,7 @@ namespace {
 /// 0.003 of its way, between two points of the last element; near a focal point that moves its start by far
 /// more than its end.
 TEST(Unseen, ForceJustBeforeTheEnd) {
+  LONG_TEST();
   const auto hill = trace(3, [](auto q, auto v, auto) {
     const auto r = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
     return (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 2 + (q[0] * v[1] - q[1] * v[0]) + 1.5 * q[0] * q[0] -

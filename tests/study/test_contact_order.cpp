@@ -62,6 +62,7 @@ TEST_F(ContactOrder, ContactsThatBeginShortlyOneAfterTheOther) {
 }
 
 TEST_F(ContactOrder, PairsOfContactsThatBeginAtOnce) {
+  LONG_TEST();
   const Solution found = run(study(
       chain(5, "sum(i, 1, 4, (q[i+1] - q[i])^2)/2", "q[1] + q[2] + q[3] + 1.5*q[4] + q[5]", 0.3, 0.4, 2)));
   expect_minimum(found, 3.61158793, 1e-5);

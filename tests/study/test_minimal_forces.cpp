@@ -258,6 +258,7 @@ TEST_F(Scenes, LimitCyclesOfAPendulumInAChart) {
 }
 
 TEST_F(Scenes, FamiliesOfLimitCyclesInAChart) {
+  LONG_TEST();
   const std::string along = "[continuation]\nparameter = \"k\"\nto = 1.5\n";
   const FollowedBranch found = follow(study(limit_cycle + along)),
                        angle = follow(study(limit_cycle_by_angle + along));

@@ -96,6 +96,7 @@ TEST_F(PathEnds, AnEnergyThatNoMinimiserHasIsTold) {
 }
 
 TEST_F(PathEnds, ABandRoundTwoDiscs) {
+  LONG_TEST();
   const Solution solution =
       found(free_particle(two_discs, fmt::format("periodic = true\nduration = 1.0\n{}", wide_loop)));
   ASSERT_TRUE(solution.converged());

@@ -340,6 +340,7 @@ TEST_F(Scenes, AGeodesicRoundATorus) {
 
 /// Of turning orbits in the energy, and of long swings in the length of the rod and in the time.
 TEST_F(Scenes, FamiliesInPolarCoordinates) {
+  LONG_TEST();
   const auto with_length = [](const std::string& constrained, const std::string& angle) {
     return std::pair{
         "[system]\ncoordinates = [\"x\", \"y\"]\nparameters = { l = 1.0 }\nlagrangian = \"(x'^2 + y'^2)/2 - "
@@ -394,6 +395,7 @@ TEST_F(Scenes, EndsOnParallelsHaveAFamilyOfExtremals) {
 /// At E = −2.32505731392 and −1.64779718936 the multipliers touch −1, where four branches of doubled orbits
 /// meet.
 TEST_F(Scenes, MultipliersThatTouchMinusOneAreOneDoubling) {
+  LONG_TEST();
   const std::string pendulum =
       "[system]\ncoordinates = [\"x\", \"y\", \"u\", \"v\"]\n"
       "lagrangian = \"(x'^2 + y'^2 + u'^2 + v'^2)/2 - (y + v)\"\n"

@@ -50,6 +50,7 @@ TEST_F(SchemesOf, FamiliesAreTheirExtremals) {
 }
 
 TEST_F(SchemesOf, FoldsEndFamilies) {
+  LONG_TEST();
   const FollowedBranch branch =
       follow(study(bratu + solve_table("lobatto(3)", "elements = 8") + continuation("lambda", 4.0, 60)));
   EXPECT_EQ(branch.branches.front().end, BranchEnd::too_short) << branch.branches.front().message;

@@ -78,6 +78,7 @@ TEST_F(StartScanScenes, FixedEndsAndMomentaInTurn) {
 /// Velocities are less than 1, momenta are not. A scan of p(0) between -40 and 40 by RK4, each change of sign
 /// halved until it is known, finds these.
 TEST_F(StartScanScenes, MomentaOfBoundedVelocities) {
+  LONG_TEST();
   const std::vector<Solution> found = run_all(
       study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"-sqrt(1 - x'^2) + 2*cos(x)\"\n[boundary]\n"
             "start = { x = 0.3 }\nend = { x = 1 }\nduration = 8\n[search]\nsolutions = 40\n"));
