@@ -51,7 +51,8 @@ class Beside {
   /// Whether L is infinite at the time of the end itself, at a point in general position.
   bool infinite() { return !std::isfinite(at(general_, v_, 0, Order::value).value); }
 
-  /// e of the largest of a part of L ~ c τ^e; nothing where that is zero or not by a power.
+  /// e of the largest of a part of L ~ c τ^e; nothing where that is zero, by what it is in general, or not by
+  /// a power.
   template <class Size>
   std::optional<double> exponent(const std::vector<double>& q, const std::vector<double>& v,
                                  const Size& size) {
@@ -60,7 +61,8 @@ class Beside {
     for (int k = limit::times - 1; k >= 0; --k) {
       const double away = time_from_end(nearest_ * std::pow(limit::shorter, k));
       const double now = size(at(q, v, away, Order::hessian));
-      if (!(now > 0) || !std::isfinite(now)) return std::nullopt;
+      if (!(now > limit::roundoff * size(at(general_, v_, away, Order::hessian))) || !std::isfinite(now))
+        return std::nullopt;
       if (time > 0) slopes.push_back(std::log(before / now) / std::log(time / away));
       before = now;
       time = away;
@@ -137,17 +139,6 @@ std::vector<int> candidates(double a) {
   return result;
 }
 
-/// The first k that makes all powers whole or large.
-double smoothing_power(double a, const std::vector<double>& powers) {
-  const std::vector<int> tried = candidates(a);
-  const auto found = std::ranges::find_if(tried, [&](int k) {
-    return std::ranges::all_of(
-        powers, [k](double e) { return k * e >= limit::smooth || is_whole(k * e, k * limit::exact); });
-  });
-  if (found != tried.end()) return *found;
-  return a < 1 - limit::exact ? limit::usual_power / std::max(1 - a, limit::exact) : limit::usual_power;
-}
-
 /// Whether the power k e of s is one that elements resolve, from `enough` on if it is not whole.
 bool resolved(double k, double e, double enough) {
   return k * e >= enough || (e > limit::exact && is_whole(k * e, k * limit::exact));
@@ -170,7 +161,7 @@ struct PowersOfTime {
 };
 
 PowersOfTime read_powers(Beside& beside, double a, bool infinite) {
-  PowersOfTime powers{.path = {}, .momentum = {}, .action = {1 + a}, .held_momentum = {}};
+  PowersOfTime powers{.path = {}, .momentum = {}, .action = {1 + std::abs(a)}, .held_momentum = {}};
   if (a < 1 - limit::exact) powers.path.push_back(1 - a);
   if (const std::optional<double> b = beside.force()) {
     powers.path.push_back(2 + *b - a);
@@ -191,9 +182,22 @@ PowersOfTime read_powers(Beside& beside, double a, bool infinite) {
   return powers;
 }
 
+/// The first k that makes all powers whole or large; else that of the action.
+double smoothing_power(double a, const PowersOfTime& powers) {
+  const std::vector<int> tried = candidates(a);
+  const auto first = [&](const std::vector<double>& all, double enough) {
+    return std::ranges::find_if(tried, [&](int k) {
+      return std::ranges::all_of(all, [&](double e) { return resolved(k, e, enough); });
+    });
+  };
+  if (const auto k = first(powers.positive(), limit::smooth); k != tried.end()) return *k;
+  if (const auto k = first(powers.action, limit::smooth_enough); k != tried.end()) return *k;
+  return limit::usual_power;
+}
+
 /// What elements with t ~ s^k make of an end with these powers.
 void choose_power(const PowersOfTime& powers, bool fixed, SingularTime& time) {
-  const double k = powers.essential ? limit::least_power : smoothing_power(time.mass, powers.positive());
+  const double k = powers.essential ? limit::least_power : smoothing_power(time.mass, powers);
   time.power = k;
   // Where q is free the point at which L was looked at is not that of the path.
   const bool precise =

@@ -8,10 +8,10 @@
 ///
 /// As with a force like 1/√t, with a centrifugal term q²/t² in polar coordinates, or with a weight √t. With τ
 /// the time from such an end, ∂²L/∂q'² ~ τ^a and ∂L/∂q ~ τ^b at the point where the path ends. Motions are
-/// sums of powers of τ: 0, that of a constant momentum, 1 − a, and that which forces add, 2 + b − a; their
-/// momenta have 1 + b, and the action 1 + a and 3 + 2b − a. Where ∂²L/∂q² ~ K τ^(a−2), with ∂²L/∂q'² ~ M τ^a,
-/// the power r of a motion solves Euler's equation, r (r − 1 + a) = K/M. With τ ~ s^k, where all of these
-/// times k are whole or large, motions and action are smooth in s.
+/// sums of powers of τ: 0, that of a constant momentum, 1 − a, and that which forces add, 2 + b − a. Their
+/// momenta have 1 + b, and the action 1 + |a| and 3 + 2b − a. Where ∂²L/∂q² ~ K τ^(a−2), and ∂²L/∂q'² is
+/// M τ^a, the power r of a motion solves Euler's equation, r (r − 1 + a) = K/M. With τ ~ s^k, where all of
+/// these times k are whole or large, motions and action are smooth in s.
 
 namespace extremal {
 
