@@ -86,7 +86,7 @@ inline constexpr double least_exponent = 0.02, exact = 5e-4;
 inline constexpr double roundoff = 1e-12;
 /// k at least, usually, and at most; k |1 − a| at most, and as it is where no other k serves.
 inline constexpr int least_power = 2, usual_power = 4;
-inline constexpr double most_power = 40, largest_power = 6;
+inline constexpr double most_power = 40, largest_power = 6.1;
 /// A power of s that elements resolve as if it was whole, and one whose integral Gauss's rule resolves.
 inline constexpr double smooth = 8, smooth_enough = 4;
 /// Momenta may be infinite by this power of s: errors of the path are then as small in the action.

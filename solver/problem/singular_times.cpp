@@ -127,15 +127,15 @@ class Beside {
   Scratch scratch_;
 };
 
-/// Numbers k that are tried: elements have the mass s^(1 − k (1 − a)), which ever larger k make ever more
-/// uneven. Those from 4 on make other terms smoother as well; weights are even with small ones.
+/// Numbers k that are tried in turn. Elements have the mass s^(1 − k (1 − a)), which larger k make more
+/// uneven; but from the usual one on other terms are smoother as well. Small k make a weight even.
 std::vector<int> candidates(double a) {
   std::vector<int> result;
   const bool weight = a > limit::least_exponent && a < 1 - limit::exact;
   const int most = static_cast<int>(
       std::min(limit::largest_power / std::max(std::abs(1 - a), limit::exact), limit::most_power));
-  for (int k = weight ? limit::least_power : limit::usual_power; k <= most; ++k) result.push_back(k);
-  for (int k = limit::least_power; !weight && k < limit::usual_power; ++k) result.push_back(k);
+  for (int k = limit::usual_power; !weight && k >= limit::least_power; --k) result.push_back(k);
+  for (int k = weight ? limit::least_power : limit::usual_power + 1; k <= most; ++k) result.push_back(k);
   return result;
 }
 
