@@ -84,7 +84,7 @@ inline constexpr int times = 4;
 inline constexpr double least_exponent = 0.02, exact = 5e-4;
 /// Of a part of L at the end by the same at a point in general position.
 inline constexpr double roundoff = 1e-12;
-/// k at least, usually, and at most; k |1 − a| at most, and as it is where no other k serves.
+/// k at least; as it is tried first, and taken where none serves; and at most. k |1 − a| at most.
 inline constexpr int least_power = 2, usual_power = 4;
 inline constexpr double most_power = 40, largest_power = 6.1;
 /// A power of s that elements resolve as if it was whole, and one whose integral Gauss's rule resolves.

@@ -337,8 +337,8 @@ double EndVariables::variable_at(double q) const {
 namespace {
 
 /// The variable of the time alone, where that makes an end singular.
-std::optional<EndVariables> in_time(const Problem& problem, const std::vector<SingularTime>& times) {
-  EndVariables variables{.duration = problem.duration.value};
+std::optional<EndVariables> variables_of(const std::vector<SingularTime>& times, double duration) {
+  EndVariables variables{.duration = duration};
   for (const SingularTime& time : times) {
     if (time.kind != SingularTime::Kind::powers) return std::nullopt;
     (time.at_end ? variables.end : variables.start) = time.power;
@@ -359,7 +359,7 @@ std::optional<EndVariables> singular_ends(const Problem& problem, const std::vec
   if (!supported(problem)) return std::nullopt;
   const Lagrangian& lagrangian = *problem.lagrangian;
   const End ends[] = {end_of(problem, false), end_of(problem, true)};
-  std::optional<EndVariables> found = in_time(problem, times);
+  std::optional<EndVariables> found = variables_of(times, problem.duration.value);
   for (const End& end : ends) {
     if (found && !found->has_level() && found->singular(end.at_end)) continue;
     if (!infinite_at(lagrangian, end, problem.duration.value)) continue;

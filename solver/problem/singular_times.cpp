@@ -75,13 +75,13 @@ class Beside {
   }
 
   std::optional<double> mass() {
-    return exponent(general_, v_, [](const PointValues& l) { return largest(l.vv); });
+    return exponent(general_, v_, [](const PointValues& l) { return largest_or_nan(l.vv); });
   }
   std::optional<double> force() {
-    return exponent(end_, v_, [](const PointValues& l) { return largest(l.dq); });
+    return exponent(end_, v_, [](const PointValues& l) { return largest_or_nan(l.dq); });
   }
   std::optional<double> stiffness() {
-    return exponent(end_, v_, [](const PointValues& l) { return largest(l.qq); });
+    return exponent(end_, v_, [](const PointValues& l) { return largest_or_nan(l.qq); });
   }
   /// Of L at rest there.
   std::optional<double> value() {
@@ -107,7 +107,7 @@ class Beside {
   }
 
  private:
-  static double largest(const std::vector<double>& part) {
+  static double largest_or_nan(const std::vector<double>& part) {
     double most = 0;
     for (const double x : part) most = std::isnan(x) ? x : std::max(most, std::abs(x));
     return most;

@@ -79,9 +79,8 @@ class PhaseSpaceSolve {
     const double allowed = std::clamp(defect_tolerances * options.tolerance, least_defect, most_defect);
     if (defect <= allowed) return solution;
     return refused(
-        fmt::format("Hamilton's equations do not hold on the path found: in the duration it would leave them "
-                    "by {:.1e} "
-                    "times its range; {}",
+        fmt::format("Hamilton's equations do not hold on the path found: within the duration it leaves "
+                    "them by {:.1e} times its range; {}",
                     defect,
                     problem.periodic
                         ? "try another guess, also one that turns the other way"

@@ -100,8 +100,8 @@ std::string unreachable(const Problem& problem) {
       // Either the point is singular, and points beside it are not, or the time is.
       const double little = 1e-9 * duration;
       if (!within && finite_at_some_velocity(q, end ? duration - little : little))
-        return fmt::format("L is not finite at t = {:.6g}; write t {} {:.1g} for t in L", time,
-                           end ? '-' : '+', little);
+        return fmt::format("L is not finite at t = {:.6g}; write t {} {:.1g} for t in {}", time,
+                           end ? '-' : '+', little, problem.paired ? "L and the forces" : "L");
       return fmt::format("L is not finite {} the {}, {}; move this end", within ? "at" : "about",
                          end ? "end" : "start", point_text(problem.names, q));
     }

@@ -70,7 +70,8 @@ Least least_between(double a, double b, const Function& f) {
 /// Between a time at which f is not negative and one at which it is: the last of the first kind, about.
 template <class Function>
 double last_kept(double kept, double forbidden, const Function& f) {
-  return bisect(kept, forbidden, 12, [&](double t) { return !(f(t) < 0); }).low;
+  constexpr int halvings = 12;  // a place that is told needs no more digits
+  return bisect(kept, forbidden, halvings, [&](double t) { return !(f(t) < 0); }).low;
 }
 
 class LawCheck {
