@@ -100,12 +100,18 @@ function watchFrames() {
     });
 }
 
-/** Plays a page that was opened with `frames` for so long (ms); what each frame took. */
+/**
+ * Plays a page that was opened with `frames` for so long (ms), and until ten frames are drawn, which a slow machine
+ * may take longer for; what each frame took.
+ */
 export async function countFrames(page, milliseconds) {
+  const drawn = (count) =>
+    page.waitForFunction((count) => window.watchedFrames.scripts.length >= count, count, { polling: 50 });
   await page.keyboard.press("Space");
-  await page.waitForTimeout(300);
+  await drawn(2); // the first ones make what the later ones use
   await page.evaluate(() => Object.values(window.watchedFrames).forEach((list) => (list.length = 0)));
   await page.waitForTimeout(milliseconds);
+  await drawn(10);
   const found = await page.evaluate(() => window.watchedFrames);
   await page.keyboard.press("Space");
   return { frames: found.scripts.length, ...found };
