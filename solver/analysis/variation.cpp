@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "action/rule.hpp"
 #include "analysis/limits.hpp"
@@ -28,20 +29,17 @@ constexpr double beside_kink = 0x1p-40;
 /// Pieces, or so many of an element, at most.
 constexpr int most_pieces = 1 << 14, most_of_element = 16;
 
-/// Values q, n entries, at tau of the polynomial through `nodes`.
-void interpolate(const Barycentric& at, double tau, const double* nodes, int n, double* q) {
-  std::fill_n(q, n, 0.0);
-  double sum = 0;
-  for (std::size_t j = 0; j < at.nodes.size(); ++j) {
-    if (tau == at.nodes[j]) {
-      std::copy_n(nodes + j * n, n, q);
-      return;
-    }
-    const double weight = at.weights[j] / (tau - at.nodes[j]);
-    sum += weight;
-    for (int a = 0; a < n; ++a) q[a] += weight * nodes[j * n + a];
+/// Weights of the nodes for the value at tau of the polynomial through them.
+void weigh_nodes(const Barycentric& at, double tau, std::span<double> weights) {
+  const auto node = std::ranges::find(at.nodes, tau);
+  if (node != at.nodes.end()) {
+    std::ranges::fill(weights, 0.0);
+    weights[node - at.nodes.begin()] = 1;
+    return;
   }
-  for (int a = 0; a < n; ++a) q[a] /= sum;
+  double sum = 0;
+  for (std::size_t j = 0; j < at.nodes.size(); ++j) sum += weights[j] = at.weights[j] / (tau - at.nodes[j]);
+  for (double& weight : weights) weight /= sum;
 }
 
 int degree_for(int n, int trajectory_degree) {
@@ -190,14 +188,23 @@ void SecondVariation::evaluate(std::span<const Part> parts) {
   }
   mesh_.push_back(mesh_.back() + lengths_.back());
   path_.reset(tables_, mesh_, 1, lengths_);
-  values_.resize(static_cast<std::size_t>(scheme_->functions) * n);
+  const int points = scheme_->functions;
+  values_.resize(static_cast<std::size_t>(points) * n);
+  weights_.resize(static_cast<std::size_t>(points) * (s + 1));
   for (int k = 0; k < count; ++k) {
     const Part& part = parts[k];
+    // Most parts are the same of their elements.
+    if (k == 0 || part.tau0 != parts[k - 1].tau0 || part.tau1 != parts[k - 1].tau1)
+      for (int j = 0; j < points; ++j)
+        weigh_nodes(lobatto_barycentric(s), part.tau0 + scheme_->lobatto[j] * (part.tau1 - part.tau0),
+                    std::span(weights_).subspan(static_cast<std::size_t>(j) * (s + 1), s + 1));
     const double* nodes = trajectory_->nodes.data() + static_cast<std::size_t>(part.element) * (s + 1) * n;
-    for (int j = 0; j < scheme_->functions; ++j) {
-      const double tau = part.tau0 + scheme_->lobatto[j] * (part.tau1 - part.tau0);
-      interpolate(lobatto_barycentric(s), tau, nodes, n, values_.data() + j * n);
-    }
+    std::ranges::fill(values_, 0.0);
+    for (int j = 0; j < points; ++j)
+      for (int i = 0; i <= s; ++i) {
+        const double weight = weights_[j * (s + 1) + i];
+        for (int a = 0; a < n; ++a) values_[j * n + a] += weight * nodes[i * n + a];
+      }
     path_.set_apart(k, values_.data());
   }
   action_.reset(*lagrangian_, tables_, count, false, Condense::elements);

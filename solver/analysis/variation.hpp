@@ -139,7 +139,7 @@ class SecondVariation {
   DiscreteAction action_;
   Path path_;
   std::vector<Part> waiting_, batch_;
-  std::vector<double> mesh_, lengths_, values_, steps_;
+  std::vector<double> mesh_, lengths_, values_, weights_, steps_;
   AlignedDoubles inner_, rest_;
   int evaluated_ = -1;  ///< first piece of those
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> fields_;
