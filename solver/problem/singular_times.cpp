@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "linear/dense.hpp"
+#include "machine/largest.hpp"
 #include "problem/limits.hpp"
 
 namespace extremal {
@@ -75,13 +76,13 @@ class Beside {
   }
 
   std::optional<double> mass() {
-    return exponent(general_, v_, [](const PointValues& l) { return largest_or_nan(l.vv); });
+    return exponent(general_, v_, [](const PointValues& l) { return largest_if_finite(l.vv); });
   }
   std::optional<double> force() {
-    return exponent(end_, v_, [](const PointValues& l) { return largest_or_nan(l.dq); });
+    return exponent(end_, v_, [](const PointValues& l) { return largest_if_finite(l.dq); });
   }
   std::optional<double> stiffness() {
-    return exponent(end_, v_, [](const PointValues& l) { return largest_or_nan(l.qq); });
+    return exponent(end_, v_, [](const PointValues& l) { return largest_if_finite(l.qq); });
   }
   /// Of L at rest there.
   std::optional<double> value() {
@@ -107,11 +108,6 @@ class Beside {
   }
 
  private:
-  static double largest_or_nan(const std::vector<double>& part) {
-    double most = 0;
-    for (const double x : part) most = std::isnan(x) ? x : std::max(most, std::abs(x));
-    return most;
-  }
   double time_from_end(double part) const {
     const double away = part * duration_;
     return at_end_ ? duration_ - (duration_ - away) : away;

@@ -331,6 +331,26 @@ TEST_F(SingularEnds, ForcesThatAreInfiniteAtATime) {
       << moving.message;
 }
 
+/// x'' = τ^p with the time τ from an end is finite, but no polynomial begins like it, and momenta at the ends
+/// miss some of it: elements become shorter there.
+TEST_F(SingularEnds, ForcesThatBeginSteeply) {
+  for (const double p : {0.05, 0.1, 0.3, 0.5, 0.7}) {
+    const double c = 1 / ((1 + p) * (2 + p)), slow = 1 - c, fast = slow + 1 / (1 + p);
+    const double action = (fast + slow / (2 + p) + c / (3 + 2 * p)) / 2;
+    for (const bool at_end : {false, true}) {
+      const std::string time = at_end ? "(1 - t)" : "t", ends = at_end ? "start = { y = 1 }\nend = { y = 0 }"
+                                                                       : "start = { y = 0 }\nend = { y = 1 }";
+      const Solution found =
+          solved(singular_scene(fmt::format("y'^2/2 + y*{}^{}", time, p), ends + "\nduration = 1"));
+      ASSERT_TRUE(found.converged()) << p << ' ' << at_end << ": " << found.message;
+      EXPECT_NEAR(found.action, action, 1e-9);
+      const double allowed = 2e-8;  // ten tolerances, and that is an estimate
+      EXPECT_NEAR(found.momentum_start[0], at_end ? -fast : slow, allowed);
+      EXPECT_NEAR(found.momentum_end[0], at_end ? -slow : fast, allowed);
+    }
+  }
+}
+
 /// Radial Bessel functions: L = t u'²/2 − w² t u²/2 + u²/(2t), u = J₁(w t)/J₁(w) and S = u'(1)/2, with the
 /// zeros of J₁ at 3.83, 7.02 and 10.17.
 TEST_F(SingularEnds, CentrifugalTermsAreRegularAlongTheMotion) {

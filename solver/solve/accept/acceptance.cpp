@@ -317,6 +317,7 @@ Solution without_path(const Solution& solution) {
 struct Judged {
   bool hopeless;      ///< no solution, and another guess would not help
   bool not_isolated;  ///< to the error that the tolerance leaves
+  bool kicked;        ///< refused for momenta at its ends
 };
 
 /// Sets the solution, without a deadline: the path meets the tolerance.
@@ -361,7 +362,9 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     const bool counted = (problem.ends.free == 0 || problem.periodic) && options.elements == 0 && !indefinite;
     if (problem.infinite || counted) leave_out_later_times(solution);
   }
-  if (solution.converged()) judge_quadrature(check, options, found, solution);
+  const bool judged = solution.converged();
+  if (judged) judge_quadrature(check, options, found, solution);
+  const bool kicked = judged && !solution.converged() && !options.scheme && check.kicks(options);
   bool not_isolated = false;
   if (solution.converged() && check.softest && !options.scheme &&
       soft(problem, found, path, *check.softest, solution.error_estimate)) {
@@ -384,7 +387,7 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
   solution.iterations = found.iterations;
   w.iteration.forget();
   solution.seconds_analyse = seconds_since(start);
-  return {examined.hopeless || conjugate, not_isolated};
+  return {examined.hopeless || conjugate, not_isolated, kicked};
 }
 
 }  // namespace
@@ -408,7 +411,8 @@ Acceptance::Verdict Acceptance::judge(const Outcome& found) {
   if (accepted && !first) solution_ = std::move(later);
   too_loose_ = !accepted && (too_loose_ || (judged.not_isolated && options_.tolerance > isolating_tolerance));
   const bool hopeless = judged.hopeless || too_loose_;
-  return accepted ? Verdict::accepted : hopeless ? Verdict::hopeless : Verdict::refused;
+  if (accepted) return Verdict::accepted;
+  return hopeless ? Verdict::hopeless : judged.kicked ? Verdict::coarse_at_ends : Verdict::refused;
 }
 
 Solution Acceptance::result(const Outcome& last) {

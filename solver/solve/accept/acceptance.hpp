@@ -29,7 +29,8 @@ class Acceptance {
   enum class Verdict {
     accepted,
     refused,
-    hopeless,  ///< and other guesses do not help
+    coarse_at_ends,  ///< refused, but elements shorter at the ends may do
+    hopeless,        ///< and other guesses do not help
   };
   Verdict judge(const Outcome& found);
 

@@ -102,6 +102,10 @@ bool QuadratureCheck::missed(const SolveOptions& options, const Outcome& outcome
   return moved > outcome.tolerance || turned > most_turned * options.tolerance;
 }
 
+bool QuadratureCheck::kicks(const SolveOptions& options) const {
+  return !(kicked <= momentum_tolerances * options.tolerance);
+}
+
 double residual_under_finer(const Problem& problem, const Path& path, const Outcome& outcome, Workspace& w) {
   w.iteration.action().substitute(*problem.lagrangian, w.levels.finer(outcome.tables->scheme()));
   return w.iteration.residual_at(path);
@@ -138,7 +142,7 @@ void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options,
   if (!options.scheme && !(check.turned <= most_turned * options.tolerance))
     return refuse(solution, "velocities", check.turned, options.tolerance,
                   "the path turns sharply, and roundoff is amplified");
-  if (!options.scheme && !(check.kicked <= momentum_tolerances * options.tolerance))
+  if (!options.scheme && check.kicks(options))
     return refuse(solution, "the momenta at the ends", check.kicked, options.tolerance,
                   "forces change fast within the first or the last element");
   // What a finer quadrature moves is a part of the error: up to the tolerance where the estimate explains it.

@@ -21,6 +21,8 @@ struct QuadratureCheck {
 
   /// Whether a path of the elements that the tolerance asked for is moved by more than that allows.
   bool missed(const SolveOptions& options, const Outcome& outcome) const;
+  /// Whether momenta at the ends change by more than the tolerance allows.
+  bool kicks(const SolveOptions& options) const;
 };
 
 /// Of a path off which `solution` was read, with the factors that the workspace's iteration has of it. The

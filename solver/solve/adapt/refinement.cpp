@@ -103,6 +103,14 @@ Refinement::Result Refinement::pursue() {
   return result == Attempt::failed ? Result::failed : Result::unreachable;
 }
 
+Refinement::Result Refinement::pursue_with_shorter_ends() {
+  std::vector<double> mesh(path_.mesh().begin(), path_.mesh().end());
+  mesh.insert(mesh.begin() + 1, shorter_end * mesh[1]);
+  mesh.insert(mesh.end() - 1, 1 - shorter_end * (1 - mesh[mesh.size() - 2]));
+  move_to(*tables_, mesh);
+  return pursue();
+}
+
 bool Refinement::suspicious() const { return longest_ > suspicious_step; }
 
 /// A second variation may be nearly singular only by the error of the elements: then other elements give

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "machine/largest.hpp"
 #include "solve/newton/agreement.hpp"
 #include "solve/newton/ends.hpp"
 #include "solve/newton/krylov.hpp"
@@ -14,28 +14,6 @@
 namespace extremal {
 
 using namespace limits::iteration;
-
-namespace {
-
-/// Largest |x|, or NaN if one is not finite, which the sum remembers and a maximum would not.
-double largest_if_finite(std::span<const double> x) {
-  double part[8] = {}, sum[8] = {};
-  std::size_t i = 0;
-  for (; i + 8 <= x.size(); i += 8)
-    for (int k = 0; k < 8; ++k) {
-      const double size = std::abs(x[i + k]);
-      part[k] = size > part[k] ? size : part[k];
-      sum[k] += size;
-    }
-  for (; i < x.size(); ++i) {
-    part[0] = std::max(part[0], std::abs(x[i]));
-    sum[0] += std::abs(x[i]);
-  }
-  const double total = std::accumulate(sum, sum + 8, 0.0);
-  return std::isfinite(total) ? *std::max_element(part, part + 8) : NAN;
-}
-
-}  // namespace
 
 const ClosingEquation* closing_equation(const Problem& problem, const Path& path, ClosingEquation& equation) {
   const Duration& duration = problem.duration;

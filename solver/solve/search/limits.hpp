@@ -372,6 +372,8 @@ inline constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 inline constexpr double force_spreads[] = {8, 1};
 /// Of the effort, kept for weaker forces.
 inline constexpr double share_of_forces = 0.25;
+/// Times that the elements at the ends of a path are cut.
+inline constexpr int most_cuts_at_ends = 8;
 
 }  // namespace search
 

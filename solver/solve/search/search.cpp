@@ -97,13 +97,18 @@ Search::Pursuit Search::pursue_guess(const char* strategy) {
 /// Whether the path that meets the tolerance is an extremal: if not, another guess may lead to one.
 Refinement::Result Search::accepted() {
   outcome_.status = Status::converged;
-  const Acceptance::Verdict verdict = acceptance_->judge(outcome_);
+  Acceptance::Verdict verdict = acceptance_->judge(outcome_);
+  for (int cut = 0; verdict == Acceptance::Verdict::coarse_at_ends && cut < most_cuts_at_ends; ++cut) {
+    refinement_.rebind();
+    if (refinement_.pursue_with_shorter_ends() != Refinement::Result::converged) break;
+    verdict = acceptance_->judge(outcome_);
+  }
   if (verdict == Acceptance::Verdict::accepted) return Refinement::Result::converged;
   outcome_.status = Status::not_converged;
   refinement_.rebind();
   if (acceptance_->too_loose()) refinement_.allow(0);
-  return verdict == Acceptance::Verdict::refused ? Refinement::Result::failed
-                                                 : Refinement::Result::unreachable;
+  return verdict == Acceptance::Verdict::hopeless ? Refinement::Result::unreachable
+                                                  : Refinement::Result::failed;
 }
 
 bool Search::found(const char* strategy) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "machine/largest.hpp"
 #include "problem/nearby.hpp"
 #include "study/checks/limits.hpp"
 #include "system/kinks.hpp"
@@ -51,8 +52,11 @@ class Crossing {
     const PointValues values = evaluate_at(l, at.q, at.v, at.t, order, scratch_);
     if (order == Order::value) return std::abs(values.value);
     double most = 0;
-    for (const std::vector<double>* part : {&values.dq, &values.dv, &values.qq, &values.vq, &values.vv})
-      for (const double x : *part) most = std::isnan(x) ? x : std::max(most, std::abs(x));
+    for (const std::vector<double>* part : {&values.dq, &values.dv, &values.qq, &values.vq, &values.vv}) {
+      const double of_part = largest_if_finite(*part);
+      if (std::isnan(of_part)) return of_part;
+      most = std::max(most, of_part);
+    }
     return most;
   }
 
