@@ -49,6 +49,10 @@ TEST_F(Scenes, MomentaAndVelocitiesInOtherPlaces) {
   EXPECT_EQ(after("[guess]\nstate = { \"x''\" = 1 }\n"),
             "scene.toml:9:11: a second \"'\"; a state has coordinates and velocities");
   EXPECT_EQ(
+      after("[guess]\nstate = { x = 0, p_x = 1 }\n"),
+      "scene.toml:9:18: 'p_x' is a momentum, and a state has coordinates and velocities; write \"x'\" = the "
+      "velocity");
+  EXPECT_EQ(
       after("[guess]\n\"x'\" = \"t\"\n"),
       "scene.toml:9:1: \"x'\" is a velocity, which follows from x: give x as a formula of t, or a motion by "
       "its initial state: state = { x = …, \"x'\" = … }");
