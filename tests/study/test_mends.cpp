@@ -43,7 +43,6 @@ TEST_F(Scenes, MomentaAndVelocitiesInOtherPlaces) {
       "'p_x' is a momentum, and a coordinate stands here; momenta are given in 'start' and 'end' of "
       "[boundary]";
   EXPECT_EQ(after("[[waypoints]]\nat = 1\np_x = 1\n"), "scene.toml:10:1: " + momentum);
-  EXPECT_EQ(after("[guess]\nstate = { p_x = 1 }\n"), "scene.toml:9:11: " + momentum);
   EXPECT_EQ(after("[[waypoints]]\nat = 1\n\"x'\" = 1\n"),
             "scene.toml:10:1: \"x'\" is a velocity, and a coordinate stands here");
   EXPECT_EQ(after("[guess]\nstate = { \"x''\" = 1 }\n"),
