@@ -63,7 +63,7 @@ constexpr KeyRecord keys[] = {
     {"system", "force", Kind::quantities, "none",
      "Forces F that no Lagrangian has: d/dt ∂L/∂q' − ∂L/∂q = F. A formula of coordinates, velocities, `t`, "
      "parameters and definitions; for an array a list or one formula in the index `i`.",
-     R"(force = { x = "-c*x'", q = "-c*q[i]'" })", true},
+     R"(force = { x = "-0.1*x'" })", true},
     {"system", "curvature", Kind::number, "none",
      "Bound of M⁻¹V'' for all positions. With it the windows of L = q'ᵀMq'/2 − V have the certificate "
      "`global`.",

@@ -188,7 +188,7 @@ Continued varied_parameter(const Scene& scene, const System& system, const Probl
   const std::string& name = table.parameter.value;
   const auto known = system.parameters.find(name);
   if (known == system.parameters.end()) {
-    std::vector<std::string> names{"duration", "energy"};
+    std::vector<std::string> names{problem.duration.energy ? "energy" : "duration"};
     for (const auto& [other, value] : system.parameters) names.push_back(other);
     throw UnknownChoice(position(table.parameter, 0), fmt::format("unknown parameter '{}'", name), name,
                         names);

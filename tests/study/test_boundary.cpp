@@ -86,8 +86,8 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(start("x = 0, q = \"0*i\", p_x = 1, p_q = [1, 2, 3]"), "");
   EXPECT_EQ(
       start("\"x'\" = 1"),
-      "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); an "
-      "initial state is a guess: state = { \"x'\" = … } in [guess]");
+      "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); "
+      "give p_x here for the motion from there, or, as a guess, state = { \"x'\" = … } in [guess]");
   EXPECT_EQ(start("p_y = 1").substr(0, 37), "scene.toml:7:11: unknown coordinate '");
   EXPECT_EQ(start("v_x = 1"),
             "scene.toml:7:11: unknown coordinate 'v_x'; velocities are written \"x'\", and only "

@@ -40,10 +40,10 @@ EndEntries read_entries(const std::vector<Assignment>& table, const char* end, c
     for (const Assignment& a : table) {
       if (a.name.ends_with('\''))
         throw SceneError(
-            a.name_at,
-            fmt::format("\"{0}\" is a velocity, and '{1}' holds coordinates and momenta (p_{2} = "
-                        "∂L/∂{0}); an initial state is a guess: state = {{ \"{0}\" = … }} in [guess]",
-                        a.name, end, a.name.substr(0, a.name.size() - 1)));
+            a.name_at, fmt::format("\"{0}\" is a velocity, and '{1}' holds coordinates and momenta (p_{2} = "
+                                   "∂L/∂{0}); give p_{2} here for the motion from there, or, as a guess, "
+                                   "state = {{ \"{0}\" = … }} in [guess]",
+                                   a.name, end, a.name.substr(0, a.name.size() - 1)));
       const bool momentum = a.name.starts_with("p_") && !is_coordinate(a.name, system);
       const Range range = range_of(momentum ? a.name.substr(2) : a.name, a.name_at, system);
       if (range.array != whole) continue;
