@@ -24,5 +24,5 @@ else()
 endif()
 # Hot, or with limits of their own by the names of another file's.
 set_source_files_properties(solve/mesh/resolution.cpp solve/adapt/refinement.cpp solve/accept/quadrature_check.cpp
-    solve/accept/conjugate_ends.cpp solve/search/search.cpp solve/search/gradient_flow.cpp
+    solve/accept/conjugate_ends.cpp solve/search/gradient_flow.cpp
     solve/external/curve_fit.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -1,11 +1,11 @@
+#include "solve/search/from_other_ends.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "solve/search/limits.hpp"
-#include "solve/search/search.hpp"
-
-/// \file From ends that are nearer to each other to those wanted.
+#include "solve/search/near_guess.hpp"
 
 namespace extremal {
 
@@ -25,78 +25,82 @@ void move_ends(const Problem& problem, const std::vector<double>& ends, double s
   moved.ends = solve_relation(moved.boundary);
 }
 
+/// From a path with other ends, on its own elements, or on fewer where it was sharper with ends before.
+bool refine_from(Pursuit& pursuit, const Path& other, const char* strategy) {
+  Workspace& w = pursuit.w;
+  const std::vector<double> mesh(other.mesh().begin(), other.mesh().end());
+  const ElementTables& own = pursuit.open(mesh, other.degree());
+  w.resolution.measure(other, own);
+  const Resolution::Error aim{finest * scales(other, own).q, INFINITY, INFINITY};
+  const Plan fewer = w.planner.plan(w.resolution, mesh, own,
+                                    {.aim = aim,
+                                     .tolerated = aim,
+                                     .raised_degree = other.degree(),
+                                     .least_degree = Refinement::first_degree + 1,
+                                     .highest_degree = other.degree(),
+                                     .most_elements = other.elements(),
+                                     .strongest_cut = 1,
+                                     .strongest_growth = strongest_growth});
+  if (lavish * fewer.degree * fewer.mesh.size() < other.degree() * mesh.size() && !fewer.mesh.empty())
+    pursuit.path.resample_from(other, pursuit.open(fewer.mesh, fewer.degree), fewer.mesh);
+  else
+    pursuit.path.copy_values(other);
+  pursuit.refinement.take(pursuit.tables());
+  pursuit.refinement.rebind();
+  return pursuit.found(strategy);
+}
+
+bool solved_near_guess(Pursuit& pursuit) {
+  GuessMesh guess(pursuit.problem);
+  return pursue_near_guess(pursuit, guess).status == Status::converged;
+}
+
 }  // namespace
 
-/// Each time by so much of the way that is left that Newton's method still comes along: near a singularity,
-/// or where a layer becomes thinner, that is an equal part of the way, not an equal length.
-bool Search::through_other_ends() {
-  if (problem_.periodic || problem_.ends.free > 0 || problem_.duration.free || problem_.paired ||
-      problem_.infinite || problem_.manifold)
-    return false;
-  const int left = refinement_.steps_left();  // for what comes after
+Trial through_other_ends(Pursuit& pursuit, const std::vector<double>& ends) {
+  const Problem& problem = pursuit.problem;
+  Refinement& refinement = pursuit.refinement;
+  if (problem.periodic || problem.ends.free > 0 || problem.duration.free || problem.paired ||
+      problem.infinite || problem.manifold)
+    return Trial::none;
+  const int left = refinement.steps_left();  // for what comes after
   const auto allow = [&](int steps) {
-    refinement_.allow(std::min(steps, options_.max_iterations - outcome_.attempts));
+    refinement.allow(std::min(steps, pursuit.options.max_iterations - pursuit.outcome.attempts));
   };
-  allow(allowance_);
-  Problem nearer = problem_;
+  allow(pursuit.allowance());
+  Problem nearer = problem;
   nearer.guess = {};
-  SolveOptions options = options_;
+  SolveOptions options = pursuit.options;
   options.tolerance = std::max(options.tolerance, between);
   std::optional<Path> known;
   options.progress = {};  // the steps are counted here
   double share = first_share, part = first_part, tried = 1;
-  met_.insert(Met::other_ends);
-  while (!refinement_.exhausted() && share > least_share && share < largest_share && part < largest_part) {
+  while (!refinement.exhausted() && share > least_share && share < largest_share && part < largest_part) {
     const double next = known ? share * part : share;
-    move_ends(problem_, ends_, next, nearer);
-    Search search(nearer, options, w_);
-    options.max_iterations = refinement_.steps_left();
-    search.be_like(*this);
-    search.renew(effort);
-    const bool reached =
-        known ? search.refine_from(*known, "") : search.run_near_guess().status == Status::converged;
-    for (int k = search.outcome().attempts; k > 0 && refinement_.steps_left() > 0; --k)
-      refinement_.count_step();
+    move_ends(problem, ends, next, nearer);
+    Pursuit between_ends(nearer, options, pursuit.w);
+    options.max_iterations = refinement.steps_left();
+    between_ends.be_like(pursuit);
+    between_ends.renew(effort);
+    const bool reached = known ? refine_from(between_ends, *known, "") : solved_near_guess(between_ends);
+    for (int k = between_ends.outcome.attempts; k > 0 && refinement.steps_left() > 0; --k)
+      refinement.count_step();
     if (reached) {
-      known = search.path();
+      known = between_ends.path;
       share = next;
       part = std::max(part * part, smallest_part);
       if (share > nearer_by * tried) continue;
       tried = share;
-      if (refine_from(*known, "from ends nearer to each other")) return true;
+      if (refine_from(pursuit, *known, "from ends nearer to each other")) return Trial::found;
     } else if (known) {
       part = std::sqrt(part);
     } else {
       share = 0.5 * (1 + share);
     }
   }
-  refinement_.rebind();
+  refinement.rebind();
   allow(left);
-  return false;
-}
-
-/// From a path with other ends, on its own elements, or on fewer where it was sharper with ends before.
-bool Search::refine_from(const Path& other, const char* strategy) {
-  const std::vector<double> mesh(other.mesh().begin(), other.mesh().end());
-  const ElementTables& own = open(mesh, other.degree());
-  w_.resolution.measure(other, own);
-  const Resolution::Error aim{finest * scales(other, own).q, INFINITY, INFINITY};
-  const Plan fewer = w_.planner.plan(w_.resolution, mesh, own,
-                                     {.aim = aim,
-                                      .tolerated = aim,
-                                      .raised_degree = other.degree(),
-                                      .least_degree = Refinement::first_degree + 1,
-                                      .highest_degree = other.degree(),
-                                      .most_elements = other.elements(),
-                                      .strongest_cut = 1,
-                                      .strongest_growth = strongest_growth});
-  if (lavish * fewer.degree * fewer.mesh.size() < other.degree() * mesh.size() && !fewer.mesh.empty())
-    path_.resample_from(other, open(fewer.mesh, fewer.degree), fewer.mesh);
-  else
-    path_.copy_values(other);
-  refinement_.take(tables());
-  refinement_.rebind();
-  return found(strategy);
+  return Trial::in_vain;
 }
 
 }  // namespace extremal

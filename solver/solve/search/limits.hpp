@@ -345,6 +345,10 @@ inline constexpr double mild_grading = 3;
 inline constexpr int least_sampled = 16, most_sampled = 1024;
 /// Tries to move the default guess to where L is finite.
 inline constexpr unsigned most_bends = 8;
+/// A guess that asks for more elements would ask again.
+inline constexpr int most_first_elements = 1 << 12;
+/// Elements of a path of chance whose frequency is measured.
+inline constexpr int sketch_elements = 16;
 
 }  // namespace guess_mesh
 
@@ -368,6 +372,9 @@ inline constexpr unsigned first_noises = 8, most_noises = 10000, collision_noise
 /// Of the guess's extent, in turn.
 inline constexpr double noise_sizes[] = {0.1, 0.3, 0.6};
 
+/// Of elements that may not be refined on the way: coarse ones may not resolve a family of extremals as it
+/// grows.
+inline constexpr int homotopy_degree = 8;
 /// Points about the guess that tell linear forces from bounded ones: their distance by its extent.
 inline constexpr double force_spreads[] = {8, 1};
 /// Of the effort, kept for weaker forces.

@@ -2,6 +2,7 @@
 
 #include "machine/simd.hpp"
 #include "solve/search/deflation.hpp"
+#include "solve/search/guess_mesh.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -16,7 +17,7 @@ constexpr const char* from_symmetric_loop = "newton from a random symmetric loop
 }  // namespace
 
 LoopSearch::LoopSearch(const Problem& problem, const SolveOptions& options, Workspace& workspace,
-                       Search& whole)
+                       Pursuit& whole)
     : problem_(problem),
       options_(options),
       w_(workspace),
@@ -24,22 +25,23 @@ LoopSearch::LoopSearch(const Problem& problem, const SolveOptions& options, Work
       loops_(problem, problem),
       source_(problem) {}
 
-bool LoopSearch::pursue(const Problem& problem, Search& search, Loops& loops, const char* strategy) {
-  search.renew(share);
+bool LoopSearch::pursue(const Problem& problem, Pursuit& pursuit, Loops& loops, const char* strategy) {
+  pursuit.renew(share);
   const unsigned seed = loops.count++;
   loops.draw(seed);
-  const ElementTables& coarse = search.open(uniform_mesh(Search::sketch_elements), Refinement::first_degree);
-  loops.fit_size(w_.iteration.action(), coarse, search.path());
-  if (!search.open_fitting([&](const ElementTables& tables, Path& path) { loops.fill(tables, path); }))
+  const ElementTables& coarse =
+      pursuit.open(uniform_mesh(limits::guess_mesh::sketch_elements), Refinement::first_degree);
+  loops.fit_size(w_.iteration.action(), coarse, pursuit.path);
+  if (!open_fitting(pursuit, [&](const ElementTables& tables, Path& path) { loops.fill(tables, path); }))
     return false;
   if (seed % 2) {
-    DeflatedNewton bounded(problem, search.path(), w_, [&] { return search.count_step(); });
-    if (!bounded.run(search.tables(), {})) return false;
+    DeflatedNewton bounded(problem, pursuit.path, w_, [&] { return pursuit.count_step(); });
+    if (!bounded.run(pursuit.tables(), {})) return false;
   }
-  return search.refine(search.tables(), strategy);
+  return pursuit.refine(pursuit.tables(), strategy);
 }
 
-/// The orbit of which a path is a segment becomes the path of the whole search.
+/// The orbit of which a path is a segment becomes the path of the whole.
 const ElementTables& LoopSearch::reconstruct_orbit(const Segment& segment, const Path& path) {
   const Trajectory part = trajectory_of(path);
   const double T = part.duration();
@@ -49,7 +51,7 @@ const ElementTables& LoopSearch::reconstruct_orbit(const Segment& segment, const
     for (int e = 0; e < part.elements(); ++e) mesh.push_back((k + part.times[e] / T) / segment.parts);
   mesh.push_back(1);
   const ElementTables& tables = whole_.open(mesh, part.degree);
-  Path& whole = whole_.path();
+  Path& whole = whole_.path;
   whole.set_duration(segment.parts * T);
   const std::size_t size = (part.degree + 1) * n;
   Eigen::MatrixXd moved = Eigen::Map<const Eigen::MatrixXd>(part.nodes.data(), part.coordinates,
@@ -67,7 +69,7 @@ bool LoopSearch::next() {
     more_ = drawn.has_value();
     if (drawn) {
       parts_.push_back(std::make_unique<Part>(std::move(*drawn), problem_, options_, w_));
-      parts_.back()->search.be_like(whole_);
+      parts_.back()->pursuit.be_like(whole_);
     }
   }
   // Either kind in turn, the one that leads to orbits more often three times of four.
@@ -78,9 +80,9 @@ bool LoopSearch::next() {
   ++tries_[symmetric_];
   if (!symmetric_) return pursue(problem_, whole_, loops_, from_loop);
   Part& part = *parts_[static_cast<std::size_t>(tries_[1]) % parts_.size()];
-  if (!pursue(part.segment.problem, part.search, part.loops, from_symmetric_loop)) return false;
+  if (!pursue(part.segment.problem, part.pursuit, part.loops, from_symmetric_loop)) return false;
   whole_.renew(share);
-  const ElementTables& tables = reconstruct_orbit(part.segment, part.search.path());
+  const ElementTables& tables = reconstruct_orbit(part.segment, part.pursuit.path);
   return whole_.refine(tables, from_symmetric_loop);
 }
 

@@ -5,7 +5,7 @@
 
 #include "solve/guess/loop.hpp"
 #include "solve/periodic/segment.hpp"
-#include "solve/search/search.hpp"
+#include "solve/search/pursuit.hpp"
 
 /// \file Periodic orbits from random loops.
 
@@ -17,13 +17,13 @@ namespace extremal {
 /// bounded length, whether or not they lower anything: these find saddles that damped steps do not come to.
 class LoopSearch {
  public:
-  /// `whole` is the search for the problem itself, which has run.
-  LoopSearch(const Problem& problem, const SolveOptions& options, Workspace& workspace, Search& whole);
+  /// `whole` is the pursuit of the problem itself, which has run.
+  LoopSearch(const Problem& problem, const SolveOptions& options, Workspace& workspace, Pursuit& whole);
   /// Not for a problem that is not periodic.
   bool usable() const { return loops_.usable(); }
 
   /// From the next loop; whether that leads to an extremal of the problem, which is then the path of the
-  /// whole search.
+  /// whole.
   bool next();
   /// That it led to an orbit, perhaps a known one: more of its kind are then tried.
   void credit() { ++orbits_[symmetric_]; }
@@ -31,20 +31,20 @@ class LoopSearch {
  private:
   struct Part {
     Segment segment;
-    Search search;
+    Pursuit pursuit;
     Loops loops;
     Part(Segment drawn, const Problem& whole, const SolveOptions& options, Workspace& workspace)
         : segment(std::move(drawn)),
-          search(segment.problem, options, workspace),
+          pursuit(segment.problem, options, workspace),
           loops(segment.problem, whole) {}
   };
-  bool pursue(const Problem& problem, Search& search, Loops& loops, const char* strategy);
+  bool pursue(const Problem& problem, Pursuit& pursuit, Loops& loops, const char* strategy);
   const ElementTables& reconstruct_orbit(const Segment& segment, const Path& part);
 
   const Problem& problem_;
   const SolveOptions& options_;
   Workspace& w_;
-  Search& whole_;
+  Pursuit& whole_;
   Loops loops_;
   SegmentSource source_;
   bool more_ = true;  ///< symmetries

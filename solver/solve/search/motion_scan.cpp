@@ -10,6 +10,7 @@
 #include "problem/manifold.hpp"
 #include "solve/guess/starting_ends.hpp"
 #include "solve/search/arrivals.hpp"
+#include "solve/search/from_motions.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -49,7 +50,9 @@ Guess motion_from(const Lagrangian& lagrangian, std::span<const double> q, std::
   return {std::move(samples.tau), std::move(samples.q), samples_a_step};
 }
 
-MotionScan::MotionScan(const Problem& problem, Search& search) : problem_(problem), search_(search) {
+MotionScan::MotionScan(Pursuit& pursuit, const GuessMesh& guess)
+    : problem_(pursuit.problem), pursuit_(pursuit), guess_(guess) {
+  const Problem& problem = problem_;
   const Duration& given = problem.duration;
   usable_ = !problem.periodic && problem.ends.free == 0 && (!given.free || given.energy) &&
             problem.coordinates() <= most_scanned && Flow::suits(*problem.lagrangian);
@@ -152,7 +155,7 @@ double MotionScan::slowest() {
   const auto n = static_cast<std::size_t>(start_.size());
   const Lagrangian& lagrangian = *problem_.lagrangian;
   if (problem_.duration.free || !lagrangian.structure().autonomous) return 0;
-  const std::vector<double>& ends = search_.ends();
+  const std::vector<double>& ends = guess_.ends();
   const std::vector<double> rest(n, 0);
   Scratch scratch;
   const std::span<const double> from = std::span(ends).first(n), to = std::span(ends).subspan(n, n);
@@ -184,7 +187,7 @@ bool MotionScan::all(double nearest, double farthest, const std::function<bool(i
   };
   const bool first = !arrivals_;
   if (first) {
-    const Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(search_.ends().data() + n, start_.size());
+    const Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(guess_.ends().data() + n, start_.size());
     double speed = farthest;
     if (given.free) {
       Eigen::VectorXd w = tangents_.start.col(0);
@@ -249,8 +252,8 @@ bool MotionScan::next(double reach) {
   if (given.free && !scale_to_energy(*problem_.lagrangian, from, *given.energy, {v.data(), n})) return false;
   const double duration = given.free ? part * reach : given.value;
   const Guess motion = motion_from(*problem_.lagrangian, from, {v.data(), n}, duration, step_error,
-                                   [this] { return search_.count_step(); });
-  return motion.given() && search_.connect(motion, duration);
+                                   [this] { return pursuit_.count_step(); });
+  return motion.given() && move_to_ends(pursuit_, guess_.ends(), motion, duration) == Trial::found;
 }
 
 }  // namespace extremal

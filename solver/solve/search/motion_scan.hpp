@@ -9,7 +9,7 @@
 
 #include "motion/flow.hpp"
 #include "solve/search/arrivals.hpp"
-#include "solve/search/search.hpp"
+#include "solve/search/guess_mesh.hpp"
 
 /// \file Motions from the start of a problem.
 
@@ -35,7 +35,8 @@ inline constexpr const char* from_arrival = "newton from a motion that arrives";
 /// some by more motions than others.
 class MotionScan {
  public:
-  MotionScan(const Problem& problem, Search& search);
+  /// Both must outlive it.
+  MotionScan(Pursuit& pursuit, const GuessMesh& guess);
   /// For ends that are fixed.
   bool usable() const { return usable_; }
   /// Of an extremal; and of a path that goes as far as `extent` in the duration.
@@ -66,7 +67,8 @@ class MotionScan {
   void find_tangents(const double* last);
 
   const Problem& problem_;
-  Search& search_;
+  Pursuit& pursuit_;
+  const GuessMesh& guess_;
   bool usable_;
   std::optional<Flow> flow_;
   Eigen::VectorXd start_, rest_;         ///< the start, and the momentum of rest there

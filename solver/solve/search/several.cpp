@@ -20,9 +20,11 @@ Several::Several(const Problem& problem, const SolveOptions& options, Workspace&
       options_(options),
       w_(workspace),
       search_(problem, options, workspace),
-      path_(search_.path()),
-      loops_(problem, options, workspace, search_),
-      motions_(problem, search_),
+      pursuit_(search_.pursuit()),
+      guess_(search_.guess()),
+      path_(pursuit_.path),
+      loops_(problem, options, workspace, pursuit_),
+      motions_(pursuit_, guess_),
       starts_(problem),
       closing_(problem) {
   if (problem.periodic && !problem.lagrangian->structure().autonomous && closing_map(problem).identity())
@@ -36,7 +38,7 @@ bool Several::repeats(const Solution& candidate) const {
   const ClosingMap map = closing_map(problem_);
   const int segments = segments_to_close(map);
   if (segments == 0) return false;
-  const double size = scales(path_, *search_.outcome().tables).q;
+  const double size = scales(path_, *pursuit_.outcome.tables).q;
   const int parts = repetitions(candidate.trajectory, map, segments, distinct_distance(candidate, size));
   return parts == 0 || segments % parts != 0;
 }
@@ -45,16 +47,16 @@ bool Several::repeats(const Solution& candidate) const {
 int Several::keep() {
   Solution candidate;
   candidate.trajectory = trajectory_of(path_);
-  candidate.error_estimate = search_.outcome().error;
-  const bool held = search_.outcome().shifts_held;
-  if (held) candidate.error_estimate = held_apart * scales(path_, search_.tables()).q;
+  candidate.error_estimate = pursuit_.outcome.error;
+  const bool held = pursuit_.outcome.shifts_held;
+  if (held) candidate.error_estimate = held_apart * scales(path_, pursuit_.tables()).q;
   const int number =
       find([&](const Solution& other) { return same_path(candidate, other, options_.tolerance, scale_); });
   if (number >= 0) return number;
   Acceptance acceptance(problem_, options_, w_);
-  acceptance.judge(search_.outcome());
+  acceptance.judge(pursuit_.outcome);
   too_loose_ = too_loose_ || acceptance.too_loose();
-  candidate = acceptance.result(search_.outcome());
+  candidate = acceptance.result(pursuit_.outcome);
   analysing_ += candidate.seconds_analyse;
   return candidate.converged() ? add(std::move(candidate), held) : -1;
 }
@@ -79,7 +81,7 @@ int Several::add(Solution candidate, bool held) {
   if (number >= 0) return number;
   found_.push_back(std::move(candidate));
   traced_.emplace_back(families_, 0);
-  search_.renew(patience);
+  pursuit_.renew(patience);
   in_vain_ = returns_ = 0;
   if (static_cast<int>(found_.size()) == most_) enough_at_ = seed_;
   return static_cast<int>(found_.size()) - 1;
@@ -87,13 +89,13 @@ int Several::add(Solution candidate, bool held) {
 
 int Several::refine_and_keep(const ElementTables& tables, const char* strategy) {
   meet_ends(problem_, path_);
-  return search_.refine(tables, strategy) ? keep() : -1;
+  return pursuit_.refine(tables, strategy) ? keep() : -1;
 }
 
 /// The largest |q| along the guess, or 1 where that is zero.
 double Several::size_of_guess() {
-  const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
-  start_path(problem_, search_.ends(), tables, path_);
+  const ElementTables& tables = pursuit_.open(guess_.mesh(), Refinement::first_degree);
+  start_path(problem_, guess_.ends(), tables, path_);
   const double size = scales(path_, tables).magnitude;
   return size > 0 ? size : 1;
 }
@@ -107,7 +109,7 @@ bool Several::returns_suffice() const {
 
 bool Several::wanted() const {
   return !(static_cast<int>(found_.size()) >= most_ && returns_suffice()) &&
-         in_vain_ < (loops_.usable() ? most_loops_in_vain : most_in_vain) && !search_.exhausted();
+         in_vain_ < (loops_.usable() ? most_loops_in_vain : most_in_vain) && !pursuit_.exhausted();
 }
 
 /// What was done to find `all`.
@@ -116,7 +118,7 @@ std::string Several::searched(std::size_t all) const {
   if (seed_ > 0) text += fmt::format(" and {} {}", seed_, loops_.usable() ? "random loops" : "others");
   if (traced_count_ > 0) text += fmt::format(", along {} families", traced_count_);
   if (scanned_ > 0) text += fmt::format(", from {} motions", scanned_);
-  text += fmt::format(", {} Newton steps in all", search_.outcome().iterations);
+  text += fmt::format(", {} Newton steps in all", pursuit_.outcome.iterations);
   if (options_.deadline.passed())
     text += fmt::format("; {} (solve.budget) is spent", options_.deadline.budget_text());
   const std::size_t kept = std::min<std::size_t>(all, most_);
@@ -150,10 +152,10 @@ std::vector<Solution> Several::run(int most) {
     // Curves of arrivals unfold what passages by a singularity fold; cells of starts need no curves.
     const bool starts_first = even_starts();
     complete = (starts_first && scan_starts()) || (motions_.has_curves() && trace_arrivals()) ||
-           (!starts_first && starts_.usable() && scan_starts()) || by_openings;
+               (!starts_first && starts_.usable() && scan_starts()) || by_openings;
   }
   if (!complete && (!found_.empty() || loops_.usable())) {
-    search_.renew(patience);
+    pursuit_.renew(patience);
     if (begun) deflate();
     guess();
     while (wanted())

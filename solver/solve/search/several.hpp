@@ -81,7 +81,9 @@ class Several {
   const SolveOptions& options_;
   Workspace& w_;
   Search search_;
-  Path& path_;  ///< of the search
+  Pursuit& pursuit_;  ///< of the search, as the two below
+  GuessMesh& guess_;
+  Path& path_;
   LoopSearch loops_;
   MotionScan motions_;
   StartScan starts_;

@@ -34,7 +34,7 @@ void Several::load(const Solution& solution) {
 /// The family number 0 is that of other durations, the next those of other values in each row of the boundary
 /// relation. From the extremal that the path is; null if it cannot be left.
 std::unique_ptr<Homotopy> Several::leave(int family, bool onward) {
-  const auto count = [this] { return search_.count_step(); };
+  const auto count = [this] { return pursuit_.count_step(); };
   const ElementTables& tables = w_.levels.at(family_degree);
   if (family == 0) {
     auto curve = std::make_unique<DurationHomotopy>(problem_, path_, w_, count);

@@ -43,10 +43,10 @@ Arc arc_of(unsigned seed, const std::vector<double>& ends) {
 
 /// Again from the guess as long as that leads to another.
 void Several::deflate() {
-  DeflatedNewton newton(problem_, path_, w_, [this] { return search_.count_step(); });
+  DeflatedNewton newton(problem_, path_, w_, [this] { return pursuit_.count_step(); });
   while (wanted()) {
-    const ElementTables& tables = search_.open(search_.mesh(), family_degree);
-    start_path(problem_, search_.ends(), tables, path_);
+    const ElementTables& tables = pursuit_.open(guess_.mesh(), family_degree);
+    start_path(problem_, guess_.ends(), tables, path_);
     const std::size_t before = found_.size();
     if (!newton.run(tables, found_)) return;
     refine_and_keep(tables, "deflated newton from the guess");
@@ -64,7 +64,7 @@ void Several::guess() {
         if (orbit) loops_.credit();
         if (orbit && found_.size() == before) ++returns_;
       }
-      search_.renew();
+      pursuit_.renew();
       continue;
     }
     bend();
@@ -81,14 +81,14 @@ void Several::descend() {
     arrived += minimum;
   };
   if (descended_ == 0)
-    for (double side : {1.0, -1.0}) take(search_.descend_from_guess(side));
-  for (int saddles = 0; descended_ < found_.size() && saddles < most_saddles && !search_.exhausted() &&
+    for (double side : {1.0, -1.0}) take(pursuit_.conclude(search_.flow().run(side)));
+  for (int saddles = 0; descended_ < found_.size() && saddles < most_saddles && !pursuit_.exhausted() &&
                         !options_.deadline.passed();
        ++descended_) {
     if (found_[descended_].morse_index.value_or(0) == 0) continue;
     ++saddles;
     const Trajectory saddle = found_[descended_].trajectory;
-    for (double side : {-1.0, 1.0}) take(search_.descend_from(saddle, side));
+    for (double side : {-1.0, 1.0}) take(search_.flow().descend_from(saddle, side));
     // The action has no minimum, it seems.
     if (arrived == 0) return;
   }
@@ -96,8 +96,8 @@ void Several::descend() {
 
 void Several::bend() {
   const Bend bend = bend_of(seed_);
-  const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
-  start_path(problem_, moved_ends(problem_, search_.ends(), bend.size, seed_), tables, path_);
+  const ElementTables& tables = pursuit_.open(guess_.mesh(), Refinement::first_degree);
+  start_path(problem_, moved_ends(problem_, guess_.ends(), bend.size, seed_), tables, path_);
   bend_path(problem_, bend, tables, path_);
   refine_and_keep(tables, "newton from the guess plus smooth noise");
 }
@@ -114,7 +114,7 @@ double Several::natural_duration(Arc arc, const ElementTables& tables) {
   std::vector<double> slope(2 * octaves * steps + 1, 0);
   for (double side : {-1, 1}) {
     arc.excess = excess + side * small;
-    arc_path(arc, search_.ends(), tables, path_);
+    arc_path(arc, guess_.ends(), tables, path_);
     for (std::size_t k = 0; k < slope.size(); ++k) {
       path_.set_duration(duration(static_cast<double>(k)));
       w_.iteration.action().evaluate_plain(path_);
@@ -131,13 +131,13 @@ double Several::natural_duration(Arc arc, const ElementTables& tables) {
 /// and then through those of durations between.
 void Several::wind() {
   constexpr const char* strategy = "homotopy from an arc of a circle";
-  const auto count = [this] { return search_.count_step(); };
-  const Arc arc = arc_of(seed_, search_.ends());
+  const auto count = [this] { return pursuit_.count_step(); };
+  const Arc arc = arc_of(seed_, guess_.ends());
   const std::vector<double> mesh = uniform_mesh(elements_a_turn * std::max(1, std::abs(arc.turns)));
-  const ElementTables& tables = search_.open(mesh, family_degree);
+  const ElementTables& tables = pursuit_.open(mesh, family_degree);
   const bool autonomous = problem_.lagrangian->structure().autonomous;
   const double duration = autonomous ? natural_duration(arc, tables) : problem_.duration.value;
-  EndHomotopy ends(problem_, path_, w_, count, arc_path(arc, search_.ends(), tables, path_), 1);
+  EndHomotopy ends(problem_, path_, w_, count, arc_path(arc, guess_.ends(), tables, path_), 1);
   path_.set_duration(duration);
   if (!ends.trace(tables, 1)) return;
   meet_ends(problem_, path_);

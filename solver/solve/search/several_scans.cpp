@@ -4,6 +4,7 @@
 
 #include "solve/guess/first_path.hpp"
 #include "solve/search/distinct.hpp"
+#include "solve/search/from_motions.hpp"
 #include "solve/search/limits.hpp"
 #include "solve/search/several.hpp"
 
@@ -39,7 +40,7 @@ int Several::within(double reach) {
 bool Several::reaches_known() {
   Solution candidate;
   candidate.trajectory = trajectory_of(path_);
-  candidate.error_estimate = led * scales(path_, search_.tables()).q;
+  candidate.error_estimate = led * scales(path_, pursuit_.tables()).q;
   return find([&](const Solution& other) {
            return same_path(candidate, other, options_.tolerance, scale_);
          }) >= 0;
@@ -66,9 +67,9 @@ bool Several::trace_arrivals() {
   for (int growths = 0; growths < most_growths;) {
     const std::size_t before = found_.size();
     const bool complete = motions_.all(nearest, farthest, more, [&](const Guess& motion, double duration) {
-      search_.renew(patience);
+      pursuit_.renew(patience);
       ++scanned_;
-      if (search_.refine_motion(motion, duration, from_arrival)) keep();
+      if (refine_motion(pursuit_, guess_, motion, duration, from_arrival)) keep();
     });
     if (!more(0) || (!complete && found_.size() == before)) return false;
     all_complete = all_complete && complete;
@@ -83,7 +84,7 @@ bool Several::trace_arrivals() {
 
 /// Starts as far away and as fast as the guess suggests.
 StartScan::Shell Several::first_starts() {
-  return starts_.around(search_.ends(), scale_, search_.phase() * scale_ / problem_.duration.value);
+  return starts_.around(guess_.ends(), scale_, guess_.phase() * scale_ / problem_.duration.value);
 }
 
 /// Whether the first box of starts holds no motion that is hard to follow.
@@ -128,9 +129,10 @@ bool Several::scan_starts() {
       if (!start) continue;
       const Guess motion = motion_from(*problem_.lagrangian, start->q, start->v, problem_.duration.value,
                                        limits::from_motions::step_error, [] { return true; });
-      search_.renew(patience);
+      pursuit_.renew(patience);
       ++scanned_;
-      const bool led = motion.given() && search_.refine_motion(motion, problem_.duration.value, from_start);
+      const bool led =
+          motion.given() && refine_motion(pursuit_, guess_, motion, problem_.duration.value, from_start);
       all_led = (led && keep() >= 0) && all_led;
     }
     // Beyond the last extremals it has been looked in vain.
@@ -149,19 +151,19 @@ bool Several::scan_starts() {
 
 /// From motions that nearly close. False if none leads to an orbit.
 bool Several::scan_openings() {
-  const ElementTables& tables = search_.open(search_.mesh(), Refinement::first_degree);
-  start_path(problem_, search_.ends(), tables, path_);
-  const double frequency = search_.phase() / problem_.duration.value;
-  if (!closing_.around(search_.ends(), extents(path_, negligible_extent[0]), frequency)) return false;
+  const ElementTables& tables = pursuit_.open(guess_.mesh(), Refinement::first_degree);
+  start_path(problem_, guess_.ends(), tables, path_);
+  const double frequency = guess_.phase() / problem_.duration.value;
+  if (!closing_.around(guess_.ends(), extents(path_, negligible_extent[0]), frequency)) return false;
   const std::function<bool(int)> more = scan_budget(openings_share);
   const int dimensions = closing_.dimensions();
   const auto wanted = [this] {
     return reach_beyond * wanted_reach(1, [this](const Solution& s) { return closing_.reach_of(s); });
   };
   const auto visit = [this](const Guess& motion) {
-    search_.renew(share_of_motion);
+    pursuit_.renew(share_of_motion);
     ++scanned_;
-    if (search_.close(motion, from_open_motion)) keep();
+    if (refine_open_motion(pursuit_, guess_, motion, from_open_motion)) keep();
   };
   const double growth = std::pow(growth_of_arrivals, 1.0 / dimensions);
   auto across = static_cast<int>(std::round(std::pow(first_points, 1.0 / dimensions)));
@@ -187,10 +189,10 @@ bool Several::scan_openings() {
 /// Motions to where no extremal between those wanted is likely to be missing; where there are too few, to
 /// where none is likely to be in reach.
 void Several::scan() {
-  search_.renew(patience);
+  pursuit_.renew(patience);
   double reach = reach_beyond * wanted_reach();
   for (int growths = 0, quiet = 0, astray = 0;
-       scanned_ < most_motions_each * most_ && !search_.exhausted() && !options_.deadline.passed();) {
+       scanned_ < most_motions_each * most_ && !pursuit_.exhausted() && !options_.deadline.passed();) {
     const int known = within(reach);
     if (quiet >= std::max(least_motions, motions_each * known) ||
         astray >= most_astray * std::max(1, known)) {
@@ -205,7 +207,7 @@ void Several::scan() {
     ++quiet;
     if (reaches_known()) continue;
     const std::size_t before = found_.size();
-    refine_and_keep(search_.tables(), from_motion);
+    refine_and_keep(pursuit_.tables(), from_motion);
     if (found_.size() == before) continue;
     const bool enough = static_cast<int>(found_.size()) >= most_;
     reach = std::max(reach_beyond * wanted_reach(), enough ? 0 : reach);
