@@ -176,6 +176,20 @@ TEST_F(Scenes, PeriodsThatAreNotIsolated) {
   EXPECT_TRUE(s.floquet->stable());
 }
 
+/// Paths about these points of rest never close, though a turn of amplitude a changes it by hardly 0.8 a³.
+TEST_F(Scenes, PointsOfRestWithoutDampingAreNoOrbits) {
+  for (const std::string law : {"x'^2/2 - x^2/2 - x^3/3\"\nforce = { x = \"-x*x'\" }",
+                                "x'^2/2 + x^2/2 - x^3/3\"\nforce = { x = \"(1 - x)*x'\" }"}) {
+    const double rest = law.find("+ x^2/2") == std::string::npos ? 0 : 1;
+    const Solution found =
+        run(study("[system]\ncoordinates = [\"x\"]\nlagrangian = \"" + law +
+                  "\n[boundary]\nperiodic = true\nduration = \"free\"\n[guess]\nduration = 6.3\nx = \"" +
+                  std::to_string(rest) + " + 0.3*cos(2*pi*t/T)\"\n"));
+    EXPECT_EQ(found.status, Status::no_solution_near) << found.message;
+    EXPECT_NE(found.message.find("the orbit shrank to a point of equilibrium"), std::string::npos);
+  }
+}
+
 /// Half an orbit of van der Pol's equation with layers, closed by x -> -x: half the period that DOP853 at
 /// 1e-12 has between passages of x = 1.
 TEST_F(Scenes, TheMotionThatAGuessTendsToMayBeClosedByASymmetry) {

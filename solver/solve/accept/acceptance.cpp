@@ -18,8 +18,10 @@
 #include "solve/accept/minimality.hpp"
 #include "solve/accept/quadrature_check.hpp"
 #include "solve/accept/symmetries.hpp"
+#include "solve/adapt/others_to_try.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
+#include "solve/periodic/equilibrium.hpp"
 #include "solve/periodic/moving_symmetries.hpp"
 #include "solve/periodic/orbit_index.hpp"
 #include "solve/periodic/reconstruct_orbit.hpp"
@@ -345,7 +347,12 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
       read_index(problem, w.variation, size > 0 ? solution.error_estimate / size : 0, solution);
     judge_nullity(problem, examined.held, solution);
     assemble_for_multipliers(problem, options, found, path, solution, of_elements, w);
-    read_stability(problem, w.variation, size, solution);
+    const bool one_of_many = read_stability(problem, w.variation, size, solution);
+    if (one_of_many && closes_by_smallness(sizes.range, found.first_range))
+      refused({Status::no_solution_near,
+               fmt::format("{} without damping; try {}", shrank_to_rest,
+                           others_to_try(problem, "a larger guess", "another duration"))},
+              solution);
     if (found.family == 0) explain_nullity(problem, solution);
     if (found.family == 0) tell_continuum(problem, solution);
     if (found.shifts_held)

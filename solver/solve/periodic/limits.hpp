@@ -32,9 +32,9 @@ namespace equilibrium {
 /// An orbit so much smaller than its guess has shrunk onto an equilibrium. Where L depends on t, a weak drive
 /// makes small orbits that do not rest: only roundoff of the guess is none.
 inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
-/// With forces what a turn of amplitude a gains or loses vanishes like a² beside an equilibrium without
-/// damping, so that each path there closes to roundoff.
-inline constexpr double at_forced_rest = 1e-4;
+/// With forces a turn of amplitude a gains or loses a part of about a² beside an equilibrium without
+/// damping: paths there close as those of a family do, but one so small against its guess may be none.
+inline constexpr double at_undamped_rest = 1e-2;
 
 }  // namespace equilibrium
 

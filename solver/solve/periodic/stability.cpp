@@ -84,9 +84,10 @@ std::optional<Floquet> multipliers_of(const Problem& problem, const SecondVariat
   return problem.paired ? floquet_with_forces(variation, orbit) : floquet(variation, orbit);
 }
 
-void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
+bool read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors) {
-  if (!problem.periodic) return;
+  if (!problem.periodic) return false;
+  bool one_of_many = false;
   const double distinct = distinct_distance(solution, size);
   if (const ClosingMap map = closing_map(problem); map.identity() && size > 0)
     if (const int parts = repetitions(solution.trajectory, map, 1, distinct); parts > 0)
@@ -110,14 +111,16 @@ void read_stability(const Problem& problem, const SecondVariation& variation, do
     if (!solution.floquet)
       solution.message +=
           "; multipliers are not known: they are too large, or the orbit passes too near to a point of rest";
-    if (solution.floquet && problem.paired && problem.duration.free &&
-        one_of_a_family(problem, orbit, *solution.floquet))
+    one_of_many = solution.floquet && problem.paired && problem.duration.free &&
+                  one_of_a_family(problem, orbit, *solution.floquet);
+    if (one_of_many)
       solution.message +=
           "; a multiplier beside that of the shift in time is 1: the orbit is one of a family, near the "
           "guess, and its period is not isolated";
     if (solution.floquet && vectors && !problem.paired && !problem.phase)
       add_vectors(variation, orbit, *solution.floquet);
   }
+  return one_of_many;
 }
 
 std::string one_of_a_continuum(int directions) {

@@ -24,8 +24,8 @@ double distinct_distance(const Solution& solution, double size);
 
 /// Sets the Floquet multipliers and the minimal period of a converged solution of a periodic problem.
 /// `variation` was assembled for it, perhaps without success. `size` of the solution: that its error is
-/// relative to.
-void read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
+/// relative to. Returns whether, with forces and a free period, paths beside it close as well.
+bool read_stability(const Problem& problem, const SecondVariation& variation, double size, Solution& solution,
                     bool vectors = true);
 
 /// Of a periodic orbit beside which others close, in so many independent directions that no symmetry
