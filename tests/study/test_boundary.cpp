@@ -87,7 +87,7 @@ TEST_F(Scenes, EndsThatAreWrong) {
   EXPECT_EQ(
       start("\"x'\" = 1"),
       "scene.toml:7:11: \"x'\" is a velocity, and 'start' holds coordinates and momenta (p_x = ∂L/∂x'); "
-      "give p_x here for the motion from there, or, as a guess, state = { \"x'\" = … } in [guess]");
+      "give p_x here or, for a motion as guess, state = { \"x'\" = … } in [guess]");
   EXPECT_EQ(start("p_y = 1").substr(0, 37), "scene.toml:7:11: unknown coordinate '");
   EXPECT_EQ(start("v_x = 1"),
             "scene.toml:7:11: unknown coordinate 'v_x'; velocities are written \"x'\", and only "

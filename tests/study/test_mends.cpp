@@ -41,16 +41,13 @@ TEST_F(Scenes, MomentaAndVelocitiesInOtherPlaces) {
   const auto after = [&](const std::string& lines) { return message(between + lines); };
   const std::string momentum =
       "'p_x' is a momentum, and a coordinate stands here; momenta are given in 'start' and 'end' of "
-      "[boundary]";
+      "[boundary], and a state in [guess] has velocities, \"x'\"";
   EXPECT_EQ(after("[[waypoints]]\nat = 1\np_x = 1\n"), "scene.toml:10:1: " + momentum);
   EXPECT_EQ(after("[[waypoints]]\nat = 1\n\"x'\" = 1\n"),
             "scene.toml:10:1: \"x'\" is a velocity, and a coordinate stands here");
   EXPECT_EQ(after("[guess]\nstate = { \"x''\" = 1 }\n"),
             "scene.toml:9:11: a second \"'\"; a state has coordinates and velocities");
-  EXPECT_EQ(
-      after("[guess]\nstate = { x = 0, p_x = 1 }\n"),
-      "scene.toml:9:18: 'p_x' is a momentum, and a state has coordinates and velocities; write \"x'\" = the "
-      "velocity");
+  EXPECT_EQ(after("[guess]\nstate = { x = 0, p_x = 1 }\n"), "scene.toml:9:18: " + momentum);
   EXPECT_EQ(
       after("[guess]\n\"x'\" = \"t\"\n"),
       "scene.toml:9:1: \"x'\" is a velocity, which follows from x: give x as a formula of t, or a motion by "

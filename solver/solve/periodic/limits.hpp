@@ -33,7 +33,7 @@ namespace equilibrium {
 /// makes small orbits that do not rest: only roundoff of the guess is none.
 inline constexpr double at_rest = 1e-6, at_driven_rest = 1e-10;
 /// With forces a turn of amplitude a gains or loses a part of about a² beside an equilibrium without
-/// damping: paths there close as those of a family do, but one so small against its guess may be none.
+/// damping: paths there close as those of a family do. One that is so small against its guess is no orbit.
 inline constexpr double at_undamped_rest = 1e-2;
 
 }  // namespace equilibrium

@@ -57,19 +57,6 @@ void set_rates(const std::vector<Assignment>& values, const System& system, Init
   hamilton_equations(*make_lagrangian(*system.hamiltonian), state.q, 0, state.v, scratch);
 }
 
-/// A Lagrangian's state has velocities.
-void refuse_momentum(const Assignment& a, const System& system) {
-  if (system.hamiltonian || !a.name.starts_with("p_")) return;
-  const std::string of = a.name.substr(2), stem = of.substr(0, of.find('['));
-  const auto named = [&](const std::string& name) {
-    return std::ranges::any_of(system.coordinates, [&](const Coordinate& c) { return c.name == name; });
-  };
-  if (named(stem) && !named("p_" + stem))
-    throw SceneError(a.name_at, fmt::format("'{}' is a momentum, and a state has coordinates and velocities; "
-                                            "write \"{}'\" = the velocity",
-                                            a.name, of));
-}
-
 InitialState read_state(const std::vector<Assignment>& values, const System& system) {
   InitialState state{std::vector<double>(system.names.size(), 0),
                      std::vector<double>(system.names.size(), 0)};
@@ -78,7 +65,6 @@ InitialState read_state(const std::vector<Assignment>& values, const System& sys
     const std::string name = velocity ? a.name.substr(0, a.name.size() - 1) : a.name;
     if (name.ends_with('\''))
       throw SceneError(a.name_at, "a second \"'\"; a state has coordinates and velocities");
-    refuse_momentum(a, system);
     for_each_value(a, range_of(name, a.name_at, system), [&](int coordinate, const Quantity& q, int index) {
       (velocity ? state.v : state.q)[coordinate] = evaluate(q, system, index);
     });

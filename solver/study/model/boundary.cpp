@@ -41,7 +41,7 @@ EndEntries read_entries(const std::vector<Assignment>& table, const char* end, c
       if (a.name.ends_with('\''))
         throw SceneError(
             a.name_at, fmt::format("\"{0}\" is a velocity, and '{1}' holds coordinates and momenta (p_{2} = "
-                                   "∂L/∂{0}); give p_{2} here for the motion from there, or, as a guess, "
+                                   "∂L/∂{0}); give p_{2} here or, for a motion as guess, "
                                    "state = {{ \"{0}\" = … }} in [guess]",
                                    a.name, end, a.name.substr(0, a.name.size() - 1)));
       const bool momentum = a.name.starts_with("p_") && !is_coordinate(a.name, system);

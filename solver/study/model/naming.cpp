@@ -84,8 +84,9 @@ Range range_of(const std::string& name, const Location& at, const System& system
   };
   if (stem.starts_with("p_") && is_coordinate(stem.substr(2)))
     throw SceneError(at, fmt::format("'{}' is a momentum, and a coordinate stands here; momenta are given in "
-                                     "'start' and 'end' of [boundary]",
-                                     name));
+                                     "'start' and 'end' of [boundary], and a state in [guess] has "
+                                     "velocities, \"{}'\"",
+                                     name, name.substr(2)));
   if (stem.ends_with("'") && is_coordinate(stem.substr(0, stem.size() - 1)))
     throw SceneError(at, fmt::format("\"{}\" is a velocity, and a coordinate stands here", name));
   keys.insert(keys.end(), coordinates.begin(), coordinates.end());
