@@ -35,7 +35,8 @@ struct Structure {
   int parameters = 0;                 ///< active parameters: those that derivatives are asked for
   bool autonomous = true;             ///< L does not depend on t
   bool harmonic = true;               ///< t stands only in sin, cos and tan of α t + β(q, q')
-  std::vector<double> frequencies;    ///< their |α|, ascending, unique
+  bool pulses = false;                ///< forces may act in pulses without tails, as exp(−x²)
+  std::vector<double> frequencies;    ///< |α| of sin, cos and tan, ascending, unique
   bool quadratic = false;             ///< the form above holds
   std::vector<Triplet> mass;          ///< M, both triangles
   std::vector<Triplet> gyroscopic;    ///< C(row of q', column of q)

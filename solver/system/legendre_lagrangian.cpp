@@ -91,6 +91,7 @@ void LegendreLagrangian::make_structure() {
   structure_.parameters = h.parameters;
   structure_.autonomous = h.autonomous;
   structure_.harmonic = h.harmonic;
+  structure_.pulses = h.pulses;
   structure_.frequencies = h.frequencies;
   structure_.gradient = h.gradient;  // a momentum that H_pp has is there
   std::set<std::pair<int, int>> entries;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "machine/aligned.hpp"
+#include "system/structure.hpp"
 
 namespace extremal {
 
@@ -14,6 +15,7 @@ MinimalCopies::MinimalCopies(std::shared_ptr<const MinimalLagrangian> one, const
   const int d = one_->chart().free;
   structure_.coordinates = 2 * d;
   structure_.autonomous = structure_.harmonic = made.autonomous && made.autonomous_forces;
+  structure_.pulses = std::ranges::any_of(made.motion, [&](Scaled m) { return pulses(*kernel, m.node); });
   // (q₁, q₂, q₁', q₂'): the second copies have the opposite of the first.
   std::vector<Scaled> roots;
   for (int z = 0; z < 4 * d; ++z) {

@@ -8,6 +8,7 @@
 
 #include "machine/aligned.hpp"
 #include "machine/simd.hpp"
+#include "system/structure.hpp"
 
 namespace extremal {
 
@@ -30,6 +31,7 @@ MinimalLagrangian::MinimalLagrangian(const MinimalExpressions& made, Chart chart
   const auto kernel = std::make_shared<const Kernel>(made.kernel);
   structure_.coordinates = chart_.free;
   structure_.autonomous = structure_.harmonic = made.autonomous;
+  structure_.pulses = pulses(*kernel, made.value.node);
   std::vector<Scaled> roots{made.value};
   orders_[0] = tape_of(kernel, roots);
   for (const Partial& p : made.gradient) {

@@ -11,8 +11,12 @@ namespace extremal {
 
 namespace {
 
+constexpr std::initializer_list<Variable> moving = {Variable::coordinate, Variable::velocity, Variable::time};
 constexpr std::initializer_list<Variable> varying = {Variable::coordinate, Variable::velocity, Variable::time,
                                                      Variable::parameter};
+
+/// A power of sin or exp beyond may be a pulse.
+constexpr double most_power = 8;
 
 /// Whether a step of coordinates or velocities is part of the expression.
 bool jumps(const Kernel& kernel, NodeId f) {
@@ -70,6 +74,38 @@ void collect_rows(std::span<const std::shared_ptr<const Kernel>> kernels, Struct
 
 }  // namespace
 
+bool pulses(const Kernel& kernel, NodeId value) {
+  const std::shared_ptr<Kernel> slopes = std::make_shared<Kernel>(empty_like(kernel));
+  slopes->graph = kernel.graph;
+  std::vector<std::uint32_t> inputs;
+  for (std::uint32_t k = 0; k < kernel.kinds.size(); ++k)
+    if (!kernel.is_uniform(k)) inputs.push_back(k);
+  const auto linear = [&](NodeId argument) {
+    const std::vector<NodeId> slope = gradient(slopes->graph, argument, inputs);
+    const std::vector<bool> varies = dependents(*slopes, moving);
+    return std::ranges::none_of(slope, [&](NodeId id) { return varies[id]; });
+  };
+  const std::vector<bool> moves = dependents(kernel, moving);
+  std::vector<bool> exponential(kernel.graph.size(), false), wave = exponential;
+  for (const NodeId id : nodes_of(kernel.graph, value)) {
+    if (!moves[id]) continue;
+    const Node& node = kernel.graph[id];
+    const NodeId a = node.a, b = arity(node.op) > 1 ? node.b : node.a;
+    if (node.op == Op::tanh || (node.op == Op::exp && !linear(a))) return true;
+    if (node.op == Op::div && exponential[b]) return true;
+    if (node.op == Op::pow) {
+      const Node& power = kernel.graph[b];
+      const double p = power.op == Op::constant ? power.value : 1;
+      if ((exponential[a] && p < 0) || ((exponential[a] || wave[a]) && std::abs(p) > most_power)) return true;
+    }
+    const bool function = arity(node.op) > 0;
+    exponential[id] = node.op == Op::exp || node.op == Op::sinh || node.op == Op::cosh ||
+                      (function && (exponential[a] || exponential[b]));
+    wave[id] = node.op == Op::sin || node.op == Op::cos || (function && (wave[a] || wave[b]));
+  }
+  return false;
+}
+
 bool StructureNumbers::add_second(const std::shared_ptr<const Kernel>& kernel) {
   const std::vector<bool> varies = dependents(*kernel, varying);
   Expressions found{.kernel = kernel, .values = {}, .inputs = {}};
@@ -119,8 +155,7 @@ bool StructureNumbers::add_frequencies(const Kernel& kernel) {
     if (!timed[id]) continue;
     if (node.op == Op::sin || node.op == Op::cos || node.op == Op::tan) {
       const NodeId slope = gradient(slopes->graph, node.a, t).front();
-      const bool varies =
-          dependents(*slopes, {Variable::coordinate, Variable::velocity, Variable::time})[slope];
+      const bool varies = dependents(*slopes, moving)[slope];
       if (!varies) found.values.push_back({1, slope});
       otherwise[id] = varies;
     } else {
@@ -196,6 +231,7 @@ Analysis analyse(const LagrangianGraph& l) {
   };
   result.kernels = kernels_of(false);
   for (const auto& kernel : result.kernels) {
+    s.pulses = s.pulses || pulses(*kernel, kernel->value.node);
     if (!dependents(*kernel, {Variable::time})[kernel->value.node]) continue;
     s.autonomous = false;
     if (!result.numbers.add_frequencies(*kernel)) s.harmonic = false;

@@ -44,6 +44,11 @@ struct Analysis {
   std::vector<std::shared_ptr<const Kernel>> kernels;
 };
 
+/// Whether t, q or q' stand so that forces may act in pulses whose tails fall faster than any power: in tanh,
+/// in exp of what is not linear, in high powers of sin and the like, or in reciprocals of exp, sinh or cosh.
+/// (Elements see tails that fall like powers.)
+bool pulses(const Kernel& kernel, NodeId value);
+
 /// Throws std::invalid_argument for a malformed Lagrangian.
 Analysis analyse(const LagrangianGraph& lagrangian);
 

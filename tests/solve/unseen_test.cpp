@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include "machine/long_test.hpp"
 #include "solve/laws.hpp"
@@ -175,6 +176,48 @@ TEST(Unseen, ScenesThatAreRefused) {
   EXPECT_LT(apart.iterations, 100);
   const Solution encounter = refused("nbody-near-collision");
   EXPECT_NE(encounter.message.find("changes velocities"), std::string::npos) << encounter.message;
+}
+
+/// A force w⁻¹ exp(−((t − a)/w)²) that first elements have no point in; twice its integral is known.
+TEST(Unseen, PulseInTime) {
+  for (const double a : {0.07, 0.3, 0.91})
+    for (const double w : {3e-3, 1e-3, 3e-4, 1e-4}) {
+      const auto pulse = trace(1, [&](auto q, auto v, auto t) {
+        return v[0] * v[0] / 2 + 3 / w * q[0] * exp(-((t - a) / w) * ((t - a) / w));
+      });
+      const Solution s = solve(fixed_ends(pulse, {0}, {1}, 1), within(1e-9));
+      const auto twice = [&](double t) {  // of the force, from 0 to t
+        const double u = (t - a) / w;
+        return 3 * w * (0.5 * std::sqrt(std::numbers::pi) * u * (1 + std::erf(u)) + 0.5 * std::exp(-u * u));
+      };
+      Values q(1), v(1);
+      for (const double t : {0.5 * a, a, 0.5 + 0.5 * a}) {
+        s.trajectory.at(t, q, v);
+        EXPECT_NEAR(q[0], t * (1 - twice(1)) + twice(t), 2e-8) << a << ' ' << w << ' ' << t;
+      }
+    }
+}
+
+/// A barrier at a place that first elements pass between two points. The time that it takes is known by
+/// quadrature from the energy.
+TEST(Unseen, PulseInSpace) {
+  for (const double height : {0.3, -2.0})
+    for (const double w : {3e-3, 1e-3, 3e-4, 1e-4}) {
+      const auto barrier = trace(1, [&](auto q, auto v, auto) {
+        return v[0] * v[0] / 2 - height * exp(-((q[0] - 0.3) / w) * ((q[0] - 0.3) / w));
+      });
+      const Solution s = solve(fixed_ends(barrier, {0}, {1}, 1), within(1e-9));
+      const double p = s.momentum_start[0];
+      double time = 1 / p;
+      constexpr int steps = 2000;
+      constexpr double reach = 7;
+      for (int k = 0; k <= steps; ++k) {  // the trapezoidal rule, exact for what vanishes at both ends
+        const double u = reach * (2.0 * k / steps - 1);
+        const double speed = std::sqrt(p * p - 2 * height * std::exp(-u * u));
+        time += (1 / speed - 1 / p) * w * 2 * reach / steps;
+      }
+      EXPECT_NEAR(time, 1, 1e-8) << height << ' ' << w;
+    }
 }
 
 }  // namespace

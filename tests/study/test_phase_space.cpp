@@ -66,6 +66,25 @@ TEST_F(PhaseSpaceScenes, FromInitialData) {
   }
 }
 
+/// Rays in a uniform medium, H = |p|, to a line x = d with the momentum along it: only the direction that
+/// arrives in time does.
+TEST_F(PhaseSpaceScenes, OfDegreeOneBetweenAPointAndALine) {
+  for (const double T : {1.05, 1.2, 3.0})
+    for (const double along : {0.2, -5.0}) {
+      const Study s =
+          study(fmt::format("[system]\ncoordinates = [\"x\", \"y\"]\n"
+                            "hamiltonian = \"sqrt(p_x^2 + p_y^2)\"\n[boundary]\n"
+                            "start = {{ x = 0.0, y = 0.0 }}\nend = {{ x = 1.0, p_y = {} }}\n"
+                            "duration = {}\n",
+                            along, T));
+      const Solution solution = run(s);
+      ASSERT_TRUE(solution.converged()) << T << ' ' << along << solution.message;
+      const double across = std::abs(along) / std::sqrt(T * T - 1);
+      EXPECT_NEAR(at(s, solution, 0).p[0], across, 1e-7 * across) << T;
+      EXPECT_NEAR(at(s, solution, T).q[1], std::copysign(std::sqrt(T * T - 1), along), 1e-7) << T;
+    }
+}
+
 /// Without a guess, from the position at the start and the momentum at the end of a motion: that motion, or
 /// another one with the same.
 TEST_F(PhaseSpaceScenes, MomentumAtTheEndOfAMotion) {

@@ -77,6 +77,23 @@ TEST(Structure, FrequenciesOfTime) {
   EXPECT_TRUE(structure_of(systems::kepler()).frequencies.empty());
 }
 
+TEST(Structure, Pulses) {
+  const auto potential = [](auto make) {
+    return structure_of(
+               trace_graph(1, [&](auto q, auto v, auto t) { return v[0] * v[0] / 2 - make(q[0], t); }))
+        .pulses;
+  };
+  EXPECT_TRUE(potential([](auto q, auto t) { return q * exp(-t * t); }));
+  EXPECT_TRUE(potential([](auto q, auto) { return exp(-(q - 1) * (q - 1)); }));
+  EXPECT_TRUE(potential([](auto q, auto) { return tanh(q); }));
+  EXPECT_TRUE(potential([](auto q, auto t) { return q / (cosh(t) * cosh(t)); }));
+  EXPECT_TRUE(potential([](auto q, auto t) { return q * pow(sin(t), 40); }));
+  EXPECT_TRUE(potential([](auto q, auto t) { return q * exp(sin(t)); }));
+  EXPECT_FALSE(potential([](auto q, auto t) { return q * exp(-3 * t) * sin(q + 5 * t) + q * q * t * t; }));
+  EXPECT_FALSE(potential([](auto q, auto) { return exp(-2 * q) - 2 * exp(-q) + cosh(q); }));
+  EXPECT_FALSE(potential([](auto q, auto) { return 1 / sqrt(q * q + 1e-4) + pow(q, -12); }));
+}
+
 TEST(Structure, AVelocityTimesTimeIsNotQuadratic) {
   const Structure s =
       structure_of(trace_graph(1, [](auto, auto v, auto t) { return v[0] * v[0] / 2 + sin(t) * v[0]; }));

@@ -17,8 +17,10 @@
 #include "solve/accept/limits.hpp"
 #include "solve/accept/minimality.hpp"
 #include "solve/accept/quadrature_check.hpp"
+#include "solve/accept/refuse.hpp"
 #include "solve/accept/symmetries.hpp"
 #include "solve/adapt/others_to_try.hpp"
+#include "solve/mesh/overlooked.hpp"
 #include "solve/mesh/roundoff.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 #include "solve/periodic/equilibrium.hpp"
@@ -319,8 +321,34 @@ Solution without_path(const Solution& solution) {
 struct Judged {
   bool hopeless;      ///< no solution, and another guess would not help
   bool not_isolated;  ///< to the error that the tolerance leaves
-  bool kicked;        ///< refused for momenta at its ends
+  /// Refused for forces that change fast within elements: τ at which they should end as well.
+  std::vector<double> finer_at{};
 };
+
+/// The first and the last element, cut.
+std::vector<double> shorter_ends(const Path& path) {
+  const std::span<const double> mesh = path.mesh();
+  return {shorter_end * mesh[1], 1 - shorter_end * (1 - mesh[mesh.size() - 2])};
+}
+
+/// Refuses a solution along which forces act that its elements do not see. Returns where they do, as τ.
+std::vector<double> judge_forces(const Problem& problem, Solution& solution) {
+  if (!problem.lagrangian->structure().pulses) return {};
+  const OverlookedForces overlooked = overlooked_forces(*problem.lagrangian, solution.trajectory);
+  std::vector<double> ends;
+  const double step = overlooked.step / solution.duration();
+  for (const int k : overlooked.steps) {
+    if (ends.empty() || ends.back() < (k - 0.5) * step) ends.push_back(k * step);
+    ends.push_back((k + 1) * step);
+  }
+  if (ends.empty()) return {};
+  refuse(solution, Status::not_converged,
+         fmt::format("forces act about t = {:.6g} between the points of long elements; try a tighter "
+                     "tolerance or a shorter duration",
+                     solution.trajectory.times.front() + (overlooked.steps.front() + 0.5) * overlooked.step));
+  std::erase_if(ends, [](double tau) { return !(tau > 0 && tau < 1); });
+  return ends;
+}
 
 /// Sets the solution, without a deadline: the path meets the tolerance.
 Judged judge_path(const Problem& problem, const SolveOptions& options, const Outcome& found, Workspace& w,
@@ -371,13 +399,16 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
   }
   const bool judged = solution.converged();
   if (judged) judge_quadrature(check, options, found, solution);
-  const bool kicked = judged && !solution.converged() && !options.scheme && check.kicks(options);
+  std::vector<double> finer_at;
+  if (judged && !solution.converged() && !options.scheme && check.kicks(options))
+    finer_at = shorter_ends(path);
   bool not_isolated = false;
   if (solution.converged() && check.softest && !options.scheme &&
       soft(problem, found, path, *check.softest, solution.error_estimate)) {
     judge_isolation(problem, path, found, *check.softest, w, solution);
     not_isolated = !solution.converged();
   }
+  if (solution.converged() && !options.scheme) finer_at = judge_forces(problem, solution);
   if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned && solution.converged() && !problem.paired) {
@@ -394,7 +425,7 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
   solution.iterations = found.iterations;
   w.iteration.forget();
   solution.seconds_analyse = seconds_since(start);
-  return {examined.hopeless || conjugate, not_isolated, kicked};
+  return {examined.hopeless || conjugate, not_isolated, std::move(finer_at)};
 }
 
 }  // namespace
@@ -412,14 +443,15 @@ Acceptance::Verdict Acceptance::judge(const Outcome& found) {
   const bool first = !solution_;
   std::optional<Solution> later;
   Solution& solution = (first ? solution_ : later).emplace();
-  const Judged judged = judge_path(problem_, options_, found, w_, solution);
+  Judged judged = judge_path(problem_, options_, found, w_, solution);
   seconds_ += solution.seconds_analyse;
   const bool accepted = solution.converged();
   if (accepted && !first) solution_ = std::move(later);
   too_loose_ = !accepted && (too_loose_ || (judged.not_isolated && options_.tolerance > isolating_tolerance));
   const bool hopeless = judged.hopeless || too_loose_;
   if (accepted) return Verdict::accepted;
-  return hopeless ? Verdict::hopeless : judged.kicked ? Verdict::coarse_at_ends : Verdict::refused;
+  finer_at_ = std::move(judged.finer_at);
+  return hopeless ? Verdict::hopeless : finer_at_.empty() ? Verdict::refused : Verdict::coarse;
 }
 
 Solution Acceptance::result(const Outcome& last) {

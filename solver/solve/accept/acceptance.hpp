@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "solve/adapt/outcome.hpp"
 #include "solve/adapt/workspace.hpp"
@@ -29,10 +30,12 @@ class Acceptance {
   enum class Verdict {
     accepted,
     refused,
-    coarse_at_ends,  ///< refused, but elements shorter at the ends may do
-    hopeless,        ///< and other guesses do not help
+    coarse,    ///< refused, but elements that end at finer_at() as well may do
+    hopeless,  ///< and other guesses do not help
   };
   Verdict judge(const Outcome& found);
+  /// Times by the duration at which forces change fast within elements of the last path.
+  const std::vector<double>& finer_at() const { return finer_at_; }
 
   /// The solution that was accepted; else the first that was refused; else why the last path failed.
   Solution result(const Outcome& last);
@@ -53,6 +56,7 @@ class Acceptance {
   const SolveOptions& options_;
   Workspace& w_;
   std::optional<Solution> solution_;
+  std::vector<double> finer_at_;
   bool too_loose_ = false;
   double seconds_ = 0;
 };

@@ -21,6 +21,8 @@ inline constexpr double most_difference_of_copies = 1e-8;
 /// A drift of the energy that looks like an error, relative to the energy or to the mean of L. Drifts are
 /// small if they are less than this part of the terms.
 inline constexpr double noticed_drift = 1e-6;
+/// Of the first or the last element, what is left of it where it is cut.
+inline constexpr double shorter_end = 0.125;
 
 }  // namespace acceptance
 

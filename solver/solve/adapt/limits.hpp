@@ -120,8 +120,6 @@ inline constexpr double border_cost = 2;
 /// Tolerances that velocities are planned for: they may have ten, but slopes at the ends of elements are
 /// harder to predict than those between.
 inline constexpr double planned_slopes = 6;
-/// Of the first or the last element, what is left of it where it is cut.
-inline constexpr double shorter_end = 0.125;
 
 }  // namespace refinement
 

@@ -103,10 +103,11 @@ Refinement::Result Refinement::pursue() {
   return result == Attempt::failed ? Result::failed : Result::unreachable;
 }
 
-Refinement::Result Refinement::pursue_with_shorter_ends() {
+Refinement::Result Refinement::pursue_with_ends_at(const std::vector<double>& ends) {
   std::vector<double> mesh(path_.mesh().begin(), path_.mesh().end());
-  mesh.insert(mesh.begin() + 1, shorter_end * mesh[1]);
-  mesh.insert(mesh.end() - 1, 1 - shorter_end * (1 - mesh[mesh.size() - 2]));
+  const auto middle = mesh.insert(mesh.end(), ends.begin(), ends.end());
+  std::inplace_merge(mesh.begin(), middle, mesh.end());
+  mesh.erase(std::unique(mesh.begin(), mesh.end()), mesh.end());
   move_to(*tables_, mesh);
   return pursue();
 }

@@ -77,8 +77,8 @@ class Refinement {
 
   /// Refines the path.
   Result pursue();
-  /// Cuts the first and the last element, where forces change fast within them, and refines the path again.
-  Result pursue_with_shorter_ends();
+  /// Refines the path again, on elements that end at these τ as well.
+  Result pursue_with_ends_at(const std::vector<double>& ends);
 
   /// False if steps from this path were so long that the second variation is nearly singular, and other
   /// elements find another path.

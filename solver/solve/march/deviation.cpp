@@ -7,7 +7,7 @@
 #include "machine/aligned.hpp"
 #include "solution/element_point.hpp"
 #include "solve/march/limits.hpp"
-#include "solve/march/nodal_values.hpp"
+#include "solve/mesh/nodal_values.hpp"
 #include "solve/mesh/limits.hpp"
 
 namespace extremal {

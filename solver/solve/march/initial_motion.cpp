@@ -18,8 +18,9 @@
 #include "solve/march/kink_watch.hpp"
 #include "solve/march/limits.hpp"
 #include "solve/march/march.hpp"
-#include "solve/march/overlooked.hpp"
 #include "solve/mesh/conservation.hpp"
+#include "solve/mesh/limits.hpp"
+#include "solve/mesh/overlooked.hpp"
 
 namespace extremal {
 
@@ -157,13 +158,15 @@ class InitialMotion {
     return survey_ && conserves_energy(*survey_, solution_.trajectory, options_.tolerance);
   }
 
-  /// Elements become so short that they find a force that depends on time and that these overlook. A force
-  /// that depends on positions alone makes the energy drift.
+  /// Elements become so short that they find a force that these overlook. One that depends on positions alone
+  /// makes the energy drift, unless it is a pulse.
   bool shorten_elements(const Trajectory& trajectory) {
-    if (lagrangian_.structure().autonomous) return false;
-    const std::optional<double> step = overlooked_force(lagrangian_, trajectory);
-    if (!step || !(steps_an_element * *step < longest_)) return false;
-    longest_ = steps_an_element * *step;
+    const Structure& s = lagrangian_.structure();
+    if (s.autonomous && !s.pulses) return false;
+    const OverlookedForces overlooked = overlooked_forces(lagrangian_, trajectory);
+    const double seen = limits::overlooked::steps_an_element * overlooked.step;
+    if (overlooked.steps.empty() || !(seen < longest_)) return false;
+    longest_ = seen;
     return true;
   }
 

@@ -86,10 +86,6 @@ inline constexpr double most_element_growth = 16;
 /// the third number tells, relative to the duration. One that crosses it is cut to no less than the second.
 inline constexpr double kink_near = 0.1, kink_least = 0.02, kink_precision = 1e-15;
 inline constexpr int most_kink_tries = 12;
-/// Steps in which forces are looked for that elements overlook, at least and for each element; elements are
-/// then no longer than so many. Momenta are known to the last number.
-inline constexpr int least_force_steps = 4096, force_steps_an_element = 4;
-inline constexpr double steps_an_element = 4, momentum_noise = 1e-6;
 /// An instant beside the end of an element at which L jumps, by its length and by the time.
 inline constexpr double instant = 1e-12, instant_digits = 16 * unit_roundoff;
 /// Points of an exact quadrature.

@@ -5,7 +5,7 @@
 
 #include "solution/element_point.hpp"
 #include "solve/march/limits.hpp"
-#include "solve/march/nodal_values.hpp"
+#include "solve/mesh/nodal_values.hpp"
 
 namespace extremal {
 

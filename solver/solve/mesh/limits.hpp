@@ -55,4 +55,16 @@ inline constexpr double slope_roundoff = 3e-18;
 
 }  // namespace kinks
 
+namespace overlooked {
+
+/// Steps in which forces are looked for that elements overlook, at least; elements of no more than so many
+/// see them.
+inline constexpr int least_steps = 4096;
+inline constexpr double steps_an_element = 4;
+/// Of the change of momentum in a step and the one before, what its middle may not tell; and the part of the
+/// largest momentum that is roundoff.
+inline constexpr double far = 0.5, momentum_noise = 1e-6;
+
+}  // namespace overlooked
+
 }  // namespace extremal::limits

@@ -379,8 +379,8 @@ inline constexpr int homotopy_degree = 8;
 inline constexpr double force_spreads[] = {8, 1};
 /// Of the effort, kept for weaker forces.
 inline constexpr double share_of_forces = 0.25;
-/// Times that the elements at the ends of a path are cut.
-inline constexpr int most_cuts_at_ends = 8;
+/// Times that elements of a path are cut where forces change fast within them.
+inline constexpr int most_cuts = 8;
 
 }  // namespace search
 

@@ -79,10 +79,9 @@ bool Pursuit::conclude(bool converged) {
 Refinement::Result Pursuit::judge() {
   outcome.status = Status::converged;
   Acceptance::Verdict verdict = acceptance_->judge(outcome);
-  for (int cut = 0; verdict == Acceptance::Verdict::coarse_at_ends && cut < limits::search::most_cuts_at_ends;
-       ++cut) {
+  for (int cut = 0; verdict == Acceptance::Verdict::coarse && cut < limits::search::most_cuts; ++cut) {
     refinement.rebind();
-    if (refinement.pursue_with_shorter_ends() != Refinement::Result::converged) break;
+    if (refinement.pursue_with_ends_at(acceptance_->finer_at()) != Refinement::Result::converged) break;
     verdict = acceptance_->judge(outcome);
   }
   if (verdict == Acceptance::Verdict::accepted) return Refinement::Result::converged;

@@ -51,19 +51,23 @@ void fill_formula(const Quantity& quantity, int a, int index, const System& syst
   for (std::size_t k = 0; k < times.size(); ++k) guess.q[k * n + a] = values[k];
 }
 
-/// Of phase space: which momenta the guess gives. Where it gives neither a coordinate nor its momentum, one
-/// that an end gives is better than that of a line which hardly moves.
-std::vector<char> given_momenta(const GuessTable& table, const System& system, const EndMap& ends) {
+/// Of phase space. Where the guess names neither a coordinate nor its momentum, one that an end gives is
+/// better than that of a line which hardly moves.
+std::vector<GuessKnows> known_of(const GuessTable& table, const System& system, const EndMap& ends) {
   const std::size_t n = system.names.size() / 2;
   std::vector<char> named(2 * n, 0);
   for (const Assignment& a : table.formulas) {
     const Range range = range_of(a.name, a.name_at, system);
     std::fill_n(named.begin() + range.first, range.count, 1);
   }
-  std::vector<char> given(named.begin() + static_cast<std::ptrdiff_t>(n), named.end());
-  for (std::size_t a = 0; a < n; ++a)
-    if (!named[a] && (ends.fixed[n + a] || ends.fixed[3 * n + a])) given[a] = 1;
-  return given;
+  std::vector<GuessKnows> known(n, GuessKnows::velocity);
+  for (std::size_t a = 0; a < n; ++a) {
+    if (named[n + a])
+      known[a] = GuessKnows::both;
+    else if (!named[a] && (ends.fixed[n + a] || ends.fixed[3 * n + a]))
+      known[a] = GuessKnows::momentum;
+  }
+  return known;
 }
 
 /// Names and velocities differ by the prime alone.
@@ -173,13 +177,14 @@ void read_guess(const Scene& scene, const System& system, const Deadline& deadli
                              problem);
     use_path(std::move(file), problem.guess);
     if (incomplete)
-      complete_momenta(*system.hamiltonian, std::vector<char>(system.names.size() / 2, 0), problem);
+      complete_momenta(*system.hamiltonian,
+                       std::vector<GuessKnows>(system.names.size() / 2, GuessKnows::velocity), problem);
     return;
   }
   if (problem.duration.free || table.duration) problem.duration.value = guessed_duration(table, system, {});
   const bool paths = system.hamiltonian && !table.state && !problem.initial;
   if (!table.formulas.empty() || paths) tabulate_formulas(table, system, problem);
-  if (paths) complete_momenta(*system.hamiltonian, given_momenta(table, system, problem.ends), problem);
+  if (paths) complete_momenta(*system.hamiltonian, known_of(table, system, problem.ends), problem);
   if (table.state) integrate_state(*table.state, system, table.at, deadline, problem);
 }
 

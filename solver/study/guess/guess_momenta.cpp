@@ -23,10 +23,13 @@ constexpr double first_fit_damping = 1e-3, most_fit_damping = 1e6, fit_enough = 
 /// Least squares of ∂H/∂p − v, and of H − E, by the method of Levenberg and Marquardt.
 class MomentumFit {
  public:
-  MomentumFit(const Lagrangian& hamiltonian, const std::vector<char>& given, std::optional<double> energy)
+  MomentumFit(const Lagrangian& hamiltonian, const std::vector<GuessKnows>& known,
+              std::optional<double> energy)
       : hamiltonian_(hamiltonian), energy_(energy) {
-    for (std::size_t a = 0; a < given.size(); ++a)
-      if (!given[a]) free_.push_back(static_cast<Eigen::Index>(a));
+    for (std::size_t a = 0; a < known.size(); ++a) {
+      if (known[a] == GuessKnows::velocity) free_.push_back(static_cast<Eigen::Index>(a));
+      if (known[a] != GuessKnows::momentum) moving_.push_back(static_cast<Eigen::Index>(a));
+    }
   }
 
   /// Improves p; false where H is not finite.
@@ -56,25 +59,25 @@ class MomentumFit {
 
  private:
   bool evaluate(const VectorXd& q, const VectorXd& v, double t, const VectorXd& p) {
-    const auto n = q.size(), rows = n + energy_.has_value();
+    const auto n = q.size(), moving = std::ssize(moving_), rows = moving + energy_.has_value();
     const auto span = [](const VectorXd& x) { return std::span(x.data(), std::size_t(x.size())); };
     const PointValues at = evaluate_at(hamiltonian_, span(q), span(p), t, Order::hessian, scratch_);
     const Eigen::Map<const MatrixXd> mass(at.vv.data(), n, n);
     residual_.resize(rows);
     slopes_.resize(rows, std::ssize(free_));
     const Eigen::Map<const VectorXd> velocity(at.dv.data(), n);
-    residual_.head(n) = velocity - v;
-    if (energy_) residual_[n] = at.value - *energy_;
+    for (Eigen::Index k = 0; k < moving; ++k) residual_[k] = velocity[moving_[k]] - v[moving_[k]];
+    if (energy_) residual_[moving] = at.value - *energy_;
     for (Eigen::Index k = 0; k < slopes_.cols(); ++k) {
-      slopes_.col(k).head(n) = mass.col(free_[k]);
-      if (energy_) slopes_(n, k) = velocity[free_[k]];
+      for (Eigen::Index j = 0; j < moving; ++j) slopes_(j, k) = mass(moving_[j], free_[k]);
+      if (energy_) slopes_(moving, k) = velocity[free_[k]];
     }
     return residual_.allFinite() && slopes_.allFinite();
   }
 
   const Lagrangian& hamiltonian_;
   const std::optional<double> energy_;
-  std::vector<Eigen::Index> free_;
+  std::vector<Eigen::Index> free_, moving_;  ///< momenta that are looked for, velocities that are known
   VectorXd residual_;
   MatrixXd slopes_;
   Scratch scratch_;
@@ -105,10 +108,11 @@ class Samples {
 
 }  // namespace
 
-void complete_momenta(const LagrangianGraph& hamiltonian, const std::vector<char>& given, Problem& problem) {
-  if (std::ranges::all_of(given, [](char x) { return x != 0; }) || !problem.guess.given()) return;
+void complete_momenta(const LagrangianGraph& hamiltonian, const std::vector<GuessKnows>& known,
+                      Problem& problem) {
+  if (std::ranges::find(known, GuessKnows::velocity) == known.end() || !problem.guess.given()) return;
   const std::shared_ptr<const Lagrangian> h = make_lagrangian(hamiltonian);
-  MomentumFit fit(*h, given, problem.duration.energy);
+  MomentumFit fit(*h, known, problem.duration.energy);
   Samples samples(problem);
   const auto n = samples.q(0).size();
   VectorXd moved = VectorXd::Zero(n), moved_before = moved;  // from what the samples have
@@ -120,7 +124,7 @@ void complete_momenta(const LagrangianGraph& hamiltonian, const std::vector<char
       // Where H is not smooth at rest.
       p = samples.p(k);
       for (Eigen::Index a = 0; a < n; ++a)
-        if (!given[a]) p[a] += v[a];
+        if (known[a] == GuessKnows::velocity) p[a] += v[a];
       if (!fit.run(samples.q(k), v, samples.time(k), p)) p = samples.p(k) + moved;
     }
     moved_before = moved;

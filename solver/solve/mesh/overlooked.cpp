@@ -1,17 +1,18 @@
-#include "solve/march/overlooked.hpp"
+#include "solve/mesh/overlooked.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "machine/aligned.hpp"
 #include "solution/element_point.hpp"
-#include "solve/march/limits.hpp"
-#include "solve/march/nodal_values.hpp"
+#include "solve/mesh/limits.hpp"
+#include "solve/mesh/nodal_values.hpp"
 
 namespace extremal {
 
-using namespace limits::march;
+using namespace limits::overlooked;
 
 namespace {
 
@@ -73,39 +74,39 @@ class ForceReader {
 
 }  // namespace
 
-std::optional<double> overlooked_force(const Lagrangian& lagrangian, const Trajectory& trajectory) {
+OverlookedForces overlooked_forces(const Lagrangian& lagrangian, const Trajectory& trajectory) {
   constexpr int steps_a_batch = points_together / 2 - 1;  // their ends and their middles
-  const int steps = std::max(least_force_steps, force_steps_an_element * trajectory.elements());
-  const double step = trajectory.duration() / steps;
+  const int count = std::max(least_steps, trajectory.degree * trajectory.elements());
+  const double step = trajectory.duration() / count;
   const std::size_t n = trajectory.coordinates;
   ForceReader reader(lagrangian, trajectory);
   AlignedDoubles force, momentum;
-  double largest = 0, missed = 0;
-  // Elements end on kinks, where forces jump: the middle of a step does not tell their mean there.
-  const bool kinked = lagrangian.kinks() != nullptr;
-  const std::vector<double>& ends = trajectory.times;
-  const auto jumps = [&](int k) {
-    if (!kinked) return false;
-    const auto end = std::ranges::upper_bound(ends, k * step);
-    return end != ends.end() && *end < (k + 1) * step;
-  };
-  for (int first = 0; first < steps; first += steps_a_batch) {
-    const int count = std::min(steps_a_batch, steps - first);
+  std::vector<double> largest(n), before(n), most(count);  // |p|, the last |Δp|, what is missed of |p|
+  for (int first = 0; first < count; first += steps_a_batch) {
+    const int together = std::min(steps_a_batch, count - first);
     for (int i = 0; i < points_together; ++i)
-      reader.put(i, std::min((first + 0.5 * std::min(i, 2 * count)) * step, trajectory.duration()));
+      reader.put(i, std::min((first + 0.5 * std::min(i, 2 * together)) * step, trajectory.duration()));
     reader.read(force, momentum);
     for (std::size_t a = 0; a < n; ++a)
-      for (int k = 0; k < count; ++k) {
-        if (jumps(first + k)) continue;
-        const std::size_t at = a * points_together + 2 * k;
-        const double change = momentum[at + 2] - momentum[at], push = step * force[at + 1];
-        const double noise = momentum_noise * (std::abs(momentum[at]) + std::abs(momentum[at + 2]));
-        largest = std::max(largest, std::abs(push));
-        missed = std::max(missed, std::abs(change - push) - noise);
+      for (int k = 0; k < together; ++k) {
+        const double* const p = momentum.data() + a * points_together + 2 * k;
+        const double change = std::abs(p[2] - p[0]), usual = std::exchange(before[a], change);
+        const double missed = std::abs(p[2] - p[0] - step * force[a * points_together + 2 * k + 1]);
+        largest[a] = std::max({largest[a], std::abs(p[0]), std::abs(p[2])});
+        if (missed > far * std::max(change, usual) && missed > momentum_noise * largest[a])
+          most[first + k] = std::max(most[first + k], missed / largest[a]);
       }
   }
-  if (missed > 0.5 * largest) return step;
-  return std::nullopt;
+  // Elements end on kinks, where forces jump: the middle of a step does not tell their mean there.
+  const bool kinked = lagrangian.kinks() != nullptr;
+  OverlookedForces found{.step = step};
+  for (int k = 0, element = 0; k < count; ++k) {
+    while (element + 1 < trajectory.elements() && trajectory.times[element + 1] <= k * step) ++element;
+    const bool whole = trajectory.times[element + 1] >= (k + 1) * step;
+    if (most[k] > 0 && (whole || !kinked) && trajectory.length(element) > steps_an_element * step)
+      found.steps.push_back(k);
+  }
+  return found;
 }
 
 }  // namespace extremal
