@@ -61,9 +61,11 @@ namespace overlooked {
 /// see them.
 inline constexpr int least_steps = 4096;
 inline constexpr double steps_an_element = 4;
-/// Of the change of momentum in a step and the one before, what its middle may not tell; and the part of the
-/// largest momentum that is roundoff.
-inline constexpr double far = 0.5, momentum_noise = 1e-6;
+/// Between its points, an element is so many cubics by its degree.
+inline constexpr int cubics_a_degree = 2;
+/// Of the change of momentum in a step and the one before, what its middle may not tell; and parts of the
+/// largest momentum of one coordinate, and of all, that are roundoff.
+inline constexpr double far = 0.5, momentum_noise = 1e-6, rounded_off = 1e-12;
 
 }  // namespace overlooked
 
