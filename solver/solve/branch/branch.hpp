@@ -7,7 +7,7 @@
 #include "action/rule.hpp"
 #include "problem/closing.hpp"
 #include "solve/adapt/workspace.hpp"
-#include "solve/homotopy/curve.hpp"
+#include "solve/curve/move.hpp"
 #include "solve/newton/zero_eigenvalue.hpp"
 
 /// \file The equations of a branch of extremals, linearised at one path of it.
@@ -34,7 +34,7 @@ struct ProblemFamily {
 
 /// Curves through a path: with x the path, δS = 0 and the equation that closes a free duration leave of (x,
 /// T) one direction where the duration or the energy varies, and of (x, T, p) one where a parameter p does.
-class Branch : public ExtremalCurve {
+class Branch {
  public:
   Branch(const ProblemFamily& family, Path& path, Workspace& workspace);
 
@@ -45,14 +45,15 @@ class Branch : public ExtremalCurve {
   /// The coordinate that Move::parameter changes: the parameter, or the duration.
   double coordinate() const { return by_duration() ? path_.duration() : coordinate_; }
   /// Moves path and coordinate; false if there is no problem there, or corners cannot follow (see defined()).
-  bool apply(const Move& move, double factor) override;
+  bool apply(const Move& move, double factor);
   /// Scalar product of a tangent with the nonlinear part of the last apply(): ends and durations that do not
   /// depend linearly on the parameter.
-  double drift(const Move& tangent) const override;
+  double drift(const Move& tangent) const;
 
+  Move correction, direction;
   /// Solves the linearised equations at the path: correction + α·direction. False where they cannot be.
   /// With the factors of the path that was linearised before, the direction stays that of there.
-  bool linearise(Factors factors = Factors::anew) override;
+  bool linearise(Factors factors = Factors::anew);
   /// Whether there are factors of a path in the same problem and on the same elements.
   bool factored() const { return factored_; }
   /// Whether null directions of the equations are those of single points, as of folds, and not of a family
@@ -99,9 +100,9 @@ class Branch : public ExtremalCurve {
   /// −∂S/∂q(0), then ∂S/∂q(T).
   std::span<const double> momenta() const { return momenta_; }
   /// The number that varies.
-  double varied() const override;
+  double varied() const;
   /// By how much a move makes it greater, correction and direction apart.
-  double change(bool along) const override;
+  double change(bool along) const;
   /// The size of that number: an error of the path changes it by about as much, relative.
   double varied_unit() const;
   /// The sign of the determinant of the equations with the tangent `onward`·direction as their last row: it
@@ -122,7 +123,7 @@ class Branch : public ExtremalCurve {
   const ElementTables& tables() const { return *tables_; }
   /// Mean over τ, by the nodes, relative to an extent of the path; durations relative to another, parameters
   /// to the distance wanted.
-  double dot(const Move& a, const Move& b) const override;
+  double dot(const Move& a, const Move& b) const;
   /// The most that a node is moved, which short elements hide in the mean; inner nodes, too, as those of an
   /// element of half a period move far while its ends hardly do.
   double largest(const Move& move) const;

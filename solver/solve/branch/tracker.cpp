@@ -5,6 +5,7 @@
 
 #include "solve/branch/chord_steps.hpp"
 #include "solve/branch/limits.hpp"
+#include "solve/curve/arclength.hpp"
 #include "solve/mesh/mesh.hpp"
 #include "solve/mesh/roundoff.hpp"
 
@@ -184,8 +185,8 @@ bool Tracker::correct(double length, const double* landing, double share) {
   const double enough = std::max(unfinished * tolerance_, least_goal);
   ChordSteps policy(branch_, tangent_, length, landing ? least_goal : std::max(share * enough, least_goal),
                     enough);
-  const CurveBorder border{.tangent = &tangent_, .value = landing};
-  const Progress progress = newton_loop(BorderedSteps{branch_, border}, policy);
+  const Progress progress = landing ? newton_loop(ToValue{branch_, *landing}, policy)
+                                    : newton_loop(AcrossTangent{branch_, tangent_}, policy);
   factorisations_ = policy.factorisations();
   if (landing) landed_ += policy.along();
   failure_ = policy.left_problem() ? StepFailure::no_problem

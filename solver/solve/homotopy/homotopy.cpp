@@ -13,28 +13,10 @@ using namespace limits::homotopy;
 
 namespace {
 
-/// Corrections that shrink: each is shorter than `longest`, and than a part of the one before.
-struct ShrinkingSteps {
-  ExtremalCurve& curve;
-  int most_steps;
-  double longest, enough, before = INFINITY;
-
-  static Factors factors(int) { return Factors::anew; }
-  Progress take(bool solved, int) {
-    if (!solved) return Progress::failed;
-    const double size = std::sqrt(curve.dot(curve.correction, curve.correction));
-    if (!(size < contraction * before && size < longest) || !curve.apply(curve.correction, 1))
-      return Progress::failed;
-    before = size;
-    return size < enough ? Progress::arrived : Progress::more;
-  }
-  static Progress exhausted() { return Progress::failed; }
-};
-
 /// Steps of bounded length from a path that need not be near: the bound doubles where corrections shrink, and
 /// is halved where they grow.
 struct BoundedSteps {
-  ExtremalCurve& curve;
+  Homotopy& curve;
   int most_steps;
   double longest, enough, bound = longest, before = INFINITY;
 
@@ -53,7 +35,11 @@ struct BoundedSteps {
 }  // namespace
 
 Homotopy::Homotopy(Path& path, Workspace& workspace, std::function<bool()> count, double unit)
-    : path_(path), w_(workspace), count_(std::move(count)), unit_(unit) {}
+    : path_(path),
+      w_(workspace),
+      count_(std::move(count)),
+      unit_(unit),
+      along_{{least_length, shortening, sharpest_turn}} {}
 
 bool Homotopy::linearise(Factors) {
   if (++steps_ > most_steps_) return false;
@@ -91,6 +77,12 @@ bool Homotopy::apply(const Move& move, double factor) {
   return true;
 }
 
+void Homotopy::save() {
+  saved_ = path_;
+  saved_parameter_ = parameter();
+  saved_steps_ = steps_;
+}
+
 void Homotopy::restore() {
   path_ = saved_;
   set_parameter(saved_parameter_);
@@ -100,11 +92,8 @@ bool Homotopy::begin(const ElementTables& tables, int most_steps) {
   most_steps_ = most_steps;
   tables_ = &tables;
   steps_ = 0;
-  length_ = first_length;
   farthest_ = std::max(farthest * unit_, 2 * std::abs(parameter()));
   refusals_ = 0;
-  last_length_ = 0;
-  tangent_ = {};
   w_.iteration.reset(problem(), tables, path_.elements());
   first_scale_ = scale_ = scales(path_, tables).q;
   return scale_ > 0;
@@ -112,31 +101,19 @@ bool Homotopy::begin(const ElementTables& tables, int most_steps) {
 
 bool Homotopy::approach() {
   BoundedSteps policy{*this, most_approaches, largest_approach, close_to_curve};
-  return newton_loop(BorderedSteps{*this, {}}, policy) == Progress::arrived;
+  return newton_loop(AcrossTangent{*this, direction}, policy) == Progress::arrived;
 }
 
 bool Homotopy::find_tangent() {
-  if (!linearise() || !update_tangent()) return false;
-  std::swap(tangent_, next_);
+  if (!linearise(Factors::anew)) return false;
+  along_.begin(*this, first_length, onward(direction));
   return true;
 }
 
-/// Newton's method across the tangent.
-bool Homotopy::correct() {
-  ShrinkingSteps policy{*this, most_corrections, std::max(longest_correction * length_, on_curve),
-                        std::min(on_curve, corrected * length_)};
-  return newton_loop(BorderedSteps{*this, {.tangent = &tangent_}}, policy) == Progress::arrived;
-}
-
-/// The next tangent, onward.
-bool Homotopy::update_tangent() {
-  const bool first = tangent_.step.nodes.empty();
-  const TangentScale tangent =
-      tangent_scale(*this, first ? nullptr : &tangent_, first ? onward(direction) : 0);
-  next_ = direction;
-  next_.scale(tangent.scale);
-  cosine_ = tangent.cosine;
-  return cosine_ > sharpest_turn;
+bool Homotopy::correct(const Move& tangent, double length) {
+  return correct_across(*this, tangent,
+                        {most_corrections, contraction, std::max(longest_correction * length, on_curve),
+                         std::min(on_curve, corrected * length)});
 }
 
 /// Goes to where the parameter is zero, which the last step has passed, if that is near; else the next step
@@ -144,10 +121,9 @@ bool Homotopy::update_tangent() {
 bool Homotopy::land(double from) {
   constexpr double wanted = 0;
   const double passed = parameter();
-  ShrinkingSteps policy{*this, most_landings, farthest_landing, landed};
-  if (newton_loop(BorderedSteps{*this, {.value = &wanted}}, policy) == Progress::arrived)
-    return set_parameter(wanted);
-  length_ *= std::clamp(from / (from - passed), 0.1, 0.9);
+  ContractingSteps policy(*this, {most_landings, contraction, farthest_landing, landed});
+  if (newton_loop(ToValue{*this, wanted}, policy) == Progress::arrived) return set_parameter(wanted);
+  along_.length *= std::clamp(from / (from - passed), 0.1, 0.9);
   return false;
 }
 
@@ -161,48 +137,31 @@ bool Homotopy::resolve() {
                                      {aim, aim, degree, degree, degree, most_elements, strongest_cut});
   if (finer.mesh.empty()) return finer.degree != 0;
   std::vector<double> nodes =
-      interpolated(tangent_.step.nodes, path_.coordinates(), path_.mesh(), finer.mesh);
+      interpolated(along_.tangent.step.nodes, path_.coordinates(), path_.mesh(), finer.mesh);
   w_.other.resample_from(path_, *tables_, finer.mesh);
   std::swap(path_, w_.other);
   w_.iteration.reset(problem(), *tables_, path_.elements());
-  tangent_.step.nodes = std::move(nodes);
-  tangent_.times.clear();
-  last_length_ = 0;
-  if (!linearise()) return false;
-  update_tangent();
-  std::swap(tangent_, next_);
+  along_.tangent.step.nodes = std::move(nodes);
+  along_.tangent.times.clear();
+  if (!linearise(Factors::anew)) return false;
+  along_.begin_anew(*this);
   return true;
 }
 
 /// Nearer to the family, where its tangent is known better.
 void Homotopy::polish() {
-  last_length_ = 0;
-  if (!approach() || !linearise()) return restore();
-  update_tangent();
-  std::swap(tangent_, next_);
+  along_.way = 0;
+  if (!approach() || !linearise(Factors::anew)) return restore();
+  along_.begin_anew(*this);
 }
 
-/// The parabola through the tangents here and before.
-Move Homotopy::predicted() const {
-  Move move = tangent_;
-  if (last_length_ == 0) return move;
-  const double half = 0.5 * length_ / last_length_;
-  move.add(tangent_, half);
-  move.add(previous_, -half);
-  return move;
+void Homotopy::refuse() {
+  restore();
+  if (++refusals_ == refusals_before_polish) polish();
 }
 
 bool Homotopy::reach() {
-  while (length_ > least_length && steps_ < most_steps_) {
-    saved_ = path_;
-    saved_parameter_ = parameter();
-    const int began = steps_;
-    if (!apply(predicted(), length_) || !correct() || !update_tangent()) {
-      restore();
-      length_ *= 0.4;
-      if (++refusals_ == refusals_before_polish) polish();
-      continue;
-    }
+  while (along_.advance(*this)) {
     const bool passed = saved_parameter_ != 0 && saved_parameter_ * parameter() <= 0;
     if (passed) {
       beyond_ = path_;
@@ -212,14 +171,14 @@ bool Homotopy::reach() {
         continue;
       }
     }
-    previous_ = std::exchange(tangent_, next_);
-    last_length_ = length_;
+    along_.accept(along_.length);
     if (passed) return true;
     scale_ = scales(path_, *tables_).q;
     const bool away = std::abs(parameter()) > farthest_;
     if (away || scale_ > runaway * first_scale_ || !resolve()) return false;
-    const double growth = cosine_ > 0.98 ? 2 : cosine_ > 0.93 ? 1.4 : 1;
-    if (refusals_ == 0) length_ *= growth * (steps_ - began > 2 ? 0.7 : 1);
+    const double cosine = along_.cosine;
+    const double growth = cosine > straight ? growth_if_straight : cosine > bent ? growth_if_bent : 1;
+    if (refusals_ == 0) along_.length *= growth * (steps_ - saved_steps_ > few_steps ? slowdown : 1);
     refusals_ = 0;
   }
   return false;

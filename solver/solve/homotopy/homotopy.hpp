@@ -3,8 +3,9 @@
 #include <functional>
 
 #include "solve/adapt/workspace.hpp"
+#include "solve/curve/arclength.hpp"
+#include "solve/curve/move.hpp"
 #include "solve/homotopy/comoving.hpp"
-#include "solve/homotopy/curve.hpp"
 
 /// \file Continuation along a curve of extremals to one of the problem.
 
@@ -12,20 +13,35 @@ namespace extremal {
 
 /// A path is taken along a curve of extremals, past folds, by pseudo-arclength. The parameter is zero where
 /// an extremal belongs to the problem.
-class Homotopy : public ExtremalCurve {
+class Homotopy {
  public:
+  virtual ~Homotopy() = default;
+
   /// Takes the path onward to where the parameter is zero again: nearly an extremal of the problem then.
   /// False where the curve does not come there.
   bool reach();
   /// Back to where the last reach() passed zero, after the workspace was used for something else.
   void resume();
 
+  // The curve, see solve/curve/arclength.hpp.
+  Move correction, direction;
+  bool linearise(Factors factors);
+  bool apply(const Move& move, double factor);
+  double dot(const Move& a, const Move& b) const;
+  double varied() const { return parameter(); }
+  double change(bool along) const { return (along ? direction : correction).parameter; }
+  bool goes_on() const { return steps_ < most_steps_; }
+  void save();
+  bool correct(const Move& tangent, double length);
+  void refuse();
+
  protected:
   /// `count` is called for each factorisation and says whether there may be more; `unit` is the size of the
   /// parameter that counts as much as the extent of the path.
   Homotopy(Path& path, Workspace& workspace, std::function<bool()> count, double unit);
 
-  /// See ExtremalCurve::linearise().
+  /// All solutions of the linearised equations are correction + α·direction. False where they cannot be
+  /// solved.
   virtual bool solve_linearised(Move& correction, Move& direction) = 0;
   virtual const Problem& problem() const = 0;
   virtual double parameter() const = 0;
@@ -49,13 +65,6 @@ class Homotopy : public ExtremalCurve {
   bool find_tangent();
 
  private:
-  bool linearise(Factors factors = Factors::anew) override;
-  double dot(const Move& a, const Move& b) const override;
-  bool apply(const Move& move, double factor) override;
-  double varied() const override { return parameter(); }
-  bool correct();
-  Move predicted() const;
-  bool update_tangent();
   bool land(double from);
   void polish();
   bool resolve();
@@ -63,14 +72,11 @@ class Homotopy : public ExtremalCurve {
 
   std::function<bool()> count_;
   const ElementTables* tables_ = nullptr;
-  double unit_, scale_ = 1, first_scale_ = 1, length_ = 0, farthest_ = 0;
-  int most_steps_ = 0, steps_ = 0,
-      refusals_ = 0;  ///< linearisations; steps refused since the last that was not
+  double unit_, scale_ = 1, first_scale_ = 1, farthest_ = 0;
+  int most_steps_ = 0, steps_ = 0, saved_steps_ = 0;  ///< linearisations
+  int refusals_ = 0;                                  ///< steps refused since the last that was not
   Comoving comoving_;
-  Move tangent_, next_;     ///< of length one
-  Move previous_;           ///< tangent before, on the same elements
-  double last_length_ = 0;  ///< from there; 0 if there is none
-  double cosine_ = 1;       ///< between the last two
+  ArclengthSteps<Move> along_;
   Path saved_, beyond_;
   double saved_parameter_ = 0, beyond_parameter_ = 0;
 };

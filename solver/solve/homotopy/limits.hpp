@@ -48,8 +48,13 @@ inline constexpr double corrected = 3e-3;
 /// An element keeps so much of its length in one move.
 inline constexpr double least_element = 0.3;
 /// A step is refused where corrections shrink less than this, are longer than this part of it, or where the
-/// family turns by more than the angle with this cosine.
-inline constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9;
+/// family turns by more than the angle with this cosine. The next try is so much of it.
+inline constexpr double contraction = 0.5, longest_correction = 0.5, sharpest_turn = 0.9, shortening = 0.4;
+/// A step grows by a factor where the cosine of the angle by which it turned is more than a bound, less after
+/// more linearisations than these.
+inline constexpr double straight = 0.98, growth_if_straight = 2, bent = 0.93, growth_if_bent = 1.4;
+inline constexpr int few_steps = 2;
+inline constexpr double slowdown = 0.7;
 inline constexpr int refusals_before_polish = 2;
 inline constexpr int most_corrections = 4, most_landings = 8, most_approaches = 25;
 /// The family has run away where the path is so much larger than at first, or the parameter so many units
