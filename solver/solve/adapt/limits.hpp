@@ -84,7 +84,9 @@ inline constexpr double longest_correction = 0.5, contraction = 0.5, close_to_cu
 inline constexpr int most_corrections = 8;
 /// Newton's method for μ = 0 is tried where μ has become so much smaller.
 inline constexpr double leap = 0.7;
-/// A step that took no more is followed by a longer one.
+/// The next try after a step that failed is so much of it. A step that took no more linearisations is
+/// followed by a longer one.
+inline constexpr double shortening = 0.5, lengthening = 1.5;
 inline constexpr int few_linearisations = 5;
 /// Linearisations of one curve, and these times its unknowns.
 inline constexpr int least_linearisations = 50, most_linearisations = 400;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solve/adapt/limits.hpp"
+#include "solve/curve/arclength.hpp"
 #include "solve/mesh/resolution.hpp"
 
 namespace extremal {
@@ -20,90 +21,79 @@ ResidualHomotopy::ResidualHomotopy(const Problem& problem, const ElementTables& 
       on_step_(std::move(on_step)),
       equations_(problem, tables, elements, free_times) {}
 
-/// All solutions of F(x) + F'(x) δx = (μ + δμ) F(x_0) are correction_ + δμ direction_.
+/// All solutions of F(x) + F'(x) δx = (μ + δμ) F(x_0) are correction + δμ direction.
 bool ResidualHomotopy::linearise(const Path& path, double mu) {
   const SchemeEquations::Vector& left = equations_.evaluate(path);
   if (--left_ < 0 || !on_step_() || !equations_.factor(path)) return false;
-  correction_ = equations_.solve(mu * first_ - left);
-  direction_ = equations_.solve(first_);
-  return correction_.allFinite() && direction_.allFinite();
+  correction = {equations_.solve(mu * first_ - left), 0};
+  direction = {equations_.solve(first_), 1};
+  return correction.step.allFinite() && direction.step.allFinite();
 }
 
-double ResidualHomotopy::product(const Tangent& a, const Tangent& b, const Path& path) const {
-  return equations_.product(a.step, b.step, path, extent_) + a.parameter * b.parameter;
+double ResidualHomotopy::dot(const Move& a, const Move& b) const {
+  return equations_.product(a.step, b.step, at_.path, extent_) + a.parameter * b.parameter;
+}
+
+bool ResidualHomotopy::apply(const Move& move, double factor) {
+  if (!equations_.apply(at_.path, move.step, factor)) return false;
+  at_.mu += factor * move.parameter;
+  return true;
+}
+
+void ResidualHomotopy::save() {
+  saved_ = at_;
+  saved_left_ = left_;
+}
+
+bool ResidualHomotopy::correct(const Move& tangent, double length) {
+  return correct_across(*this, tangent,
+                        {most_corrections, contraction, longest_correction * length, corrected * length,
+                         close_to_curve * length, nearly * length}) &&
+         linearise(Factors::anew);
 }
 
 /// Newton's method for one μ, until steps gain nothing more.
 bool ResidualHomotopy::converge(Path& path, double mu) {
+  struct Equations {
+    ResidualHomotopy& curve;
+    const Path& path;
+    double mu;
+    bool solve(Factors) { return curve.linearise(path, mu); }
+  };
   double before = INFINITY;
   Path trial;
-  for (int k = 0; k < most_newton_steps && linearise(path, mu); ++k) {
+  const auto take = [&](bool solved, int) {
+    if (!solved) return Progress::failed;
     trial = path;
-    const bool moved = equations_.apply(trial, correction_, 1);
+    const bool moved = equations_.apply(trial, correction.step, 1);
     const double after = moved ? equations_.size(equations_.evaluate(trial) - mu * first_, trial) : INFINITY;
-    if (before <= enough_ && !(after < before)) return true;
-    if (!(after < worst_residual)) return false;
+    if (before <= enough_ && !(after < before)) return Progress::arrived;
+    if (!(after < worst_residual)) return Progress::failed;
     before = after;
     std::swap(path, trial);
-  }
-  return before <= enough_;
+    return Progress::more;
+  };
+  NewtonPolicy policy{most_newton_steps, Progress::failed, [](int) { return Factors::anew; }, take};
+  return newton_loop(Equations{*this, path, mu}, policy) == Progress::arrived || before <= enough_;
 }
 
 /// Newton's method for values of μ that fall to 0 as fast as it converges.
-bool ResidualHomotopy::descend(Path& path, double& mu) {
+bool ResidualHomotopy::descend(Point& at) {
   left_ = most_linearisations_of_curve();
   Path trial;
   for (double way = 1; way >= least_way && left_ > 0;) {
-    trial = path;
-    const double next = std::max(0.0, mu - way);
+    trial = at.path;
+    const double next = std::max(0.0, at.mu - way);
     if (!converge(trial, next)) {
       way /= 2;
       continue;
     }
-    std::swap(path, trial);
-    mu = next;
-    if (mu == 0) return true;
+    std::swap(at.path, trial);
+    at.mu = next;
+    if (next == 0) return true;
     way *= 2;
   }
   return false;
-}
-
-/// Newton's method across the tangent; corrections shrink until they are roundoff.
-bool ResidualHomotopy::correct(Path& path, double& mu, const Tangent& tangent, double length) {
-  double longest = longest_correction * length, before = INFINITY;
-  for (int k = 0; k < most_corrections && linearise(path, mu); ++k) {
-    const double along = product(tangent, {direction_, 1}, path),
-                 off = product(tangent, {correction_, 0}, path);
-    if (along == 0) return false;
-    const double by = -off / along;
-    const Tangent step{correction_ + by * direction_, by};
-    const double size = std::sqrt(product(step, step, path));
-    if (!(size < longest) || !equations_.apply(path, step.step, 1)) return false;
-    mu += by;
-    const bool roundoff = size < nearly * length && size > contraction * before;
-    if (size < corrected * length || roundoff) return true;
-    before = size;
-    longest = std::max(contraction * size, close_to_curve * length);
-  }
-  return false;
-}
-
-/// Of length one, onward from the one before, or to a μ that changes in this sense. False if the curve turns
-/// too sharply.
-bool ResidualHomotopy::next_tangent(const Path& path, const Tangent* before, double sense,
-                                    Tangent& next) const {
-  next = {direction_, 1};
-  const double length = std::sqrt(product(next, next, path));
-  const double along = before ? product(*before, next, path) / length : sense;
-  next.step *= std::copysign(1 / length, along);
-  next.parameter *= std::copysign(1 / length, along);
-  return std::isfinite(length) && std::abs(along) > sharpest_turn;
-}
-
-/// Along the parabola through two tangents.
-ResidualHomotopy::Tangent ResidualHomotopy::bent(const Tangent& here, const Tangent& before, double by) {
-  return {here.step + by * (here.step - before.step),
-          here.parameter + by * (here.parameter - before.parameter)};
 }
 
 int ResidualHomotopy::most_linearisations_of_curve() const {
@@ -111,43 +101,33 @@ int ResidualHomotopy::most_linearisations_of_curve() const {
                     most_linearisations);
 }
 
-bool ResidualHomotopy::trace(Path path, double mu, double sense, Path& found) {
+bool ResidualHomotopy::trace(const Point& from, double sense, Path& found) {
   left_ = most_linearisations_of_curve();
-  double length = first_length, tried = std::abs(mu);  // where Newton's method alone was tried
-  Tangent tangent, next, before{{}, 0};
-  double last_length = 0;  // from there; 0 if there is none
-  if (!linearise(path, mu) || !next_tangent(path, nullptr, sense, tangent)) return false;
-  while (length > least_length && left_ > 0) {
-    Path trial = path;
-    const Tangent ahead = last_length > 0 ? bent(tangent, before, 0.5 * length / last_length) : tangent;
-    double reached = mu + length * ahead.parameter;
-    const int began = left_;
-    if (!equations_.apply(trial, ahead.step, length) || !correct(trial, reached, tangent, length) ||
-        !linearise(trial, reached) || !next_tangent(trial, &tangent, 0, next)) {
-      length /= 2;
+  at_ = from;
+  double tried = std::abs(at_.mu);  // where Newton's method alone was tried
+  if (!linearise(Factors::anew)) return false;
+  ArclengthSteps<Move> steps{{least_length, shortening, sharpest_turn}};
+  steps.begin(*this, first_length, sense);
+  const auto arrives = [&] {
+    found = at_.path;
+    return converge(found, 0);
+  };
+  while (steps.advance(*this)) {
+    if (saved_.mu * at_.mu <= 0) {
+      if (arrives()) return true;
+      refuse();
+      steps.length *= shortening;
       continue;
     }
-    if (mu * reached <= 0) {
-      found = trial;
-      if (converge(found, 0)) return true;
-      length /= 2;
-      continue;
+    steps.accept(steps.length);
+    if (std::abs(at_.mu) < std::abs(nearest_.mu)) nearest_ = at_;
+    if (std::abs(at_.mu) < leap * tried) {
+      tried = std::abs(at_.mu);
+      if (arrives()) return true;
     }
-    std::swap(path, trial);
-    mu = reached;
-    before = std::exchange(tangent, next);
-    last_length = length;
-    if (std::abs(mu) < least_) {
-      least_ = std::abs(mu);
-      nearest_ = path;
-    }
-    if (std::abs(mu) < leap * tried) {
-      tried = std::abs(mu);
-      found = path;
-      if (converge(found, 0)) return true;
-    }
-    if (std::abs(mu) > farthest || scales(path, tables_).magnitude > runaway * extent_) return false;
-    if (began - left_ <= few_linearisations) length = std::min(1.5 * length, longest_length);
+    if (std::abs(at_.mu) > farthest || scales(at_.path, tables_).magnitude > runaway * extent_) return false;
+    if (saved_left_ - left_ <= few_linearisations)
+      steps.length = std::min(lengthening * steps.length, longest_length);
   }
   return false;
 }
@@ -160,15 +140,14 @@ ResidualHomotopy::Report ResidualHomotopy::find(Path& path) {
   if (size_at_first <= (free_times_ ? roundoff : solved)) return {true, {}};
   const Scales size = scales(path, tables_);
   extent_ = std::max(size.q, size.magnitude);
-  nearest_ = path;
-  least_ = 1;
-  bool reached = descend(nearest_, least_);
-  Path found = nearest_;
-  const auto trace_from = [&](const Path& start, double mu) {
-    for (const double sense : {-1.0, 1.0}) reached = reached || trace(start, mu, sense, found);
+  nearest_ = {path, 1};
+  bool reached = descend(nearest_);
+  Path found = nearest_.path;
+  const auto trace_from = [&](const Point& start) {
+    for (const double sense : {-1.0, 1.0}) reached = reached || trace(start, sense, found);
   };
-  if (least_ < 1) trace_from(Path(nearest_), least_);  // a copy: curves replace the nearest
-  trace_from(path, 1);
+  if (nearest_.mu < 1) trace_from(Point(nearest_));  // a copy: curves replace the nearest
+  trace_from({path, 1});
   if (!reached) return {false, failure(path)};
   path = std::move(found);
   return {true, {}};
@@ -180,7 +159,7 @@ std::string ResidualHomotopy::failure(const Path& from) const {
   int node = 1;
   double most = 0;
   for (int k = 0; k < from.elements(); ++k) {
-    const double change = std::abs(std::log(nearest_.lengths()[k] / from.lengths()[k]));
+    const double change = std::abs(std::log(nearest_.path.lengths()[k] / from.lengths()[k]));
     if (change > most) node = std::max(k, 1);
     most = std::max(most, change);
   }
@@ -189,7 +168,7 @@ std::string ResidualHomotopy::failure(const Path& from) const {
       "where elements change most on the way, the equation of its time seems to have no solution, as where "
       "the energy error of the scheme changes its sign (often at a turning point); try fewer elements, "
       "another scheme, a shorter path, or leave steps out",
-      node, nearest_.mesh()[node] * nearest_.duration());
+      node, nearest_.path.mesh()[node] * nearest_.path.duration());
 }
 
 }  // namespace extremal

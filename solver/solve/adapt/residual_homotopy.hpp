@@ -4,6 +4,7 @@
 #include <string>
 
 #include "solve/adapt/scheme_equations.hpp"
+#include "solve/newton/newton_loop.hpp"
 
 /// \file From a path near no solution of the equations of a scheme to one of their solutions.
 
@@ -26,33 +27,50 @@ class ResidualHomotopy {
   };
   Report find(Path& path);
 
- private:
-  struct Tangent {
+  // The curve in (x, μ), see solve/curve/arclength.hpp.
+  struct Move {
     SchemeEquations::Vector step;
     double parameter;
+    void add(const Move& other, double factor) {
+      step += factor * other.step;
+      parameter += factor * other.parameter;
+    }
+    void scale(double factor) {
+      step *= factor;
+      parameter *= factor;
+    }
+  };
+  Move correction{{}, 0}, direction{{}, 1};
+  bool linearise(Factors) { return linearise(at_.path, at_.mu); }
+  bool apply(const Move& move, double factor);
+  double dot(const Move& a, const Move& b) const;
+  bool goes_on() const { return left_ > 0; }
+  void save();
+  bool correct(const Move& tangent, double length);
+  void refuse() { at_ = saved_; }
+
+ private:
+  struct Point {
+    Path path;
+    double mu;
   };
   bool linearise(const Path& path, double mu);
-  double product(const Tangent& a, const Tangent& b, const Path& path) const;
   bool converge(Path& path, double mu);
-  bool descend(Path& path, double& mu);
-  bool correct(Path& path, double& mu, const Tangent& tangent, double length);
-  bool next_tangent(const Path& path, const Tangent* before, double sense, Tangent& next) const;
-  static Tangent bent(const Tangent& here, const Tangent& before, double by);
+  bool descend(Point& at);
   int most_linearisations_of_curve() const;
-  bool trace(Path path, double mu, double sense, Path& found);
+  bool trace(const Point& from, double sense, Path& found);
   std::string failure(const Path& from) const;
 
   const ElementTables& tables_;
   const bool free_times_;
   std::function<bool()> on_step_;
   SchemeEquations equations_;
-  SchemeEquations::Vector first_;                   ///< F(x_0)
-  SchemeEquations::Vector correction_, direction_;  ///< at fixed μ, and by μ
+  SchemeEquations::Vector first_;  ///< F(x_0)
   double extent_ = 0;
-  double enough_ = 0;  ///< of the residual, where equations are solved
-  int left_ = 0;       ///< linearisations that a curve may still have
-  Path nearest_;       ///< on the curves, where μ was least
-  double least_ = 0;
+  double enough_ = 0;              ///< of the residual, where equations are solved
+  int left_ = 0, saved_left_ = 0;  ///< linearisations that a curve may still have
+  Point at_, saved_;
+  Point nearest_;  ///< on the curves, where |μ| was least
 };
 
 }  // namespace extremal
