@@ -7,6 +7,7 @@
 
 #include "linear/dense.hpp"
 #include "motion/dop853.hpp"
+#include "solve/curve/arclength.hpp"
 #include "solve/search/limits.hpp"
 
 namespace extremal {
@@ -14,16 +15,44 @@ namespace extremal {
 using namespace limits::arrivals;
 using namespace limits::scanned_motions;
 
-namespace {
-
 using Vector = Arrivals::Vector;
 
-/// Of length one, where the slope does nothing.
-Vector null_direction(const Eigen::MatrixXd& slope) {
-  return singular_value_decomposition(slope).v.col(slope.cols() - 1);
-}
+/// The curve of arrivals, at one of them; see solve/curve/arclength.hpp.
+struct Arrivals::Curve {
+  struct Move {
+    Vector u;
+    void add(const Move& other, double factor) { u += factor * other.u; }
+    void scale(double factor) { u *= factor; }
+  };
+  /// Errors of the integrator's steps, and the last step of Newton's method.
+  struct Nearness {
+    double step_error, last;
+  };
 
-}  // namespace
+  Arrivals& arrivals;
+  Vector u;  ///< unknowns
+  Nearness wanted = {step_error_along, last_step_along};
+  Move correction = {}, direction = {};
+  bool seen = false;  ///< where q1 is: not another point of a manifold
+  Vector saved = {};
+  int tries = 0, flights = 0;  ///< steps begun, and motions of the last one
+
+  bool linearise(Factors);
+  bool apply(const Move& move, double factor) {
+    u += factor * move.u;
+    return true;
+  }
+  double dot(const Move& a, const Move& b) const { return a.u.dot(b.u); }
+  bool goes_on() const { return tries < most_points && arrivals.counted_(0); }
+  void save() {
+    saved = u;
+    ++tries;
+    flights = 0;
+  }
+  void refuse() { u = saved; }
+  bool meet(const Move& normal);
+  bool correct(const Move& tangent, double) { return meet(tangent); }
+};
 
 Arrivals::Arrivals(const Lagrangian& lagrangian, Vector start, Vector rest, Vector end, Eigen::MatrixXd root,
                    const Tangents& tangents, double speed, double time)
@@ -92,51 +121,49 @@ bool Arrivals::fly(const Vector& u, double step_error, Miss& miss) {
   return miss.miss.allFinite() && miss.slope.allFinite();
 }
 
+/// The shortest correction, and the direction in which the slope does nothing.
+bool Arrivals::Curve::linearise(Factors) {
+  ++flights;
+  Miss at;
+  if (!arrivals.fly(u, wanted.step_error, at)) return false;
+  const double missed = at.miss.norm();
+  // Another point of a manifold may be seen where q1 is.
+  seen = at.away <= seen_beside + seen_near * missed;
+  const SingularValues slope = singular_value_decomposition(at.slope);
+  const Eigen::Index rank = slope.values.size();
+  direction.u = slope.v.col(rank);
+  correction.u = Vector::Zero(rank + 1);
+  if (missed > wanted.last * wanted.last)
+    correction.u -= slope.v.leftCols(rank) * (slope.u.transpose() * at.miss).cwiseQuotient(slope.values);
+  return true;
+}
+
 /// Newton's method across the normal; a step as short as the last leaves about its square.
-bool Arrivals::meet(Vector& u, const Vector& normal, const Nearness& wanted, Eigen::MatrixXd& slope,
-                    int& steps) {
-  double before = INFINITY;
-  for (steps = 0; steps < most_newton_steps; ++steps) {
-    Miss at;
-    if (!fly(u, wanted.step_error, at)) return false;
-    slope = at.slope;
-    // Another point of a manifold may be seen where q1 is.
-    const bool there = at.away <= seen_beside + seen_near * at.miss.norm();
-    if (at.miss.norm() <= wanted.last * wanted.last) return there;
-    Eigen::MatrixXd matrix(dimensions_ + 1, dimensions_ + 1);
-    matrix << at.slope, normal.transpose();
-    Vector right = Vector::Zero(dimensions_ + 1);
-    right.head(dimensions_) = -at.miss;
-    const Vector step = solved(matrix, right);
-    const double size = step.norm();
-    if (!(size < before * contraction) || !(size < longest_correction * (1 + u.head(dimensions_).norm())))
-      return false;
-    before = size;
-    u += step;
-    if (size <= wanted.last) return there;
-  }
-  return false;
+bool Arrivals::Curve::meet(const Move& normal) {
+  const double longest = longest_correction * (1 + u.head(arrivals.dimensions_).norm());
+  return correct_across(*this, normal, {most_newton_steps, contraction, longest, wanted.last}) && seen;
 }
 
 /// Arrivals at the time between two points of a curve, where its cubic interpolation crosses it.
-void Arrivals::cross(const Vector& a, const Vector& slope_a, const Vector& b, const Vector& slope_b,
-                     double length, std::vector<Arrival>& found) {
+void Arrivals::cross(const Point& a, const Point& b, std::vector<Arrival>& found) {
+  const double length = (b.u - a.u).norm();
   const auto between = [&](double x) -> Vector {
     const double y = 1 - x;
-    return y * y * (1 + 2 * x) * a + x * x * (1 + 2 * y) * b + length * x * y * (y * slope_a - x * slope_b);
+    return y * y * (1 + 2 * x) * a.u + x * x * (1 + 2 * y) * b.u +
+           length * x * y * (y * a.tangent - x * b.tangent);
   };
-  Vector last = a;
+  Vector last = a.u;
   for (int k = 1; k <= crossing_samples; ++k) {
     const Vector next = between(static_cast<double>(k) / crossing_samples);
     if ((last[dimensions_] < 0) != (next[dimensions_] < 0)) {
-      Vector u = last + (next - last) * (last[dimensions_] / (last[dimensions_] - next[dimensions_]));
-      u[dimensions_] = 0;
-      Eigen::MatrixXd slope;
-      int steps = 0;
-      const Vector normal = Vector::Unit(dimensions_ + 1, dimensions_);
-      if (meet(u, normal, {step_error_along, last_step_along}, slope, steps) &&
-          meet(u, normal, {step_error_arriving, last_step_arriving}, slope, steps))
-        found.push_back(arrival(u));
+      Curve there{*this,
+                  last + (next - last) * (last[dimensions_] / (last[dimensions_] - next[dimensions_]))};
+      there.u[dimensions_] = 0;
+      const Curve::Move normal{Vector::Unit(dimensions_ + 1, dimensions_)};
+      bool arrives = there.meet(normal);
+      there.wanted = {step_error_arriving, last_step_arriving};
+      arrives = arrives && there.meet(normal);
+      if (arrives) found.push_back(arrival(there.u));
     }
     last = next;
   }
@@ -145,46 +172,24 @@ void Arrivals::cross(const Vector& a, const Vector& slope_a, const Vector& b, co
 /// One way along a curve; whether it closes.
 bool Arrivals::trace(const Vector& seed, double sense, double fastest, double longest,
                      std::vector<Arrival>& found) {
-  Miss at;
-  if (!fly(seed, step_error_along, at)) return false;
-  std::vector<Point>& curve = curves_.emplace_back();
-  Vector u = seed, tangent = sense * null_direction(at.slope);
-  curve.push_back({u, tangent});
-  double length = first_length, last_length = 0;
-  Vector last_tangent = tangent;
-  for (int k = 0; k < most_points && length > least_length; ++k) {
-    // The parabola through the tangents here and before.
-    Vector next = u + length * tangent;
-    if (last_length > 0) next += length * length / (2 * last_length) * (tangent - last_tangent);
-    int steps = 0;
-    if (!meet(next, tangent, {step_error_along, last_step_along}, at.slope, steps)) {
-      if (!counted_(0)) return false;
-      length *= 0.4;
-      continue;
-    }
-    Vector onward = null_direction(at.slope);
-    double cosine = onward.dot(tangent);
-    if (cosine < 0) {
-      onward = -onward;
-      cosine = -cosine;
-    }
-    if (cosine < sharpest_turn) {
-      length *= 0.4;
-      continue;
-    }
-    cross(u, tangent, next, onward, (next - u).norm(), found);
-    const bool closed = k > 2 && (next - seed).norm() < length;
-    last_length = (next - u).norm();
-    u = next;
-    last_tangent = std::exchange(tangent, onward);
-    curve.push_back({u, tangent});
+  Curve curve{*this, seed};
+  if (!curve.linearise(Factors::anew)) return false;
+  ArclengthSteps<Curve::Move> steps{{least_length, shortening, sharpest_turn}};
+  steps.begin(curve, first_length, sense);
+  std::vector<Point>& points = curves_.emplace_back();
+  points.push_back({seed, steps.tangent.u});
+  while (steps.advance(curve)) {
+    const Point next{curve.u, steps.next.u};
+    cross(points.back(), next, found);
+    const bool closed = curve.tries > 3 && (next.u - seed).norm() < steps.length;
+    steps.accept((next.u - points.back().u).norm());
+    points.push_back(next);
     if (closed) return true;
-    const bool later = tangent[dimensions_] > 0;
-    if (u.head(dimensions_).norm() * speed_ > fastest ||
-        (later && u[dimensions_] > std::log(longest / time_)))
-      return false;
-    if (steps <= 2 && cosine > mild_turn)
-      length = std::min(1.6 * length, longest_length * (1 + u.head(dimensions_).norm()));
+    const double speed = next.u.head(dimensions_).norm();
+    const bool later = next.tangent[dimensions_] > 0;
+    if (speed * speed_ > fastest || (later && next.u[dimensions_] > std::log(longest / time_))) return false;
+    if (curve.flights <= few_flights && steps.cosine > mild_turn)
+      steps.length = std::min(lengthening * steps.length, longest_length * (1 + speed));
   }
   return false;
 }
@@ -273,11 +278,10 @@ Arrivals::Flight Arrivals::flight(Vector w, double until, const Scale& scale) {
 /// Adds the arrival near a motion that has this length of w.
 void Arrivals::land(const Vector& w, double time, std::vector<Arrival>& found) {
   if (!(time > 0)) return;
-  Vector u = unknowns({w, time}), normal = Vector::Zero(dimensions_ + 1);
-  normal.head(dimensions_) = along_.transpose() * w.normalized();
-  Eigen::MatrixXd slope;
-  int steps = 0;
-  if (meet(u, normal, {step_error_along, last_step_along}, slope, steps)) found.push_back(arrival(u));
+  Curve there{*this, unknowns({w, time})};
+  Curve::Move normal{Vector::Zero(dimensions_ + 1)};
+  normal.u.head(dimensions_) = along_.transpose() * w.normalized();
+  if (there.meet(normal)) found.push_back(arrival(there.u));
 }
 
 /// Arrivals between two neighbours that pass q1 on different sides. Where these are not near to it or to each

@@ -55,6 +55,7 @@ class Arrivals {
     double away;            ///< likewise: the distance from q1
     Eigen::MatrixXd slope;  ///< by the unknowns
   };
+  struct Curve;
   struct Passage {
     double time, side;  ///< where it is nearest to q1; its distance, positive to the left of q1
   };
@@ -67,19 +68,12 @@ class Arrivals {
     bool lasts = false;
   };
 
-  /// Errors of the integrator's steps, and the last step of Newton's method.
-  struct Nearness {
-    double step_error, last;
-  };
-
   Vector state(const Vector& w) const;
   Vector unknowns(const Arrival& arrival) const;
   Arrival arrival(const Vector& u) const;
   bool fly(const Vector& u, double step_error, Miss& miss);
-  bool meet(Vector& u, const Vector& normal, const Nearness& wanted, Eigen::MatrixXd& slope, int& steps);
   bool trace(const Vector& seed, double sense, double fastest, double longest, std::vector<Arrival>& found);
-  void cross(const Vector& a, const Vector& slope_a, const Vector& b, const Vector& slope_b, double length,
-             std::vector<Arrival>& found);
+  void cross(const Point& a, const Point& b, std::vector<Arrival>& found);
   Flight flight(Vector w, double until, const Scale& scale);
   void pass(Flight& flight, double until);
   void land(const Vector& w, double time, std::vector<Arrival>& found);

@@ -34,9 +34,12 @@ inline constexpr double contraction = 0.7, longest_correction = 0.3;
 /// after time amplify what they miss: the elements take them only where they are this near.
 inline constexpr double step_error_along = 1e-8, last_step_along = 1e-3;
 inline constexpr double step_error_arriving = 1e-12, last_step_arriving = 1e-6;
-/// Along a curve, and where it turns.
+/// Along a curve, and where it turns. The next try after a step that failed is so much of it; a longer one
+/// follows where the curve turned little and a step took no more motions.
 inline constexpr double first_length = 0.02, longest_length = 0.2, least_length = 1e-5;
 inline constexpr double sharpest_turn = 0.9, mild_turn = 0.98;
+inline constexpr double shortening = 0.4, lengthening = 1.6;
+inline constexpr int few_flights = 3;
 inline constexpr int most_points = 400, crossing_samples = 8;
 /// Points so near to a curve, by the length of the step there, are on it.
 inline constexpr double near_curve = 1e-3;
