@@ -115,13 +115,12 @@ bool polish(Path& path, NewtonIteration& newton) {
   if (!newton.extended() && !newton.extend()) return false;
   constexpr int most_steps = 5;
   double before = INFINITY;
-  NewtonPolicy to_roundoff{most_steps, Progress::arrived, [](int) { return Factors::anew; },
-                           [&](StepResult step, int) {
-                             if (step != StepResult::ok) return Progress::failed;
-                             const double last = std::exchange(before, newton.norm());
-                             return before < 0.5 * last ? Progress::more : Progress::arrived;
-                           }};
-  return newton_loop(NewtonSteps{newton, path}, to_roundoff) == Progress::arrived;
+  const auto take = [&](StepResult step) {
+    if (step != StepResult::ok) return Progress::failed;
+    const double last = std::exchange(before, newton.norm());
+    return before < 0.5 * last ? Progress::more : Progress::arrived;
+  };
+  return newton_loop(NewtonSteps{newton, path}, most_steps, take, Progress::arrived) == Progress::arrived;
 }
 
 void judge_quadrature(const QuadratureCheck& check, const SolveOptions& options, const Outcome& outcome,

@@ -25,18 +25,22 @@ ResidualHomotopy::ResidualHomotopy(const Problem& problem, const ElementTables& 
 bool ResidualHomotopy::linearise(const Path& path, double mu) {
   const SchemeEquations::Vector& left = equations_.evaluate(path);
   if (--left_ < 0 || !on_step_() || !equations_.factor(path)) return false;
-  correction = {equations_.solve(mu * first_ - left), 0};
-  direction = {equations_.solve(first_), 1};
-  return correction.step.allFinite() && direction.step.allFinite();
+  const Eigen::Index unknowns = left.size();
+  correction.setZero(unknowns + 1);
+  direction.setOnes(unknowns + 1);
+  correction.head(unknowns) = equations_.solve(mu * first_ - left);
+  direction.head(unknowns) = equations_.solve(first_);
+  return correction.allFinite() && direction.allFinite();
 }
 
 double ResidualHomotopy::dot(const Move& a, const Move& b) const {
-  return equations_.product(a.step, b.step, at_.path, extent_) + a.parameter * b.parameter;
+  const Eigen::Index last = a.size() - 1;
+  return equations_.product(a, b, at_.path, extent_) + a[last] * b[last];
 }
 
 bool ResidualHomotopy::apply(const Move& move, double factor) {
-  if (!equations_.apply(at_.path, move.step, factor)) return false;
-  at_.mu += factor * move.parameter;
+  if (!equations_.apply(at_.path, move, factor)) return false;
+  at_.mu += factor * move[move.size() - 1];
   return true;
 }
 
@@ -46,26 +50,21 @@ void ResidualHomotopy::save() {
 }
 
 bool ResidualHomotopy::correct(const Move& tangent, double length) {
-  return correct_across(*this, tangent,
-                        {most_corrections, contraction, longest_correction * length, corrected * length,
-                         close_to_curve * length, nearly * length}) &&
+  return contract(*this, across(*this, tangent),
+                  {most_corrections, contraction, longest_correction * length, corrected * length,
+                   close_to_curve * length, nearly * length}) &&
          linearise(Factors::anew);
 }
 
 /// Newton's method for one μ, until steps gain nothing more.
 bool ResidualHomotopy::converge(Path& path, double mu) {
-  struct Equations {
-    ResidualHomotopy& curve;
-    const Path& path;
-    double mu;
-    bool solve(Factors) { return curve.linearise(path, mu); }
-  };
+  const auto solve = [&](Factors) { return linearise(path, mu); };
   double before = INFINITY;
   Path trial;
-  const auto take = [&](bool solved, int) {
+  const auto take = [&](bool solved) {
     if (!solved) return Progress::failed;
     trial = path;
-    const bool moved = equations_.apply(trial, correction.step, 1);
+    const bool moved = equations_.apply(trial, correction, 1);
     const double after = moved ? equations_.size(equations_.evaluate(trial) - mu * first_, trial) : INFINITY;
     if (before <= enough_ && !(after < before)) return Progress::arrived;
     if (!(after < worst_residual)) return Progress::failed;
@@ -73,8 +72,8 @@ bool ResidualHomotopy::converge(Path& path, double mu) {
     std::swap(path, trial);
     return Progress::more;
   };
-  NewtonPolicy policy{most_newton_steps, Progress::failed, [](int) { return Factors::anew; }, take};
-  return newton_loop(Equations{*this, path, mu}, policy) == Progress::arrived || before <= enough_;
+  const Progress progress = newton_loop(solve, most_newton_steps, take);
+  return progress == Progress::arrived || before <= enough_;
 }
 
 /// Newton's method for values of μ that fall to 0 as fast as it converges.
@@ -106,8 +105,8 @@ bool ResidualHomotopy::trace(const Point& from, double sense, Path& found) {
   at_ = from;
   double tried = std::abs(at_.mu);  // where Newton's method alone was tried
   if (!linearise(Factors::anew)) return false;
-  ArclengthSteps<Move> steps{{least_length, shortening, sharpest_turn}};
-  steps.begin(*this, first_length, sense);
+  ArclengthSteps<Move> steps{{least_length, shortening, sharpest_turn}, first_length};
+  steps.begin(*this, nullptr, sense);
   const auto arrives = [&] {
     found = at_.path;
     return converge(found, 0);

@@ -27,20 +27,9 @@ class ResidualHomotopy {
   };
   Report find(Path& path);
 
-  // The curve in (x, μ), see solve/curve/arclength.hpp.
-  struct Move {
-    SchemeEquations::Vector step;
-    double parameter;
-    void add(const Move& other, double factor) {
-      step += factor * other.step;
-      parameter += factor * other.parameter;
-    }
-    void scale(double factor) {
-      step *= factor;
-      parameter *= factor;
-    }
-  };
-  Move correction{{}, 0}, direction{{}, 1};
+  // The curve in (x, μ), moves by μ last; see solve/curve/arclength.hpp.
+  using Move = SchemeEquations::Vector;
+  Move correction, direction;
   bool linearise(Factors) { return linearise(at_.path, at_.mu); }
   bool apply(const Move& move, double factor);
   double dot(const Move& a, const Move& b) const;

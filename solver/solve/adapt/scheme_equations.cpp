@@ -157,7 +157,7 @@ double SchemeEquations::product(const Vector& a, const Vector& b, const Path& pa
   const Eigen::Index first = equations_.unknowns();
   const double length = path.duration() / elements_;
   const double of_values = a.head(first).dot(b.head(first)) / (extent * extent);
-  const double of_times = a.tail(times_).dot(b.tail(times_)) / (length * length);
+  const double of_times = a.segment(first, times_).dot(b.segment(first, times_)) / (length * length);
   return of_values / std::max<double>(1, static_cast<double>(first)) + of_times / std::max(1, times_);
 }
 

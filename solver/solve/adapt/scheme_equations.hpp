@@ -20,7 +20,7 @@ namespace extremal {
 /// what cancels is then in the entries, and no longer in the factors.
 class SchemeEquations {
  public:
-  using Vector = Eigen::VectorXd;  ///< over the unknowns of the path, then times: t_1, …
+  using Vector = Eigen::VectorXd;  ///< over the unknowns of the path, then times: t_1, …; steps may have more
 
   /// `problem` and `tables` must outlive it. With `free_times` L must not depend on t; without, T is fixed.
   SchemeEquations(const Problem& problem, const ElementTables& tables, int elements, bool free_times);

@@ -72,20 +72,21 @@ Refinement::Attempt Refinement::satisfy_natural_conditions(const NewtonReport& r
   if (!problem_.periodic)
     newton.model().set_null_below(largest_null_eigenvalue(scales_.magnitude, left_out_, path_));
   bool passed = false;
-  const auto factors = [&](int k) {
-    return k == 0 || newton.contraction() <= worst_chord ? Factors::before : Factors::anew;
+  int steps = 0;
+  const auto solve = [&](Factors) {
+    const bool chord = steps++ == 0 || newton.contraction() <= worst_chord;
+    return chord ? newton.chord_step(path_) : newton.full_step(path_, 0);
   };
-  const auto take = [&](StepResult step, int k) {
+  const auto take = [&](StepResult step) {
     record();
     passed = step == StepResult::ok && test_.passed(problem_, newton, path_, phase);
     if (passed && newton.norm() <= options_.tolerance) return Progress::arrived;
     // The residual was measured before the step; the first may follow one that was damped.
     const double allowed = std::min(10 * options_.tolerance, loosest_newton);
-    const bool hopeless = step != StepResult::ok || (k > 0 && test_.share() > allowed);
+    const bool hopeless = step != StepResult::ok || (steps > 1 && test_.share() > allowed);
     return hopeless || exhausted() ? Progress::failed : Progress::more;
   };
-  NewtonPolicy policy{most_natural_steps, Progress::failed, factors, take};
-  if (newton_loop(NewtonSteps{newton, path_}, policy) == Progress::arrived) {
+  if (newton_loop(solve, most_natural_steps, take) == Progress::arrived) {
     outcome_.error += (newton.norm() - report.most_remaining) * scales_.q;
     return Attempt::converged;
   }

@@ -185,8 +185,8 @@ bool Tracker::correct(double length, const double* landing, double share) {
   const double enough = std::max(unfinished * tolerance_, least_goal);
   ChordSteps policy(branch_, tangent_, length, landing ? least_goal : std::max(share * enough, least_goal),
                     enough);
-  const Progress progress = landing ? newton_loop(ToValue{branch_, *landing}, policy)
-                                    : newton_loop(AcrossTangent{branch_, tangent_}, policy);
+  const Progress progress = landing ? newton_loop(to_value(branch_, *landing), policy)
+                                    : newton_loop(across(branch_, tangent_), policy);
   factorisations_ = policy.factorisations();
   if (landing) landed_ += policy.along();
   failure_ = policy.left_problem() ? StepFailure::no_problem

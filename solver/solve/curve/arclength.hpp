@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,101 +10,68 @@
 /// \file Pseudo-arclength continuation (Keller, Numerical solution of bifurcation and nonlinear eigenvalue
 /// problems, 1977): along a curve of solutions of equations with one unknown more than there are equations.
 ///
-/// A curve has a present point. Its moves have add(move, factor) and scale(factor).
+/// A curve has a present point, and moves: vectors, or other values with add() and scale().
 ///
-///   Move correction, direction         all solutions of the equations linearised at the point are
-///                                      correction + α·direction
-///   bool linearise(Factors)            false where they cannot be solved; with the factors of a point
-///   before,
-///                                      the direction stays
-///   bool apply(const Move&, double)    moves the point by a factor times the move; false if there is none
+///   Move correction, direction         solutions of the linearised equations: correction + α·direction
+///   bool linearise(Factors)            false if there are none; with old factors the direction stays
+///   bool apply(const Move&, double)    moves the point by a multiple of a move; false if there is none
 ///   double dot(const Move&, const Move&)
-///   double drift(const Move& tangent)  where equations of the ends are nonlinear in the parameter: scalar
-///                                      product of a tangent with the nonlinear part of the last apply()
-///   double varied()                    for ToValue: the number that varies, and its change by the
-///   double change(bool along)          direction (`along`) or by the correction
+///   double drift(const Move& tangent)  if any: product with the nonlinear part of the last apply()
+///   double varied(), change(bool)      for to_value(): the number that varies; its change by the
+///                                      direction (true) or by the correction
 
 namespace extremal {
 
-/// α from one more equation, which the correction misses by `off` and the direction changes by `along`.
-template <class Curve>
-bool close_correction(Curve& curve, double off, double along) {
-  if (along == 0) return false;
-  curve.correction.add(curve.direction, -off / along);
-  return true;
-}
+inline void add(Eigen::VectorXd& to, const Eigen::VectorXd& move, double factor) { to += factor * move; }
+inline void scale(Eigen::VectorXd& move, double factor) { move *= factor; }
 
-/// Steps across a tangent, for newton_loop(): the step is curve.correction. Across curve.direction it is the
-/// shortest (Gauss-Newton), regular also where the problem with the parameter fixed is singular.
+/// For newton_loop(): steps, which are curve.correction, across a tangent. Across curve.direction they are
+/// the shortest (Gauss-Newton), regular also where the problem with the parameter fixed is singular.
 template <class Curve, class Move>
-struct AcrossTangent {
-  Curve& curve;
-  const Move& tangent;
-
-  bool solve(Factors factors) {
+auto across(Curve& curve, const Move& tangent) {
+  return [&](Factors factors) {
     if (!curve.linearise(factors)) return false;
     double off = curve.dot(tangent, curve.correction);
     if constexpr (requires { curve.drift(tangent); }) off += curve.drift(tangent);
-    return close_correction(curve, off, curve.dot(tangent, curve.direction));
-  }
-};
-template <class Curve, class Move>
-AcrossTangent(Curve&, const Move&) -> AcrossTangent<Curve, Move>;
+    const double along = curve.dot(tangent, curve.direction);
+    add(curve.correction, curve.direction, -off / along);
+    return along != 0;
+  };
+}
 
 /// Steps to where the number that varies has a value.
 template <class Curve>
-struct ToValue {
-  Curve& curve;
-  double value;
+auto to_value(Curve& curve, double value) {
+  return [&curve, value](Factors factors) {
+    if (!curve.linearise(factors)) return false;
+    const double off = curve.varied() + curve.change(false) - value, along = curve.change(true);
+    add(curve.correction, curve.direction, -off / along);
+    return along != 0;
+  };
+}
 
-  bool solve(Factors factors) {
-    return curve.linearise(factors) &&
-           close_correction(curve, curve.varied() + curve.change(false) - value, curve.change(true));
-  }
-};
-template <class Curve>
-ToValue(Curve&, double) -> ToValue<Curve>;
-
-/// How corrections shrink: the first is shorter than `longest`, each other one than a part of the one before,
-/// or than `close`. The last is shorter than `enough`, or is roundoff: no such part, but shorter than
-/// `nearly`.
+/// The first correction is shorter than `longest`, others than a part of the one before or than `close`. The
+/// last is shorter than `enough`, or shorter than `nearly` and no such part: roundoff.
 struct Contraction {
   int most_steps;
   double part, longest, enough, close = 0, nearly = 0;
 };
 
-/// Corrections that shrink, each with new factors.
-template <class Curve>
-class ContractingSteps {
- public:
-  ContractingSteps(Curve& curve, const Contraction& wanted)
-      : most_steps(wanted.most_steps), curve_(curve), wanted_(wanted) {}
-
-  const int most_steps;
-  static Factors factors(int) { return Factors::anew; }
-  Progress take(bool solved, int) {
+/// Newton's method to a point of the curve, whose steps are those of across() or to_value().
+template <class Curve, class Solve>
+bool contract(Curve& curve, Solve&& solve, const Contraction& wanted) {
+  double longest = wanted.longest, before = INFINITY;
+  const auto take = [&](bool solved) {
     if (!solved) return Progress::failed;
-    const double size = std::sqrt(curve_.dot(curve_.correction, curve_.correction));
-    if (!(size < wanted_.longest) || !curve_.apply(curve_.correction, 1)) return Progress::failed;
-    const bool roundoff = size < wanted_.nearly && size > wanted_.part * before_;
-    if (size < wanted_.enough || roundoff) return Progress::arrived;
-    before_ = size;
-    wanted_.longest = std::max(wanted_.part * size, wanted_.close);
+    const double size = std::sqrt(curve.dot(curve.correction, curve.correction));
+    if (!(size < longest) || !curve.apply(curve.correction, 1)) return Progress::failed;
+    const bool roundoff = size < wanted.nearly && size > wanted.part * before;
+    if (size < wanted.enough || roundoff) return Progress::arrived;
+    before = size;
+    longest = std::max(wanted.part * size, wanted.close);
     return Progress::more;
-  }
-  static Progress exhausted() { return Progress::failed; }
-
- private:
-  Curve& curve_;
-  Contraction wanted_;
-  double before_ = INFINITY;
-};
-
-/// Newton's method to the curve, across a tangent.
-template <class Curve, class Move>
-bool correct_across(Curve& curve, const Move& tangent, const Contraction& wanted) {
-  ContractingSteps policy(curve, wanted);
-  return newton_loop(AcrossTangent{curve, tangent}, policy) == Progress::arrived;
+  };
+  return newton_loop(solve, wanted.most_steps, take) == Progress::arrived;
 }
 
 /// The direction of a curve by `scale` is its tangent of length one, onward from the tangent `before`, with
@@ -125,21 +93,19 @@ struct ArclengthLimits {
   double least_length, shortening, sharpest_turn;
 };
 
-/// Steps along a curve. Their user has the loop, and what happens on the way:
+/// Steps along a curve, in a loop of their user:
 ///
 ///   while (steps.advance(curve)) {
-///     events between the last point and this one, or back to the last point with a smaller steps.length
+///     what lies between the last point and this one; or back to the last one with a smaller steps.length
 ///     steps.accept(steps.length);
 ///     a greater steps.length, or the end
 ///   }
 ///
 /// Beside its equations the curve has
 ///
-///   bool goes_on()                                    whether there may be another try
-///   void save()                                       the present point is the last one
-///   bool correct(const Move& tangent, double length)  to the curve, from the end of a predicted step of this
-///                                                     length, see correct_across(); linearised there or near
-///   void refuse()                                     back to the last point
+///   bool goes_on()                             whether there may be another try
+///   void save(), refuse()                      keeps the present point; goes back to it
+///   bool correct(const Move& tangent, double)  see contract(): back to the curve after a step of this length
 template <class Move>
 struct ArclengthSteps {
   ArclengthLimits limits;
@@ -150,20 +116,11 @@ struct ArclengthSteps {
   Move next = {};      ///< the tangent after a step that is not yet accepted
   double cosine = 1;   ///< of the angle by which the last step turned
 
-  /// At a point where the curve was linearised; `sense` is the sign of its direction.
+  /// At a point where the curve was linearised: onward from a tangent, or in a sense of the direction.
   template <class Curve>
-  void begin(const Curve& curve, double first_length, double sense) {
-    length = first_length;
+  void begin(const Curve& curve, const Move* onward, double sense = 0) {
     way = 0;
-    find_next(curve, nullptr, sense);
-    std::swap(tangent, next);
-  }
-
-  /// The same, onward from the present tangent, at a point that no step has reached.
-  template <class Curve>
-  void begin_anew(const Curve& curve) {
-    way = 0;
-    find_next(curve, &tangent, 0);
+    find_next(curve, onward, sense);
     std::swap(tangent, next);
   }
 
@@ -194,15 +151,15 @@ struct ArclengthSteps {
     Move move = tangent;
     if (way == 0) return move;
     const double half = 0.5 * length / way;
-    move.add(tangent, half);
-    move.add(previous, -half);
+    add(move, tangent, half);
+    add(move, previous, -half);
     return move;
   }
   template <class Curve>
   void find_next(const Curve& curve, const Move* before, double sense) {
     const TangentScale onward = tangent_scale(curve, before, sense);
     next = curve.direction;
-    next.scale(onward.scale);
+    scale(next, onward.scale);
     cosine = onward.cosine;
   }
 };

@@ -16,6 +16,8 @@ struct Move {
   void add(const Move& other, double factor);
   void scale(double factor);
 };
+inline void add(Move& to, const Move& move, double factor) { to.add(move, factor); }
+inline void scale(Move& move, double factor) { move.scale(factor); }
 
 /// Where the duration T is the number that varies: with H and t the second derivatives of S_h in x and in x
 /// and T, H δx + t δT = −g leaves one direction free. Solutions with two right-hand sides of the equation

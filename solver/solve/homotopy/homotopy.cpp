@@ -11,29 +11,6 @@ namespace extremal {
 
 using namespace limits::homotopy;
 
-namespace {
-
-/// Steps of bounded length from a path that need not be near: the bound doubles where corrections shrink, and
-/// is halved where they grow.
-struct BoundedSteps {
-  Homotopy& curve;
-  int most_steps;
-  double longest, enough, bound = longest, before = INFINITY;
-
-  static Factors factors(int) { return Factors::anew; }
-  Progress take(bool solved, int) {
-    if (!solved) return Progress::failed;
-    const double size = std::sqrt(curve.dot(curve.correction, curve.correction));
-    bound = size < before ? std::min(2 * bound, longest) : 0.5 * bound;
-    before = size;
-    if (!curve.apply(curve.correction, std::min(1.0, bound / size))) return Progress::failed;
-    return size < enough ? Progress::arrived : Progress::more;
-  }
-  static Progress exhausted() { return Progress::failed; }
-};
-
-}  // namespace
-
 Homotopy::Homotopy(Path& path, Workspace& workspace, std::function<bool()> count, double unit)
     : path_(path),
       w_(workspace),
@@ -92,6 +69,7 @@ bool Homotopy::begin(const ElementTables& tables, int most_steps) {
   most_steps_ = most_steps;
   tables_ = &tables;
   steps_ = 0;
+  along_.length = first_length;
   farthest_ = std::max(farthest * unit_, 2 * std::abs(parameter()));
   refusals_ = 0;
   w_.iteration.reset(problem(), tables, path_.elements());
@@ -99,21 +77,30 @@ bool Homotopy::begin(const ElementTables& tables, int most_steps) {
   return scale_ > 0;
 }
 
+/// Steps of bounded length: the bound doubles where corrections shrink, and is halved where they grow.
 bool Homotopy::approach() {
-  BoundedSteps policy{*this, most_approaches, largest_approach, close_to_curve};
-  return newton_loop(AcrossTangent{*this, direction}, policy) == Progress::arrived;
+  double bound = largest_approach, before = INFINITY;
+  const auto take = [&](bool solved) {
+    if (!solved) return Progress::failed;
+    const double size = std::sqrt(dot(correction, correction));
+    bound = size < before ? std::min(2 * bound, largest_approach) : 0.5 * bound;
+    before = size;
+    if (!apply(correction, std::min(1.0, bound / size))) return Progress::failed;
+    return size < close_to_curve ? Progress::arrived : Progress::more;
+  };
+  return newton_loop(across(*this, direction), most_approaches, take) == Progress::arrived;
 }
 
 bool Homotopy::find_tangent() {
   if (!linearise(Factors::anew)) return false;
-  along_.begin(*this, first_length, onward(direction));
+  along_.begin(*this, nullptr, onward(direction));
   return true;
 }
 
 bool Homotopy::correct(const Move& tangent, double length) {
-  return correct_across(*this, tangent,
-                        {most_corrections, contraction, std::max(longest_correction * length, on_curve),
-                         std::min(on_curve, corrected * length)});
+  return contract(*this, across(*this, tangent),
+                  {most_corrections, contraction, std::max(longest_correction * length, on_curve),
+                   std::min(on_curve, corrected * length)});
 }
 
 /// Goes to where the parameter is zero, which the last step has passed, if that is near; else the next step
@@ -121,8 +108,8 @@ bool Homotopy::correct(const Move& tangent, double length) {
 bool Homotopy::land(double from) {
   constexpr double wanted = 0;
   const double passed = parameter();
-  ContractingSteps policy(*this, {most_landings, contraction, farthest_landing, landed});
-  if (newton_loop(ToValue{*this, wanted}, policy) == Progress::arrived) return set_parameter(wanted);
+  if (contract(*this, to_value(*this, wanted), {most_landings, contraction, farthest_landing, landed}))
+    return set_parameter(wanted);
   along_.length *= std::clamp(from / (from - passed), 0.1, 0.9);
   return false;
 }
@@ -144,7 +131,7 @@ bool Homotopy::resolve() {
   along_.tangent.step.nodes = std::move(nodes);
   along_.tangent.times.clear();
   if (!linearise(Factors::anew)) return false;
-  along_.begin_anew(*this);
+  along_.begin(*this, &along_.tangent);
   return true;
 }
 
@@ -152,7 +139,7 @@ bool Homotopy::resolve() {
 void Homotopy::polish() {
   along_.way = 0;
   if (!approach() || !linearise(Factors::anew)) return restore();
-  along_.begin_anew(*this);
+  along_.begin(*this, &along_.tangent);
 }
 
 void Homotopy::refuse() {

@@ -199,7 +199,7 @@ struct NewtonSteps {
   Path& path;
   double enough = 0;  ///< see full_step()
 
-  StepResult solve(Factors factors) {
+  StepResult operator()(Factors factors) {
     return factors == Factors::anew ? newton.full_step(path, enough) : newton.chord_step(path);
   }
 };

@@ -19,39 +19,24 @@ using Vector = Arrivals::Vector;
 
 /// The curve of arrivals, at one of them; see solve/curve/arclength.hpp.
 struct Arrivals::Curve {
-  struct Move {
-    Vector u;
-    void add(const Move& other, double factor) { u += factor * other.u; }
-    void scale(double factor) { u *= factor; }
-  };
-  /// Errors of the integrator's steps, and the last step of Newton's method.
-  struct Nearness {
-    double step_error, last;
-  };
-
-  Arrivals& arrivals;
-  Vector u;  ///< unknowns
-  Nearness wanted = {step_error_along, last_step_along};
-  Move correction = {}, direction = {};
-  bool seen = false;  ///< where q1 is: not another point of a manifold
-  Vector saved = {};
+  Arrivals& of;
+  Vector u;                                                           ///< unknowns
+  double step_error = step_error_along, last_step = last_step_along;  ///< the integrator's, Newton's
+  Vector correction = {}, direction = {}, saved = {};
+  bool seen = false;           ///< where q1 is: not another point of a manifold
   int tries = 0, flights = 0;  ///< steps begun, and motions of the last one
 
   bool linearise(Factors);
-  bool apply(const Move& move, double factor) {
-    u += factor * move.u;
-    return true;
-  }
-  double dot(const Move& a, const Move& b) const { return a.u.dot(b.u); }
-  bool goes_on() const { return tries < most_points && arrivals.counted_(0); }
+  bool apply(const Vector& move, double factor) { return (u += factor * move).allFinite(); }
+  static double dot(const Vector& a, const Vector& b) { return a.dot(b); }
+  bool goes_on() const { return tries < most_points && of.counted_(0); }
   void save() {
     saved = u;
     ++tries;
     flights = 0;
   }
   void refuse() { u = saved; }
-  bool meet(const Move& normal);
-  bool correct(const Move& tangent, double) { return meet(tangent); }
+  bool correct(const Vector& normal, double length = 0);
 };
 
 Arrivals::Arrivals(const Lagrangian& lagrangian, Vector start, Vector rest, Vector end, Eigen::MatrixXd root,
@@ -91,57 +76,52 @@ Arrivals::Arrival Arrivals::arrival(const Vector& u) const {
   return {speed_ * along_ * u.head(dimensions_), time_ * std::exp(u[dimensions_])};
 }
 
-/// The motion with its variations by w.
-bool Arrivals::fly(const Vector& u, double step_error, Miss& miss) {
-  const Arrival goal = arrival(u);
-  Vector y = Vector::Zero(2 * n_ * (1 + dimensions_)), v(n_);
-  y.head(2 * n_) = state(goal.w);
-  for (int k = 0; k < dimensions_; ++k) y.segment(2 * n_ * (k + 1) + n_, n_) = speed_ * root_ * along_.col(k);
+/// By the motion with its variations by w: the shortest correction, and the direction in which the slope does
+/// nothing. What is missed is relative to the extent.
+bool Arrivals::Curve::linearise(Factors) {
+  ++flights;
+  const int n = of.n_, dimensions = of.dimensions_;
+  const auto& [start, time] = of.arrival(u);
+  Vector y = Vector::Zero(2 * n * (1 + dimensions)), v(n);
+  y.head(2 * n) = of.state(start);
+  for (int k = 0; k < dimensions; ++k)
+    y.segment(2 * n * (k + 1) + n, n) = of.speed_ * of.root_ * of.along_.col(k);
   if (!y.allFinite()) return false;
   DormandPrince<double> method(
       [this](double t, std::span<const double> x, std::span<double> slope) {
-        return flow_.slope_with_variations(t, x, slope);
+        return of.flow_.slope_with_variations(t, x, slope);
       },
       static_cast<int>(y.size()));
   IntegrationOptions options;
   options.tolerance = step_error;
-  options.block = n_;
-  options.controlled = 2 * n_;
+  options.block = n;
+  options.controlled = 2 * n;
   options.max_steps = most_integrator_steps;
   double t = 0;
-  const Integrated result = method.advance(t, span_of(y), goal.time, options);
-  if (!counted_(variations_cost * cost_ * (method.steps() + method.rejected())) || result != Integrated::done)
-    return false;
-  if (!flow_.velocity(span_of(y).first(n_), span_of(y).subspan(n_, n_), t, span_of(v))) return false;
-  miss.miss = onto_ * (y.head(n_) - end_) / extent_;
-  miss.away = (root_ * (y.head(n_) - end_)).norm() / extent_;
-  miss.slope.resize(dimensions_, dimensions_ + 1);
-  for (int k = 0; k < dimensions_; ++k) miss.slope.col(k) = onto_ * y.segment(2 * n_ * (k + 1), n_) / extent_;
-  miss.slope.col(dimensions_) = onto_ * v * (goal.time / extent_);
-  return miss.miss.allFinite() && miss.slope.allFinite();
-}
-
-/// The shortest correction, and the direction in which the slope does nothing.
-bool Arrivals::Curve::linearise(Factors) {
-  ++flights;
-  Miss at;
-  if (!arrivals.fly(u, wanted.step_error, at)) return false;
-  const double missed = at.miss.norm();
+  const Integrated result = method.advance(t, span_of(y), time, options);
+  const int work = variations_cost * of.cost_ * (method.steps() + method.rejected());
+  if (!of.counted_(work) || result != Integrated::done) return false;
+  if (!of.flow_.velocity(span_of(y).first(n), span_of(y).subspan(n, n), t, span_of(v))) return false;
+  const Vector miss = of.onto_ * (y.head(n) - of.end_) / of.extent_;
+  Eigen::MatrixXd slope(dimensions, dimensions + 1);
+  for (int k = 0; k < dimensions; ++k) slope.col(k) = of.onto_ * y.segment(2 * n * (k + 1), n) / of.extent_;
+  slope.col(dimensions) = of.onto_ * v * (time / of.extent_);
+  if (!miss.allFinite() || !slope.allFinite()) return false;
+  const double missed = miss.norm(), away = (of.root_ * (y.head(n) - of.end_)).norm() / of.extent_;
   // Another point of a manifold may be seen where q1 is.
-  seen = at.away <= seen_beside + seen_near * missed;
-  const SingularValues slope = singular_value_decomposition(at.slope);
-  const Eigen::Index rank = slope.values.size();
-  direction.u = slope.v.col(rank);
-  correction.u = Vector::Zero(rank + 1);
-  if (missed > wanted.last * wanted.last)
-    correction.u -= slope.v.leftCols(rank) * (slope.u.transpose() * at.miss).cwiseQuotient(slope.values);
+  seen = away <= seen_beside + seen_near * missed;
+  const SingularValues parts = singular_value_decomposition(slope);
+  direction = parts.v.col(dimensions);
+  correction = Vector::Zero(dimensions + 1);
+  if (missed > last_step * last_step)
+    correction -= parts.v.leftCols(dimensions) * (parts.u.transpose() * miss).cwiseQuotient(parts.values);
   return true;
 }
 
 /// Newton's method across the normal; a step as short as the last leaves about its square.
-bool Arrivals::Curve::meet(const Move& normal) {
-  const double longest = longest_correction * (1 + u.head(arrivals.dimensions_).norm());
-  return correct_across(*this, normal, {most_newton_steps, contraction, longest, wanted.last}) && seen;
+bool Arrivals::Curve::correct(const Vector& normal, double) {
+  const double longest = longest_correction * (1 + u.head(of.dimensions_).norm());
+  return contract(*this, across(*this, normal), {most_newton_steps, contraction, longest, last_step}) && seen;
 }
 
 /// Arrivals at the time between two points of a curve, where its cubic interpolation crosses it.
@@ -159,11 +139,11 @@ void Arrivals::cross(const Point& a, const Point& b, std::vector<Arrival>& found
       Curve there{*this,
                   last + (next - last) * (last[dimensions_] / (last[dimensions_] - next[dimensions_]))};
       there.u[dimensions_] = 0;
-      const Curve::Move normal{Vector::Unit(dimensions_ + 1, dimensions_)};
-      bool arrives = there.meet(normal);
-      there.wanted = {step_error_arriving, last_step_arriving};
-      arrives = arrives && there.meet(normal);
-      if (arrives) found.push_back(arrival(there.u));
+      const Vector normal = Vector::Unit(dimensions_ + 1, dimensions_);
+      const bool near = there.correct(normal);
+      there.step_error = step_error_arriving;
+      there.last_step = last_step_arriving;
+      if (near && there.correct(normal)) found.push_back(arrival(there.u));
     }
     last = next;
   }
@@ -174,12 +154,12 @@ bool Arrivals::trace(const Vector& seed, double sense, double fastest, double lo
                      std::vector<Arrival>& found) {
   Curve curve{*this, seed};
   if (!curve.linearise(Factors::anew)) return false;
-  ArclengthSteps<Curve::Move> steps{{least_length, shortening, sharpest_turn}};
-  steps.begin(curve, first_length, sense);
+  ArclengthSteps<Vector> steps{{least_length, shortening, sharpest_turn}, first_length};
+  steps.begin(curve, nullptr, sense);
   std::vector<Point>& points = curves_.emplace_back();
-  points.push_back({seed, steps.tangent.u});
+  points.push_back({seed, steps.tangent});
   while (steps.advance(curve)) {
-    const Point next{curve.u, steps.next.u};
+    const Point next{curve.u, steps.next};
     cross(points.back(), next, found);
     const bool closed = curve.tries > 3 && (next.u - seed).norm() < steps.length;
     steps.accept((next.u - points.back().u).norm());
@@ -279,9 +259,9 @@ Arrivals::Flight Arrivals::flight(Vector w, double until, const Scale& scale) {
 void Arrivals::land(const Vector& w, double time, std::vector<Arrival>& found) {
   if (!(time > 0)) return;
   Curve there{*this, unknowns({w, time})};
-  Curve::Move normal{Vector::Zero(dimensions_ + 1)};
-  normal.u.head(dimensions_) = along_.transpose() * w.normalized();
-  if (there.meet(normal)) found.push_back(arrival(there.u));
+  Vector normal = Vector::Zero(dimensions_ + 1);
+  normal.head(dimensions_) = along_.transpose() * w.normalized();
+  if (there.correct(normal)) found.push_back(arrival(there.u));
 }
 
 /// Arrivals between two neighbours that pass q1 on different sides. Where these are not near to it or to each

@@ -50,11 +50,6 @@ class Arrivals {
   bool followed(const Arrival& arrival) const;
 
  private:
-  struct Miss {
-    Vector miss;            ///< by the extent
-    double away;            ///< likewise: the distance from q1
-    Eigen::MatrixXd slope;  ///< by the unknowns
-  };
   struct Curve;
   struct Passage {
     double time, side;  ///< where it is nearest to q1; its distance, positive to the left of q1
@@ -71,7 +66,6 @@ class Arrivals {
   Vector state(const Vector& w) const;
   Vector unknowns(const Arrival& arrival) const;
   Arrival arrival(const Vector& u) const;
-  bool fly(const Vector& u, double step_error, Miss& miss);
   bool trace(const Vector& seed, double sense, double fastest, double longest, std::vector<Arrival>& found);
   void cross(const Point& a, const Point& b, std::vector<Arrival>& found);
   Flight flight(Vector w, double until, const Scale& scale);

@@ -54,7 +54,7 @@ bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution
   w_.iteration.reset(problem_, tables, path_.elements());
   const double first = scale_ = scales(path_, tables).q;
   if (scale_ == 0) scale_ = 1;
-  const auto take = [&](bool solved, int) {
+  const auto take = [&](bool solved) {
     if (!solved) return Progress::failed;
     const double duration = path_.duration();
     const double size = std::hypot(std::sqrt(dot(step_.nodes, step_.nodes)), step_.duration / duration);
@@ -70,11 +70,10 @@ bool DeflatedNewton::run(const ElementTables& tables, const std::vector<Solution
     scale_ = std::max(scale_, scales(path_, tables).q);
     return first > 0 && scale_ > runaway * first ? Progress::failed : Progress::more;
   };
-  NewtonPolicy policy{most_steps, Progress::failed, [](int) { return Factors::anew; }, take};
-  return newton_loop(*this, policy) == Progress::arrived;
+  return newton_loop([this](Factors) { return solve(); }, most_steps, take) == Progress::arrived;
 }
 
-bool DeflatedNewton::solve(Factors) {
+bool DeflatedNewton::solve() {
   if (!count_() || !w_.iteration.factor_quickly(path_)) return false;
   w_.iteration.model().solve(w_.iteration.action(), w_.iteration.closing(path_), step_);
   return true;

@@ -22,10 +22,9 @@ class DeflatedNewton {
   /// Takes the path to where plain Newton steps are short. False if it does not come there.
   bool run(const ElementTables& tables, const std::vector<Solution>& known);
 
-  /// The plain step, for newton_loop().
-  bool solve(Factors);
-
  private:
+  /// The plain step.
+  bool solve();
   void sample(const std::vector<Solution>& known);
   double dot(const std::vector<double>& nodes, const std::vector<double>& others) const;
   double stretch(const Step& step);
