@@ -244,6 +244,29 @@ TEST(Minimisers, RestsBetweenTheEnds) {
   expect_minimum(solve(between, within(1e-8)), (8.0 / 3 + 7.0 / 24) / std::sqrt(2.0), 1e-9);
 }
 
+/// The potential of three holes (Metzner, Schütte and Vanden-Eijnden, J. Chem. Phys. 125 (2006) 084110), from
+/// one deep hole to the other over the saddle between: S = V(saddle) − V(hole). The path rests at all three.
+/// Along the saddle's ridge it neither leaves nor approaches, and what roundoff makes of that, which falls
+/// more slowly than the rest, must not move it. By symmetry it is at the saddle when half the time is over.
+TEST(Minimisers, OverASaddleBetweenTwoHoles) {
+  const auto holes = trace(2, [](auto q, auto v, auto) {
+    const auto x = q[0], y = q[1], up = y - 1.0 / 3.0, hill = y - 5.0 / 3.0, left = x + 1.0, right = x - 1.0;
+    const auto e1 = 3.0 * exp(-x * x - up * up), e2 = 3.0 * exp(-x * x - hill * hill);
+    const auto e3 = 5.0 * exp(-right * right - y * y), e4 = 5.0 * exp(-left * left - y * y);
+    const auto slope_x = 2.0 * (x * (e2 - e1) + right * e3 + left * e4) + 0.8 * x * x * x;
+    const auto slope_y = 2.0 * (hill * e2 - up * e1 + y * (e3 + e4)) + 0.8 * up * up * up;
+    const auto u = v[0] + slope_x, w = v[1] + slope_y;
+    return (u * u + w * w) / 4.0;
+  });
+  const double x = 1.0480549928242194, y = -0.0420936663066778;
+  for (const double T : {10.0, 20.0, 30.0, 100.0, 400.0}) {
+    const Solution s = solve(fixed_ends(holes, {-x, y}, {x, y}, T), within(1e-8));
+    expect_minimum(s, 2.61027396145577, 1e-10);
+    EXPECT_LT(s.error_estimate, 1e-4) << T;
+    EXPECT_LE(std::abs(at(s.trajectory, T / 2).q[0]), 10 * s.error_estimate) << T;
+  }
+}
+
 /// Out to −1, across to 1 and back: where it crosses, the action is largest, by less than roundoff. It falls
 /// to a path that rests at −1 or at 1 alone.
 TEST(Minimisers, RestsThatThePathTurnsBackFrom) {

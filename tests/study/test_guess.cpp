@@ -255,3 +255,28 @@ TEST_F(Scenes, GuessFilesOfListsAreNoCsv) {
     EXPECT_NE(what.find(said), std::string::npos) << what;
   }
 }
+
+/// An arc of a Kepler ellipse through its pericentre, at 9e-4 to 4e-5 of the distance of its start: the motion
+/// itself is the guess. Steps that are small against the whole path move it in time by more than velocities
+/// there allow; so they go on until gradients and factors of more digits know no better.
+TEST_F(Scenes, GuessOfAMotionThroughANearCollision) {
+  for (const double speed : {0.03, 0.01, 0.006}) {  // at r = 2, across
+    const double a = 1 / (1 - speed * speed), e = 2 / a - 1, T = 3.5;
+    const double mean = M_PI + T / std::pow(a, 1.5);
+    double anomaly = mean;
+    for (int k = 0; k < 200; ++k)
+      anomaly -= (anomaly - e * std::sin(anomaly) - mean) / (1 - e * std::cos(anomaly));
+    const double x = a * (std::cos(anomaly) - e), y = -a * std::sqrt(1 - e * e) * std::sin(anomaly);
+    const Study s =
+        study(fmt::format("[system]\nuse = \"kepler\"\n[boundary]\n"
+                          "start = {{ x = -2.0, y = 0.0 }}\nend = {{ x = {:.17g}, y = {:.17g} }}\n"
+                          "duration = {}\n[guess]\n"
+                          "state = {{ x = -2.0, y = 0.0, \"x'\" = 0.0, \"y'\" = {} }}\n",
+                          x, y, T, speed));
+    const Solution solution = Solver().solve(s.problem, s.options);
+    ASSERT_TRUE(solution.converged()) << speed << solution.message;
+    EXPECT_EQ(solution.strategy, "newton from the guess") << speed;
+    EXPECT_NEAR(solution.momentum_start[1], speed, 1e-8) << speed;
+    EXPECT_LT(*solution.energy_drift, 1e-8 / (speed * speed)) << speed;
+  }
+}

@@ -113,12 +113,16 @@ double residual_under_finer(const Problem& problem, const Path& path, const Outc
 
 bool polish(Path& path, NewtonIteration& newton) {
   if (!newton.extended() && !newton.extend()) return false;
-  constexpr int most_steps = 5;
+  constexpr int most_steps = 10;
   double before = INFINITY;
   const auto take = [&](StepResult step) {
     if (step != StepResult::ok) return Progress::failed;
     const double last = std::exchange(before, newton.norm());
-    return before < 0.5 * last ? Progress::more : Progress::arrived;
+    if (before < 0.5 * last) return Progress::more;
+    // What is left may be roundoff of the factors.
+    before = INFINITY;
+    newton.double_digits();
+    return newton.extend() ? Progress::more : Progress::arrived;
   };
   return newton_loop(NewtonSteps{newton, path}, most_steps, take, Progress::arrived) == Progress::arrived;
 }

@@ -36,8 +36,8 @@ QuadratureCheck check_quadrature(const Problem& problem, const Path& path, const
 double residual_under_finer(const Problem& problem, const Path& path, const Outcome& outcome,
                             Workspace& workspace);
 
-/// Continues Newton's method with gradients in extended precision, where the finer quadrature moves a path:
-/// that may be roundoff. False if it fails, or if the system has none.
+/// Continues Newton's method with gradients in extended precision, then with factors of 106 bits, where the
+/// finer quadrature moves a path: that may be roundoff. False if it fails, or if the system has none.
 bool polish(Path& path, NewtonIteration& newton);
 
 /// Raises the error estimate of a converged solution where the check shows a larger one, and refuses the

@@ -161,7 +161,7 @@ bool Arrivals::trace(const Vector& seed, double sense, double fastest, double lo
   while (steps.advance(curve)) {
     const Point next{curve.u, steps.next};
     cross(points.back(), next, found);
-    const bool closed = curve.tries > 3 && (next.u - seed).norm() < steps.length;
+    const bool closed = points.size() > 3 && (next.u - seed).norm() < steps.length;
     steps.accept((next.u - points.back().u).norm());
     points.push_back(next);
     if (closed) return true;

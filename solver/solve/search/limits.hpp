@@ -67,6 +67,9 @@ inline constexpr double moving = 0.1;
 inline constexpr double speed_roundoff = 1e-12;
 /// Of velocities and momenta, by the largest: roundings of the sums that they are.
 inline constexpr double path_roundoff = 4 * unit_roundoff;
+/// Weights of a rest this much smaller than the largest, and less than so many of their doubts, are none: it
+/// would be a rare accident if roundoff hid one that there is.
+inline constexpr double roundoff_of_weights = 1e-9, doubtful = 100;
 /// Slower than this, by the fastest, a motion near an equilibrium neither approaches nor leaves.
 inline constexpr double least_rate = 1e-8;
 /// Rates that differ less, by the fastest, may be one, of which roundoff makes several: the root of it. They

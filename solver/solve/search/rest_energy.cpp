@@ -40,10 +40,17 @@ double RestEnergy::fastest_rate() const {
 }
 
 RestEnergy RestEnergy::known() const {
-  RestEnergy result(terms_);
-  for (Term& term : result.terms_)
-    if (std::abs(term.weight) < term.doubt) term.weight = 0;
-  return result;
+  double largest = 0;
+  for (const Term& term : terms_) largest = std::max(largest, std::abs(term.weight));
+  std::vector<Term> result;
+  for (Term term : terms_) {
+    const double size = std::abs(term.weight);
+    const bool hidden = size < doubtful * term.doubt;
+    if (hidden && std::max(size, term.doubt) < roundoff_of_weights * largest) continue;
+    if (size < term.doubt) term.weight = 0;
+    result.push_back(term);
+  }
+  return RestEnergy(std::move(result));
 }
 
 bool RestEnergy::doubt_changes(const RestEnergy& other) {

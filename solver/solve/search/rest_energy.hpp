@@ -40,7 +40,7 @@ class RestEnergy {
   /// Of the largest term.
   double log_size(double length) const;
   double fastest_rate() const;
-  /// Without the weights that are less than their doubts.
+  /// Without the weights that are less than their doubts; those that roundoff hides have no doubts either.
   RestEnergy known() const;
   /// Doubts each weight as much as it differs from that of the other. False if that has other terms, as
   /// where a tail begins at an end of the path.
