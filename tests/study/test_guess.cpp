@@ -256,9 +256,9 @@ TEST_F(Scenes, GuessFilesOfListsAreNoCsv) {
   }
 }
 
-/// An arc of a Kepler ellipse through its pericentre, at 9e-4 to 4e-5 of the distance of its start: the motion
-/// itself is the guess. Steps that are small against the whole path move it in time by more than velocities
-/// there allow; so they go on until gradients and factors of more digits know no better.
+/// An arc of a Kepler ellipse through its pericentre, at 9e-4 to 4e-5 of the distance of its start: the
+/// motion itself is the guess. Steps that are small against the whole path move it in time by more than
+/// velocities there allow; so they go on until gradients and factors of more digits know no better.
 TEST_F(Scenes, GuessOfAMotionThroughANearCollision) {
   for (const double speed : {0.03, 0.01, 0.006}) {  // at r = 2, across
     const double a = 1 / (1 - speed * speed), e = 2 / a - 1, T = 3.5;

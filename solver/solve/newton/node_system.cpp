@@ -322,6 +322,15 @@ Inertia NodeSystem::inertia(double threshold, VariedBy by) const {
   ends.factor(chain, std::max(threshold, zero_eigenvalue));
   // With more null directions than can be afforded: as for steps.
   if (!ends.finite()) ends.factor(chain);
+  // A pivot may vanish altogether: roundoff of the largest entry, added to all, leaves the other signs.
+  if (!ends.finite()) {
+    double largest = 0;
+    for (int k = 0; k < chain.blocks(); ++k)
+      for (int a = 0; a < n_; ++a) largest = std::max(largest, std::abs(chain.diagonal(k)[a * (n_ + 1)]));
+    for (int k = 0; k < chain.blocks(); ++k)
+      for (int a = 0; a < n_; ++a) chain.diagonal(k)[a * (n_ + 1)] += zero_eigenvalue * largest;
+    ends.factor(chain);
+  }
   Inertia result = ends.inertia(threshold);
   result.positive -= springs;
   // Fewer than r of either sign: some of them are among those that were too small to tell.
