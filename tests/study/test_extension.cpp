@@ -253,6 +253,17 @@ TEST_F(Scenes, UnknownOfAPeriodicOrbit) {
   EXPECT_EQ(s.floquet->trivial_pairs, 1);
 }
 
+/// The constant u = √(1/2) satisfies the equations too, but a pulse is asked for.
+TEST_F(Scenes, AnOrbitWithAnIntegralDoesNotShrinkToRest) {
+  const Solution s = run(study(system("[\"u\"]", "u'^2/2 - u^4/4") +
+                               "[boundary]\nperiodic = true\nduration = 6\nintegrals = [\"u^2 = 3\"]\n"
+                               "[guess]\nu = \"1/cosh(t - T/2)\"\n"));
+  if (!s.converged()) return;
+  const auto [least, most] = std::ranges::minmax(s.trajectory.nodes);
+  EXPECT_GT(most - least, 0.1);
+  EXPECT_LT(*s.energy_drift, 1e-7);
+}
+
 /// All of Kepler's orbits of one axis have one period: of a continuum that near the guess.
 TEST_F(Scenes, UnknownOfAContinuumOfOrbits) {
   const Solution s = run(study(system("[\"x\", \"y\"]", "(x'^2 + y'^2)/2 + mu/sqrt(x^2 + y^2)") +

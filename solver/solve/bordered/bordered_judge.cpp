@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "problem/closing.hpp"
+#include "problem/point_range.hpp"
 #include "problem/symmetry.hpp"
 #include "solution/extension_values.hpp"
 #include "solution/observe.hpp"
@@ -18,6 +19,7 @@
 #include "solve/bordered/dependence.hpp"
 #include "solve/bordered/limits.hpp"
 #include "solve/mesh/conservation.hpp"
+#include "solve/periodic/equilibrium.hpp"
 #include "solve/periodic/moving_symmetries.hpp"
 #include "solve/periodic/stability.hpp"
 
@@ -319,6 +321,9 @@ Solution judge(const Problem& problem, const SolveOptions& options, BorderedEqua
   solution.extension = read_extension_values(problem, equations, state);
   const Path path = found.own_path();
   const Trajectory elements = trajectory_of(path);
+  const auto range = [&](const std::vector<double>& q) { return largest_range(q, problem.coordinates()); };
+  if (problem.periodic && shrank(problem, range(elements.nodes), range(problem.guess.q)))
+    return refused(fmt::format("{}; try a larger guess or another duration", shrank_to_rest));
   solution.trajectory = measured.recovered ? trajectory_of(*measured.recovered) : elements;
   if (problem.paired)
     if (const std::optional<Refusal> fails = copies_differ(solution.trajectory, size))
