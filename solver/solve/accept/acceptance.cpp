@@ -331,9 +331,11 @@ std::vector<double> shorter_ends(const Path& path) {
   return {shorter_end * mesh[1], 1 - shorter_end * (1 - mesh[mesh.size() - 2])};
 }
 
-/// Refuses a solution along which forces act that its elements do not see. Returns where they do, as τ.
-std::vector<double> judge_forces(const Problem& problem, Solution& solution) {
-  if (!problem.lagrangian->structure().pulses) return {};
+/// Refuses a solution along which forces act that its elements do not see. Returns where they do, as τ. At
+/// rest all momenta are roundoff.
+std::vector<double> judge_forces(const Problem& problem, const Scales& size, Solution& solution) {
+  const bool at_rest = size.range < size.q || size.q == 0;
+  if (at_rest || !problem.lagrangian->structure().pulses) return {};
   const OverlookedForces overlooked = overlooked_forces(*problem.lagrangian, solution.trajectory);
   std::vector<double> ends;
   const double step = overlooked.step / solution.duration();
@@ -408,7 +410,8 @@ Judged judge_path(const Problem& problem, const SolveOptions& options, const Out
     judge_isolation(problem, path, found, *check.softest, w, solution);
     not_isolated = !solution.converged();
   }
-  if (solution.converged() && !options.scheme) finer_at = judge_forces(problem, solution);
+  if (solution.converged() && !options.scheme)
+    finer_at = judge_forces(problem, scales(path, *found.tables), solution);
   if (solution.converged() && problem.manifold) check_on_manifold(problem, solution);
   solution.pinned = options.scheme.has_value();
   if (solution.pinned && solution.converged() && !problem.paired) {
