@@ -55,8 +55,7 @@ void judge_conjugate_ends(const Problem& problem, const SolveOptions& options, c
     refuse(solution, Status::not_converged,
            fmt::format(
                "the ends are nearly conjugate: a Jacobi field vanishes at t = 0 and {:.1e} from T = {:.10g}. "
-               "This amplifies errors beyond the tolerance {:.1e}; loosen or tighten it, move an end, or "
-               "change the duration",
+               "This amplifies errors beyond the tolerance {:.1e}; move an end or change the duration",
                distance, T, options.tolerance));
 }
 
