@@ -75,14 +75,14 @@ void collect_rows(std::span<const std::shared_ptr<const Kernel>> kernels, Struct
 }  // namespace
 
 bool pulses(const Kernel& kernel, NodeId value) {
-  const std::shared_ptr<Kernel> slopes = std::make_shared<Kernel>(empty_like(kernel));
-  slopes->graph = kernel.graph;
+  Kernel slopes = empty_like(kernel);
+  slopes.graph = kernel.graph;
   std::vector<std::uint32_t> inputs;
   for (std::uint32_t k = 0; k < kernel.kinds.size(); ++k)
     if (!kernel.is_uniform(k)) inputs.push_back(k);
   const auto linear = [&](NodeId argument) {
-    const std::vector<NodeId> slope = gradient(slopes->graph, argument, inputs);
-    const std::vector<bool> varies = dependents(*slopes, moving);
+    const std::vector<NodeId> slope = gradient(slopes.graph, argument, inputs);
+    const std::vector<bool> varies = dependents(slopes, moving);
     return std::ranges::none_of(slope, [&](NodeId id) { return varies[id]; });
   };
   const std::vector<bool> moves = dependents(kernel, moving);
