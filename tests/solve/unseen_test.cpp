@@ -198,6 +198,29 @@ TEST(Unseen, PulseInTime) {
     }
 }
 
+/// A force w⁻¹/cosh²((t − a)/w), and its integral over time, tanh: the integrals of (1 − t) by them tell
+/// p(0).
+TEST(Unseen, PulseAndStepOfHyperbolicFunctions) {
+  const double a = 0.3;
+  for (const double w : {3e-3, 3e-4, 1e-4}) {
+    const auto log_cosh = [](double u) { return u + std::log1p(std::exp(-2 * u)) - std::log(2.0); };  // u > 0
+    const double rise = w * (log_cosh((1 - a) / w) - log_cosh(a / w));  // of ∫ tanh, from 0 to 1
+    const auto pulse = trace(1, [&](auto q, auto v, auto t) {
+      const auto c = cosh((t - a) / w);
+      return v[0] * v[0] / 2 + q[0] / (w * c * c);
+    });
+    const Solution s = solve(fixed_ends(pulse, {0}, {1}, 1), within(1e-9));
+    EXPECT_NEAR(s.momentum_start[0], 1 - std::tanh(a / w) - rise, 1e-8) << w;
+    const auto step =
+        trace(1, [&](auto q, auto v, auto t) { return v[0] * v[0] / 2 + q[0] * tanh((t - a) / w); });
+    const Solution late = solve(fixed_ends(step, {0}, {1}, 1), within(1e-9));
+    // Of a sharp step; its width adds π² w²/12.
+    const double sharp = 0.5 * (1 - a) * (1 - a) + 0.5 * a * a - a;
+    const double width = std::numbers::pi * std::numbers::pi * w * w / 12;
+    EXPECT_NEAR(late.momentum_start[0], 1 - sharp - width, 1e-8) << w;
+  }
+}
+
 /// A barrier at a place that first elements pass between two points. The time that it takes is known by
 /// quadrature from the energy.
 TEST(Unseen, PulseInSpace) {
